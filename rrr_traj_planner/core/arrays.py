@@ -1,0 +1,119 @@
+"""Checked, read-only arrays: what every value type of the core is made of."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rrr_traj_planner.core.errors import InvalidInputError
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+def finite_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = None) -> Array:
+    """
+    Return a read-only float copy of a value, checked.
+
+    Parameters
+    ----------
+    name : str
+        What the value is called in the error's text.
+    value : array_like
+        The value.
+    shape : tuple of int, optional
+        The shape that it must have; -1 stands for any length.
+
+    Returns
+    -------
+    ndarray
+        A copy that cannot be written to.
+
+    Raises
+    ------
+    InvalidInputError
+        If the value is no array of numbers, has another shape or is not finite.
+
+    """
+    array = _checked(name, value, shape)
+    if not np.isfinite(array).all():
+        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise InvalidInputError(f'{name}{_index(where)} is {array[where]}, must be finite')
+    return array
+
+
+def bound_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = None) -> Array:
+    """
+    Return a read-only float copy of bounds: finite or infinite, never NaN.
+
+    Parameters
+    ----------
+    name, value, shape
+        As in `finite_array`.
+
+    Returns
+    -------
+    ndarray
+        A copy that cannot be written to.
+
+    Raises
+    ------
+    InvalidInputError
+        If the value is no array of numbers, has another shape or holds a NaN.
+
+    """
+    array = _checked(name, value, shape)
+    if np.isnan(array).any():
+        where = tuple(int(i) for i in np.argwhere(np.isnan(array))[0])
+        raise InvalidInputError(f'{name}{_index(where)} is nan, must be a number')
+    return array
+
+
+def joint_values(name: str, value: ArrayLike) -> Array:
+    """
+    Return joint values as a float array whose last axis is the joints.
+
+    Parameters
+    ----------
+    name : str
+        What the value is called in the error's text.
+    value : array_like, shape (..., 3)
+        The values.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        The same values.
+
+    Raises
+    ------
+    InvalidInputError
+        If the shape is wrong.
+
+    """
+    array = np.asarray(value, dtype=float)
+    if array.ndim < 1 or array.shape[-1] != 3:
+        raise InvalidInputError(f'{name} has shape {array.shape}, must have (..., 3)')
+    return array
+
+
+def _checked(name: str, value: ArrayLike, shape: tuple[int, ...] | None) -> Array:
+    try:
+        array = np.array(value, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise InvalidInputError(f'{name} is no array of numbers: {error}') from None
+    if shape is not None and not _fits(array.shape, shape):
+        wanted = '(' + ', '.join('n' if n < 0 else str(n) for n in shape) + ')'
+        raise InvalidInputError(f'{name} has shape {array.shape}, must have {wanted}')
+    array.setflags(write=False)
+    return array
+
+
+def _fits(actual: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
+    return len(actual) == len(wanted) and all(
+        w < 0 or a == w for a, w in zip(actual, wanted))
+
+
+def _index(where: tuple[int, ...]) -> str:
+    return ''.join(f'[{i}]' for i in where)

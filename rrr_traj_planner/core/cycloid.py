@@ -1,0 +1,234 @@
+"""
+The thesis's function: pieces whose acceleration is c - b cos(w s), s in [0, 1] (3.4-3.7, 4.3-4.5).
+
+Full-period transitions, general ones between non-zero accelerations, half-period ramps and
+cruises are all such pieces. Fields of a piece may be floats or arrays of one shape.
+"""
+
+from __future__ import annotations
+
+from math import acos, pi
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import InvalidInputError
+
+
+class CycloidPiece(NamedTuple):
+    """
+    One piece of a joint's motion over a normalised time s = t / duration in [0, 1].
+
+    The thesis's a is 1 / w; its b and c are ours times duration squared, as ours are
+    accelerations.
+    """
+
+    duration: Any   # [s]
+    position: Any   # at s = 0 [rad]
+    velocity: Any   # at s = 0 [rad/s]
+    c: Any          # mean acceleration of a full period [rad/s^2]
+    b: Any          # amplitude [rad/s^2]
+    w: Any          # phase that the piece runs through [rad]
+
+    def at(self, s: Any) -> tuple[Array, Array, Array, Array]:
+        """
+        Return position, velocity, acceleration and jerk (4.3-4.5).
+
+        Parameters
+        ----------
+        s : array_like
+            Normalised times in [0, 1], of a shape that broadcasts with the fields.
+
+        Returns
+        -------
+        tuple of ndarray
+            Position [rad], velocity [rad/s], acceleration [rad/s^2], jerk [rad/s^3].
+
+        """
+        T, w, phase = self.duration, self.w, self.w * s
+        sine = np.sin(phase)
+        versine = 2.0 * np.sin(0.5 * phase) ** 2  # 1 - cos, exact near 0
+        velocity = self.velocity + T * (self.c * s - self.b / w * sine)
+        position = self.position + T * (
+            self.velocity * s + T * (0.5 * self.c * s * s - self.b / w ** 2 * versine))
+        acceleration = (self.c - self.b) + self.b * versine
+        return position, velocity, acceleration, self.b * w / T * sine
+
+
+def transition(duration: Any, position: Any, velocity: Any, end_velocity: Any) -> CycloidPiece:
+    """
+    Return a full-period transition: zero acceleration and jerk at both ends (4.7-4.9).
+
+    Parameters
+    ----------
+    duration : float or ndarray
+        [s].
+    position, velocity : float or ndarray
+        At the start [rad, rad/s].
+    end_velocity : float or ndarray
+        [rad/s].
+
+    Returns
+    -------
+    CycloidPiece
+        Displacement duration * (velocity + end_velocity) / 2; peak acceleration
+        2 |change of velocity| / duration; peak jerk 2 pi |change of velocity| / duration^2.
+
+    """
+    mean = (end_velocity - velocity) / duration
+    return CycloidPiece(duration, position, velocity, mean, mean, 2.0 * pi + 0.0 * mean)
+
+
+def cruise(duration: Any, position: Any, velocity: Any) -> CycloidPiece:
+    """
+    Return a piece at constant velocity (4.11-4.13).
+
+    Parameters
+    ----------
+    duration, position, velocity : float or ndarray
+        [s], and at the start [rad, rad/s].
+
+    Returns
+    -------
+    CycloidPiece
+        The piece.
+
+    """
+    zero = 0.0 * (duration + position + velocity)
+    return CycloidPiece(duration, position, velocity, zero, zero, 2.0 * pi + zero)
+
+
+def ramp(duration: Any, position: Any, velocity: Any, start_acceleration: Any,
+         end_acceleration: Any) -> CycloidPiece:
+    """
+    Return a half-period ramp from one acceleration to another, jerk zero at both ends.
+
+    Parameters
+    ----------
+    duration, position, velocity : float or ndarray
+        [s], and at the start [rad, rad/s].
+    start_acceleration, end_acceleration : float or ndarray
+        [rad/s^2].
+
+    Returns
+    -------
+    CycloidPiece
+        Peak jerk pi |change of acceleration| / (2 duration).
+
+    """
+    half_rise = 0.5 * (end_acceleration - start_acceleration)
+    return CycloidPiece(duration, position, velocity, start_acceleration + half_rise, half_rise,
+                        pi + 0.0 * half_rise)
+
+
+def general_transition(position: float, velocity: float, end_velocity: float,
+                       start_acceleration: float, end_acceleration: float,
+                       peak_acceleration: float) -> CycloidPiece:
+    """
+    Return a transition between given accelerations through a given peak (4.6 corrected).
+
+    Parameters
+    ----------
+    position, velocity : float
+        At the start [rad, rad/s].
+    end_velocity : float
+        [rad/s].
+    start_acceleration, end_acceleration : float
+        [rad/s^2].
+    peak_acceleration : float
+        The acceleration at the peak [rad/s^2], signed; beyond both end values or equal to
+        the end value.
+
+    Returns
+    -------
+    CycloidPiece
+        With cos(1/a) = 1 - 2 (end - start) / (peak - start), its duration follows from the
+        change of velocity.
+
+    Raises
+    ------
+    InvalidInputError
+        If the peak lies between the end values, or no positive duration gives the change of
+        velocity.
+
+    """
+    rise, change = peak_acceleration - start_acceleration, end_velocity - velocity
+    fraction = (end_acceleration - start_acceleration) / rise if rise != 0.0 else -1.0
+    if not 0.0 <= fraction <= 1.0:
+        raise InvalidInputError(
+            f'peak acceleration {peak_acceleration} rad/s^2 must be beyond the accelerations at '
+            f'the ends, {start_acceleration} and {end_acceleration} rad/s^2')
+    w = 2.0 * pi - acos(1.0 - 2.0 * fraction)
+    b, c = 0.5 * rise, start_acceleration + 0.5 * rise
+    mean = c - b * float(np.sin(w)) / w
+    if change * mean <= 0.0:
+        raise InvalidInputError(
+            f'a change of velocity of {change} rad/s has no transition of mean acceleration '
+            f'{mean} rad/s^2')
+    return CycloidPiece(change / mean, position, velocity, c, b, w)
+
+
+def peak_acceleration(piece: CycloidPiece) -> Array:
+    """
+    Return the largest magnitude of acceleration of each piece, in closed form.
+
+    Parameters
+    ----------
+    piece : CycloidPiece
+        Fields of shape (n,).
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [rad/s^2].
+
+    """
+    turning = np.minimum(pi / piece.w, 1.0)
+    return _largest(piece.at(s)[2] for s in (0.0, turning, 1.0))
+
+
+def peak_jerk(piece: CycloidPiece) -> Array:
+    """
+    Return the largest magnitude of jerk of each piece, in closed form.
+
+    Parameters
+    ----------
+    piece : CycloidPiece
+        Fields of shape (n,).
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [rad/s^3].
+
+    """
+    return _largest(piece.at(np.minimum(phase / piece.w, 1.0))[3]
+                    for phase in (0.5 * pi, 1.5 * pi))
+
+
+def turning_points_of_velocity(piece: CycloidPiece) -> Array:
+    """
+    Return the normalised times at which velocity may turn: zeros of the acceleration.
+
+    Parameters
+    ----------
+    piece : CycloidPiece
+        Fields of shape (n,).
+
+    Returns
+    -------
+    ndarray, shape (n, 4)
+        Increasing, from 0 to 1; between neighbours the velocity is monotone.
+
+    """
+    ratio = np.divide(piece.c, piece.b, out=np.full(np.shape(piece.b), 2.0),
+                      where=piece.b != 0.0)
+    phase = np.arccos(np.clip(ratio, -1.0, 1.0))
+    first = np.minimum(phase / piece.w, 1.0)
+    second = np.minimum((2.0 * pi - phase) / piece.w, 1.0)
+    return np.stack((np.zeros_like(first), first, second, np.ones_like(first)), axis=-1)
+
+
+def _largest(values: Any) -> Array:
+    return np.asarray(np.max(np.abs(np.stack(list(values))), axis=0))

@@ -1,0 +1,218 @@
+"""Dynamics of the arm for one state (shape (3,)) or many (shape (..., 3))."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rrr_traj_planner.core import equations
+from rrr_traj_planner.core.arrays import Array, joint_values
+from rrr_traj_planner.core.model import RobotModel
+
+
+def inertia_matrix(model: RobotModel, q: ArrayLike) -> Array:
+    """
+    Return the joint-space inertia matrix H (5.40-5.48 corrected).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q : array_like, shape (..., 3)
+        Joint positions [rad].
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
+        Symmetric, positive definite [kg m^2].
+
+    Raises
+    ------
+    InvalidInputError
+        If the shape is wrong.
+
+    """
+    t, q = _terms(model, q)
+    H = np.zeros(q.shape + (3,))
+    H[..., 0, 0] = t.H11
+    H[..., 1, 1] = t.H22
+    H[..., 1, 2] = H[..., 2, 1] = t.H23
+    H[..., 2, 2] = t.H33
+    return H
+
+
+def coriolis_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
+    """
+    Return h, the Coriolis and centrifugal torques (5.49-5.51 corrected).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q, qd : array_like, shape (..., 3)
+        Joint positions [rad] and velocities [rad/s].
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Joint torques [N m].
+
+    Raises
+    ------
+    InvalidInputError
+        If a shape is wrong.
+
+    """
+    t, _ = _terms(model, q)
+    return _joined(*equations.velocity_torques(t, *_split('qd', qd)))
+
+
+def gravity_torque(model: RobotModel, q: ArrayLike) -> Array:
+    """
+    Return g, the torques that hold the arm still (5.52-5.54 corrected).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q : array_like, shape (..., 3)
+        Joint positions [rad].
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Joint torques [N m].
+
+    Raises
+    ------
+    InvalidInputError
+        If the shape is wrong.
+
+    """
+    t, _ = _terms(model, q)
+    return _joined(np.zeros_like(t.g2), t.g2, t.g3)
+
+
+def inverse_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
+    """
+    Return the joint torques that produce a motion (5.39).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q, qd, qdd : array_like, shape (..., 3)
+        Joint positions [rad], velocities [rad/s] and accelerations [rad/s^2].
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Joint torques [N m].
+
+    Raises
+    ------
+    InvalidInputError
+        If a shape is wrong.
+
+    """
+    t, _ = _terms(model, q)
+    return _joined(*equations.torques(t, *_split('qd', qd), *_split('qdd', qdd)))
+
+
+def forward_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, tau: ArrayLike) -> Array:
+    """
+    Return the joint accelerations that torques cause (5.39 solved for qdd).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q, qd, tau : array_like, shape (..., 3)
+        Joint positions [rad], velocities [rad/s] and torques [N m].
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Joint accelerations [rad/s^2].
+
+    Raises
+    ------
+    InvalidInputError
+        If a shape is wrong.
+
+    """
+    t, _ = _terms(model, q)
+    return _joined(*equations.accelerations(t, *_split('qd', qd), *_split('tau', tau)))
+
+
+def kinetic_energy(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
+    """
+    Return the kinetic energy (5.36 corrected).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q, qd : array_like, shape (..., 3)
+        Joint positions [rad] and velocities [rad/s].
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Energy [J].
+
+    Raises
+    ------
+    InvalidInputError
+        If a shape is wrong.
+
+    """
+    t, _ = _terms(model, q)
+    w1, w2, w3 = _split('qd', qd)
+    return np.asarray(0.5 * (t.H11 * w1 ** 2 + t.H22 * w2 ** 2 + t.H33 * w3 ** 2)
+                      + t.H23 * w2 * w3)
+
+
+def potential_energy(model: RobotModel, q: ArrayLike) -> Array:
+    """
+    Return the potential energy, zero with both links at the shoulder's height (5.37 corrected).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q : array_like, shape (..., 3)
+        Joint positions [rad].
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Energy [J].
+
+    Raises
+    ------
+    InvalidInputError
+        If the shape is wrong.
+
+    """
+    k = equations.constants(model)
+    _, q2, q3 = _split('q', q)
+    return np.asarray(k.upper_weight * np.sin(q2) - k.fore_weight * np.cos(q2 + q3))
+
+
+def _split(name: str, value: ArrayLike) -> tuple[Array, Array, Array]:
+    array = joint_values(name, value)
+    return array[..., 0], array[..., 1], array[..., 2]
+
+
+def _joined(a: Array, b: Array, c: Array) -> Array:
+    a, b, c = np.broadcast_arrays(a, b, c)
+    out = np.empty(a.shape + (3,))
+    out[..., 0], out[..., 1], out[..., 2] = a, b, c
+    return out
+
+
+def _terms(model: RobotModel, q: ArrayLike) -> tuple[equations.Terms, Array]:
+    _, q2, q3 = _split('q', q)
+    return (equations.terms(equations.constants(model), q2, q3, np.sin, np.cos),
+            np.asarray(q, dtype=float))

@@ -1,0 +1,97 @@
+"""Errors of the package: each names what was wrong, with values and units."""
+
+
+class RrrPlannerError(Exception):
+    """
+    Base of every error that a caller may want to handle.
+
+    Parameters
+    ----------
+    message : str
+        What was wrong, where, the value, the bound and the unit.
+    via_point : int, optional
+        Index of the via point to blame, -1 where none is.
+
+    """
+
+    def __init__(self, message: str, via_point: int = -1) -> None:
+        super().__init__(message)
+        self.via_point = via_point
+
+
+class InvalidInputError(RrrPlannerError, ValueError):
+    """A malformed value: wrong shape, not finite, out of its range."""
+
+
+class StartStateError(RrrPlannerError):
+    """A start state that the arm cannot be in, or cannot start from."""
+
+
+class UnreachableError(RrrPlannerError):
+    """
+    A tip position outside the workspace.
+
+    Parameters
+    ----------
+    message : str
+        Which point, and by how much it misses.
+    distance : float
+        How far the point is from the nearest reachable one [m].
+    via_point : int, optional
+        Index of the via point, -1 where there is none.
+
+    """
+
+    def __init__(self, message: str, distance: float, via_point: int = -1) -> None:
+        super().__init__(message, via_point)
+        self.distance = distance
+
+
+class LimitViolationError(RrrPlannerError):
+    """
+    A point or a path that breaks a limit however slowly the arm moves.
+
+    Parameters
+    ----------
+    message : str
+        Joint, value, limit and unit.
+    joint : str
+        Name of the joint.
+    value, limit : float
+        The offending value and the limit that it breaks (same unit).
+    via_point : int, optional
+        Index of the via point, -1 where none is to blame.
+
+    """
+
+    def __init__(self, message: str, joint: str, value: float, limit: float,
+                 via_point: int = -1) -> None:
+        super().__init__(message, via_point)
+        self.joint = joint
+        self.value = value
+        self.limit = limit
+
+
+class TimingError(RrrPlannerError):
+    """
+    No timing within the limits, for the durations that were asked for.
+
+    Parameters
+    ----------
+    message : str
+        Which durations, and the least feasible ones.
+    least_durations : tuple of float
+        Feasible durations [s], none shorter than asked for; empty where there are none.
+    via_point : int, optional
+        Index of the via point, -1 where none is to blame.
+
+    """
+
+    def __init__(self, message: str, least_durations: tuple[float, ...] = (),
+                 via_point: int = -1) -> None:
+        super().__init__(message, via_point)
+        self.least_durations = least_durations
+
+
+class ConvergenceError(RrrPlannerError):
+    """An iteration that ended at its limit without a result."""

@@ -1,0 +1,174 @@
+"""What joint_trajectory_controller makes of trajectory points: lines, cubics or quintics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.errors import InvalidInputError
+
+
+@dataclass(frozen=True, eq=False)
+class TrajectoryPoints:
+    """
+    Points of a motion, as a trajectory_msgs/JointTrajectory carries them.
+
+    Parameters
+    ----------
+    times : array_like, shape (n,)
+        Strictly increasing [s].
+    positions : array_like, shape (n, 3)
+        [rad].
+    velocities, accelerations : array_like, shape (n, 3), optional
+        [rad/s], [rad/s^2]; accelerations need velocities to be of use.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no point, times do not increase, or shapes differ.
+
+    """
+
+    times: Array
+    positions: Array
+    velocities: Array | None = None
+    accelerations: Array | None = None
+
+    def __post_init__(self) -> None:
+        """Check shapes and order and make the arrays read-only."""
+        object.__setattr__(self, 'times', finite_array('times', self.times, (-1,)))
+        n = len(self.times)
+        if n == 0 or (np.diff(self.times) <= 0.0).any():
+            raise InvalidInputError('times must be strictly increasing, and at least one')
+        for name in ('positions', 'velocities', 'accelerations'):
+            if getattr(self, name) is not None:
+                object.__setattr__(
+                    self, name, finite_array(name, getattr(self, name), (n, 3)))
+
+    @property
+    def duration(self) -> float:
+        """Time of the last point [s]."""
+        return float(self.times[-1])
+
+
+class Interpolant:
+    """
+    The motion through points: linear, cubic or quintic by what the points carry.
+
+    Parameters
+    ----------
+    points : TrajectoryPoints
+        The points.
+
+    """
+
+    def __init__(self, points: TrajectoryPoints) -> None:
+        self.points = points
+        self.coefficients = _coefficients(points)  # (order + 1, segments, 3), in time since knot
+
+    def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array]:
+        """
+        Return position, velocity and acceleration.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,)
+            Times [s]; before the first point and after the last the end's position is held.
+
+        Returns
+        -------
+        tuple of ndarray, shape (n, 3)
+            [rad], [rad/s], [rad/s^2].
+
+        """
+        times = np.asarray(t, dtype=float)
+        knots = self.points.times
+        clipped = np.clip(times, knots[0], knots[-1])
+        index = np.clip(np.searchsorted(knots, clipped, side='right') - 1, 0, len(knots) - 2)
+        c = self.coefficients[:, index]
+        x = (clipped - knots[index])[:, np.newaxis]
+        resting = ((times < knots[0]) | (times > knots[-1]))[:, np.newaxis]
+        return (_polynomial(c, x, 0), np.where(resting, 0.0, _polynomial(c, x, 1)),
+                np.where(resting, 0.0, _polynomial(c, x, 2)))
+
+    def peaks(self, per_segment: int = 16) -> tuple[Array, Array]:
+        """
+        Return the largest velocity and acceleration of each joint, on a grid of each segment.
+
+        Parameters
+        ----------
+        per_segment : int
+            Steps between two points.
+
+        Returns
+        -------
+        tuple of ndarray, shape (3,)
+            [rad/s], [rad/s^2].
+
+        """
+        widths = np.diff(self.points.times)
+        velocity, acceleration = np.zeros(3), np.zeros(3)
+        for s in np.linspace(0.0, 1.0, per_segment + 1):
+            x = (s * widths)[:, np.newaxis]
+            velocity = np.maximum(
+                velocity, np.abs(_polynomial(self.coefficients, x, 1)).max(axis=0))
+            acceleration = np.maximum(
+                acceleration, np.abs(_polynomial(self.coefficients, x, 2)).max(axis=0))
+        return velocity, acceleration
+
+
+def hermite(T: float | Array, start: tuple[Array, ...], end: tuple[Array, ...]) -> list[Array]:
+    """
+    Return the polynomial of least order between two states.
+
+    Parameters
+    ----------
+    T : float or ndarray
+        Time between them [s].
+    start, end : tuple of ndarray
+        Position, and as far as known velocity and acceleration, as many in both.
+
+    Returns
+    -------
+    list of ndarray
+        Coefficients of 1, x, x^2, ... with x the time since the start [s].
+
+    """
+    p0, p1 = start[0], end[0]
+    if len(start) == 1:
+        return [p0, (p1 - p0) / T]
+    v0, v1 = start[1], end[1]
+    d = (p1 - p0) / T  # mean velocity
+    if len(start) == 2:
+        return [p0, v0, (3.0 * d - 2.0 * v0 - v1) / T, (v0 + v1 - 2.0 * d) / T ** 2]
+    a0, a1 = start[2], end[2]
+    return [p0, v0, 0.5 * a0,
+            (20.0 * d - 12.0 * v0 - 8.0 * v1 - (3.0 * a0 - a1) * T) / (2.0 * T ** 2),
+            (-30.0 * d + 16.0 * v0 + 14.0 * v1 + (3.0 * a0 - 2.0 * a1) * T) / (2.0 * T ** 3),
+            (12.0 * d - 6.0 * (v0 + v1) - (a0 - a1) * T) / (2.0 * T ** 4)]
+
+
+def _coefficients(points: TrajectoryPoints) -> Array:
+    states = [points.positions]
+    if points.velocities is not None:
+        states.append(points.velocities)
+        if points.accelerations is not None:
+            states.append(points.accelerations)
+    if len(points.times) == 1:
+        return np.stack([points.positions, np.zeros((1, 3))])
+    T = np.diff(points.times)[:, np.newaxis]
+    return np.stack(hermite(T, tuple(s[:-1] for s in states), tuple(s[1:] for s in states)))
+
+
+def _polynomial(c: Array, x: Array, derivative: int) -> Array:
+    """Return a derivative of sum c[n] x^n."""
+    value = np.zeros(np.broadcast_shapes(c.shape[1:], x.shape))
+    for n in range(len(c) - 1, derivative - 1, -1):
+        factor = 1.0
+        for k in range(derivative):
+            factor *= n - k
+        value = value * x + factor * c[n]
+    return value

@@ -1,0 +1,89 @@
+"""Joint limits: position, velocity, acceleration, jerk, effort; infinite where unlimited."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from rrr_traj_planner.core.arrays import Array, bound_array
+from rrr_traj_planner.core.errors import InvalidInputError
+
+UNITS = {
+    'min_position': 'rad', 'max_position': 'rad', 'max_velocity': 'rad/s',
+    'max_acceleration': 'rad/s^2', 'max_jerk': 'rad/s^3', 'max_effort': 'N m'}
+
+
+def _default(*values: float) -> Array:
+    return field(default_factory=lambda: np.array(values))  # type: ignore[no-any-return]
+
+
+@dataclass(frozen=True, eq=False)
+class JointLimits:
+    """
+    Limits of the three joints, symmetric but for position.
+
+    The defaults are the thesis's (table 6.2 and appendix B.3, joint 2 mirrored because its
+    printed range holds no elbow branch of the thesis's own tasks).
+
+    Parameters
+    ----------
+    min_position, max_position : array_like, shape (3,)
+        Range of each joint [rad].
+    max_velocity, max_acceleration, max_jerk : array_like, shape (3,)
+        Bounds on the magnitude [rad/s, rad/s^2, rad/s^3]; infinite: none.
+    max_effort : array_like, shape (3,)
+        Bound on the motor's torque [N m]; infinite: none.
+
+    Raises
+    ------
+    InvalidInputError
+        If a range is empty or a bound is not positive.
+
+    """
+
+    min_position: Array = _default(0.0, 0.0, -np.pi)
+    max_position: Array = _default(np.pi / 2, np.pi, 2 * np.pi)
+    max_velocity: Array = _default(1.0, 1.0, 1.0)
+    max_acceleration: Array = _default(1.0, 1.0, 1.0)
+    max_jerk: Array = _default(10.0, 10.0, 10.0)
+    max_effort: Array = _default(150.0, 200.0, 200.0)
+
+    def __post_init__(self) -> None:
+        """Check every bound and make the arrays read-only."""
+        for name, unit in UNITS.items():
+            array = bound_array(name, getattr(self, name), (3,))
+            object.__setattr__(self, name, array)
+            if not name.endswith('position') and not (array > 0.0).all():
+                raise InvalidInputError(f'{name} is {list(array)} {unit}, must be positive')
+        if not (self.min_position < self.max_position).all():
+            raise InvalidInputError(
+                f'min_position {list(self.min_position)} rad is not below max_position '
+                f'{list(self.max_position)} rad')
+
+    def scaled(self, velocity: float = 1.0, acceleration: float = 1.0) -> JointLimits:
+        """
+        Return limits with velocity and acceleration scaled down.
+
+        Parameters
+        ----------
+        velocity, acceleration : float
+            Factors in (0, 1].
+
+        Returns
+        -------
+        JointLimits
+            The scaled limits; position, jerk and effort are kept.
+
+        Raises
+        ------
+        InvalidInputError
+            If a factor is outside (0, 1].
+
+        """
+        for name, factor in (('velocity', velocity), ('acceleration', acceleration)):
+            if not 0.0 < factor <= 1.0:
+                raise InvalidInputError(
+                    f'max_{name}_scaling_factor is {factor}, must be in (0, 1]')
+        return replace(self, max_velocity=self.max_velocity * velocity,
+                       max_acceleration=self.max_acceleration * acceleration)

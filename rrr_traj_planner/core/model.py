@@ -1,0 +1,97 @@
+"""The arm: lengths, masses, inertias, gravity and joint names."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Sequence
+
+import numpy as np
+
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.errors import InvalidInputError
+
+JOINT_NAMES = ('joint_1', 'joint_2', 'joint_3')
+
+
+def _default(*values: object) -> Array:
+    return field(default_factory=lambda: np.array(values, dtype=float))  # type: ignore[no-any-return]
+
+
+@dataclass(frozen=True, eq=False)
+class RobotModel:
+    """
+    A three-revolute-joint arm: a vertical joint, then two parallel horizontal ones.
+
+    The defaults are the thesis's arm (appendix B). Frames follow Denavit-Hartenberg as in
+    section 5.2; centres of mass lie on joint axis 1, at l2 along x2 from joint axis 2, and at
+    l3 along z3 from joint axis 3.
+
+    Parameters
+    ----------
+    d1 : float
+        Height of joint axis 2 above the base [m].
+    a2, d4 : float
+        Length of the upper arm and of the forearm [m].
+    l2, l3 : float
+        Distance from joint axis to centre of mass, links 2 and 3 [m].
+    mass : array_like, shape (3,)
+        Masses of the links [kg].
+    inertia : array_like, shape (3, 3)
+        A row for each link: Ix, Iy, Iz about its centre of mass, in the axes of its frame
+        [kg m^2].
+    gravity : float
+        Acceleration of gravity along -z of the base [m/s^2].
+    joint_names : sequence of str
+        Three distinct names.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is not finite, a length a2 or d4 is not positive, a mass or inertia is
+        negative, the arm's inertia is not positive, or names repeat.
+
+    """
+
+    d1: float = 0.5
+    a2: float = 0.9
+    d4: float = 0.7
+    l2: float = 0.5
+    l3: float = 0.5
+    mass: Array = _default(40.0, 16.0, 12.0)
+    inertia: Array = _default((1.5, 0.1, 1.5), (0.12, 0.12, 0.01), (0.12, 0.12, 0.01))
+    gravity: float = 9.81
+    joint_names: Sequence[str] = JOINT_NAMES
+
+    def __post_init__(self) -> None:
+        """Check every value and make the arrays read-only."""
+        for name in ('d1', 'a2', 'd4', 'l2', 'l3', 'gravity'):
+            object.__setattr__(self, name, float(finite_array(name, getattr(self, name), ())))
+        object.__setattr__(self, 'mass', finite_array('mass', self.mass, (3,)))
+        object.__setattr__(self, 'inertia', finite_array('inertia', self.inertia, (3, 3)))
+        object.__setattr__(self, 'joint_names', tuple(str(n) for n in self.joint_names))
+        for name in ('a2', 'd4'):
+            if getattr(self, name) <= 0.0:
+                raise InvalidInputError(f'{name} is {getattr(self, name)} m, must be positive')
+        for name in ('mass', 'inertia'):
+            if (getattr(self, name) < 0.0).any():
+                raise InvalidInputError(f'{name} is {getattr(self, name)}, must not be negative')
+        names = self.joint_names
+        if len(names) != 3 or len(set(names)) != 3 or '' in names:
+            raise InvalidInputError(f'joint_names is {list(names)}, must be 3 distinct names')
+        self._check_inertia()
+
+    def _check_inertia(self) -> None:
+        """Refuse an arm that a torque could accelerate without bound in some pose."""
+        if self.inertia[2, 1] + self.mass[2] * self.l3 ** 2 <= 0.0:
+            raise InvalidInputError('link 3 has no inertia about joint axis 3')
+        if self.inertia[1, 2] + self.mass[1] * self.l2 ** 2 <= 0.0 and (
+                self.inertia[2, 1] * self.mass[2] <= 0.0):
+            raise InvalidInputError('links 2 and 3 have no inertia about joint axis 2')
+        if self.inertia[0, 1] <= 0.0 and min(
+                self.inertia[1, 0], self.inertia[1, 1] + self.mass[1] * self.l2 ** 2) <= 0.0:
+            raise InvalidInputError('the arm can have no inertia about joint axis 1')
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Least and largest distance of the tip from the shoulder [m]."""
+        return abs(self.a2 - self.d4), self.a2 + self.d4

@@ -1,0 +1,170 @@
+"""Motor torques along a motion: their peaks, and the rate at which they fit their limits."""
+
+from __future__ import annotations
+
+from typing import Callable, NamedTuple
+
+import numpy as np
+
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.trajectory import Trajectory, times_within
+
+# Torque is analytic between knots; this many steps there, none longer than a fiftieth of a
+# second of motion at the scale of its fastest change, put every peak in a bracket of its own.
+STEPS_PER_INTERVAL = 12
+LONGEST_STEP = 0.02  # s
+
+# Each round narrows the bracket of a peak to a quarter; a smooth peak's value then stands to
+# the square of that.
+ZOOM_ROUNDS = 6
+ZOOM_POINTS = 9
+CANDIDATES = 6  # brackets followed for each joint
+
+
+class Extreme(NamedTuple):
+    """The largest value of a quantity over a motion, for each joint."""
+
+    value: Array  # shape (3,)
+    time: Array   # when [s], shape (3,)
+
+
+def peak_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
+    """
+    Return the largest magnitude of each joint's torque over the continuous motion (5.39).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    Extreme
+        Torques [N m] and their times.
+
+    """
+    def magnitude(t: Array) -> Array:
+        q, qd, qdd, _ = trajectory(t)
+        return np.abs(inverse_dynamics(model, q, qd, qdd))
+
+    return maximum_over_time(magnitude, _grid(trajectory))
+
+
+def peak_holding_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
+    """
+    Return the largest torque that gravity alone asks of each joint along a path.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    Extreme
+        Torques [N m] and their times.
+
+    """
+    return maximum_over_time(lambda t: np.abs(gravity_torque(model, trajectory(t)[0])),
+                             _grid(trajectory))
+
+
+def stretch_for_torque(model: RobotModel, limits: JointLimits, trajectory: Trajectory) -> Extreme:
+    """
+    Return by how much each joint's torque limit asks a motion to be slowed down.
+
+    Run through more slowly by a factor f, the part of the torque that is not gravity falls
+    with f squared. Limits below what gravity takes give an infinite factor.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Effort limits, infinite where there is none.
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    Extreme
+        Least factors at which each joint's torque keeps its limit; below 1 the motion has torque
+        to spare. And where the factor comes from.
+
+    """
+    limited = np.isfinite(limits.max_effort)
+    if not limited.any():
+        return Extreme(np.zeros(3), np.zeros(3))
+
+    def squared_factor(t: Array) -> Array:
+        q, qd, qdd, _ = trajectory(t)
+        gravity = gravity_torque(model, q)
+        motion = inverse_dynamics(model, q, qd, qdd) - gravity
+        room = limits.max_effort - np.sign(motion) * gravity
+        with np.errstate(divide='ignore', invalid='ignore'):
+            factor = np.where(room > 0.0, np.abs(motion) / room, np.inf)
+        return np.where(limited, factor, 0.0)
+
+    squared = maximum_over_time(squared_factor, _grid(trajectory))
+    return Extreme(np.sqrt(squared.value), squared.time)
+
+
+def maximum_over_time(quantity: Callable[[Array], Array], grid: Array) -> Extreme:
+    """
+    Return the maxima of a piecewise smooth quantity, refined between the points of a grid.
+
+    Parameters
+    ----------
+    quantity : callable
+        Values of shape (n, 3) at times of shape (n,).
+    grid : ndarray
+        Increasing times [s], fine enough for each high local maximum to show.
+
+    Returns
+    -------
+    Extreme
+        For each column.
+
+    """
+    values = quantity(grid)
+    best = values.argmax(axis=0)
+    value, time = values[best, range(3)], grid[best]
+    low, high, column = _brackets(values, grid)
+    for _ in range(ZOOM_ROUNDS if np.isfinite(value).all() else 0):
+        width = (high - low) / (ZOOM_POINTS - 1)
+        t = low[:, np.newaxis] + width[:, np.newaxis] * np.arange(ZOOM_POINTS)
+        at = quantity(t.ravel()).reshape(t.shape + (3,))
+        own = at[np.arange(len(t))[:, np.newaxis], np.arange(ZOOM_POINTS), column[:, np.newaxis]]
+        top = own.argmax(axis=1)
+        for row, col in enumerate(column):
+            if own[row, top[row]] > value[col]:
+                value[col], time[col] = own[row, top[row]], t[row, top[row]]
+        centre = t[np.arange(len(t)), top]
+        low, high = np.maximum(centre - width, low), np.minimum(centre + width, high)
+    return Extreme(value, time)
+
+
+def _brackets(values: Array, grid: Array) -> tuple[Array, Array, Array]:
+    """Return the intervals around the highest local maxima of each column."""
+    padded = np.pad(values, ((1, 1), (0, 0)), constant_values=-np.inf)
+    local = (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
+    columns, rows = [], []
+    for column in range(3):
+        candidates = np.flatnonzero(local[:, column] & (values[:, column] > 0.0))
+        order = np.argsort(-values[candidates, column], kind='stable')[:CANDIDATES]
+        rows.append(candidates[order])
+        columns.append(np.full(len(order), column))
+    row, column = np.concatenate(rows), np.concatenate(columns)
+    last = len(grid) - 1
+    return grid[np.maximum(row - 1, 0)], grid[np.minimum(row + 1, last)], column
+
+
+def _grid(trajectory: Trajectory) -> Array:
+    return times_within(trajectory, STEPS_PER_INTERVAL, LONGEST_STEP)

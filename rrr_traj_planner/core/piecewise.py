@@ -1,0 +1,158 @@
+"""Trajectories made of cycloid pieces, each joint with pieces of its own."""
+
+from __future__ import annotations
+
+from typing import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rrr_traj_planner.core import cycloid
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.cycloid import CycloidPiece
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.trajectory import Peaks, Trajectory
+
+# Halvings of an interval in [0, 1] until rounding stops them.
+BISECTIONS = 54
+
+
+class JointProfile:
+    """
+    One joint's motion: consecutive cycloid pieces.
+
+    Parameters
+    ----------
+    pieces : CycloidPiece
+        Fields of shape (n,), in order of time; pieces of no duration are dropped.
+
+    Raises
+    ------
+    InvalidInputError
+        If a field is not finite, a duration is negative or there is no piece.
+
+    """
+
+    def __init__(self, pieces: CycloidPiece) -> None:
+        fields = np.broadcast_arrays(*(finite_array(n, v) for n, v in pieces._asdict().items()))
+        if fields[0].ndim != 1 or (fields[0] < 0.0).any() or not (fields[0] > 0.0).any():
+            raise InvalidInputError(
+                f'piece durations are {fields[0]} s, must not be negative, nor all zero')
+        lasting = fields[0] > 0.0
+        self.pieces = CycloidPiece(*(f[lasting] for f in fields))
+        self.knots = np.concatenate(([0.0], np.cumsum(self.pieces.duration)))
+
+    @property
+    def duration(self) -> float:
+        """Length of the motion [s]."""
+        return float(self.knots[-1])
+
+    def __call__(self, t: Array) -> tuple[Array, Array, Array, Array]:
+        """Return position, velocity, acceleration and jerk at times of shape (n,)."""
+        index = np.searchsorted(self.knots[1:-1], t, side='right')
+        piece = CycloidPiece(*(f[index] for f in self.pieces))
+        s = np.clip((t - self.knots[index]) / piece.duration, 0.0, 1.0)
+        return piece.at(s)
+
+    def peak_velocity(self) -> float:
+        """Return the largest magnitude of velocity [rad/s]."""
+        s = cycloid.turning_points_of_velocity(self.pieces)
+        return float(np.abs(self._columns().at(s)[1]).max())
+
+    def position_range(self) -> tuple[float, float]:
+        """Return the least and the largest position [rad]."""
+        s = cycloid.turning_points_of_velocity(self.pieces)
+        columns = self._columns()
+        position, velocity = columns.at(s)[:2]
+        least, most = float(position.min()), float(position.max())
+        row, col = np.nonzero(velocity[:, :-1] * velocity[:, 1:] < 0.0)
+        if len(row):
+            turning = self._zero_of_velocity(row, s[row, col], s[row, col + 1])
+            least, most = min(least, float(turning.min())), max(most, float(turning.max()))
+        return least, most
+
+    def stretched(self, factor: float) -> JointProfile:
+        """Return the same positions run through more slowly by a factor."""
+        p = self.pieces
+        return JointProfile(CycloidPiece(
+            p.duration * factor, p.position, p.velocity / factor,
+            p.c / factor ** 2, p.b / factor ** 2, p.w))
+
+    def _columns(self) -> CycloidPiece:
+        return CycloidPiece(*(f[:, np.newaxis] for f in self.pieces))
+
+    def _zero_of_velocity(self, row: Array, low: Array, high: Array) -> Array:
+        """Return positions where velocity, monotone in each bracket, changes its sign."""
+        piece = CycloidPiece(*(f[row] for f in self.pieces))
+        sign_low = np.sign(piece.at(low)[1])
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            same = np.sign(piece.at(middle)[1]) == sign_low
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        return piece.at(0.5 * (low + high))[0]
+
+
+class PiecewiseTrajectory(Trajectory):
+    """
+    Profiles of all joints, equally long.
+
+    Parameters
+    ----------
+    profiles : sequence of JointProfile
+        One for each joint.
+    via_times : array_like
+        When each via point is passed [s].
+
+    Raises
+    ------
+    InvalidInputError
+        If the profiles' lengths differ by more than rounding, or via times do not rise
+        within the motion.
+
+    """
+
+    def __init__(self, profiles: Sequence[JointProfile], via_times: ArrayLike) -> None:
+        self.profiles = tuple(profiles)
+        self.via_times = finite_array('via_times', via_times, (-1,))
+        self.duration = self.profiles[0].duration
+        lengths = np.array([p.duration for p in self.profiles])
+        if np.ptp(lengths) > 1e-9 * max(1.0, self.duration):
+            raise InvalidInputError(f'joints move for {lengths} s, must be in step')
+        if (np.diff(self.via_times) < 0.0).any() or (
+                len(self.via_times) and self.via_times[-1] > self.duration + 1e-9):
+            raise InvalidInputError(f'via_times {self.via_times} s must rise within the motion')
+        self._end = [p(np.array([p.duration]))[0][0] for p in self.profiles]
+
+    def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """Return position, velocity, acceleration and jerk; see `Trajectory`."""
+        times = np.asarray(t, dtype=float)
+        flat = np.atleast_1d(times)
+        resting = (flat < 0.0) | (flat >= self.duration)
+        q, qd, qdd, qddd = np.moveaxis(np.array([p(flat) for p in self.profiles]), 0, -1)
+        for derivative in (qd, qdd, qddd):
+            derivative[resting] = 0.0
+        q[flat >= self.duration] = self._end
+        return tuple(v[0] for v in (q, qd, qdd, qddd)) if times.ndim == 0 else (q, qd, qdd, qddd)
+
+    @property
+    def knots(self) -> Array:
+        """Ends of all joints' pieces; see `Trajectory`."""
+        joined = np.sort(np.concatenate([p.knots for p in self.profiles]))
+        joined = np.minimum(joined, self.duration)
+        apart = np.diff(joined) > 1e-12 * max(1.0, self.duration)
+        return np.concatenate((joined[:-1][apart], [self.duration]))
+
+    def peaks(self) -> Peaks:
+        """Return the exact extremes over the continuous motion."""
+        profiles = self.profiles
+        ranges = np.array([p.position_range() for p in profiles])
+        return Peaks(
+            velocity=np.array([p.peak_velocity() for p in profiles]),
+            acceleration=np.array([cycloid.peak_acceleration(p.pieces).max() for p in profiles]),
+            jerk=np.array([cycloid.peak_jerk(p.pieces).max() for p in profiles]),
+            min_position=ranges[:, 0], max_position=ranges[:, 1])
+
+    def stretched(self, factor: float) -> PiecewiseTrajectory:
+        """Return the same path run through more slowly by a factor."""
+        return PiecewiseTrajectory([p.stretched(factor) for p in self.profiles],
+                                   self.via_times * factor)

@@ -1,0 +1,82 @@
+"""The points of a message: a motion sampled so that controllers rebuild it within its limits."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.trajectory import Trajectory
+
+NANOSECOND = 1e-9
+
+# No regular sample is nearer to a via point's than this part of the period.
+LEAST_GAP = 0.1
+
+
+def sample(trajectory: Trajectory, period: float) -> TrajectoryPoints:
+    """
+    Return points at every period, at every via time, and at the end.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    period : float
+        Time between points [s], positive.
+
+    Returns
+    -------
+    TrajectoryPoints
+        Times in whole nanoseconds; no regular point nearer than a tenth of a period to a via
+        point's; the first and the last point exactly at rest.
+
+    Raises
+    ------
+    InvalidInputError
+        If the period is not positive.
+
+    """
+    exact, stamps = sample_times(trajectory, period)
+    q, qd, qdd, _ = trajectory(exact)
+    for derivative in (qd, qdd):
+        derivative[[0, -1]] = 0.0
+    return TrajectoryPoints(stamps * NANOSECOND, q, qd, qdd)
+
+
+def sample_times(trajectory: Trajectory, period: float) -> tuple[Array, Array]:
+    """
+    Return when a motion is sampled.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    period : float
+        Time between points [s], positive.
+
+    Returns
+    -------
+    tuple of ndarray
+        The exact times [s] and the same as whole nanoseconds, strictly increasing.
+
+    Raises
+    ------
+    InvalidInputError
+        If the period is not positive.
+
+    """
+    if not (np.isfinite(period) and period > 0.0):
+        raise InvalidInputError(f'sample_period is {period} s, must be positive')
+    fixed = np.concatenate(([0.0], trajectory.via_times, [trajectory.duration]))
+    fixed = fixed[np.concatenate(([True], np.diff(fixed) >= 1.5 * NANOSECOND))]
+    fixed[-1] = trajectory.duration
+    regular = period * np.arange(1, int(trajectory.duration / period) + 1)
+    regular = np.round(regular / NANOSECOND) * NANOSECOND
+    after = np.searchsorted(fixed, regular)
+    gap = np.minimum(regular - fixed[np.maximum(after - 1, 0)],
+                     np.abs(fixed[np.minimum(after, len(fixed) - 1)] - regular))
+    regular = regular[(gap >= LEAST_GAP * period) & (regular < trajectory.duration)]
+    exact = np.sort(np.concatenate((fixed, regular)))
+    return exact, np.round(exact / NANOSECOND)

@@ -1,0 +1,110 @@
+"""A motion of all joints over time: what every planner returns and everything else reads."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rrr_traj_planner.core.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Peaks:
+    """Extremes of each joint over a whole motion, shape (3,) each."""
+
+    velocity: Array      # largest magnitude [rad/s]
+    acceleration: Array  # [rad/s^2]
+    jerk: Array          # [rad/s^3]
+    min_position: Array  # [rad]
+    max_position: Array  # [rad]
+
+
+class Trajectory(ABC):
+    """
+    A motion in joint space that can be evaluated at any time.
+
+    Attributes
+    ----------
+    duration : float
+        [s].
+    via_times : ndarray
+        When each via point is passed [s], never decreasing.
+
+    """
+
+    duration: float
+    via_times: Array
+
+    @abstractmethod
+    def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """
+        Return position, velocity, acceleration and jerk at given times.
+
+        Parameters
+        ----------
+        t : array_like, shape (n,) or ()
+            Times [s]; before 0 and after the duration the arm rests.
+
+        Returns
+        -------
+        tuple of ndarray, shape (n, 3) or (3,)
+            In rad and s. At a knot, the values of the piece that begins there.
+
+        """
+
+    @property
+    @abstractmethod
+    def knots(self) -> Array:
+        """Times between which the motion is analytic, increasing, 0 and duration included."""
+
+    @abstractmethod
+    def peaks(self) -> Peaks:
+        """Return the exact extremes over the continuous motion."""
+
+    @abstractmethod
+    def stretched(self, factor: float) -> Trajectory:
+        """
+        Return the same path run through at another rate.
+
+        Parameters
+        ----------
+        factor : float
+            What every time is multiplied by, positive.
+
+        Returns
+        -------
+        Trajectory
+            With velocities divided by the factor, accelerations by its square.
+
+        """
+
+
+def times_within(trajectory: Trajectory, per_interval: int, spacing: float = np.inf) -> Array:
+    """
+    Return a grid of times that meets every knot.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    per_interval : int
+        Least number of steps between two knots.
+    spacing : float
+        Largest step [s].
+
+    Returns
+    -------
+    ndarray
+        Increasing times from 0 to the duration.
+
+    """
+    knots = trajectory.knots
+    widths = np.diff(knots)
+    steps = np.maximum(per_interval, np.ceil(widths / spacing)).astype(int)
+    ends = np.cumsum(steps)
+    within = np.arange(1, ends[-1] + 1) - np.repeat(ends - steps, steps)
+    grid = np.repeat(knots[:-1], steps) + np.repeat(widths / steps, steps) * within
+    return np.concatenate((knots[:1], grid))

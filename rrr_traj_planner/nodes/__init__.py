@@ -1,0 +1,1 @@
+"""ROS 2 nodes and entry scripts around the planners and the core."""
