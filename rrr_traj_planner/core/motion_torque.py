@@ -23,6 +23,8 @@ ZOOM_ROUNDS = 6
 ZOOM_POINTS = 9
 CANDIDATES = 6  # brackets followed for each joint
 
+TORQUE_TOLERANCE = 1e-9  # relative, for the rounding of a torque that is just at its limit
+
 
 class Extreme(NamedTuple):
     """The largest value of a quantity over a motion, for each joint."""
@@ -52,7 +54,7 @@ def peak_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
         q, qd, qdd, _ = trajectory(t)
         return np.abs(inverse_dynamics(model, q, qd, qdd))
 
-    return maximum_over_time(magnitude, _grid(trajectory))
+    return maximum_over_time(magnitude, torque_grid(trajectory))
 
 
 def peak_holding_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
@@ -73,15 +75,12 @@ def peak_holding_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
 
     """
     return maximum_over_time(lambda t: np.abs(gravity_torque(model, trajectory(t)[0])),
-                             _grid(trajectory))
+                             torque_grid(trajectory))
 
 
 def stretch_for_torque(model: RobotModel, limits: JointLimits, trajectory: Trajectory) -> Extreme:
     """
     Return by how much each joint's torque limit asks a motion to be slowed down.
-
-    Run through more slowly by a factor f, the part of the torque that is not gravity falls
-    with f squared. Limits below what gravity takes give an infinite factor.
 
     Parameters
     ----------
@@ -99,21 +98,42 @@ def stretch_for_torque(model: RobotModel, limits: JointLimits, trajectory: Traje
         to spare. And where the factor comes from.
 
     """
-    limited = np.isfinite(limits.max_effort)
-    if not limited.any():
+    if not np.isfinite(limits.max_effort).any():
         return Extreme(np.zeros(3), np.zeros(3))
-
-    def squared_factor(t: Array) -> Array:
-        q, qd, qdd, _ = trajectory(t)
-        gravity = gravity_torque(model, q)
-        motion = inverse_dynamics(model, q, qd, qdd) - gravity
-        room = limits.max_effort - np.sign(motion) * gravity
-        with np.errstate(divide='ignore', invalid='ignore'):
-            factor = np.where(room > 0.0, np.abs(motion) / room, np.inf)
-        return np.where(limited, factor, 0.0)
-
-    squared = maximum_over_time(squared_factor, _grid(trajectory))
+    squared = maximum_over_time(
+        lambda t: squared_stretch(model, limits, trajectory, t), torque_grid(trajectory))
     return Extreme(np.sqrt(squared.value), squared.time)
+
+
+def squared_stretch(model: RobotModel, limits: JointLimits, trajectory: Trajectory,
+                    t: Array) -> Array:
+    """
+    Return the square of the factor by which a motion must be slowed down, at given times.
+
+    Run through more slowly by a factor f, the part of the torque that is not gravity falls
+    with f squared. Limits below what gravity takes give an infinite factor.
+
+    Parameters
+    ----------
+    model, limits, trajectory
+        As in `stretch_for_torque`.
+    t : ndarray, shape (n,)
+        Times [s].
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+        For each joint, 0 where it has no effort limit.
+
+    """
+    q, qd, qdd, _ = trajectory(t)
+    gravity = gravity_torque(model, q)
+    motion = inverse_dynamics(model, q, qd, qdd) - gravity
+    room = limits.max_effort - np.sign(motion) * gravity
+    with np.errstate(divide='ignore', invalid='ignore'):
+        factor = np.where(room > 0.0, np.abs(motion) / room, np.inf)
+    at_ease = (np.abs(gravity) <= limits.max_effort * (1.0 + TORQUE_TOLERANCE)) & (motion == 0.0)
+    return np.where(np.isinf(limits.max_effort) | at_ease, 0.0, factor)
 
 
 def maximum_over_time(quantity: Callable[[Array], Array], grid: Array) -> Extreme:
@@ -166,5 +186,19 @@ def _brackets(values: Array, grid: Array) -> tuple[Array, Array, Array]:
     return grid[np.maximum(row - 1, 0)], grid[np.minimum(row + 1, last)], column
 
 
-def _grid(trajectory: Trajectory) -> Array:
+def torque_grid(trajectory: Trajectory) -> Array:
+    """
+    Return times close enough for every high peak of the torque to show.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    ndarray
+        Increasing times [s] that meet every knot.
+
+    """
     return times_within(trajectory, STEPS_PER_INTERVAL, LONGEST_STEP)

@@ -41,6 +41,8 @@ class JointProfile:
         lasting = fields[0] > 0.0
         self.pieces = CycloidPiece(*(f[lasting] for f in fields))
         self.knots = np.concatenate(([0.0], np.cumsum(self.pieces.duration)))
+        for array in (*self.pieces, self.knots):
+            array.setflags(write=False)
 
     @property
     def duration(self) -> float:
@@ -61,18 +63,36 @@ class JointProfile:
 
     def position_range(self) -> tuple[float, float]:
         """Return the least and the largest position [rad]."""
+        least, most = self.piece_ranges()
+        return float(least.min()), float(most.max())
+
+    def piece_ranges(self) -> tuple[Array, Array]:
+        """Return the least and the largest position within each piece, shape (n,) [rad]."""
         s = cycloid.turning_points_of_velocity(self.pieces)
-        columns = self._columns()
-        position, velocity = columns.at(s)[:2]
-        least, most = float(position.min()), float(position.max())
+        position, velocity = self._columns().at(s)[:2]
+        least, most = position.min(axis=1), position.max(axis=1)
         row, col = np.nonzero(velocity[:, :-1] * velocity[:, 1:] < 0.0)
         if len(row):
             turning = self._zero_of_velocity(row, s[row, col], s[row, col + 1])
-            least, most = min(least, float(turning.min())), max(most, float(turning.max()))
+            np.minimum.at(least, row, turning)
+            np.maximum.at(most, row, turning)
         return least, most
 
     def stretched(self, factor: float) -> JointProfile:
-        """Return the same positions run through more slowly by a factor."""
+        """
+        Return the same positions run through at another rate.
+
+        Parameters
+        ----------
+        factor : float
+            What every time is multiplied by, positive.
+
+        Returns
+        -------
+        JointProfile
+            The slower or faster motion.
+
+        """
         p = self.pieces
         return JointProfile(CycloidPiece(
             p.duration * factor, p.position, p.velocity / factor,
@@ -118,8 +138,8 @@ class PiecewiseTrajectory(Trajectory):
         lengths = np.array([p.duration for p in self.profiles])
         if np.ptp(lengths) > 1e-9 * max(1.0, self.duration):
             raise InvalidInputError(f'joints move for {lengths} s, must be in step')
-        if (np.diff(self.via_times) < 0.0).any() or (
-                len(self.via_times) and self.via_times[-1] > self.duration + 1e-9):
+        if (np.diff(self.via_times) < 0.0).any() or (self.via_times < 0.0).any() or (
+                self.via_times > self.duration + 1e-9).any():
             raise InvalidInputError(f'via_times {self.via_times} s must rise within the motion')
         self._end = [p(np.array([p.duration]))[0][0] for p in self.profiles]
 
@@ -140,7 +160,9 @@ class PiecewiseTrajectory(Trajectory):
         joined = np.sort(np.concatenate([p.knots for p in self.profiles]))
         joined = np.minimum(joined, self.duration)
         apart = np.diff(joined) > 1e-12 * max(1.0, self.duration)
-        return np.concatenate((joined[:-1][apart], [self.duration]))
+        knots = np.concatenate((joined[:1], joined[1:][apart]))
+        knots[-1] = self.duration
+        return knots
 
     def peaks(self) -> Peaks:
         """Return the exact extremes over the continuous motion."""
@@ -153,6 +175,6 @@ class PiecewiseTrajectory(Trajectory):
             min_position=ranges[:, 0], max_position=ranges[:, 1])
 
     def stretched(self, factor: float) -> PiecewiseTrajectory:
-        """Return the same path run through more slowly by a factor."""
+        """Return the same path run through at another rate; see `Trajectory`."""
         return PiecewiseTrajectory([p.stretched(factor) for p in self.profiles],
                                    self.via_times * factor)

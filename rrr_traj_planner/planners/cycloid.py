@@ -1,0 +1,296 @@
+"""
+`cycloid`: transition, cruise, transition in every segment, via velocities free, least total time.
+
+Every transition is a full-period cycloid. Durations and via velocities are optimised together
+under the velocity, acceleration and jerk limits; where the torque of the motion is too much, the
+segments that ask for it are given more time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import (
+    ConvergenceError, InvalidInputError, LimitViolationError, TimingError)
+from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.motion_torque import (
+    peak_holding_torque, squared_stretch, stretch_for_torque, torque_grid)
+from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners import segment_motion
+from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.segment import TransitionLaw
+from rrr_traj_planner.planners.via_velocities import least_stretch, least_time
+
+PEAK_ACCELERATION = 2.0  # of a full-period cycloid, times change of velocity / duration (4.10)
+PEAK_JERK = 2.0 * pi     # times change of velocity / duration squared
+
+# A transition at full acceleration lasts at least so many samples, so that the quintic through
+# them keeps the limits; it is a jerk limit of pi / SAMPLES_PER_TRANSITION of acceleration/period.
+SAMPLES_PER_TRANSITION = 5.0
+
+# Durations are longer than the least by this part, so that they can be prescribed again.
+DURATION_ROOM = 1e-6
+STRETCH_TOLERANCE = 3e-7   # of prescribed durations: jerk then keeps its limit to 1e-6
+TORQUE_TOLERANCE = 5e-7    # of the stretch that torque asks for
+
+STRAIGHTENING_ROUNDS = 5   # of lowering via velocities of a path that gravity blocks
+SLOWING_ROUNDS = 8         # of giving more time to the segments that lack torque
+STRETCH_ROUNDS = 20        # of stretching the whole motion
+OVERSHOOT_ROUNDS = 8       # of lowering via velocities that overshoot a joint's range
+OVERSHOOT_REDUCTION = 0.5
+LEAST_VELOCITY = 1e-9      # rad/s: bounds of a via velocity that must be zero
+
+
+@register('cycloid')
+def plan(task: JointTask) -> Trajectory:
+    """
+    Return the fastest motion of this structure, or one of prescribed durations.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked.
+
+    Returns
+    -------
+    Trajectory
+        Within the limits.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has no acceleration limit.
+    TimingError
+        If prescribed durations are too short; with feasible ones.
+    LimitViolationError
+        If gravity alone exceeds an effort limit between the via points.
+
+    """
+    chain = _chain(task)
+    if task.durations is None:
+        return _fastest(task, chain, None).trajectory
+    motion = _prescribed(task, chain, task.durations)
+    if motion is None:
+        raise _too_short(task, chain, task.durations)
+    return motion.trajectory
+
+
+class _Motion(NamedTuple):
+    """A motion within the kinematic limits, and the durations of its segments."""
+
+    trajectory: PiecewiseTrajectory
+    durations: Array
+
+
+def _chain(task: JointTask) -> Chain:
+    """Return the optimisation's problem; via velocities bounded by the room to the limits."""
+    limits = task.limits
+    if np.isinf(limits.max_acceleration).any():
+        joint = task.model.joint_names[int(np.isinf(limits.max_acceleration).argmax())]
+        raise InvalidInputError(
+            f'planner cycloid needs acceleration limits, {joint} has none')
+    jerk = np.minimum(limits.max_jerk, pi * limits.max_acceleration / (
+        SAMPLES_PER_TRANSITION * task.sample_period))
+    law = TransitionLaw(PEAK_ACCELERATION / limits.max_acceleration, np.sqrt(PEAK_JERK / jerk))
+    D = np.diff(task.points, axis=0)
+    fastest = np.sqrt(2.0 * np.abs(D).sum(axis=0) / law.slope) + 1.0  # no motion is faster
+    velocity = np.minimum(limits.max_velocity, fastest)
+    inner = task.points[1:-1]
+    room = np.minimum(inner - limits.min_position, limits.max_position - inner)
+    highest = np.clip(np.sqrt(2.0 * np.maximum(room, 0.0) / law.slope), LEAST_VELOCITY, velocity)
+    return Chain(D, law, velocity, -highest, highest)
+
+
+def _fastest(task: JointTask, chain: Chain, floor: Array | None) -> _Motion:
+    """Return the motion of least total time, slowed where torque asks for it."""
+    chain, motion, stretch = _holdable_motion(task, chain, floor)
+    if stretch.max() <= 1.0:
+        return _stretched_for_torque(task, chain, motion)
+    uniform = motion.durations.sum() * stretch.max()
+    slower, slower_floor = motion, floor
+    for _ in range(SLOWING_ROUNDS):
+        slow = stretch > 1.0
+        if not slow.any() or np.isinf(stretch).any():
+            break
+        least = np.where(slow, slower.durations * stretch, 0.0)
+        slower_floor = least if slower_floor is None else np.maximum(slower_floor, least)
+        slower = _least_time_motion(task, chain, slower_floor)
+        stretch = _segment_stretch(task, slower)
+    local = slower.durations.sum() * max(1.0, stretch.max())
+    return _stretched_for_torque(task, chain, slower if local < uniform else motion)
+
+
+def _holdable_motion(task: JointTask, chain: Chain,
+                     floor: Array | None) -> tuple[Chain, _Motion, Array]:
+    """
+    Return the motion of least time whose path can be held against gravity, and torque's stretch.
+
+    Lower via velocities straighten the path; if gravity is too much even from rest to rest, the
+    stretch says so by being infinite.
+    """
+    for _ in range(STRAIGHTENING_ROUNDS):
+        motion = _least_time_motion(task, chain, floor)
+        stretch = _segment_stretch(task, motion)
+        blocked = np.isinf(stretch)
+        if not blocked.any():
+            return chain, motion, stretch
+        chain = _slower_at(chain, np.tile(blocked[:, np.newaxis], 3))
+    motion = _least_time_motion(task, _at_rest(chain), floor)
+    return _at_rest(chain), motion, _segment_stretch(task, motion)
+
+
+def _least_time_motion(task: JointTask, chain: Chain, floor: Array | None) -> _Motion:
+    """Return the motion of least total time within the kinematic limits."""
+    for _ in range(OVERSHOOT_ROUNDS + 1):
+        durations = least_time(chain, floor).durations * (1.0 + DURATION_ROOM)
+        motion, overshoot = _motion(task, chain, durations)
+        if motion is not None and not overshoot.any():
+            return motion
+        chain = _slower_at(chain, overshoot)
+    return _motion(task, _at_rest(chain), _at_rest(chain).rest_to_rest_times())[0]
+
+
+def _prescribed(task: JointTask, chain: Chain, durations: Array) -> _Motion | None:
+    """Return a motion of given durations within all limits; None if none is found."""
+    for _ in range(STRAIGHTENING_ROUNDS):
+        motion = _with_durations(task, chain, durations)
+        if motion is None:
+            return None
+        if _torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
+            return motion
+        lacking = _segment_stretch(task, motion) > 1.0
+        chain = _slower_at(chain, np.tile(lacking[:, np.newaxis], 3))
+    motion = _with_durations(task, _at_rest(chain), durations)
+    if motion is not None and _torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
+        return motion
+    return None
+
+
+def _with_durations(task: JointTask, chain: Chain, durations: Array) -> _Motion | None:
+    """Return a motion of given durations within the kinematic limits; None if there is none."""
+    for _ in range(OVERSHOOT_ROUNDS):
+        motion, overshoot = _motion(task, chain, durations)
+        if motion is None or not overshoot.any():
+            return motion
+        chain = _slower_at(chain, overshoot)
+    return _motion(task, _at_rest(chain), durations)[0]
+
+
+def _motion(task: JointTask, chain: Chain, durations: Array) -> tuple[_Motion | None, Array]:
+    """Return a motion of given durations, and which segments overshoot a joint's range."""
+    factor, solution = least_stretch(chain, durations)
+    v, T = solution.velocities, solution.durations
+    if factor > 1.0 + STRETCH_TOLERANCE:
+        return None, np.zeros_like(chain.displacements, dtype=bool)
+    if factor <= 1.0:
+        v, T = v * factor, durations
+    v0, v1 = np.vstack((np.zeros(3), v)), np.vstack((v, np.zeros(3)))
+    parts = segment_motion.gentle_parts(
+        chain.law, chain.max_velocity, v0, v1, T[:, np.newaxis], chain.displacements)
+    trajectory = segment_motion.trajectory(task.points, v0, v1, T[:, np.newaxis], parts)
+    if factor > 1.0:
+        trajectory = trajectory.stretched(1.0 / factor)
+    return _Motion(trajectory, durations), _overshoot(task, trajectory)
+
+
+def _overshoot(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
+    """Return in which segments which joints leave their range, shape (n, 3)."""
+    out = np.zeros((len(task.points) - 1, 3), dtype=bool)
+    starts = trajectory.via_times[1:-1] - 1e-12
+    for joint, profile in enumerate(trajectory.profiles):
+        least, most = profile.piece_ranges()
+        beyond = (least < task.limits.min_position[joint] - POSITION_TOLERANCE) | (
+            most > task.limits.max_position[joint] + POSITION_TOLERANCE)
+        out[np.searchsorted(starts, profile.knots[:-1][beyond], side='right'), joint] = True
+    return out
+
+
+def _slower_at(chain: Chain, segments: Array) -> Chain:
+    """Return the chain with lower velocities at the ends of some segments."""
+    at_ends = segments[:-1] | segments[1:]
+    factor = np.where(at_ends, OVERSHOOT_REDUCTION, 1.0)
+    return replace(chain, lowest=np.minimum(chain.lowest * factor, -LEAST_VELOCITY),
+                   highest=np.maximum(chain.highest * factor, LEAST_VELOCITY))
+
+
+def _at_rest(chain: Chain) -> Chain:
+    """Return the chain with a stop at every via point: its motions never overshoot."""
+    still = np.full_like(chain.highest, LEAST_VELOCITY)
+    return replace(chain, lowest=-still, highest=still)
+
+
+def _segment_stretch(task: JointTask, motion: _Motion) -> Array:
+    """Return by how much torque asks each segment to be stretched, shape (n,)."""
+    if np.isinf(task.limits.max_effort).all():
+        return np.zeros(len(motion.durations))
+    t = torque_grid(motion.trajectory)
+    squared = squared_stretch(task.model, task.limits, motion.trajectory, t).max(axis=1)
+    segment = np.searchsorted(motion.trajectory.via_times[1:-1], t, side='right')
+    worst = np.zeros(len(motion.durations))
+    np.maximum.at(worst, segment, squared)
+    return np.sqrt(worst)
+
+
+def _torque_stretch(task: JointTask, trajectory: Trajectory) -> float:
+    return float(stretch_for_torque(task.model, task.limits, trajectory).value.max())
+
+
+def _stretched_for_torque(task: JointTask, chain: Chain, motion: _Motion) -> _Motion:
+    """Return the motion slowed as a whole, just enough for its torques."""
+    for _ in range(STRETCH_ROUNDS):
+        factor = _torque_stretch(task, motion.trajectory)
+        if factor <= 1.0 + TORQUE_TOLERANCE:
+            return motion
+        if np.isinf(factor):
+            raise _cannot_hold(task, motion)
+        durations = motion.durations * factor * (1.0 + DURATION_ROOM)
+        slower = _with_durations(task, chain, durations)
+        motion = slower if slower is not None else _Motion(
+            motion.trajectory.stretched(factor), durations)
+    return _Motion(motion.trajectory.stretched(factor), motion.durations * factor)
+
+
+def _cannot_hold(task: JointTask, motion: _Motion) -> LimitViolationError:
+    """Return the error of a path on which gravity takes more than a motor has."""
+    holding = peak_holding_torque(task.model, motion.trajectory)
+    joint = int((holding.value / task.limits.max_effort).argmax())
+    needed, limit = float(holding.value[joint]), float(task.limits.max_effort[joint])
+    name = task.model.joint_names[joint]
+    end = int(np.searchsorted(motion.trajectory.via_times[:-1], holding.time[joint]))
+    return LimitViolationError(
+        f'on the way to via point {end}: {name} needs {needed:.1f} N m to hold, '
+        f'limit {limit:g} N m', name, needed, limit, via_point=end)
+
+
+def _too_short(task: JointTask, chain: Chain, durations: Array) -> TimingError:
+    """Return the error of prescribed durations that are too short, with feasible ones."""
+    feasible = _least_feasible(task, chain, durations)
+    asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
+    short = np.flatnonzero(durations < feasible - 2e-6).tolist()
+    return TimingError(
+        f'segment_durations {asked} s are too short for segment'
+        f'{"s" * (len(short) > 1)} {", ".join(map(str, short))}: the least feasible are '
+        f'{offered} s', tuple(offered))
+
+
+def _least_feasible(task: JointTask, chain: Chain, durations: Array) -> Array:
+    """Return feasible durations in whole microseconds, none shorter than asked for."""
+    at_rest = _at_rest(chain)
+    for found in (lambda: _fastest(task, chain, durations),
+                  lambda: _stretched_for_torque(task, at_rest, _least_time_motion(
+                      task, at_rest, durations))):
+        least = found().durations
+        for room in (0.0, 1e-6, 1e-5, 1e-4, 1e-3):
+            feasible = np.ceil(least * (1.0 + room) * 1e6) / 1e6
+            if _prescribed(task, chain, feasible) is not None:
+                return feasible
+    raise ConvergenceError(
+        f'no feasible durations found for segment_durations {durations.tolist()} s')

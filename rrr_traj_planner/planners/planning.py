@@ -1,0 +1,114 @@
+"""The front door: a request in, a checked plan out."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rrr_traj_planner.core import cycloid
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import ConvergenceError, TimingError
+from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.limit_check import violations
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.motion_torque import peak_torque
+from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.sampling import sample
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.registry import planner
+from rrr_traj_planner.planners.request import JointTask, Plan, PlanningRequest
+from rrr_traj_planner.planners.via_points import check_start, joint_via_points
+
+# Via points nearer than this in every joint are one point.
+SAME_POINT = 1e-9  # rad
+
+# The quintic through the sampled points keeps velocity and acceleration limits to this part.
+INTERPOLATION_TOLERANCE = 4e-4
+RESAMPLING_ROUNDS = 10
+
+
+def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Plan:
+    """
+    Plan a motion through via points.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits, before the request's scaling.
+    request : PlanningRequest
+        What is asked.
+
+    Returns
+    -------
+    Plan
+        A motion that keeps every limit, with its exact peaks.
+
+    Raises
+    ------
+    InvalidInputError, StartStateError, UnreachableError, LimitViolationError, TimingError
+        If the request cannot be met; each says why.
+    ConvergenceError
+        If the planner's motion breaks a limit, which is a bug.
+
+    """
+    find = planner(request.planner_id)
+    limits = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
+    start = None if request.start is None else check_start(model, limits, request.start)
+    q = joint_via_points(model, limits, request.via_points, start, request.elbow)
+    if start is not None:
+        q = np.vstack((start, q))
+    same = _repeated(q) & (request.segment_durations is None)
+    distinct = q[np.concatenate(([True], ~same))]
+    if len(distinct) == 1:
+        return _rest(model, limits, request, q)
+    trajectory = find(JointTask(
+        model, limits, distinct, request.segment_durations, request.sample_period))
+    index = np.cumsum(np.concatenate(([0], ~same)))
+    via_times = trajectory.via_times[index][len(q) - len(request.via_points):]
+    return _checked(model, limits, request, trajectory, via_times)
+
+
+def _repeated(q: Array) -> Array:
+    """Return which points are the one before, shape (n - 1,)."""
+    return np.asarray((np.abs(np.diff(q, axis=0)) <= SAME_POINT).all(axis=1))
+
+
+def _rest(model: RobotModel, limits: JointLimits, request: PlanningRequest, q: Array) -> Plan:
+    """Return the plan of via points that are all one: rest there for a sample period."""
+    period = request.sample_period
+    profiles = [JointProfile(cycloid.cruise(np.array([period]), np.array([position]),
+                                            np.zeros(1))) for position in q[0]]
+    via_times = np.zeros(len(request.via_points))
+    return _checked(model, limits, request, PiecewiseTrajectory(profiles, via_times), via_times)
+
+
+def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
+             trajectory: Trajectory, via_times: Array) -> Plan:
+    """Return the plan of a trajectory, after the checks that no planner is trusted with."""
+    for _ in range(RESAMPLING_ROUNDS):
+        points = sample(trajectory, request.sample_period)
+        factor = _stretch_for_interpolation(limits, points)
+        if factor <= 1.0:
+            break
+        if request.segment_durations is not None:
+            raise TimingError(
+                f'sample_period {request.sample_period} s is too long for segment_durations '
+                f'{list(request.segment_durations)} s: between the points the motion would '
+                'exceed its limits')
+        trajectory, via_times = trajectory.stretched(factor), via_times * factor
+    peaks, effort = trajectory.peaks(), peak_torque(model, trajectory).value
+    broken = violations(limits, peaks, effort)
+    if broken:
+        raise ConvergenceError(
+            f'planner {request.planner_id} broke a limit: {broken[0].text(model.joint_names)}')
+    return Plan(trajectory, points, via_times, peaks, effort)
+
+
+def _stretch_for_interpolation(limits: JointLimits, points: TrajectoryPoints) -> float:
+    """Return by how much to slow down so that the quintic through the points keeps its limits."""
+    velocity, acceleration = Interpolant(points).peaks()
+    excess = max(float((velocity / limits.max_velocity).max()),
+                 float(np.sqrt((acceleration / limits.max_acceleration).max())))
+    return 1.0 if excess <= 1.0 + INTERPOLATION_TOLERANCE else excess

@@ -1,0 +1,72 @@
+"""Planner ids and the functions behind them; every module of this package is looked through."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import Callable
+
+import rrr_traj_planner.planners
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.request import JointTask
+
+JointPlanner = Callable[[JointTask], Trajectory]
+
+_planners: dict[str, JointPlanner] = {}
+
+
+def register(planner_id: str) -> Callable[[JointPlanner], JointPlanner]:
+    """
+    Return a decorator that makes a function the planner of an id.
+
+    Parameters
+    ----------
+    planner_id : str
+        The id, as requests name it.
+
+    Returns
+    -------
+    callable
+        Returns the function unchanged.
+
+    """
+    def remember(planner: JointPlanner) -> JointPlanner:
+        _planners[planner_id] = planner
+        return planner
+
+    return remember
+
+
+def planner_ids() -> list[str]:
+    """Return every known id, sorted."""
+    for module in iter_modules(rrr_traj_planner.planners.__path__):
+        import_module(f'rrr_traj_planner.planners.{module.name}')
+    return sorted(_planners)
+
+
+def planner(planner_id: str) -> JointPlanner:
+    """
+    Return the planner of an id.
+
+    Parameters
+    ----------
+    planner_id : str
+        The id.
+
+    Returns
+    -------
+    callable
+        The planner.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is none; the message lists the known ones.
+
+    """
+    known = planner_ids()
+    if planner_id not in _planners:
+        raise InvalidInputError(
+            f"planner_id '{planner_id}' is unknown, known are {', '.join(known)}")
+    return _planners[planner_id]

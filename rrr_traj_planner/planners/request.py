@@ -1,0 +1,150 @@
+"""What a planner is asked and what it answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.inverse_kinematics import Elbow, ELBOWS
+from rrr_traj_planner.core.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.trajectory import Peaks, Trajectory
+
+
+@dataclass(frozen=True, eq=False)
+class PlanningRequest:
+    """
+    Via points and how to pass them.
+
+    Parameters
+    ----------
+    via_points : array_like, shape (n, 3)
+        Tip positions in the base frame [m]; at least two, or one with a start.
+    start : array_like, shape (3,), optional
+        Joint positions [rad] where the motion starts, at rest; None: at the first via point.
+    planner_id : str
+        The method.
+    segment_durations : array_like, optional
+        Durations [s], one for each segment; None: as fast as the limits allow.
+    velocity_scaling, acceleration_scaling : float
+        Factors in (0, 1] on the limits.
+    sample_period : float
+        Time between the points of the answer [s].
+    elbow : {'up', 'down'}, optional
+        Branch; None: the first that keeps the limits.
+    max_deviation : float
+        How far a Cartesian path may leave the polyline [m].
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is malformed.
+
+    """
+
+    via_points: Array
+    start: Array | None = None
+    planner_id: str = 'cycloid'
+    segment_durations: Array | None = None
+    velocity_scaling: float = 1.0
+    acceleration_scaling: float = 1.0
+    sample_period: float = 0.01
+    elbow: Elbow | None = None
+    max_deviation: float = 0.05
+
+    def __post_init__(self) -> None:
+        """Check every value and make the arrays read-only."""
+        points = finite_array('via_points', self.via_points, (-1, 3))
+        object.__setattr__(self, 'via_points', points)
+        if self.start is not None:
+            object.__setattr__(self, 'start', finite_array('start', self.start, (3,)))
+        needed = 2 if self.start is None else 1
+        if len(points) < needed:
+            raise InvalidInputError(
+                f'{len(points)} via points given, at least {needed} needed')
+        if self.elbow is not None and self.elbow not in ELBOWS:
+            raise InvalidInputError(
+                f"elbow is '{self.elbow}', must be 'up', 'down' or empty")
+        for name, unit in (('sample_period', 's'), ('max_deviation', 'm')):
+            value = float(getattr(self, name))
+            if not (np.isfinite(value) and value > 0.0):
+                raise InvalidInputError(f'{name} is {value} {unit}, must be positive')
+        if self.segment_durations is not None:
+            self._check_durations()
+
+    def _check_durations(self) -> None:
+        durations = finite_array('segment_durations', self.segment_durations, (-1,))
+        object.__setattr__(self, 'segment_durations', durations)
+        if len(durations) != self.segments:
+            raise InvalidInputError(
+                f'{len(durations)} segment_durations given for {self.segments} segments')
+        if (durations <= 0.0).any():
+            k = int((durations <= 0.0).argmax())
+            raise InvalidInputError(
+                f'segment_durations[{k}] is {durations[k]} s, must be positive')
+
+    @property
+    def segments(self) -> int:
+        """Number of segments: between via points, and from the start to the first."""
+        return len(self.via_points) - (self.start is None)
+
+
+@dataclass(frozen=True, eq=False)
+class JointTask:
+    """
+    What a joint-space planner works on: consecutive points that differ, unless durations say so.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Scaled as requested.
+    points : ndarray, shape (n + 1, 3)
+        Joint positions [rad], within the limits, each of which the motors can hold.
+    durations : ndarray, shape (n,), optional
+        Prescribed durations of the segments [s].
+    sample_period : float
+        [s].
+
+    """
+
+    model: RobotModel
+    limits: JointLimits
+    points: Array
+    durations: Array | None
+    sample_period: float
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """
+    A motion that keeps its limits, and the figures that show it.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The continuous motion.
+    points : TrajectoryPoints
+        The same, sampled.
+    via_times : ndarray
+        When each via point is passed [s].
+    peaks : Peaks
+        Exact extremes over the continuous motion.
+    effort : ndarray, shape (3,)
+        Peak torques [N m].
+    note : str
+        What the caller should know; empty where there is nothing.
+
+    """
+
+    trajectory: Trajectory
+    points: TrajectoryPoints
+    via_times: Array
+    peaks: Peaks
+    effort: Array
+    note: str = ''
