@@ -12,9 +12,10 @@ from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.trajectory import Trajectory, times_within
 
-# Torque is analytic between knots; this many steps there, none longer than a fiftieth of a
-# second of motion at the scale of its fastest change, put every peak in a bracket of its own.
+# Torque is analytic between knots. So many steps there, none longer than LONGEST_STEP unless the
+# motion is so slow that MOST_STEPS are enough, put every high peak in a bracket of its own.
 STEPS_PER_INTERVAL = 12
+MOST_STEPS = 400
 LONGEST_STEP = 0.02  # s
 
 # Each round narrows the bracket of a peak to a quarter; a smooth peak's value then stands to
@@ -130,10 +131,10 @@ def squared_stretch(model: RobotModel, limits: JointLimits, trajectory: Trajecto
     gravity = gravity_torque(model, q)
     motion = inverse_dynamics(model, q, qd, qdd) - gravity
     room = limits.max_effort - np.sign(motion) * gravity
+    holds = np.abs(gravity) <= limits.max_effort * (1.0 + TORQUE_TOLERANCE)
     with np.errstate(divide='ignore', invalid='ignore'):
-        factor = np.where(room > 0.0, np.abs(motion) / room, np.inf)
-    at_ease = (np.abs(gravity) <= limits.max_effort * (1.0 + TORQUE_TOLERANCE)) & (motion == 0.0)
-    return np.where(np.isinf(limits.max_effort) | at_ease, 0.0, factor)
+        factor = np.where(holds & (room > 0.0), np.abs(motion) / room, np.inf)
+    return np.where(np.isinf(limits.max_effort), 0.0, factor)
 
 
 def maximum_over_time(quantity: Callable[[Array], Array], grid: Array) -> Extreme:
@@ -201,4 +202,4 @@ def torque_grid(trajectory: Trajectory) -> Array:
         Increasing times [s] that meet every knot.
 
     """
-    return times_within(trajectory, STEPS_PER_INTERVAL, LONGEST_STEP)
+    return times_within(trajectory, STEPS_PER_INTERVAL, LONGEST_STEP, MOST_STEPS)

@@ -82,7 +82,8 @@ class Trajectory(ABC):
         """
 
 
-def times_within(trajectory: Trajectory, per_interval: int, spacing: float = np.inf) -> Array:
+def times_within(trajectory: Trajectory, per_interval: int, spacing: float = np.inf,
+                 most: int | None = None) -> Array:
     """
     Return a grid of times that meets every knot.
 
@@ -94,6 +95,8 @@ def times_within(trajectory: Trajectory, per_interval: int, spacing: float = np.
         Least number of steps between two knots.
     spacing : float
         Largest step [s].
+    most : int, optional
+        Largest number of steps between two knots, whatever the spacing.
 
     Returns
     -------
@@ -103,8 +106,9 @@ def times_within(trajectory: Trajectory, per_interval: int, spacing: float = np.
     """
     knots = trajectory.knots
     widths = np.diff(knots)
-    steps = np.maximum(per_interval, np.ceil(widths / spacing)).astype(int)
+    steps = np.clip(np.ceil(widths / spacing), per_interval, most).astype(int)
     ends = np.cumsum(steps)
     within = np.arange(1, ends[-1] + 1) - np.repeat(ends - steps, steps)
     grid = np.repeat(knots[:-1], steps) + np.repeat(widths / steps, steps) * within
+    grid[ends - 1] = knots[1:]  # not to rounding, but exactly
     return np.concatenate((knots[:1], grid))

@@ -9,32 +9,23 @@ segments that ask for it are given more time.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
 from typing import NamedTuple
 
 import numpy as np
 
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import (
-    ConvergenceError, InvalidInputError, LimitViolationError, TimingError)
+from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
-from rrr_traj_planner.core.motion_torque import (
-    peak_holding_torque, squared_stretch, stretch_for_torque, torque_grid)
+from rrr_traj_planner.core.motion_torque import squared_stretch, torque_grid
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners import segment_motion
 from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.motion_law import (
+    cannot_hold, chain_of, LEAST_VELOCITY, torque_stretch)
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.via_velocities import least_stretch, least_time
-
-PEAK_ACCELERATION = 2.0  # of a full-period cycloid, times change of velocity / duration (4.10)
-PEAK_JERK = 2.0 * pi     # times change of velocity / duration squared
-
-# A transition at full acceleration lasts at least so many samples, so that the quintic through
-# them keeps the limits; it is a jerk limit of pi / SAMPLES_PER_TRANSITION of acceleration/period.
-SAMPLES_PER_TRANSITION = 5.0
 
 # Durations are longer than the least by this part, so that they can be prescribed again.
 DURATION_ROOM = 1e-6
@@ -46,7 +37,6 @@ SLOWING_ROUNDS = 8         # of giving more time to the segments that lack torqu
 STRETCH_ROUNDS = 20        # of stretching the whole motion
 OVERSHOOT_ROUNDS = 8       # of lowering via velocities that overshoot a joint's range
 OVERSHOOT_REDUCTION = 0.5
-LEAST_VELOCITY = 1e-9      # rad/s: bounds of a via velocity that must be zero
 
 
 @register('cycloid')
@@ -74,7 +64,7 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    chain = _chain(task)
+    chain = chain_of(task)
     if task.durations is None:
         return _fastest(task, chain, None).trajectory
     motion = _prescribed(task, chain, task.durations)
@@ -88,25 +78,6 @@ class _Motion(NamedTuple):
 
     trajectory: PiecewiseTrajectory
     durations: Array
-
-
-def _chain(task: JointTask) -> Chain:
-    """Return the optimisation's problem; via velocities bounded by the room to the limits."""
-    limits = task.limits
-    if np.isinf(limits.max_acceleration).any():
-        joint = task.model.joint_names[int(np.isinf(limits.max_acceleration).argmax())]
-        raise InvalidInputError(
-            f'planner cycloid needs acceleration limits, {joint} has none')
-    jerk = np.minimum(limits.max_jerk, pi * limits.max_acceleration / (
-        SAMPLES_PER_TRANSITION * task.sample_period))
-    law = TransitionLaw(PEAK_ACCELERATION / limits.max_acceleration, np.sqrt(PEAK_JERK / jerk))
-    D = np.diff(task.points, axis=0)
-    fastest = np.sqrt(2.0 * np.abs(D).sum(axis=0) / law.slope) + 1.0  # no motion is faster
-    velocity = np.minimum(limits.max_velocity, fastest)
-    inner = task.points[1:-1]
-    room = np.minimum(inner - limits.min_position, limits.max_position - inner)
-    highest = np.clip(np.sqrt(2.0 * np.maximum(room, 0.0) / law.slope), LEAST_VELOCITY, velocity)
-    return Chain(D, law, velocity, -highest, highest)
 
 
 def _fastest(task: JointTask, chain: Chain, floor: Array | None) -> _Motion:
@@ -164,12 +135,12 @@ def _prescribed(task: JointTask, chain: Chain, durations: Array) -> _Motion | No
         motion = _with_durations(task, chain, durations)
         if motion is None:
             return None
-        if _torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
+        if torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
             return motion
         lacking = _segment_stretch(task, motion) > 1.0
         chain = _slower_at(chain, np.tile(lacking[:, np.newaxis], 3))
     motion = _with_durations(task, _at_rest(chain), durations)
-    if motion is not None and _torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
+    if motion is not None and torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
         return motion
     return None
 
@@ -239,35 +210,19 @@ def _segment_stretch(task: JointTask, motion: _Motion) -> Array:
     return np.sqrt(worst)
 
 
-def _torque_stretch(task: JointTask, trajectory: Trajectory) -> float:
-    return float(stretch_for_torque(task.model, task.limits, trajectory).value.max())
-
-
 def _stretched_for_torque(task: JointTask, chain: Chain, motion: _Motion) -> _Motion:
     """Return the motion slowed as a whole, just enough for its torques."""
     for _ in range(STRETCH_ROUNDS):
-        factor = _torque_stretch(task, motion.trajectory)
+        factor = torque_stretch(task, motion.trajectory)
         if factor <= 1.0 + TORQUE_TOLERANCE:
             return motion
         if np.isinf(factor):
-            raise _cannot_hold(task, motion)
+            raise cannot_hold(task, motion.trajectory)
         durations = motion.durations * factor * (1.0 + DURATION_ROOM)
         slower = _with_durations(task, chain, durations)
         motion = slower if slower is not None else _Motion(
             motion.trajectory.stretched(factor), durations)
     return _Motion(motion.trajectory.stretched(factor), motion.durations * factor)
-
-
-def _cannot_hold(task: JointTask, motion: _Motion) -> LimitViolationError:
-    """Return the error of a path on which gravity takes more than a motor has."""
-    holding = peak_holding_torque(task.model, motion.trajectory)
-    joint = int((holding.value / task.limits.max_effort).argmax())
-    needed, limit = float(holding.value[joint]), float(task.limits.max_effort[joint])
-    name = task.model.joint_names[joint]
-    end = int(np.searchsorted(motion.trajectory.via_times[:-1], holding.time[joint]))
-    return LimitViolationError(
-        f'on the way to via point {end}: {name} needs {needed:.1f} N m to hold, '
-        f'limit {limit:g} N m', name, needed, limit, via_point=end)
 
 
 def _too_short(task: JointTask, chain: Chain, durations: Array) -> TimingError:

@@ -25,6 +25,7 @@ SAME_POINT = 1e-9  # rad
 # The quintic through the sampled points keeps velocity and acceleration limits to this part.
 INTERPOLATION_TOLERANCE = 4e-4
 RESAMPLING_ROUNDS = 10
+MOST_RESAMPLING_STRETCH = 2.0  # beyond it the motion itself is at fault
 
 
 def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Plan:
@@ -64,7 +65,8 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
     if len(distinct) == 1:
         return _rest(model, limits, request, q)
     trajectory = find(JointTask(
-        model, limits, distinct, request.segment_durations, request.sample_period))
+        model, limits, distinct, request.segment_durations, request.sample_period,
+        np.flatnonzero(~same)))
     index = np.cumsum(np.concatenate(([0], ~same)))
     via_times = trajectory.via_times[index][len(q) - len(request.via_points):]
     return _checked(model, limits, request, trajectory, via_times)
@@ -92,6 +94,9 @@ def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
         factor = _stretch_for_interpolation(limits, points)
         if factor <= 1.0:
             break
+        if factor > MOST_RESAMPLING_STRETCH:
+            raise ConvergenceError(
+                f'planner {request.planner_id}: the points do not follow the motion')
         if request.segment_durations is not None:
             raise TimingError(
                 f'sample_period {request.sample_period} s is too long for segment_durations '

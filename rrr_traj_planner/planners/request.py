@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
@@ -110,6 +111,8 @@ class JointTask:
         Prescribed durations of the segments [s].
     sample_period : float
         [s].
+    segment_numbers : ndarray of int, shape (n,), optional
+        What the caller calls the segments, where it has more of them; None: 0, 1, 2, ...
 
     """
 
@@ -118,6 +121,11 @@ class JointTask:
     points: Array
     durations: Array | None
     sample_period: float
+    segment_numbers: NDArray[np.int_] | None = None
+
+    def segment_number(self, segment: int) -> int:
+        """Return what the caller calls a segment."""
+        return segment if self.segment_numbers is None else int(self.segment_numbers[segment])
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,204 @@
+"""
+`cycloid_approach_a`: the thesis's own: in every segment a transition, then a cruise (4.2, a).
+
+Each via point is left at the cruise velocity of the segment before it; a last transition brings
+the arm to rest. Durations are all there is to choose: they determine the velocities one after the
+other. A beam search chooses them, a descent by coordinates refines them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import ConvergenceError, TimingError
+from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.motion_law import cannot_hold, chain_of, torque_stretch
+from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.segment import TransitionLaw
+from rrr_traj_planner.planners.segment_motion import Parts, quick_parts, trajectory
+from rrr_traj_planner.planners.transition_cruise import cruise_velocity, stopping_time
+
+BEAM = 24
+# Durations tried, over the least one from rest to rest: fine near it, on to very slow.
+GRID = np.concatenate((np.geomspace(0.4, 2.5, 36), np.geomspace(2.8, 60.0, 12)))
+REFINED_SEGMENTS = 12      # with more, the beam's answer stands
+REFINING_PASSES = 16
+REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])
+FIRST_STEP = 0.08          # relative
+STEP_REDUCTION = 0.5
+TORQUE_TOLERANCE = 5e-7
+PRESCRIBED_ROUNDS = 12
+STRETCH_SEARCH = 60
+
+
+@register('cycloid_approach_a')
+def plan(task: JointTask) -> Trajectory:
+    """
+    Return the fastest motion of approach (a) that is found, or one of prescribed durations.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked.
+
+    Returns
+    -------
+    Trajectory
+        Within the limits.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has no acceleration limit.
+    TimingError
+        If prescribed durations are too short; with feasible ones.
+    LimitViolationError
+        If gravity alone exceeds an effort limit between the via points.
+
+    """
+    chain = chain_of(task)
+    if task.durations is not None:
+        return _prescribed(task, chain, task.durations)
+    motion = _motion(task, chain, chain.law, _fastest(task, chain))
+    if motion is None:
+        raise ConvergenceError('approach (a): the durations that were found are not feasible')
+    stretch = torque_stretch(task, motion)
+    if np.isinf(stretch):
+        raise cannot_hold(task, motion)
+    return motion.stretched(stretch) if stretch > 1.0 else motion
+
+
+def _fastest(task: JointTask, chain: Chain) -> Array:
+    """Return durations of least total time, as good as the search finds them, shape (n,)."""
+    durations = _beam_search(chain)
+    if len(durations) <= REFINED_SEGMENTS:
+        durations = _refined(chain, durations)
+    for factor in np.geomspace(1.0, 1e3, STRETCH_SEARCH):
+        if _motion(task, chain, chain.law, factor * durations) is not None:
+            return factor * durations
+    raise ConvergenceError('approach (a): no feasible durations found')
+
+
+def _beam_search(chain: Chain) -> Array:
+    D, law, limit = chain.displacements, chain.law, chain.max_velocity
+    grids = np.maximum(chain.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
+    v, elapsed, chosen = np.zeros((1, 3)), np.zeros(1), np.zeros((1, 0))
+    for k in range(len(D) - 1):
+        T = grids[k]
+        next_v = cruise_velocity(law, limit, v[:, np.newaxis], T[:, np.newaxis], D[k])
+        total = elapsed[:, np.newaxis] + T
+        bound = (next_v >= chain.lowest[k]) & (next_v <= chain.highest[k])
+        beam, step = np.nonzero(bound.all(axis=-1))
+        if not len(beam):
+            return GRID[-1] * grids[:, 0] / GRID[0]
+        v, elapsed = next_v[beam, step], total[beam, step]
+        chosen = np.column_stack((chosen[beam], T[step]))
+        best = np.argsort(elapsed + stopping_time(law, limit, v, D[k + 1], grids[k + 1]),
+                          kind='stable')[:BEAM]
+        v, elapsed, chosen = v[best], elapsed[best], chosen[best]
+    last = stopping_time(law, limit, v, D[-1], grids[-1])
+    best_one = int((elapsed + last).argmin())
+    return np.append(chosen[best_one], min(last[best_one], grids[-1, -1]))
+
+
+def _refined(chain: Chain, durations: Array) -> Array:
+    """Return better durations, each varied in turn by smaller and smaller steps."""
+    best, step = _total(chain, durations[np.newaxis])[0], FIRST_STEP
+    for _ in range(REFINING_PASSES):
+        for k in range(len(durations) - 1):
+            trials = np.tile(durations, (len(REFINING_STEPS), 1))
+            trials[:, k] *= 1.0 + step * REFINING_STEPS
+            totals = _total(chain, trials)
+            if totals.min() < best:
+                best, durations = totals.min(), trials[totals.argmin()]
+        step *= STEP_REDUCTION
+    last = best - durations[:-1].sum()
+    return np.append(durations[:-1], last) if np.isfinite(best) else durations
+
+
+def _total(chain: Chain, durations: Array) -> Array:
+    """Return total times of rows of durations, the last one replaced by the least."""
+    v, allowed = np.zeros((len(durations), 3)), np.ones(len(durations), dtype=bool)
+    for k in range(durations.shape[1] - 1):
+        v = cruise_velocity(chain.law, chain.max_velocity, v, durations[:, k:k + 1],
+                            chain.displacements[k])
+        allowed &= ((v >= chain.lowest[k]) & (v <= chain.highest[k])).all(axis=-1)
+        v = np.nan_to_num(v)
+    grid = np.maximum(chain.rest_to_rest_times()[-1], 1e-6) * GRID
+    last = stopping_time(chain.law, chain.max_velocity, v, chain.displacements[-1], grid)
+    return np.where(allowed, durations[:, :-1].sum(axis=1) + last, np.inf)
+
+
+def _motion(task: JointTask, chain: Chain, law: TransitionLaw,
+            durations: Array) -> PiecewiseTrajectory | None:
+    """Return the motion of given durations, None if it breaks a limit other than torque's."""
+    D, T = chain.displacements, durations[:, np.newaxis]
+    v = np.zeros((len(D) + 1, 3))
+    for k in range(len(D) - 1):
+        v[k + 1] = cruise_velocity(law, chain.max_velocity, v[k], T[k], D[k])
+        if np.isnan(v[k + 1]).any():
+            return None
+    if not np.isfinite(stopping_time(law, chain.max_velocity, v[-2:-1], D[-1], T[-1]))[0]:
+        return None
+    first = np.minimum(law.least_time(np.diff(v, axis=0)), T)
+    parts = Parts(first, v[1:].copy(), np.zeros_like(first))
+    to_rest = quick_parts(law, v[-2:-1], v[-1:], T[-1:], D[-1:])
+    for part, last in zip(parts, to_rest):
+        part[-1:] = last
+    motion = trajectory(task.points, v[:-1], v[1:], T, parts)
+    peaks, limits = motion.peaks(), task.limits
+    kept = (peaks.min_position >= limits.min_position - POSITION_TOLERANCE).all() and (
+        peaks.max_position <= limits.max_position + POSITION_TOLERANCE).all()
+    return motion if kept else None
+
+
+def _prescribed(task: JointTask, chain: Chain, durations: Array) -> PiecewiseTrajectory:
+    """Return the motion of given durations; transitions gentler where torque asks for it."""
+    motion = _within_torque(task, chain, durations)
+    if motion is not None:
+        return motion
+    low, high = 1.0, 1.0
+    while _within_torque(task, chain, high * durations) is None:
+        low, high = high, 1.3 * high
+        if high > 1e4:
+            raise TimingError(
+                f'segment_durations {durations.tolist()} s are too short, and no stretch of '
+                'them is feasible')
+    for _ in range(20):
+        middle = np.sqrt(low * high)
+        if _within_torque(task, chain, middle * durations) is None:
+            low = middle
+        else:
+            high = middle
+    asked = [round(float(d), 9) for d in durations]
+    feasible = np.ceil(high * durations * (1.0 + 1e-6) * 1e6) / 1e6
+    offered = [round(float(d), 9) for d in feasible]
+    raise TimingError(f'segment_durations {asked} s are too short: the least feasible in their '
+                      f'proportion are {offered} s', tuple(offered))
+
+
+def _within_torque(task: JointTask, chain: Chain, durations: Array) -> PiecewiseTrajectory | None:
+    """Return a motion within all limits, with the fullest acceleration that torque allows."""
+    scale, too_full, too_gentle = 1.0, None, None  # of the acceleration
+    for _ in range(PRESCRIBED_ROUNDS):
+        law = TransitionLaw(chain.law.slope / scale, chain.law.root / scale ** 0.75)
+        motion = _motion(task, chain, law, durations)
+        if motion is None:
+            if too_full is None:
+                return None
+            too_gentle = scale
+        else:
+            stretch = torque_stretch(task, motion)
+            if np.isinf(stretch):
+                raise cannot_hold(task, motion)
+            if stretch <= 1.0 + TORQUE_TOLERANCE:
+                return motion
+            too_full, scale = scale, scale / stretch ** 2
+        if too_gentle is not None and too_full is not None:
+            scale = max(float(np.sqrt(too_full * too_gentle)), scale if motion else 0.0)
+    return None

@@ -1,0 +1,107 @@
+"""Limits as the chain of segments sees them: transition law, velocities, room at the ends."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
+from rrr_traj_planner.core.motion_torque import peak_holding_torque, stretch_for_torque
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.segment import TransitionLaw
+
+PEAK_ACCELERATION = 2.0  # of a full-period cycloid, times change of velocity / duration (4.10)
+PEAK_JERK = 2.0 * pi     # times change of velocity / duration squared
+
+# A transition at full acceleration lasts at least so many samples, so that the quintic through
+# them keeps the limits; it is a jerk limit of pi / SAMPLES_PER_TRANSITION of acceleration/period.
+SAMPLES_PER_TRANSITION = 5.0
+
+LEAST_VELOCITY = 1e-9  # rad/s: bounds of a via velocity that must be zero
+
+
+def chain_of(task: JointTask) -> Chain:
+    """
+    Return the optimisation problem of a task; via velocities bounded by the room to the limits.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked.
+
+    Returns
+    -------
+    Chain
+        The problem.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has no acceleration limit.
+
+    """
+    limits = task.limits
+    if np.isinf(limits.max_acceleration).any():
+        joint = task.model.joint_names[int(np.isinf(limits.max_acceleration).argmax())]
+        raise InvalidInputError(
+            f'a planner of cycloid transitions needs acceleration limits, {joint} has none')
+    jerk = np.minimum(limits.max_jerk, pi * limits.max_acceleration / (
+        SAMPLES_PER_TRANSITION * task.sample_period))
+    law = TransitionLaw(PEAK_ACCELERATION / limits.max_acceleration, np.sqrt(PEAK_JERK / jerk))
+    D = np.diff(task.points, axis=0)
+    fastest = np.sqrt(2.0 * np.abs(D).sum(axis=0) / law.slope) + 1.0  # no motion is faster
+    velocity = np.minimum(limits.max_velocity, fastest)
+    inner = task.points[1:-1]
+    room = np.minimum(inner - limits.min_position, limits.max_position - inner)
+    highest = np.clip(np.sqrt(2.0 * np.maximum(room, 0.0) / law.slope), LEAST_VELOCITY, velocity)
+    return Chain(D, law, velocity, -highest, highest)
+
+
+def torque_stretch(task: JointTask, trajectory: Trajectory) -> float:
+    """
+    Return by how much torque asks the whole motion to be slowed down; at most 1: not at all.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    float
+        Infinite where gravity alone is too much.
+
+    """
+    return float(stretch_for_torque(task.model, task.limits, trajectory).value.max())
+
+
+def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:
+    """
+    Return the error of a path on which gravity takes more than a motor has.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    LimitViolationError
+        With segment, joint, torque and limit.
+
+    """
+    holding = peak_holding_torque(task.model, trajectory)
+    joint = int((holding.value / task.limits.max_effort).argmax())
+    needed, limit = float(holding.value[joint]), float(task.limits.max_effort[joint])
+    name = task.model.joint_names[joint]
+    segment = int(np.searchsorted(trajectory.via_times[1:-1], holding.time[joint]))
+    return LimitViolationError(
+        f'segment {task.segment_number(segment)}: on its way {name} needs {needed:.1f} N m to hold, '
+        f'limit {limit:g} N m', name, needed, limit)
