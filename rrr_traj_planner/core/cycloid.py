@@ -137,8 +137,8 @@ def general_transition(position: float, velocity: float, end_velocity: float,
     start_acceleration, end_acceleration : float
         [rad/s^2].
     peak_acceleration : float
-        The acceleration at the peak [rad/s^2], signed; beyond both end values or equal to
-        the end value.
+        The acceleration at the peak [rad/s^2], signed. The function leaves the start toward
+        its peak and, within one period, never falls behind the start again.
 
     Returns
     -------
@@ -149,16 +149,16 @@ def general_transition(position: float, velocity: float, end_velocity: float,
     Raises
     ------
     InvalidInputError
-        If the peak lies between the end values, or no positive duration gives the change of
-        velocity.
+        If the end acceleration does not lie between start and peak, or no positive duration
+        gives the change of velocity.
 
     """
     rise, change = peak_acceleration - start_acceleration, end_velocity - velocity
     fraction = (end_acceleration - start_acceleration) / rise if rise != 0.0 else -1.0
     if not 0.0 <= fraction <= 1.0:
         raise InvalidInputError(
-            f'peak acceleration {peak_acceleration} rad/s^2 must be beyond the accelerations at '
-            f'the ends, {start_acceleration} and {end_acceleration} rad/s^2')
+            f'end acceleration {end_acceleration} rad/s^2 must lie between the start, '
+            f'{start_acceleration} rad/s^2, and the peak beyond it, {peak_acceleration} rad/s^2')
     w = 2.0 * pi - acos(1.0 - 2.0 * fraction)
     b, c = 0.5 * rise, start_acceleration + 0.5 * rise
     mean = c - b * float(np.sin(w)) / w

@@ -111,6 +111,8 @@ class Interpolant:
         """
         widths = np.diff(self.points.times)
         velocity, acceleration = np.zeros(3), np.zeros(3)
+        if len(widths) == 0:  # a single point rests
+            return velocity, acceleration
         for s in np.linspace(0.0, 1.0, per_segment + 1):
             x = (s * widths)[:, np.newaxis]
             velocity = np.maximum(

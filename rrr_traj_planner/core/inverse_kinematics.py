@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import acos, atan2, hypot, pi
+from math import atan2, cos, hypot, pi, sin, sqrt
 from typing import Literal
 
 import numpy as np
@@ -61,10 +61,12 @@ def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'u
     if on_axis:
         theta_1 = 0.0 if previous is None else float(finite_array('previous', previous, (3,))[0])
     else:
-        theta_1 = atan2(y, x)
+        theta_1 = _wrapped(atan2(y, x))
     W = _distance_in_reach(model, (x, y, z), hypot(r, h))
-    gamma = acos(_clipped((a2 ** 2 + d4 ** 2 - W ** 2) / (2.0 * a2 * d4)))
-    lift = acos(_clipped((a2 ** 2 - d4 ** 2 + W ** 2) / (2.0 * a2 * W))) if W > 0.0 else 0.0
+    # Half-angle and tangent forms of 5.9 and 5.11: exact to rounding at the workspace's edges too.
+    least, most = model.reach
+    gamma = 2.0 * atan2(sqrt((W - least) * (W + least)), sqrt((most - W) * (most + W)))
+    lift = atan2(d4 * sin(gamma), a2 - d4 * cos(gamma))
     if elbow == 'up':
         return np.array([theta_1, _wrapped(atan2(h, r) + lift), gamma - pi / 2])
     return np.array([theta_1, _wrapped(atan2(h, r) - lift), 1.5 * pi - gamma])
@@ -113,8 +115,9 @@ RANGE_TOLERANCE = 1e-9  # rad
 
 def _nearest_turn(q: Array, low: Array, high: Array) -> Array:
     """Return the turns that bring a joint that cannot be in its range nearest to it."""
-    centre = np.where(np.isfinite(low) & np.isfinite(high), 0.5 * (low + high), q)
-    return np.round((centre - q) / (2.0 * pi))
+    with np.errstate(invalid='ignore'):  # infinite ends, where every joint fits
+        centre = 0.5 * (low + high)
+    return np.round((np.where(np.isfinite(centre), centre, q) - q) / (2.0 * pi))
 
 
 def _distance_in_reach(model: RobotModel, point: tuple[float, float, float], W: float) -> float:
@@ -128,10 +131,6 @@ def _distance_in_reach(model: RobotModel, point: tuple[float, float, float], W: 
             f'({point[0]:.6g}, {point[1]:.6g}, {point[2]:.6g}) m is {W:.6g} m from the '
             f'shoulder, {side}: it misses by {miss:.6g} m', distance=miss)
     return min(max(W, least), most)
-
-
-def _clipped(cosine: float) -> float:
-    return min(max(cosine, -1.0), 1.0)
 
 
 def _wrapped(angle: float) -> float:

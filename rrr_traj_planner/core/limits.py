@@ -55,11 +55,11 @@ class JointLimits:
             array = bound_array(name, getattr(self, name), (3,))
             object.__setattr__(self, name, array)
             if not name.endswith('position') and not (array > 0.0).all():
-                raise InvalidInputError(f'{name} is {list(array)} {unit}, must be positive')
+                raise InvalidInputError(f'{name} is {array.tolist()} {unit}, must be positive')
         if not (self.min_position < self.max_position).all():
             raise InvalidInputError(
-                f'min_position {list(self.min_position)} rad is not below max_position '
-                f'{list(self.max_position)} rad')
+                f'min_position {self.min_position.tolist()} rad is not below max_position '
+                f'{self.max_position.tolist()} rad')
 
     def scaled(self, velocity: float = 1.0, acceleration: float = 1.0) -> JointLimits:
         """

@@ -78,5 +78,9 @@ def sample_times(trajectory: Trajectory, period: float) -> tuple[Array, Array]:
     gap = np.minimum(regular - fixed[np.maximum(after - 1, 0)],
                      np.abs(fixed[np.minimum(after, len(fixed) - 1)] - regular))
     regular = regular[(gap >= LEAST_GAP * period) & (regular < trajectory.duration)]
-    exact = np.sort(np.concatenate((fixed, regular)))
-    return exact, np.round(exact / NANOSECOND)
+    # Regular points share the rounding of the via points' stamps, which a controller would
+    # otherwise see as a step of velocity in the short gap between the two.
+    fixed_stamps = np.round(fixed / NANOSECOND)
+    exact = np.concatenate((fixed, np.interp(regular, fixed_stamps * NANOSECOND, fixed)))
+    stamps = np.concatenate((fixed_stamps, np.round(regular / NANOSECOND)))
+    return np.sort(exact), np.sort(stamps)

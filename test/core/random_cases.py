@@ -1,0 +1,81 @@
+"""Seeded random arms, states and motions, and the numerical derivatives to judge them by."""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.cycloid import cruise, CycloidPiece, ramp, transition
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+
+
+def random_model(rng):
+    """Return an arm with a geometry, masses and inertias of its own."""
+    a2, d4 = rng.uniform(0.2, 1.5, 2)
+    return RobotModel(
+        d1=rng.uniform(-0.5, 1.0), a2=a2, d4=d4, l2=rng.uniform(0.1, 1.0) * a2,
+        l3=rng.uniform(0.1, 1.0) * d4, mass=rng.uniform(1.0, 50.0, 3),
+        inertia=rng.uniform(0.01, 2.0, (3, 3)), gravity=rng.uniform(1.0, 25.0))
+
+
+# The thesis's arm and four others, for tests that must hold for any.
+ARMS = [RobotModel(), *(random_model(np.random.default_rng(seed)) for seed in range(4))]
+
+
+def random_states(rng, n):
+    """Return joint positions of any turn, velocities and accelerations, shape (n, 3) each."""
+    return rng.uniform(-7.0, 7.0, (n, 3)), rng.normal(0.0, 2.0, (n, 3)), rng.normal(
+        0.0, 5.0, (n, 3))
+
+
+def central_difference(function, x, step):
+    """Return df/dx of a function of one number, to the fourth order of the step."""
+    return (8.0 * (function(x + step) - function(x - step))
+            - (function(x + 2.0 * step) - function(x - 2.0 * step))) / (12.0 * step)
+
+
+def joined(pieces):
+    """Return single pieces as one with fields of shape (n,)."""
+    return CycloidPiece(*(np.array(field, dtype=float) for field in zip(*pieces)))
+
+
+def random_chain(rng, durations):
+    """Return pieces of every kind, from rest to rest, acceleration continuous at the joins."""
+    pieces = []
+    position, velocity, acceleration = rng.uniform(-1.0, 1.0), 0.0, 0.0
+    for duration in durations[:-2]:
+        kind = rng.integers(3) if acceleration == 0.0 else 2
+        if kind == 0:
+            piece = transition(duration, position, velocity, rng.uniform(-1.0, 1.0))
+        elif kind == 1:
+            piece = cruise(duration, position, velocity)
+        else:
+            piece = ramp(duration, position, velocity, acceleration, rng.uniform(-2.0, 2.0))
+        pieces.append(piece)
+        position, velocity = piece.at(1.0)[:2]
+        acceleration = float(piece.at(1.0)[2]) if kind == 2 else 0.0
+    pieces.append(ramp(durations[-2], position, velocity, acceleration, 0.0))
+    position, velocity = pieces[-1].at(1.0)[:2]
+    pieces.append(transition(durations[-1], position, velocity, 0.0))
+    return joined(pieces)
+
+
+def random_trajectory(rng, duration=None, via_times=None):
+    """Return a smooth motion of three joints, each with three to nine pieces of its own."""
+    if duration is None:
+        duration = rng.uniform(0.5, 5.0)
+    profiles = []
+    for _ in range(3):
+        shares = rng.dirichlet(np.full(rng.integers(3, 10), 2.0))
+        profiles.append(JointProfile(random_chain(rng, duration * shares)))
+    if via_times is None:
+        between = np.sort(rng.uniform(0.0, duration, rng.integers(0, 5)))
+        via_times = np.concatenate(([0.0], between, [duration]))
+    return PiecewiseTrajectory(profiles, via_times)
+
+
+def dense_times(trajectory, per_interval):
+    """Return times on a fine grid that meets every knot, made without the code under test."""
+    knots = trajectory.knots
+    grids = [np.linspace(a, b, per_interval, endpoint=False)
+             for a, b in zip(knots[:-1], knots[1:])]
+    return np.concatenate((*grids, knots[-1:]))
