@@ -1,0 +1,30 @@
+# Everything that a user or a developer calls; each sets up first what it needs.
+
+SHELL := /bin/bash
+in_env := source scripts/env.bash &&
+export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
+
+.PHONY: help setup demo test lint bench clean
+
+help:
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 16
+
+setup:  ## ROS 2 Jazzy, Python packages and the build, unless they are there
+	@scripts/setup.bash
+
+demo: setup  ## plan a motion through via points and run it on the simulated arm; options in ARGS
+	@$(in_env) demo $(ARGS)
+
+test: lint  ## linters and every test; options for pytest in ARGS
+	@$(in_env) python -m pytest $(ARGS)
+
+lint: setup  ## ruff, and mypy on the core and the planners
+	@$(in_env) ruff check && mypy
+
+bench: setup  ## run the benchmarks
+	@test -f benchmarks/run.py || { echo 'benchmarks/run.py is missing: benchmarks live there'; exit 1; }
+	@$(in_env) python benchmarks/run.py $(ARGS)
+
+clean:  ## leave what a fresh clone has
+	rm -rf .venv build install log .*_cache .hypothesis
+	find . -name __pycache__ -prune -exec rm -rf {} +

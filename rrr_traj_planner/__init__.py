@@ -1,0 +1,1 @@
+"""Trajectory planning for a three-joint (RRR) robot arm, on ROS 2."""

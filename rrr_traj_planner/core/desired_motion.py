@@ -1,0 +1,164 @@
+"""What the arm's controller follows: polynomials in time, evaluated one instant at a time."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.control import Desired
+from rrr_traj_planner.core.motion_points import MotionPoints, segment_coefficients, segment_orders
+
+
+class DesiredMotion:
+    """
+    A motion of polynomials, one after another, that rests where it ends.
+
+    Parameters
+    ----------
+    knots : ndarray, shape (n,)
+        Strictly increasing times [s] since the origin.
+    coefficients : ndarray, shape (n - 1, 3, 6)
+        For each interval and joint, of 1, x, ..., x^5 with x the time since its knot [s].
+    final : ndarray, shape (3,)
+        Position at the last knot [rad], which is held.
+    origin : float
+        What the knots are counted from [s].
+
+    """
+
+    def __init__(self, knots: Array, coefficients: Array, final: Array,
+                 origin: float = 0.0) -> None:
+        self.knots, self.coefficients, self.final = knots, coefficients, final
+        self.origin = origin
+        # One knot alone is a rest that has no beginning.
+        self._rests_from = float(knots[-1]) if len(knots) > 1 else -np.inf
+        self._rest = rest(final)
+        self._low = self._high = -np.inf  # the interval found last, and its coefficients
+        self._current: list[float] = []
+
+    @property
+    def start(self) -> float:
+        """When the motion begins [s]."""
+        return self.origin + float(self.knots[0])
+
+    @property
+    def end(self) -> float:
+        """When the motion comes to rest [s]."""
+        return self.origin + float(self.knots[-1])
+
+    def __call__(self, t: float) -> Desired:
+        """
+        Return the desired state at a time.
+
+        Parameters
+        ----------
+        t : float
+            [s]; before the first knot the motion is as at that knot, after the last it rests.
+
+        Returns
+        -------
+        tuple of 9 floats
+            Positions [rad], velocities [rad/s], accelerations [rad/s^2].
+
+        """
+        t -= self.origin
+        if t >= self._rests_from:
+            return self._rest
+        if not self._low <= t < self._high:
+            t = self._find(t)
+        x = t - self._low
+        a0, a1, a2, a3, a4, a5, b0, b1, b2, b3, b4, b5, c0, c1, c2, c3, c4, c5 = self._current
+        return (
+            a0 + x * (a1 + x * (a2 + x * (a3 + x * (a4 + x * a5)))),
+            b0 + x * (b1 + x * (b2 + x * (b3 + x * (b4 + x * b5)))),
+            c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5)))),
+            a1 + x * (2.0 * a2 + x * (3.0 * a3 + x * (4.0 * a4 + x * (5.0 * a5)))),
+            b1 + x * (2.0 * b2 + x * (3.0 * b3 + x * (4.0 * b4 + x * (5.0 * b5)))),
+            c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * (5.0 * c5)))),
+            2.0 * a2 + x * (6.0 * a3 + x * (12.0 * a4 + x * (20.0 * a5))),
+            2.0 * b2 + x * (6.0 * b3 + x * (12.0 * b4 + x * (20.0 * b5))),
+            2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5))))
+
+    def states(self) -> tuple[Array, Array, Array]:
+        """
+        Return the state with which the motion goes on from each knot, and rests at the last.
+
+        Returns
+        -------
+        tuple of ndarray, shape (n, 3)
+            Positions [rad], velocities [rad/s], accelerations [rad/s^2].
+
+        """
+        c, zero = self.coefficients, np.zeros((1, 3))
+        return (np.vstack((c[:, :, 0], self.final)), np.vstack((c[:, :, 1], zero)),
+                np.vstack((2.0 * c[:, :, 2], zero)))
+
+    def _find(self, t: float) -> float:
+        """Make the interval around a time the current one, and return the time, not before it."""
+        t = max(t, float(self.knots[0]))
+        i = bisect_right(self.knots, t) - 1
+        self._low, self._high = float(self.knots[i]), float(self.knots[i + 1])
+        self._current = self.coefficients[i].ravel().tolist()
+        return t
+
+
+def through(points: MotionPoints, origin: float = 0.0) -> DesiredMotion:
+    """
+    Return the motion through points.
+
+    Parameters
+    ----------
+    points : MotionPoints
+        The points.
+    origin : float
+        What their times are counted from [s].
+
+    Returns
+    -------
+    DesiredMotion
+        Lines, cubics and quintics between them.
+
+    """
+    coefficients = segment_coefficients(points, segment_orders(points))
+    return DesiredMotion(points.times, coefficients, points.positions[-1], origin)
+
+
+def holding(q: ArrayLike, time: float = 0.0) -> DesiredMotion:
+    """
+    Return the motion that stays where it is.
+
+    Parameters
+    ----------
+    q : array_like, shape (3,)
+        Positions [rad].
+    time : float
+        When it begins [s].
+
+    Returns
+    -------
+    DesiredMotion
+        A motion of one knot.
+
+    """
+    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), np.array(q, dtype=float), time)
+
+
+def rest(q: ArrayLike) -> Desired:
+    """
+    Return the desired state of an arm that rests.
+
+    Parameters
+    ----------
+    q : array_like, shape (3,)
+        Positions [rad].
+
+    Returns
+    -------
+    tuple of 9 floats
+        The positions, then zeros.
+
+    """
+    q1, q2, q3 = np.asarray(q, dtype=float).tolist()
+    return q1, q2, q3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

@@ -1,0 +1,162 @@
+"""
+Which trajectories the arm accepts: joint_trajectory_controller's rules, in its words.
+
+The checks, their order and their texts are those of the Jazzy controller with its default
+parameters and an arm commanded by position. Beyond them, names that repeat, a negative first
+time and values that are not finite are refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.motion_points import MotionPoints
+
+NANOSECOND = 1e-9
+
+# std::numeric_limits<float>::epsilon(), below which the controller takes a velocity for zero.
+FLOAT_EPSILON = float(np.finfo(np.float32).eps)
+
+FIELDS = ('positions', 'velocities', 'accelerations')
+
+
+class IncomingPoint(NamedTuple):
+    """A point as it arrives: any of its sequences may be of the wrong size."""
+
+    time: int  # ns from the trajectory's start
+    positions: Sequence[float]
+    velocities: Sequence[float] = ()
+    accelerations: Sequence[float] = ()
+    effort: Sequence[float] = ()
+
+
+class IncomingTrajectory(NamedTuple):
+    """A trajectory as it arrives, nothing checked."""
+
+    joint_names: Sequence[str]
+    stamp: int  # ns on the clock of the arm; 0: starts on arrival
+    points: Sequence[IncomingPoint]
+
+
+def check_trajectory(trajectory: IncomingTrajectory, joint_names: Sequence[str],
+                     now: int) -> None:
+    """
+    Refuse a trajectory that the arm cannot follow.
+
+    Parameters
+    ----------
+    trajectory : IncomingTrajectory
+        What arrived.
+    joint_names : sequence of str
+        The arm's joints.
+    now : int
+        The clock [ns].
+
+    Raises
+    ------
+    InvalidInputError
+        With joint_trajectory_controller's text, where it would refuse.
+
+    """
+    _check_names(trajectory, joint_names)
+    _check_end(trajectory, now)
+    before = 0
+    for i, point in enumerate(trajectory.points):
+        _check_time(i, before, point.time)
+        _check_point(i, point, trajectory.joint_names)
+        before = point.time
+
+
+def motion_points(trajectory: IncomingTrajectory, joint_names: Sequence[str]) -> MotionPoints:
+    """
+    Return the points of an accepted trajectory, joints in the arm's order.
+
+    Parameters
+    ----------
+    trajectory : IncomingTrajectory
+        What arrived and was checked.
+    joint_names : sequence of str
+        The arm's joints.
+
+    Returns
+    -------
+    MotionPoints
+        Times from the trajectory's start [s].
+
+    """
+    order = [list(trajectory.joint_names).index(name) for name in joint_names]
+    points = trajectory.points
+    return MotionPoints(
+        np.array([p.time * NANOSECOND for p in points]),
+        _rows([p.positions for p in points], order),
+        _rows([p.velocities for p in points], order),
+        _rows([p.accelerations for p in points], order),
+        np.array([len(p.velocities) > 0 for p in points]),
+        np.array([len(p.accelerations) > 0 for p in points]))
+
+
+def _rows(values: list[Sequence[float]], order: list[int]) -> Array:
+    """Return one row of joint values a point, zeros where a point carries none."""
+    none = (0.0,) * len(order)
+    rows: Array = np.array([v if len(v) else none for v in values], dtype=float)[:, order]
+    return rows
+
+
+def _check_names(trajectory: IncomingTrajectory, joint_names: Sequence[str]) -> None:
+    names = trajectory.joint_names
+    if len(names) != len(joint_names):
+        raise InvalidInputError("Joints on incoming trajectory don't match the controller joints.")
+    if not trajectory.points:
+        raise InvalidInputError('Empty trajectory received.')
+    for name in names:
+        if name not in joint_names:
+            raise InvalidInputError(
+                f"Incoming joint {name} doesn't match the controller's joints.")
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            raise InvalidInputError(f'Incoming joint {name} is named twice.')
+
+
+def _check_end(trajectory: IncomingTrajectory, now: int) -> None:
+    last = trajectory.points[-1]
+    for name, velocity in zip(trajectory.joint_names, last.velocities):
+        if abs(velocity) > FLOAT_EPSILON:
+            raise InvalidInputError(
+                f'Velocity of last trajectory point of joint {name} is not zero: {velocity:.15f}')
+    end = trajectory.stamp + last.time
+    if trajectory.stamp != 0 and end < now:
+        raise InvalidInputError(
+            f'Received trajectory with non-zero start time ({trajectory.stamp * NANOSECOND:f}) '
+            f'that ends in the past ({end * NANOSECOND:f})')
+
+
+def _check_time(i: int, before: int, time: int) -> None:
+    if i > 0 and time <= before:
+        raise InvalidInputError(
+            f'Time between points {i - 1} and {i} is not strictly increasing, '
+            f'it is {before * NANOSECOND:f} and {time * NANOSECOND:f} respectively')
+    if time < 0:
+        raise InvalidInputError(f'Time of point #{i} is negative: {time * NANOSECOND:f}')
+
+
+def _check_point(i: int, point: IncomingPoint, names: Sequence[str]) -> None:
+    for field in FIELDS:
+        size = len(getattr(point, field))
+        if size != len(names) and (size or field == 'positions'):
+            raise InvalidInputError(
+                f'Mismatch between joint_names size ({len(names)}) and {field} ({size}) '
+                f'at point #{i}.')
+    if len(point.effort):
+        raise InvalidInputError(
+            'Trajectories with effort fields are only supported for '
+            "controllers using the 'effort' command interface.")
+    for field in FIELDS:
+        for name, value in zip(names, getattr(point, field)):
+            if not isfinite(value):
+                raise InvalidInputError(
+                    f'Value of {field} of joint {name} at point #{i} is not finite: {value:f}')

@@ -1,0 +1,167 @@
+"""
+The arm's physics: forward dynamics in fixed steps, between hard joint stops.
+
+A step that meets a stop is taken up to the impact exactly, and goes on from there without the
+energy that the stop has taken.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+from rrr_traj_planner.core.control import State, Triple
+from rrr_traj_planner.core.equations import accelerations, constants, Terms, terms
+from rrr_traj_planner.core.joint_stops import Contact, contact, FREE, held, permitted
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.time_step import free_step, held_step
+
+# A step is interrupted by at most this many impacts; joints at a stop then wait there for its end.
+MOST_IMPACTS = 8
+
+# Bisections of a step at an impact: 1 ms / 2^40 is 1e-15 s.
+BISECTIONS = 40
+
+# A joint that would be back at its stop within this part of a step has not left it. Without this
+# bound, two joints at their stops hand an ever smaller velocity to and fro.
+SHORTEST_REBOUND = 0.05
+
+
+class ArmPhysics:
+    """
+    An arm between its stops: what a torque does to its state over a time step.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    low, high : tuple of 3 floats
+        Where the stops are [rad]; infinite where there is none.
+
+    """
+
+    def __init__(self, model: RobotModel, low: Triple, high: Triple) -> None:
+        self.low, self.high = low, high
+        self._constants = constants(model)
+
+    def terms(self, state: State) -> Terms:
+        """
+        Return the terms of the equations of motion at a state.
+
+        Parameters
+        ----------
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
+
+        Returns
+        -------
+        Terms
+            As from `equations.terms`.
+
+        """
+        return terms(self._constants, state[1], state[2], sin, cos)
+
+    def step(self, t: Terms, state: State, torque: Triple, h: float) -> State:
+        """
+        Return the state after a time step.
+
+        Parameters
+        ----------
+        t : Terms
+            The terms at the state (`terms(state)`).
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
+        torque : tuple of 3 floats
+            The motors' torques [N m], held over the step.
+        h : float
+            Length of the step [s], positive.
+
+        Returns
+        -------
+        tuple of 6 floats
+            Positions and velocities; no joint further beyond a stop than it was before.
+
+        """
+        (l1, l2, l3), (u1, u2, u3) = self.low, self.high
+        q1, q2, q3 = state[:3]
+        if l1 < q1 < u1 and l2 < q2 < u2 and l3 < q3 < u3:
+            after = free_step(self._constants, t, state, torque, h)
+            q1, q2, q3 = after[:3]
+            if l1 <= q1 <= u1 and l2 <= q2 <= u2 and l3 <= q3 <= u3:
+                return after
+        return self._step_with_stops(state, torque, h)
+
+    def _step_with_stops(self, state: State, torque: Triple, h: float) -> State:
+        """Step from stop to stop: up to each impact exactly, and on without the lost energy."""
+        # A joint that starts beyond a stop (the stop was moved) may stay there, not go further.
+        (l1, l2, l3), (u1, u2, u3), (q1, q2, q3) = self.low, self.high, state[:3]
+        low = (min(l1, q1), min(l2, q2), min(l3, q3))
+        high = (max(u1, q1), max(u2, q2), max(u3, q3))
+        left = h
+        for _ in range(MOST_IMPACTS):
+            t, at = self.terms(state), contact(state, low, high)
+            state, lock = _after_impact(t, state, torque, at, SHORTEST_REBOUND * h)
+            taken, state = self._until_impact(t, state, torque, left, lock, low, high)
+            left -= taken
+            if left <= 0.0:
+                break
+        at = contact(state, low, high)
+        t = self.terms(state)
+        if left > 0.0:
+            state = held_step(self._constants, t, state[:3] + held(t, state[3:], at), torque,
+                              left, at)
+            state = _within(state, low, high)
+            t, at = self.terms(state), contact(state, low, high)
+        return state[:3] + permitted(t, state[3:], at)
+
+    def _until_impact(self, t: Terms, state: State, torque: Triple, h: float, lock: Contact,
+                      low: Triple, high: Triple) -> tuple[float, State]:
+        """Return the time [s] until a joint reaches a stop, or h, and the state then."""
+        k = self._constants
+        after = held_step(k, t, state, torque, h, lock)
+        if _overshoot(after, low, high) <= 0.0:
+            return h, after
+        before, taken = 0.0, h
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (before + taken)
+            trial = held_step(k, t, state, torque, middle, lock)
+            if _overshoot(trial, low, high) > 0.0:
+                taken, after = middle, trial
+            else:
+                before = middle
+        return taken, _within(after, low, high)
+
+
+def _after_impact(t: Terms, state: State, torque: Triple, at: Contact,
+                  shortest: float) -> tuple[State, Contact]:
+    """
+    Return the state after what impacts there are, and the joints that rest at their stops.
+
+    A joint rests that is pressed into its stop and has no velocity, or leaves it with so little
+    that it would be back within the shortest time [s].
+    """
+    if at == FREE:
+        return state, FREE
+    w1, w2, w3 = permitted(t, state[3:], at)
+    a1, a2, a3 = accelerations(t, w1, w2, w3, *torque)
+    s1, s2, s3 = at
+    reach = 0.5 * shortest
+    slow = (s1 if s1 * w1 <= -s1 * a1 * reach else 0, s2 if s2 * w2 <= -s2 * a2 * reach else 0,
+            s3 if s3 * w3 <= -s3 * a3 * reach else 0)
+    pressed = permitted(t, (a1, a2, a3), slow)
+    lock = (s1 if slow[0] and pressed[0] == 0.0 else 0, s2 if slow[1] and pressed[1] == 0.0 else 0,
+            s3 if slow[2] and pressed[2] == 0.0 else 0)
+    w1, w2, w3 = held(t, (w1, w2, w3), lock)
+    if s2 * w2 < 0.0 or s3 * w3 < 0.0:  # stopping one joint has thrown the other into its stop
+        lock, w2, w3 = (lock[0], s2, s3), 0.0, 0.0
+    return state[:3] + (w1, w2, w3), lock
+
+
+def _overshoot(state: State, low: Triple, high: Triple) -> float:
+    """Return by how much the joint furthest beyond a stop is beyond it [rad]."""
+    return max(max(q - u, d - q) for q, d, u in zip(state, low, high))
+
+
+def _within(state: State, low: Triple, high: Triple) -> State:
+    """Return the state with joints beyond a stop set back onto it."""
+    (l1, l2, l3), (u1, u2, u3), (q1, q2, q3, *_) = low, high, state
+    return (min(max(q1, l1), u1), min(max(q2, l2), u2), min(max(q3, l3), u3)) + state[3:]

@@ -1,0 +1,75 @@
+"""The script `bringup`: planner and simulated arm together; when one ends, so does the other."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+import sys
+
+from rrr_traj_planner.nodes.configuration_files import arm_file
+from rrr_traj_planner.nodes.entry import guarded, parse
+from rrr_traj_planner.nodes.processes import NodeProcesses
+
+DESCRIPTION = 'Run the trajectory planner and the simulated arm, until Ctrl-C.'
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """
+    Run both nodes until SIGINT or SIGTERM, or until one of them ends.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The command line without the script's name; None: `sys.argv`'s.
+
+    Returns
+    -------
+    int
+        Exit code: 0 after a signal, else that of the node that ended.
+
+    """
+    def work() -> int:
+        options, ros_arguments = parse('bringup', DESCRIPTION, arguments, _add_options)
+        return _run(options.arm, ros_arguments)
+
+    return guarded('bringup', work)
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--arm', metavar='FILE', default='thesis_arm.yaml',
+        help="parameters of both nodes: a file, or one of the package's config/ "
+             '(default: %(default)s)')
+
+
+def _run(arm: str, ros_arguments: list[str]) -> int:
+    with NodeProcesses(node_arguments(arm_file(arm, Path.cwd()), ros_arguments)) as processes:
+        name, code = processes.wait()
+    print(f'bringup: {name} ended with exit code {code}', file=sys.stderr)
+    return code if code >= 0 else 128 - code
+
+
+def node_arguments(parameters: Path, ros_arguments: Sequence[str]) -> list[str]:
+    """
+    Return the ROS arguments of both nodes.
+
+    Parameters
+    ----------
+    parameters : Path
+        The arm's parameter file; what the user gives goes before it.
+    ros_arguments : sequence of str
+        The user's own.
+
+    Returns
+    -------
+    list of str
+        In the order in which they are to be read.
+
+    """
+    own = [a for a in ros_arguments if a not in ('--ros-args', '--')]
+    return ['--ros-args', '--params-file', str(parameters), *own]
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,177 @@
+"""What the nodes make of their parameters: frozen values, checked as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.control import ControllerGains
+from rrr_traj_planner.core.controlled_arm import ArmSettings
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+
+Values = Mapping[str, Any]
+
+# The torque is held over a physics step: a controller that would undo more than all of a
+# velocity error within one is unstable, and half of that is still smooth.
+MOST_DAMPING_PER_STEP = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class PlannerConfig:
+    """The planner node's parameters: names, [s] and [m]."""
+
+    model: RobotModel
+    limits: JointLimits
+    base_frame: str
+    tip_frame: str
+    default_planner_id: str
+    sample_period: float
+    max_deviation: float
+
+    @classmethod
+    def from_values(cls, values: Values) -> PlannerConfig:
+        """
+        Return the configuration that parameters describe.
+
+        Parameters
+        ----------
+        values : mapping
+            Each parameter's value by name.
+
+        Returns
+        -------
+        PlannerConfig
+            Checked as a whole.
+
+        Raises
+        ------
+        InvalidInputError
+            If the values contradict each other.
+
+        """
+        return cls(
+            robot_model(values), joint_limits(values),
+            **{name: values[name] for name in (
+                'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
+                'max_deviation')})
+
+
+@dataclass(frozen=True, eq=False)
+class ArmConfig:
+    """The arm node's parameters: [Hz], [rad]."""
+
+    settings: ArmSettings
+    publish_rate: float
+    initial_positions: Array
+
+    @classmethod
+    def from_values(cls, values: Values) -> ArmConfig:
+        """
+        Return the configuration that parameters describe.
+
+        Parameters
+        ----------
+        values : mapping
+            Each parameter's value by name.
+
+        Returns
+        -------
+        ArmConfig
+            Checked as a whole.
+
+        Raises
+        ------
+        InvalidInputError
+            If the values contradict each other.
+
+        """
+        limits = joint_limits(values)
+        gains = ControllerGains(values['controller.natural_frequency'],
+                                values['controller.damping_ratio'])
+        step = values['physics_step']
+        if gains.damping * step > MOST_DAMPING_PER_STEP:
+            raise InvalidInputError(
+                f'controller.natural_frequency is {gains.natural_frequency:g} rad/s, must be at '
+                f'most {MOST_DAMPING_PER_STEP / (2.0 * gains.damping_ratio * step):g} rad/s with '
+                f'controller.damping_ratio {gains.damping_ratio:g} and physics_step {step:g} s')
+        return cls(ArmSettings(robot_model(values), limits, gains, step),
+                   values['publish_rate'], _initial_positions(values, limits))
+
+
+def robot_model(values: Values) -> RobotModel:
+    """
+    Return the arm that parameters describe.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    RobotModel
+        The arm.
+
+    Raises
+    ------
+    InvalidInputError
+        If a pose of the arm has no inertia, or names repeat.
+
+    """
+    lengths = {name: values[f'arm.{name}'] for name in ('d1', 'a2', 'd4', 'l2', 'l3', 'gravity')}
+    return RobotModel(
+        **lengths, mass=values['arm.mass'],
+        inertia=np.array([list(values[f'arm.inertia_{i}']) for i in (1, 2, 3)]),
+        joint_names=values['joint_names'])
+
+
+def joint_limits(values: Values) -> JointLimits:
+    """
+    Return the limits that parameters describe, infinite where `has_..._limits` is false.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    JointLimits
+        The limits.
+
+    Raises
+    ------
+    InvalidInputError
+        If a range of positions is empty.
+
+    """
+    joints = [f'joint_limits.{joint}' for joint in values['joint_names']]
+    for joint in joints:
+        low, high = values[f'{joint}.min_position'], values[f'{joint}.max_position']
+        if low >= high:
+            raise InvalidInputError(f'{joint}.min_position is {low:g} rad, must be below '
+                                    f'{joint}.max_position, {high:g} rad')
+    largest = {
+        f'max_{name}': np.array([
+            values[f'{joint}.max_{name}'] if values[f'{joint}.has_{name}_limits'] else inf
+            for joint in joints])
+        for name in ('velocity', 'acceleration', 'jerk', 'effort')}
+    return JointLimits(np.array([values[f'{joint}.min_position'] for joint in joints]),
+                       np.array([values[f'{joint}.max_position'] for joint in joints]), **largest)
+
+
+def _initial_positions(values: Values, limits: JointLimits) -> Array:
+    """Return where the arm starts; refuse what its stops do not let it be in."""
+    q = finite_array('initial_positions', values['initial_positions'], (3,))
+    for i, (x, low, high) in enumerate(zip(q, limits.min_position, limits.max_position)):
+        if not low <= x <= high:
+            raise InvalidInputError(
+                f'initial_positions[{i}] is {x:g} rad, must be in [{low:g}, {high:g}] rad, the '
+                f"limits of {values['joint_names'][i]}")
+    return q

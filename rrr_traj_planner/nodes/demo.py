@@ -1,0 +1,85 @@
+"""The script `demo`: plan through via points, drive the simulated arm, show how well it went."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+import sys
+
+from rrr_traj_planner.nodes.entry import guarded, parse
+
+DESCRIPTION = """\
+Plan a motion through the via points of a file, run it on the simulated arm and show the figures.
+
+Starts the planner and the arm, calls the planner's service, sends its answer to the arm, and
+compares what was asked, planned and reached. The exit code is 0 only if every figure is inside
+its bound."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """
+    Run the demonstration.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The command line without the script's name; None: `sys.argv`'s.
+
+    Returns
+    -------
+    int
+        Exit code: 0 if every figure is inside its bound, 1 if not, or if a step failed.
+
+    """
+    def work() -> int:
+        options, ros_arguments = parse('demo', DESCRIPTION, arguments, _add_options)
+        return _run(options, ros_arguments)
+
+    return guarded('demo', work)
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('task', nargs='?', default='table_6_1.yaml', metavar='FILE',
+                        help="via points: a file, or one of the package's config/ "
+                             '(default: %(default)s)')
+    parser.add_argument('--planner', default='', metavar='ID',
+                        help="planner id (default: the file's)")
+    parser.add_argument('--plot', type=Path, metavar='PNG',
+                        help='where the plot goes (default: demo_TASK.png); "" for none')
+
+
+def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+    from rrr_traj_planner.nodes.bringup import node_arguments
+    from rrr_traj_planner.nodes.configuration_files import read_task
+    from rrr_traj_planner.nodes.demo_client import run_on_arm
+    from rrr_traj_planner.nodes.demo_table import figures, table
+    from rrr_traj_planner.nodes.processes import NodeProcesses
+
+    task = read_task(options.task)
+    with NodeProcesses(node_arguments(task.arm, ros_arguments)) as processes:
+        run = run_on_arm(task, options.planner, ros_arguments, processes.ended)
+    found = figures(run)
+    print(table(run, found))
+    plot = Path(f'demo_{task.name}.png') if options.plot is None else options.plot
+    if str(plot) not in ('', '.'):
+        _plot(run, plot)
+    broken = [f for f in found if not f.kept]
+    for figure in broken:
+        print(f'demo: out of bounds: {figure.text}', file=sys.stderr)
+    return 1 if broken else 0
+
+
+def _plot(run: object, file: Path) -> None:
+    try:
+        from rrr_traj_planner.nodes.demo_plot import draw
+    except ImportError as error:
+        print(f'demo: no plot, matplotlib is missing ({error})', file=sys.stderr)
+        return
+    file.parent.mkdir(parents=True, exist_ok=True)
+    draw(run, file)  # type: ignore[arg-type]
+    print(f'plot: {file}')
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

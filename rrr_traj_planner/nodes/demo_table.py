@@ -1,0 +1,201 @@
+"""The demonstration's figures, each with its bound, and the table that shows them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics, wrap_into_limits
+from rrr_traj_planner.core.interpolation import Interpolant
+from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.limit_check import TOLERANCE
+from rrr_traj_planner.nodes.demo_client import Run
+
+PLANNED_BOUND = 1e-9  # rad
+REACHED_BOUND = 2e-3  # m
+FINAL_BOUND = 1e-3    # m
+
+
+class Figure(NamedTuple):
+    """A figure and the bound that it must keep."""
+
+    name: str
+    value: float
+    bound: float
+    unit: str
+
+    @property
+    def kept(self) -> bool:
+        """Whether the figure is inside its bound."""
+        return bool(self.value <= self.bound)
+
+    @property
+    def text(self) -> str:
+        """A line for people."""
+        return f'{self.name} is {self.value:.6g} {self.unit}, bound {self.bound:.6g} {self.unit}'
+
+
+def figures(run: Run) -> list[Figure]:
+    """
+    Return every figure of a run.
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    list of Figure
+        With their bounds.
+
+    """
+    found = []
+    for i, (planned, reached) in enumerate(zip(planned_errors(run), reached_errors(run))):
+        found += [Figure(f'via point {i}: planned error', planned, PLANNED_BOUND, 'rad'),
+                  Figure(f'via point {i}: error reached', reached, REACHED_BOUND, 'm')]
+    found.append(Figure('final error', final_error(run), FINAL_BOUND, 'm'))
+    for name, peak, limit, unit in _peaks(run):
+        for joint, p, m in zip(run.config.model.joint_names, peak, limit):
+            found.append(Figure(f'{joint}: planned {name}', p, m * (1.0 + TOLERANCE), unit))
+    for joint, p, m in zip(run.config.model.joint_names, driven_torque(run),
+                           run.config.limits.max_effort):
+        # at the limit the motor is saturated
+        found.append(Figure(f'{joint}: torque driven', p, np.nextafter(m, 0.0), 'N m'))
+    return found
+
+
+def table(run: Run, found: list[Figure]) -> str:
+    """
+    Return the figures as a table.
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+    found : list of Figure
+        Its figures.
+
+    Returns
+    -------
+    str
+        Several lines.
+
+    """
+    lines = ['', f'{run.task.name}: {run.response.via_times[-1]:.3f} s', '',
+             f'{"via point":<28}{"at [s]":>9}{"planned error [rad]":>22}'
+             f'{"error reached [mm]":>21}']
+    for i, (point, t, planned, reached) in enumerate(zip(
+            run.task.via_points, run.response.via_times, planned_errors(run),
+            reached_errors(run))):
+        where = '(' + ', '.join(f'{x:g}' for x in point) + ') m'
+        lines.append(f'{i:<3}{where:<25}{t:>9.3f}{planned:>22.1e}{1e3 * reached:>21.4f}')
+    lines += [f'{"at rest":<28}{"":>9}{"":>22}{1e3 * final_error(run):>21.4f}', '']
+    lines.append(f'{"peaks: planned / limit":<24}' + ''.join(
+        f'{joint:>24}' for joint in run.config.model.joint_names))
+    rows = [*_peaks(run), ('torque driven', driven_torque(run), run.config.limits.max_effort,
+                           'N m')]
+    for name, peak, limit, unit in rows:
+        label = f'{name} [{unit}]'
+        lines.append(f'{label:<24}' + ''.join(
+            f'{f"{p:.4g} / {_limit(m)}":>24}' for p, m in zip(peak, limit)))
+    kept = sum(f.kept for f in found)
+    lines += ['', f'{kept} of {len(found)} figures are inside their bounds']
+    return '\n'.join(lines)
+
+
+def planned_errors(run: Run) -> list[float]:
+    """
+    Return how far the plan is from the via points, at their times [rad].
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    list of float
+        The largest of the three joints' for each via point.
+
+    """
+    errors = []
+    for point, t in zip(run.task.via_points, run.response.via_times):
+        q = run.planned.positions[np.abs(run.planned.times - t).argmin()]
+        errors.append(min(_distance(run, q, inverse_kinematics(
+            run.config.model, point, elbow, q)) for elbow in ELBOWS))
+    return errors
+
+
+def reached_errors(run: Run) -> list[float]:
+    """
+    Return how far the arm's tip was from the via points, at their times [m].
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    list of float
+        A distance for each via point.
+
+    """
+    q = Interpolant(run.recorded)(np.array(run.response.via_times))[0]
+    tip = forward_kinematics(run.config.model, q)
+    return [float(e) for e in np.linalg.norm(tip - run.task.via_points, axis=1)]
+
+
+def final_error(run: Run) -> float:
+    """
+    Return how far from the last via point the arm came to rest [m].
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    float
+        The distance.
+
+    """
+    tip = forward_kinematics(run.config.model, run.recorded.positions[-1])
+    return float(np.linalg.norm(tip - run.task.via_points[-1]))
+
+
+def driven_torque(run: Run) -> Array:
+    """
+    Return the largest torque that each motor gave, as recorded [N m].
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Magnitudes.
+
+    """
+    return np.asarray(np.abs(run.torque).max(axis=0))
+
+
+def _peaks(run: Run) -> list[tuple[str, Array, Array, str]]:
+    limits, r = run.config.limits, run.response
+    return [('velocity', np.array(r.peak_velocity), limits.max_velocity, 'rad/s'),
+            ('acceleration', np.array(r.peak_acceleration), limits.max_acceleration, 'rad/s^2'),
+            ('jerk', np.array(r.peak_jerk), limits.max_jerk, 'rad/s^3'),
+            ('torque', np.array(r.peak_effort), limits.max_effort, 'N m')]
+
+
+def _distance(run: Run, q: Array, other: Array) -> float:
+    return float(np.abs(wrap_into_limits(other, run.config.limits, q) - q).max())
+
+
+def _limit(value: float) -> str:
+    return 'none' if np.isinf(value) else f'{value:g}'

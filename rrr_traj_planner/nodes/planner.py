@@ -1,0 +1,45 @@
+"""The script `planner`: the trajectory planner on a ROS service."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from rrr_traj_planner.nodes.entry import run_node
+
+if TYPE_CHECKING:
+    from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+
+DESCRIPTION = """\
+Plan motions of the arm through via points, exactly and without stopping.
+
+  serves      plan_trajectory (rrr_traj_planner_interfaces/srv/PlanTrajectory)
+  publishes   planned_trajectory (trajectory_msgs/JointTrajectory), planned_path (nav_msgs/Path)
+  parameters  config/thesis_arm.yaml shows them all"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """
+    Run the planner until SIGINT or SIGTERM.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The command line without the script's name; None: `sys.argv`'s.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    """
+    return run_node('planner', DESCRIPTION, _load, arguments)
+
+
+def _load() -> type[TrajectoryPlanner]:
+    from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+    return TrajectoryPlanner
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

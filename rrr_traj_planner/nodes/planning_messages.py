@@ -1,0 +1,250 @@
+"""PlanTrajectory's request as the planners take it, and their plan as its response."""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any
+
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Path
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.errors import (
+    InvalidInputError, LimitViolationError, RrrPlannerError, StartStateError, TimingError,
+    UnreachableError)
+from rrr_traj_planner.core.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.nodes.configuration import PlannerConfig
+from rrr_traj_planner.planners.request import Plan, PlanningRequest
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+SECOND = 1_000_000_000  # ns
+
+# A shorter period would ask for answers of no use to any controller [s].
+LEAST_SAMPLE_PERIOD = 1e-4
+
+# A start state that moves faster is not at rest [rad/s]; encoders' noise stays below it.
+AT_REST = 0.01
+
+
+class FrameError(RrrPlannerError):
+    """Via points in a frame that the node cannot transform."""
+
+
+_RESPONSE = PlanTrajectory.Response
+_CODES: tuple[tuple[type[RrrPlannerError], int], ...] = (
+    (FrameError, _RESPONSE.FRAME_TRANSFORM_FAILURE),
+    (StartStateError, _RESPONSE.START_STATE_INVALID),
+    (InvalidInputError, _RESPONSE.INVALID_GOAL_CONSTRAINTS),
+    (UnreachableError, _RESPONSE.NO_IK_SOLUTION),
+    (LimitViolationError, _RESPONSE.GOAL_CONSTRAINTS_VIOLATED),
+    (TimingError, _RESPONSE.PLANNING_FAILED),
+    (RrrPlannerError, _RESPONSE.PLANNING_FAILED),
+)
+
+
+def planning_request(message: PlanTrajectory.Request, config: PlannerConfig) -> PlanningRequest:
+    """
+    Return what a message asks, with the node's defaults in the empty fields.
+
+    Parameters
+    ----------
+    message : PlanTrajectory.Request
+        The message.
+    config : PlannerConfig
+        The node's parameters.
+
+    Returns
+    -------
+    PlanningRequest
+        The request, checked for form.
+
+    Raises
+    ------
+    FrameError, StartStateError, InvalidInputError
+        If the frame is another, the start state is incomplete, or a field is malformed.
+
+    """
+    frame = message.via_points.header.frame_id
+    if frame not in ('', config.base_frame):
+        raise FrameError(f"via_points are in frame '{frame}', must be in '{config.base_frame}'")
+    period = message.sample_period
+    if period != 0.0 and not period >= LEAST_SAMPLE_PERIOD:
+        raise InvalidInputError(
+            f'sample_period is {period} s, must be 0 or at least {LEAST_SAMPLE_PERIOD} s')
+    return PlanningRequest(
+        via_points=_tip_positions(message.via_points.poses),
+        start=_start(message.start_state, config.model),
+        planner_id=message.planner_id or config.default_planner_id,
+        segment_durations=np.array(message.segment_durations) if len(
+            message.segment_durations) else None,
+        velocity_scaling=_unless_zero(message.max_velocity_scaling_factor, 1.0),
+        acceleration_scaling=_unless_zero(message.max_acceleration_scaling_factor, 1.0),
+        sample_period=_unless_zero(period, config.sample_period),
+        elbow=message.elbow or None,
+        max_deviation=_unless_zero(message.max_deviation, config.max_deviation))
+
+
+def fill_response(response: PlanTrajectory.Response, plan: Plan, config: PlannerConfig) -> None:
+    """
+    Put a plan into a response.
+
+    Parameters
+    ----------
+    response : PlanTrajectory.Response
+        An empty one.
+    plan : Plan
+        The plan.
+    config : PlannerConfig
+        The node's parameters.
+
+    """
+    response.error_code = response.SUCCESS
+    response.message = plan.note
+    response.failed_via_point = -1
+    response.trajectory = joint_trajectory(plan.points, config)
+    response.via_times = plan.via_times.tolist()
+    response.peak_velocity = plan.peaks.velocity.tolist()
+    response.peak_acceleration = plan.peaks.acceleration.tolist()
+    response.peak_jerk = plan.peaks.jerk.tolist()
+    response.peak_effort = plan.effort.tolist()
+
+
+def fill_refusal(response: PlanTrajectory.Response, error: RrrPlannerError) -> None:
+    """
+    Put an error into a response.
+
+    Parameters
+    ----------
+    response : PlanTrajectory.Response
+        An empty one.
+    error : RrrPlannerError
+        Why there is no plan.
+
+    """
+    response.error_code = next(code for kind, code in _CODES if isinstance(error, kind))
+    response.message = str(error)
+    response.failed_via_point = error.via_point
+
+
+def joint_trajectory(points: TrajectoryPoints, config: PlannerConfig) -> JointTrajectory:
+    """
+    Return the message that joint_trajectory_controller accepts.
+
+    Parameters
+    ----------
+    points : TrajectoryPoints
+        With velocities and accelerations.
+    config : PlannerConfig
+        For the frame and the joints' names.
+
+    Returns
+    -------
+    JointTrajectory
+        Stamp 0: to be started when it is received.
+
+    """
+    message = JointTrajectory(joint_names=list(config.model.joint_names))
+    message.header.frame_id = config.base_frame
+    stamps = np.round(points.times * SECOND).astype(np.int64).tolist()
+    q, qd, qdd = (_flat(v) for v in (points.positions, points.velocities, points.accelerations))
+    filled = []
+    for i, stamp in enumerate(stamps):
+        point = JointTrajectoryPoint()
+        row = slice(3 * i, 3 * i + 3)
+        point.positions, point.velocities, point.accelerations = q[row], qd[row], qdd[row]
+        point.time_from_start.sec, point.time_from_start.nanosec = divmod(stamp, SECOND)
+        filled.append(point)
+    message.points = filled
+    return message
+
+
+def tip_path(points: TrajectoryPoints, config: PlannerConfig, stamp: Any) -> Path:
+    """
+    Return the path of the tip through the points of a motion.
+
+    Parameters
+    ----------
+    points : TrajectoryPoints
+        The points.
+    config : PlannerConfig
+        For the frame and the arm.
+    stamp : builtin_interfaces.msg.Time
+        When it was planned.
+
+    Returns
+    -------
+    Path
+        Poses of unit orientation.
+
+    """
+    message = Path()
+    message.header.frame_id, message.header.stamp = config.base_frame, stamp
+    poses = []
+    for x, y, z in forward_kinematics(config.model, points.positions).tolist():
+        pose = PoseStamped(header=message.header)
+        position = pose.pose.position
+        position.x, position.y, position.z = x, y, z
+        poses.append(pose)
+    message.poses = poses
+    return message
+
+
+def _flat(rows: Array | None) -> array[float]:
+    """Return the numbers row by row: slices of it fill message fields fastest."""
+    return array('d', np.ascontiguousarray(rows).tobytes())
+
+
+def _unless_zero(value: float, default: float) -> float:
+    return default if value == 0.0 else value
+
+
+def _tip_positions(poses: Any) -> Array:
+    """Return positions; orientations are not used, but must be finite."""
+    orientations = [(p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w)
+                    for p in poses]
+    for i, orientation in enumerate(orientations):
+        if not np.isfinite(orientation).all():
+            raise _blamed(InvalidInputError(
+                f'via point {i}: orientation is {orientation}, must be finite'), i)
+    points = np.array([(p.position.x, p.position.y, p.position.z) for p in poses]).reshape(-1, 3)
+    for i in np.flatnonzero(~np.isfinite(points).all(axis=1)).tolist():
+        raise _blamed(InvalidInputError(
+            f'via point {i}: position is {tuple(points[i].tolist())} m, must be finite'), i)
+    return points
+
+
+def _blamed(error: InvalidInputError, via_point: int) -> InvalidInputError:
+    error.via_point = via_point
+    return error
+
+
+def _start(state: JointState, model: RobotModel) -> Array | None:
+    """Return the start's joint positions in the arm's order, None where there is no start."""
+    names, position, velocity = list(state.name), list(state.position), list(state.velocity)
+    if not (names or position or velocity):
+        return None
+    missing = [n for n in model.joint_names if n not in names]
+    if missing or len(set(names)) != len(names):
+        raise StartStateError(
+            f'start state names joints {names}, must name each of {list(model.joint_names)} once')
+    if len(position) != len(names) or len(velocity) not in (0, len(names)):
+        raise StartStateError(
+            f'start state has {len(position)} positions and {len(velocity)} velocities '
+            f'for {len(names)} names')
+    order = [names.index(n) for n in model.joint_names]
+    try:
+        q = finite_array('start state position', [position[i] for i in order], (3,))
+        qd = finite_array('start state velocity', [velocity[i] for i in order] if velocity
+                          else np.zeros(3), (3,))
+    except InvalidInputError as error:
+        raise StartStateError(str(error)) from None
+    if (np.abs(qd) > AT_REST).any():
+        joint = int(np.abs(qd).argmax())
+        raise StartStateError(
+            f'start state: {model.joint_names[joint]} moves at {qd[joint]:.6g} rad/s, '
+            'the motion must start at rest')
+    return q

@@ -1,0 +1,33 @@
+"""Installs the package; its version stands in package.xml alone."""
+
+from glob import glob
+from xml.etree import ElementTree
+
+from setuptools import find_packages, setup
+
+NAME = 'rrr_traj_planner'
+
+setup(
+    name=NAME,
+    version=ElementTree.parse('package.xml').findtext('version'),
+    description='Trajectory planning for a three-joint (RRR) robot arm, on ROS 2',
+    maintainer='rrr_traj_planner developers',
+    maintainer_email='rrr-traj-planner@users.noreply.github.com',
+    license='Apache-2.0',
+    packages=find_packages(include=[NAME, f'{NAME}.*']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
+        (f'share/{NAME}', ['package.xml']),
+        (f'share/{NAME}/config', sorted(glob('config/*.yaml'))),
+    ],
+    python_requires='>=3.10',
+    install_requires=['matplotlib', 'numpy', 'PyYAML', 'scipy', 'setuptools'],
+    extras_require={'test': ['pytest']},
+    zip_safe=True,
+    entry_points={
+        'console_scripts': [
+            f'{script} = {NAME}.nodes.{script}:main'
+            for script in ('bringup', 'demo', 'planner', 'simulated_arm')
+        ],
+    },
+)

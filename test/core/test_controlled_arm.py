@@ -1,0 +1,142 @@
+"""The arm at work: holding, following, saturating, stopping."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from rrr_traj_planner.core.control import ControllerGains
+from rrr_traj_planner.core.controlled_arm import ArmSettings, ControlledArm
+from rrr_traj_planner.core.dynamics import gravity_torque
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.motion_points import MotionPoints
+
+MODEL = RobotModel()
+SETTINGS = ArmSettings(MODEL, JointLimits(), ControllerGains())
+Q = np.array([0.5, 1.1, 0.2])
+
+
+def quintic(start, end, duration, n=201):
+    s = np.linspace(0.0, 1.0, n)
+    d = np.subtract(end, start)
+    return MotionPoints(
+        duration * s, start + np.outer(10 * s ** 3 - 15 * s ** 4 + 6 * s ** 5, d),
+        np.outer(30 * s ** 2 - 60 * s ** 3 + 30 * s ** 4, d) / duration,
+        np.outer(60 * s - 180 * s ** 2 + 120 * s ** 3, d) / duration ** 2,
+        np.full(n, True), np.full(n, True))
+
+
+def followed(arm, until):
+    """Run the arm, and return the largest tracking error [rad]."""
+    error = 0.0
+    while arm.time < until:
+        arm.advance(1)
+        error = max(error, np.abs(np.subtract(arm.state[:3], arm.desired[:3])).max())
+    return error
+
+
+def test_arm_holds_its_position_without_sag():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.advance(5000)
+    np.testing.assert_allclose(arm.state, (*Q, 0.0, 0.0, 0.0), atol=1e-12)
+    np.testing.assert_allclose(arm.torque, gravity_torque(MODEL, Q), atol=1e-9)
+
+
+def test_trajectory_is_followed_and_its_end_held():
+    arm, end = ControlledArm(SETTINGS, Q), Q + (0.3, -0.3, 0.4)
+    arm.follow(quintic(Q, end, 2.0), arm.time)
+    # A torque held for a step lags by half of one: jerk * step / 2 / wn^2 = 5e-6 rad.
+    assert followed(arm, 2.5) < 1e-5
+    np.testing.assert_allclose(arm.state, (*end, 0.0, 0.0, 0.0), atol=1e-6)
+
+
+def test_time_in_one_go_equals_time_in_steps():
+    arms = [ControlledArm(SETTINGS, Q) for _ in range(2)]
+    for arm in arms:
+        arm.follow(quintic(Q, Q + 0.2, 1.0), 0.0)
+    arms[0].advance(700)
+    for _ in range(70):
+        arms[1].advance(10)
+    assert arms[0].state == arms[1].state
+    assert arms[0].time == arms[1].time == pytest.approx(0.7)
+
+
+def test_tracking_error_decays():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.state = (*(Q + 0.01), 0.0, 0.0, 0.0)
+    arm.advance(1000)
+    np.testing.assert_allclose(arm.state[:3], Q, atol=1e-9)
+
+
+def test_torques_saturate_at_the_effort_limits():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(quintic(Q, Q + 0.5, 0.2), 0.0)
+    limit = SETTINGS.limits.max_effort
+    peak = np.zeros(3)
+    for _ in range(200):
+        arm.advance(1)
+        peak = np.maximum(peak, np.abs(arm.torque))
+    assert (peak <= limit).all()
+    assert (peak == limit).any()
+
+
+def test_hold_stops_the_arm_and_keeps_it_there():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(quintic(Q, Q + (0.3, -0.3, 0.4), 2.0), 0.0)
+    arm.advance(1000)
+    arm.hold()
+    assert arm.motion.end - arm.time < 1.0
+    assert followed(arm, arm.motion.end + 1.0) < 1e-5
+    np.testing.assert_allclose(arm.state[:3], arm.motion.final, atol=1e-6)
+
+
+def test_reset_puts_the_arm_back_at_rest():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(quintic(Q, Q + 0.3, 2.0), 0.0)
+    arm.advance(1000)
+    arm.reset(Q)
+    assert arm.state == (*Q, 0.0, 0.0, 0.0)
+    assert arm.time == 1.0
+    arm.advance(1000)
+    np.testing.assert_allclose(arm.state[:3], Q, atol=1e-12)
+
+
+def test_replacement_mid_way_does_not_jump():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(quintic(Q, Q + (0.3, -0.3, 0.4), 2.0), 0.0)
+    arm.advance(900)
+    before = np.array(arm.desired)
+    arm.follow(quintic(Q, Q + (-0.1, 0.2, 0.1), 3.0), arm.time)
+    np.testing.assert_allclose(arm.desired[:6], before[:6], atol=1e-9)
+    assert followed(arm, 4.5) < 1e-4
+    np.testing.assert_allclose(arm.state[:3], Q + (-0.1, 0.2, 0.1), atol=1e-6)
+
+
+def test_stops_bound_an_arm_that_is_sent_beyond_them():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(quintic(Q, (-0.2, 1.1, 0.2), 2.0), 0.0)
+    arm.advance(3000)
+    assert (arm.state[0], arm.state[3]) == (0.0, 0.0)
+
+
+def test_changed_limits_hold_from_the_next_step_on():
+    arm = ControlledArm(SETTINGS, Q)
+    weak = replace(SETTINGS, limits=JointLimits(max_effort=np.full(3, 10.0)))
+    arm.configure(weak)
+    arm.advance(1)
+    assert arm.torque[1:] == (10.0, 10.0)
+
+
+def test_step_cannot_change_while_the_arm_runs():
+    arm = ControlledArm(SETTINGS, Q)
+    with pytest.raises(InvalidInputError, match='physics_step cannot change'):
+        arm.configure(replace(SETTINGS, step=0.002))
+
+
+@pytest.mark.parametrize('step', [0.0, -1.0, float('inf'), float('nan')])
+def test_step_must_be_positive(step):
+    with pytest.raises(InvalidInputError, match=r'physics_step is .* s, must be positive'):
+        replace(SETTINGS, step=step)

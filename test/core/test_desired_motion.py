@@ -1,0 +1,104 @@
+"""The motion through points: joint_trajectory_controller's interpolation, and holding."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from rrr_traj_planner.core.desired_motion import holding, through
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.motion_points import MotionPoints, segment_orders
+
+N = 6
+
+
+def random_points(velocity, acceleration, seed=5):
+    rng = np.random.default_rng(seed)
+    fields = rng.uniform(-1.0, 1.0, (3, N, 3))
+    return MotionPoints(np.cumsum(rng.uniform(0.1, 1.0, N)), *fields,
+                        np.full(N, velocity), np.full(N, acceleration))
+
+
+def samples(points):
+    return np.linspace(points.times[0], points.times[-1] - 1e-9, 997)
+
+
+@pytest.mark.parametrize(('velocity', 'acceleration', 'order'), [
+    (False, False, 1), (True, False, 3), (True, True, 5), (False, True, 1)])
+def test_every_instant_equals_the_whole_trajectory_s_interpolation(
+        velocity, acceleration, order):
+    points = random_points(velocity, acceleration)
+    assert (segment_orders(points) == order).all()
+    reference = Interpolant(TrajectoryPoints(
+        points.times, points.positions, points.velocities if velocity else None,
+        points.accelerations if velocity and acceleration else None))
+    motion, times = through(points), samples(points)
+    np.testing.assert_allclose([motion(t) for t in times], np.hstack(reference(times)),
+                               atol=1e-10)
+
+
+def test_each_segment_uses_what_both_its_points_carry():
+    points = random_points(True, True)
+    mixed = MotionPoints(
+        points.times, points.positions, points.velocities, points.accelerations,
+        [True, True, True, False, False, True], [True, True, False, True, False, True])
+    assert segment_orders(mixed).tolist() == [5, 3, 1, 1, 1]
+    motion, full = through(mixed), through(points)
+    t = 0.5 * (points.times[0] + points.times[1])
+    assert motion(t) == full(t)
+    t = 0.25 * points.times[3] + 0.75 * points.times[4]
+    np.testing.assert_allclose(
+        motion(t)[:3], 0.25 * points.positions[3] + 0.75 * points.positions[4], atol=1e-12)
+
+
+def test_position_is_held_before_and_after():
+    points = random_points(True, True)
+    motion = through(points)
+    np.testing.assert_allclose(motion(points.times[0] - 5.0)[:3], points.positions[0])
+    assert motion(points.times[-1]) == (*points.positions[-1], *(0.0,) * 6)
+    assert motion(1e9) == motion(points.times[-1])
+
+
+def test_any_order_of_times_gives_the_same_states():
+    points = random_points(True, True)
+    times = samples(points)
+    forward, motion = through(points), through(points)
+    expected = {t: forward(t) for t in times}
+    for t in np.random.default_rng(6).permutation(times):
+        assert motion(t) == expected[t]
+
+
+def test_origin_moves_the_motion_and_keeps_its_precision():
+    # Points a nanosecond apart, 1e9 s ahead: absolute times would coincide.
+    points = MotionPoints([0.0, 1e-9, 2e-9], np.eye(3), *np.zeros((2, 3, 3)), *([[False] * 3] * 2))
+    motion = through(points, origin=1e9)
+    assert motion.start == 1e9
+    assert motion(1e9 + 1.0)[:3] == (0.0, 0.0, 1.0)
+    points = random_points(True, True)
+    np.testing.assert_allclose(through(points, 2.0)(3.5), through(points)(1.5), atol=1e-12)
+
+
+def test_one_point_is_held():
+    motion = holding((1.0, 2.0, 3.0), time=4.0)
+    assert motion.start == motion.end == 4.0
+    assert motion(0.0) == motion(9.0) == (1.0, 2.0, 3.0, *(0.0,) * 6)
+
+
+def test_states_are_those_at_the_knots():
+    points = random_points(True, True)
+    motion = through(points)
+    expected = [motion(t) for t in points.times]
+    np.testing.assert_allclose(np.hstack(motion.states()), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(('change', 'text'), [
+    ({'times': [0.0, 0.0]}, 'times must be strictly increasing'),
+    ({'times': []}, 'at least one'),
+    ({'positions': np.zeros((1, 3))}, r'positions has shape \(1, 3\), must have \(2, 3\)'),
+    ({'has_velocity': [True]}, r'has_velocity has shape \(1,\), must have \(2,\)')])
+def test_malformed_points_are_refused(change, text):
+    fields = {'times': [0.0, 1.0], **{f: np.zeros((2, 3)) for f in (
+        'positions', 'velocities', 'accelerations')}, 'has_velocity': [True] * 2,
+        'has_acceleration': [True] * 2}
+    with pytest.raises(InvalidInputError, match=text):
+        MotionPoints(**{**fields, **change})

@@ -1,0 +1,158 @@
+"""Taking over a new trajectory: no jump in command, limits kept, schedule kept where it can be."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+import pytest
+from rrr_traj_planner.core.desired_motion import through
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.motion_points import MotionPoints
+from rrr_traj_planner.core.replacement import replacement, Takeover
+
+LIMITS = JointLimits(max_effort=np.full(3, inf))
+NOW, LEAD = 50.0, 0.001
+Q = np.array([0.5, 1.0, 0.2])
+REST = (*Q, *(0.0,) * 6)
+MOVING = (*Q, 0.3, -0.4, 0.5, 0.2, 0.1, -0.3)
+
+
+def takeover(command=REST, limits=LIMITS):
+    return Takeover(NOW, command, limits, RobotModel())
+
+
+def smooth_points(start, duration=3.0, n=301):
+    """Return points of a quintic from rest to rest."""
+    s = np.linspace(0.0, 1.0, n)
+    d = np.array([0.3, -0.4, 0.5])
+    return MotionPoints(
+        duration * s, start + np.outer(10 * s ** 3 - 15 * s ** 4 + 6 * s ** 5, d),
+        np.outer(30 * s ** 2 - 60 * s ** 3 + 30 * s ** 4, d) / duration,
+        np.outer(60 * s - 180 * s ** 2 + 120 * s ** 3, d) / duration ** 2,
+        np.full(n, True), np.full(n, True))
+
+
+def single(q, time):
+    return MotionPoints([time], [q], *np.zeros((2, 1, 3)), [False], [False])
+
+
+def positions_only(*timed):
+    times, q = zip(*timed)
+    n = len(times)
+    return MotionPoints(times, q, *np.zeros((2, n, 3)), [False] * n, [False] * n)
+
+
+def commands(motion, until):
+    times = np.arange(NOW, until, 1e-3)
+    return times, np.array([motion(t) for t in times])
+
+
+def assert_smooth(command, motion, limits=LIMITS):
+    """Position and velocity go on from the command without a jump, within the limits."""
+    _, states = commands(motion, motion.end + 0.1)
+    np.testing.assert_allclose(states[0, :6], command[:6], atol=1e-9)
+    most = max(1.0, np.abs(command[6:]).max())
+    assert np.abs(np.diff(states[:, :3], axis=0)).max() <= 1e-3 * 1.001
+    assert np.abs(np.diff(states[:, 3:6], axis=0)).max() <= 1e-3 * most * 1.001
+    assert (np.abs(states[:, 3:6]) <= limits.max_velocity * 1.001).all()
+    assert (np.abs(states[:, 6:]) <= most * 1.001).all()
+
+
+def test_trajectory_that_begins_at_the_command_is_followed_exactly():
+    points = smooth_points(Q)
+    motion, expected = replacement(takeover(), points, NOW, LEAD), through(points, NOW)
+    for t in np.linspace(NOW, NOW + 3.1, 777):
+        assert motion(t) == expected(t)
+
+
+def test_line_that_begins_at_the_command_is_followed_as_a_line():
+    points = positions_only((0.0, Q), (2.0, Q + 0.4))
+    motion = replacement(takeover(), points, NOW, LEAD)
+    np.testing.assert_allclose(motion(NOW + 0.5)[:3], Q + 0.1, atol=1e-12)
+
+
+def test_first_point_ahead_is_led_into_by_what_it_carries():
+    ahead = Q + 0.1
+    linear = replacement(takeover(MOVING), single(ahead, 1.0), NOW, LEAD)
+    np.testing.assert_allclose(linear(NOW + 0.5)[:3], Q + 0.05, atol=1e-12)
+    known = MotionPoints([1.0], [ahead], *np.zeros((2, 1, 3)), [True], [True])
+    quintic = replacement(takeover(MOVING), known, NOW, LEAD)
+    np.testing.assert_allclose(quintic(NOW), MOVING, atol=1e-12)
+    np.testing.assert_allclose(quintic(NOW + 1.0 - 1e-12), (*ahead, *(0.0,) * 6), atol=1e-9)
+    cubic = replacement(takeover(MOVING), MotionPoints(
+        [1.0], [ahead], *np.zeros((2, 1, 3)), [True], [False]), NOW, LEAD)
+    np.testing.assert_allclose(cubic(NOW)[:6], MOVING[:6], atol=1e-12)
+    np.testing.assert_allclose(cubic(NOW + 0.5)[:3], 0.5 * (Q + ahead) + np.array(
+        MOVING[3:6]) / 8.0, atol=1e-12)  # Hermite's cubic at its middle
+
+
+@pytest.mark.parametrize('command', [REST, MOVING])
+def test_trajectory_elsewhere_is_joined_on_schedule(command):
+    points = smooth_points(Q + 0.02)
+    motion, target = replacement(takeover(command), points, NOW, LEAD), through(points, NOW)
+    assert_smooth(command, motion)
+    assert motion.end == target.end
+    joined = NOW + float(motion.knots[1])
+    assert joined < NOW + 2.0
+    for t in np.linspace(joined + 1e-6, target.end + 0.1, 200):
+        np.testing.assert_allclose(motion(t), target(t), atol=1e-12)
+
+
+def test_join_is_the_earliest_within_limits():
+    points = smooth_points(Q + 0.02)
+    motion = replacement(takeover(), points, NOW, LEAD)
+    i = len(points.times) - len(motion.knots) + 1  # the point that is joined
+    early = MotionPoints(*(getattr(points, f)[i - 1:] for f in (
+        'times', 'positions', 'velocities', 'accelerations', 'has_velocity',
+        'has_acceleration')))
+    earlier = replacement(takeover(), early, NOW, LEAD)  # led into, whatever the limits
+    _, states = commands(earlier, NOW + float(points.times[i - 1]))
+    assert np.abs(states[:, 6:]).max() > 1.0
+
+
+def test_trajectory_under_way_is_joined_where_it_is_now():
+    points = smooth_points(Q)
+    motion = replacement(takeover(), points, NOW - 0.5, LEAD)
+    assert_smooth(REST, motion)
+    assert motion.end == NOW + 2.5
+    assert motion.knots[1] > 0.5
+
+
+def test_single_point_due_now_is_gone_to_at_a_rate_within_the_limits():
+    target = Q + np.array([0.4, -0.3, 0.2])
+    for command in (REST, MOVING):
+        motion = replacement(takeover(command), single(target, 0.0), NOW, LEAD)
+        assert_smooth(command, motion)
+        np.testing.assert_allclose(motion(motion.end + 0.1), (*target, *(0.0,) * 6), atol=1e-12)
+        assert motion.end - NOW < 4.0
+
+
+def test_trajectory_out_of_reach_on_schedule_ends_at_its_last_point_late():
+    points = positions_only((0.0, Q + 1.0), (0.1, Q + 0.9))
+    motion = replacement(takeover(), points, NOW, LEAD)
+    assert_smooth(REST, motion)
+    assert motion.end > NOW + 0.1
+    assert motion(motion.end + 0.1)[:3] == tuple(Q + 0.9)
+
+
+def test_first_point_within_a_step_is_due_now():
+    motion = replacement(takeover(), single(Q + 0.4, 1e-9), NOW, LEAD)
+    assert_smooth(REST, motion)
+
+
+def test_arm_without_limits_still_does_not_jump():
+    free = JointLimits(*(np.full(3, x) for x in (-inf, inf, inf, inf, inf, inf)))
+    motion = replacement(takeover(limits=free), single(Q + 0.4, 0.0), NOW, LEAD)
+    np.testing.assert_allclose(motion(NOW), REST, atol=1e-12)
+    assert motion(motion.end + 1.0)[:3] == tuple(Q + 0.4)
+
+
+def test_random_replacements_never_jump():
+    rng = np.random.default_rng(8)
+    for _ in range(100):
+        command = (*Q, *rng.uniform(-0.8, 0.8, 6))
+        points = smooth_points(Q + rng.uniform(-0.3, 0.3, 3), n=31)
+        motion = replacement(takeover(command), points, NOW - rng.uniform(0.0, 2.5), LEAD)
+        assert_smooth(command, motion)

@@ -1,0 +1,111 @@
+"""ROS for tests: a context, a domain and a spinning executor for each of them."""
+
+from __future__ import annotations
+
+import os
+from threading import Condition, Thread
+
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+
+# Nothing here takes so long [s]; what waits longer has failed.
+DEADLINE = 20.0
+
+
+class Listener:
+    """What arrives on a topic, to be waited for."""
+
+    def __init__(self, node, message_type, topic, qos=10):
+        self.messages = []
+        self._arrived = Condition()
+        node.create_subscription(message_type, topic, self._take, qos)
+
+    def _take(self, message):
+        with self._arrived:
+            self.messages.append(message)
+            self._arrived.notify_all()
+
+    def wait_for(self, wanted=lambda message: True, since=0):
+        """Return the first message from an index on that is wanted; fail at the deadline."""
+        def found():
+            return next((m for m in self.messages[since:] if wanted(m)), None)
+
+        with self._arrived:
+            assert self._arrived.wait_for(lambda: found() is not None, DEADLINE), (
+                f'nothing as wanted among {len(self.messages)} messages, '
+                f'last {self.messages[-1:]}')
+            return found()
+
+    def next(self, wanted=lambda message: True):
+        """Return the first wanted message that arrives from now on."""
+        return self.wait_for(wanted, len(self.messages))
+
+
+class Ros:
+    """A context of its own, an executor that spins in the background, a node to test with."""
+
+    def __init__(self):
+        self.context = Context()
+        rclpy.init(context=self.context, domain_id=int(os.environ['ROS_DOMAIN_ID']))
+        self._executor = SingleThreadedExecutor(context=self.context)
+        self._nodes = []
+        self._thread = Thread(target=self._executor.spin, daemon=True)
+        self.node = self.add(Node('tester', context=self.context))
+        self._thread.start()
+
+    def add(self, node):
+        """Spin a node until the test is over."""
+        self._nodes.append(node)
+        self._executor.add_node(node)
+        return node
+
+    def listen(self, message_type, topic, qos=10):
+        """Return a listener to a topic."""
+        return Listener(self.node, message_type, topic, qos)
+
+    def publisher(self, message_type, topic, qos=10):
+        """Return a publisher that somebody listens to."""
+        matched, count = Condition(), []
+
+        def on_match(status):
+            with matched:
+                count.append(status.current_count)
+                matched.notify_all()
+
+        publisher = self.node.create_publisher(
+            message_type, topic, qos, event_callbacks=PublisherEventCallbacks(matched=on_match))
+        with matched:
+            assert matched.wait_for(lambda: count and count[-1] > 0, DEADLINE), f'no {topic}'
+        return publisher
+
+    def call(self, service_type, name, request=None):
+        """Return a service's answer."""
+        client = self.node.create_client(service_type, name)
+        try:
+            assert client.wait_for_service(DEADLINE), f'no service {name}'
+            return client.call(request or service_type.Request(), timeout_sec=DEADLINE)
+        finally:
+            self.node.destroy_client(client)
+
+    def close(self):
+        """End everything, in the order that leaves nothing behind."""
+        self._executor.shutdown(timeout_sec=DEADLINE)
+        self._thread.join(DEADLINE)
+        for node in self._nodes:
+            node.destroy_node()
+        self.context.try_shutdown()
+        assert not self._thread.is_alive()
+
+
+@pytest.fixture
+def ros():
+    """Give a test its own ROS."""
+    ros = Ros()
+    try:
+        yield ros
+    finally:
+        ros.close()
