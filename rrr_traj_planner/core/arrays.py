@@ -6,10 +6,11 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-
 from rrr_traj_planner.core.errors import InvalidInputError
 
 Array: TypeAlias = NDArray[np.float64]
+BoolArray: TypeAlias = NDArray[np.bool_]
+IntArray: TypeAlias = NDArray[np.int_]
 
 
 def finite_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = None) -> Array:

@@ -11,7 +11,6 @@ from math import acos, pi
 from typing import Any, NamedTuple
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
 

@@ -7,7 +7,8 @@ they may be floats (the simulation's inner loop) or arrays of one shape (whole t
 
 from __future__ import annotations
 
-from typing import Any, Callable, NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 from rrr_traj_planner.core.model import RobotModel
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, hypot, pi, sin, sqrt
+from math import atan2, ceil, cos, hypot, pi, sin, sqrt
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError, UnreachableError
 from rrr_traj_planner.core.limits import JointLimits
@@ -18,6 +17,10 @@ ELBOWS: tuple[Elbow, Elbow] = ('up', 'down')
 
 # A point that misses the workspace by no more than rounding of its coordinates is on its edge.
 EDGE_TOLERANCE = 1e-9  # m
+
+# A joint this close to an end of its range is at that end: a via point taught there must not be
+# refused for the rounding of its coordinates.
+RANGE_TOLERANCE = 1e-9  # rad
 
 
 def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'up',
@@ -108,11 +111,6 @@ def wrap_into_limits(q: ArrayLike, limits: JointLimits,
     return np.where(inside, np.clip(wrapped, low, high), wrapped)
 
 
-# A joint this close to an end of its range is at that end: a via point taught there must not be
-# refused for the rounding of its coordinates.
-RANGE_TOLERANCE = 1e-9  # rad
-
-
 def _nearest_turn(q: Array, low: Array, high: Array) -> Array:
     """Return the turns that bring a joint that cannot be in its range nearest to it."""
     with np.errstate(invalid='ignore'):  # infinite ends, where every joint fits
@@ -125,7 +123,7 @@ def _distance_in_reach(model: RobotModel, point: tuple[float, float, float], W: 
     least, most = model.reach
     if W > most + EDGE_TOLERANCE or W < least - EDGE_TOLERANCE:
         miss = W - most if W > most else least - W
-        side = (f'beyond the arm\'s reach of {most:.6g} m' if W > most
+        side = (f"beyond the arm's reach of {most:.6g} m" if W > most
                 else f'nearer than the arm can fold, {least:.6g} m')
         raise UnreachableError(
             f'({point[0]:.6g}, {point[1]:.6g}, {point[2]:.6g}) m is {W:.6g} m from the '
@@ -135,4 +133,4 @@ def _distance_in_reach(model: RobotModel, point: tuple[float, float, float], W: 
 
 def _wrapped(angle: float) -> float:
     """Return the angle in (-pi, pi]."""
-    return angle - 2.0 * pi * np.ceil((angle - pi) / (2.0 * pi))
+    return angle - 2.0 * pi * ceil((angle - pi) / (2.0 * pi))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-
 from rrr_traj_planner.core.arrays import Array, joint_values
 from rrr_traj_planner.core.model import RobotModel
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.trajectory import Peaks
@@ -71,7 +71,7 @@ def violations(limits: JointLimits, peaks: Peaks, effort: Array) -> list[Violati
             ('jerk', peaks.jerk, limits.max_jerk, 'rad/s^3'),
             ('effort', effort, limits.max_effort, 'N m')):
         found += [Violation(int(j), quantity, float(value[j]), float(limit[j]), unit)
-                  for j in np.flatnonzero(value > limit * (1.0 + TOLERANCE))]
+                  for j in np.flatnonzero(~(value <= limit * (1.0 + TOLERANCE)))]
     found += [Violation(int(j), 'position', float(peaks.min_position[j]),
                         float(limits.min_position[j]), 'rad')
               for j in np.flatnonzero(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array, bound_array
 from rrr_traj_planner.core.errors import InvalidInputError
 
@@ -15,7 +14,7 @@ UNITS = {
 
 
 def _default(*values: float) -> Array:
-    return field(default_factory=lambda: np.array(values))  # type: ignore[no-any-return]
+    return field(default_factory=lambda: np.array(values))
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-
 from rrr_traj_planner.core.arrays import Array, joint_values
 from rrr_traj_planner.core.kinematics import matrix
 from rrr_traj_planner.core.model import RobotModel

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Sequence
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
 
@@ -14,7 +13,7 @@ JOINT_NAMES = ('joint_1', 'joint_2', 'joint_3')
 
 
 def _default(*values: object) -> Array:
-    return field(default_factory=lambda: np.array(values, dtype=float))  # type: ignore[no-any-return]
+    return field(default_factory=lambda: np.array(values, dtype=float))
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
-
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.trajectory import Trajectory, times_within
+from rrr_traj_planner.core.trajectory import times_within, Trajectory
 
 # Torque is analytic between knots. So many steps there, none longer than LONGEST_STEP unless the
 # motion is so slow that MOST_STEPS are enough, put every high peak in a bracket of its own.
@@ -172,16 +172,16 @@ def maximum_over_time(quantity: Callable[[Array], Array], grid: Array) -> Extrem
     return Extreme(value, time)
 
 
-def _brackets(values: Array, grid: Array) -> tuple[Array, Array, Array]:
+def _brackets(values: Array, grid: Array) -> tuple[Array, Array, IntArray]:
     """Return the intervals around the highest local maxima of each column."""
     padded = np.pad(values, ((1, 1), (0, 0)), constant_values=-np.inf)
     local = (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
     columns, rows = [], []
-    for column in range(3):
-        candidates = np.flatnonzero(local[:, column] & (values[:, column] > 0.0))
-        order = np.argsort(-values[candidates, column], kind='stable')[:CANDIDATES]
+    for j in range(3):
+        candidates = np.flatnonzero(local[:, j] & (values[:, j] > 0.0))
+        order = np.argsort(-values[candidates, j], kind='stable')[:CANDIDATES]
         rows.append(candidates[order])
-        columns.append(np.full(len(order), column))
+        columns.append(np.full(len(order), j))
     row, column = np.concatenate(rows), np.concatenate(columns)
     last = len(grid) - 1
     return grid[np.maximum(row - 1, 0)], grid[np.minimum(row + 1, last)], column

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
-
 from rrr_traj_planner.core import cycloid
-from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
 from rrr_traj_planner.core.cycloid import CycloidPiece
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
@@ -101,7 +100,7 @@ class JointProfile:
     def _columns(self) -> CycloidPiece:
         return CycloidPiece(*(f[:, np.newaxis] for f in self.pieces))
 
-    def _zero_of_velocity(self, row: Array, low: Array, high: Array) -> Array:
+    def _zero_of_velocity(self, row: IntArray, low: Array, high: Array) -> Array:
         """Return positions where velocity, monotone in each bracket, changes its sign."""
         piece = CycloidPiece(*(f[row] for f in self.pieces))
         sign_low = np.sign(piece.at(low)[1])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.interpolation import TrajectoryPoints

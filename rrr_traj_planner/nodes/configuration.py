@@ -14,6 +14,7 @@ from rrr_traj_planner.core.controlled_arm import ArmSettings
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]
 
@@ -52,9 +53,13 @@ class PlannerConfig:
         Raises
         ------
         InvalidInputError
-            If the values contradict each other.
+            If the values contradict each other, or the default planner is unknown.
 
         """
+        try:
+            planner(values['default_planner_id'])
+        except InvalidInputError as error:
+            raise InvalidInputError(f'default_planner_id: {error}') from None
         return cls(
             robot_model(values), joint_limits(values),
             **{name: values[name] for name in (

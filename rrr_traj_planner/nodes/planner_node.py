@@ -18,7 +18,11 @@ from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
 from rrr_traj_planner.nodes.parameters import PLANNER
 from rrr_traj_planner.nodes.planning_messages import (
-    fill_refusal, fill_response, planning_request, tip_path)
+    fill_refusal,
+    fill_response,
+    planning_request,
+    tip_path,
+)
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import Plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory

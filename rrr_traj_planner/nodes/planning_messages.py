@@ -10,8 +10,13 @@ from nav_msgs.msg import Path
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import (
-    InvalidInputError, LimitViolationError, RrrPlannerError, StartStateError, TimingError,
-    UnreachableError)
+    InvalidInputError,
+    LimitViolationError,
+    RrrPlannerError,
+    StartStateError,
+    TimingError,
+    UnreachableError,
+)
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.model import RobotModel

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.segment import Reach, TransitionLaw, reach
+from rrr_traj_planner.planners.segment import Reach, reach, TransitionLaw
 
 # The Hessian comes from differences of exact gradients, over this part of each variable's scale.
 DIFFERENCE = 1e-6
@@ -57,7 +56,22 @@ class Chain:
         return np.asarray(total.max(axis=1))
 
     def reaches(self, v0: Array, v1: Array, T: Array) -> Reach:
-        """Return the largest displacements forth and back, stacked on a first axis."""
+        """
+        Return the largest displacements forth and back, stacked on a first axis.
+
+        Parameters
+        ----------
+        v0, v1 : ndarray, shape (n, 3)
+            Velocities at the segments' ends [rad/s].
+        T : ndarray, shape (n, 1)
+            Durations [s].
+
+        Returns
+        -------
+        Reach
+            Fields of shape (2, n, 3); those of the way back are of the opposite velocities.
+
+        """
         return reach(self.law, self.max_velocity, FORTH_AND_BACK * v0, FORTH_AND_BACK * v1, T)
 
 
@@ -185,4 +199,4 @@ def _made_convex(blocks: Array) -> Array:
     scale = scale[..., np.newaxis] * scale[..., np.newaxis, :]
     values, vectors = np.linalg.eigh(blocks * scale)
     values = np.maximum(np.abs(values), LEAST_EIGENVALUE)
-    return np.einsum('...ij,...j,...kj->...ik', vectors, values, vectors) / scale
+    return np.asarray(np.einsum('...ij,...j,...kj->...ik', vectors, values, vectors) / scale)

@@ -12,8 +12,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.core.motion_torque import squared_stretch, torque_grid
@@ -22,7 +21,11 @@ from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners import segment_motion
 from rrr_traj_planner.planners.barrier import Chain
 from rrr_traj_planner.planners.motion_law import (
-    cannot_hold, chain_of, LEAST_VELOCITY, torque_stretch)
+    cannot_hold,
+    chain_of,
+    LEAST_VELOCITY,
+    torque_stretch,
+)
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.via_velocities import least_stretch, least_time
@@ -120,13 +123,15 @@ def _holdable_motion(task: JointTask, chain: Chain,
 
 def _least_time_motion(task: JointTask, chain: Chain, floor: Array | None) -> _Motion:
     """Return the motion of least total time within the kinematic limits."""
-    for _ in range(OVERSHOOT_ROUNDS + 1):
+    for round_ in range(OVERSHOOT_ROUNDS + 1):
+        if round_ == OVERSHOOT_ROUNDS:
+            chain = _at_rest(chain)
         durations = least_time(chain, floor).durations * (1.0 + DURATION_ROOM)
         motion, overshoot = _motion(task, chain, durations)
         if motion is not None and not overshoot.any():
             return motion
         chain = _slower_at(chain, overshoot)
-    return _motion(task, _at_rest(chain), _at_rest(chain).rest_to_rest_times())[0]
+    raise ConvergenceError('cycloid: even stops at the via points overshoot a range')
 
 
 def _prescribed(task: JointTask, chain: Chain, durations: Array) -> _Motion | None:
@@ -155,7 +160,8 @@ def _with_durations(task: JointTask, chain: Chain, durations: Array) -> _Motion 
     return _motion(task, _at_rest(chain), durations)[0]
 
 
-def _motion(task: JointTask, chain: Chain, durations: Array) -> tuple[_Motion | None, Array]:
+def _motion(task: JointTask, chain: Chain,
+            durations: Array) -> tuple[_Motion | None, BoolArray]:
     """Return a motion of given durations, and which segments overshoot a joint's range."""
     factor, solution = least_stretch(chain, durations)
     v, T = solution.velocities, solution.durations
@@ -172,7 +178,7 @@ def _motion(task: JointTask, chain: Chain, durations: Array) -> tuple[_Motion | 
     return _Motion(trajectory, durations), _overshoot(task, trajectory)
 
 
-def _overshoot(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
+def _overshoot(task: JointTask, trajectory: PiecewiseTrajectory) -> BoolArray:
     """Return in which segments which joints leave their range, shape (n, 3)."""
     out = np.zeros((len(task.points) - 1, 3), dtype=bool)
     starts = trajectory.via_times[1:-1] - 1e-12
@@ -184,7 +190,7 @@ def _overshoot(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
     return out
 
 
-def _slower_at(chain: Chain, segments: Array) -> Chain:
+def _slower_at(chain: Chain, segments: BoolArray) -> Chain:
     """Return the chain with lower velocities at the ends of some segments."""
     at_ends = segments[:-1] | segments[1:]
     factor = np.where(at_ends, OVERSHOOT_REDUCTION, 1.0)
@@ -238,14 +244,17 @@ def _too_short(task: JointTask, chain: Chain, durations: Array) -> TimingError:
 
 def _least_feasible(task: JointTask, chain: Chain, durations: Array) -> Array:
     """Return feasible durations in whole microseconds, none shorter than asked for."""
-    at_rest = _at_rest(chain)
-    for found in (lambda: _fastest(task, chain, durations),
-                  lambda: _stretched_for_torque(task, at_rest, _least_time_motion(
-                      task, at_rest, durations))):
-        least = found().durations
+    for candidate in (_fastest(task, chain, durations), _fastest_with_stops(
+            task, chain, durations)):
         for room in (0.0, 1e-6, 1e-5, 1e-4, 1e-3):
-            feasible = np.ceil(least * (1.0 + room) * 1e6) / 1e6
+            feasible = np.ceil(candidate.durations * (1.0 + room) * 1e6) / 1e6
             if _prescribed(task, chain, feasible) is not None:
-                return feasible
+                return np.asarray(feasible)
     raise ConvergenceError(
         f'no feasible durations found for segment_durations {durations.tolist()} s')
+
+
+def _fastest_with_stops(task: JointTask, chain: Chain, floor: Array) -> _Motion:
+    """Return the motion of least total time with a stop at every via point."""
+    stops = _at_rest(chain)
+    return _stretched_for_torque(task, stops, _least_time_motion(task, stops, floor))

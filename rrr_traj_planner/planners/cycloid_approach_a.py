@@ -9,7 +9,6 @@ other. A beam search chooses them, a descent by coordinates refines them.
 from __future__ import annotations
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
@@ -80,7 +79,7 @@ def _fastest(task: JointTask, chain: Chain) -> Array:
         durations = _refined(chain, durations)
     for factor in np.geomspace(1.0, 1e3, STRETCH_SEARCH):
         if _motion(task, chain, chain.law, factor * durations) is not None:
-            return factor * durations
+            return np.asarray(factor * durations)
     raise ConvergenceError('approach (a): no feasible durations found')
 
 
@@ -95,7 +94,7 @@ def _beam_search(chain: Chain) -> Array:
         bound = (next_v >= chain.lowest[k]) & (next_v <= chain.highest[k])
         beam, step = np.nonzero(bound.all(axis=-1))
         if not len(beam):
-            return GRID[-1] * grids[:, 0] / GRID[0]
+            return np.asarray(grids[:, -1])
         v, elapsed = next_v[beam, step], total[beam, step]
         chosen = np.column_stack((chosen[beam], T[step]))
         best = np.argsort(elapsed + stopping_time(law, limit, v, D[k + 1], grids[k + 1]),

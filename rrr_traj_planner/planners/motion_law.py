@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import pi
 
 import numpy as np
-
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
 from rrr_traj_planner.core.motion_torque import peak_holding_torque, stretch_for_torque
 from rrr_traj_planner.core.trajectory import Trajectory
@@ -103,5 +102,5 @@ def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:
     name = task.model.joint_names[joint]
     segment = int(np.searchsorted(trajectory.via_times[1:-1], holding.time[joint]))
     return LimitViolationError(
-        f'segment {task.segment_number(segment)}: on its way {name} needs {needed:.1f} N m to hold, '
-        f'limit {limit:g} N m', name, needed, limit)
+        f'segment {task.segment_number(segment)}: on its way {name} needs {needed:.1f} N m '
+        f'to hold, limit {limit:g} N m', name, needed, limit)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-
 from rrr_traj_planner.core import cycloid
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
 from rrr_traj_planner.core.limit_check import violations
@@ -60,7 +59,7 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
     q = joint_via_points(model, limits, request.via_points, start, request.elbow)
     if start is not None:
         q = np.vstack((start, q))
-    same = _repeated(q) & (request.segment_durations is None)
+    same = _repeated(q) if request.segment_durations is None else np.zeros(len(q) - 1, bool)
     distinct = q[np.concatenate(([True], ~same))]
     if len(distinct) == 1:
         return _rest(model, limits, request, q)
@@ -72,7 +71,7 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
     return _checked(model, limits, request, trajectory, via_times)
 
 
-def _repeated(q: Array) -> Array:
+def _repeated(q: Array) -> BoolArray:
     """Return which points are the one before, shape (n - 1,)."""
     return np.asarray((np.abs(np.diff(q, axis=0)) <= SAME_POINT).all(axis=1))
 

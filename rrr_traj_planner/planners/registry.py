@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import Callable
 
-import rrr_traj_planner.planners
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.trajectory import Trajectory
+import rrr_traj_planner.planners
 from rrr_traj_planner.planners.request import JointTask
 
 JointPlanner = Callable[[JointTask], Trajectory]

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-
-from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.inverse_kinematics import Elbow, ELBOWS
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.inverse_kinematics import Elbow, ELBOWS
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
@@ -78,7 +76,8 @@ class PlanningRequest:
             self._check_durations()
 
     def _check_durations(self) -> None:
-        durations = finite_array('segment_durations', self.segment_durations, (-1,))
+        durations = finite_array('segment_durations', [] if self.segment_durations is None
+                                 else self.segment_durations, (-1,))
         object.__setattr__(self, 'segment_durations', durations)
         if len(durations) != self.segments:
             raise InvalidInputError(
@@ -121,10 +120,23 @@ class JointTask:
     points: Array
     durations: Array | None
     sample_period: float
-    segment_numbers: NDArray[np.int_] | None = None
+    segment_numbers: IntArray | None = None
 
     def segment_number(self, segment: int) -> int:
-        """Return what the caller calls a segment."""
+        """
+        Return what the caller calls a segment.
+
+        Parameters
+        ----------
+        segment : int
+            Its index among the task's own segments.
+
+        Returns
+        -------
+        int
+            Its index among the caller's.
+
+        """
         return segment if self.segment_numbers is None else int(self.segment_numbers[segment])
 
 

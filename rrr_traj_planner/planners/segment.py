@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array
 
 
@@ -27,12 +26,38 @@ class TransitionLaw(NamedTuple):
     root: Array   # [s sqrt(s/rad)]
 
     def least_time(self, change: Array) -> Array:
-        """Return the least duration of a change of velocity [s]."""
+        """
+        Return the least duration of a change of velocity.
+
+        Parameters
+        ----------
+        change : ndarray
+            Change of velocity, of either sign [rad/s].
+
+        Returns
+        -------
+        ndarray
+            [s].
+
+        """
         change = np.abs(change)
         return np.maximum(self.slope * change, self.root * np.sqrt(change))
 
     def largest_change(self, duration: Array) -> Array:
-        """Return the largest change of velocity within a duration [rad/s]."""
+        """
+        Return the largest change of velocity within a duration.
+
+        Parameters
+        ----------
+        duration : ndarray
+            [s].
+
+        Returns
+        -------
+        ndarray
+            Its magnitude [rad/s].
+
+        """
         with np.errstate(divide='ignore'):
             by_jerk = np.where(self.root > 0.0, (duration / self.root) ** 2, np.inf)
         return np.minimum(duration / self.slope, by_jerk)
@@ -46,8 +71,6 @@ class Reach(NamedTuple):
     d_v0: Array
     d_v1: Array
     d_T: Array
-    capped: Array    # whether the velocity limit binds
-    jerky: Array     # whether the jerk limit shapes a transition
 
 
 def reach(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array) -> Reach:
@@ -94,8 +117,7 @@ def reach(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Arra
         distance=cruise * T - 0.5 * (u0 * t0 + u1 * t1),
         d_v0=p0 + left * share,
         d_v1=p1 + left * (1.0 - share),
-        d_T=cruise + left * share * i0,
-        capped=capped, jerky=jerky0 | jerky1)
+        d_T=cruise + left * share * i0)
 
 
 def _rise(law: TransitionLaw, gap: Array, T: Array) -> Array:

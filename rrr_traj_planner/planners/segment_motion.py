@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
-
 from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cycloid import CycloidPiece
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.planners.segment import TransitionLaw, reach
+from rrr_traj_planner.planners.segment import reach, TransitionLaw
 
 BISECTIONS = 60
 

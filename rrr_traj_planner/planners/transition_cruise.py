@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.segment import TransitionLaw, reach
+from rrr_traj_planner.planners.segment import reach, TransitionLaw
 
 NEWTON_STEPS = 12
 ROUNDING = 1e-11  # relative, of a displacement

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics import gravity_torque
 from rrr_traj_planner.core.errors import (
-    LimitViolationError, RrrPlannerError, StartStateError, UnreachableError)
+    LimitViolationError,
+    StartStateError,
+    UnreachableError,
+)
 from rrr_traj_planner.core.inverse_kinematics import (
-    ELBOWS, Elbow, inverse_kinematics, RANGE_TOLERANCE, wrap_into_limits)
+    Elbow,
+    ELBOWS,
+    inverse_kinematics,
+    RANGE_TOLERANCE,
+    wrap_into_limits,
+)
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 
@@ -47,7 +54,7 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
         If no branch keeps the limits; told of the branch that gets furthest.
 
     """
-    failures = []
+    failures: list[tuple[int, LimitViolationError]] = []
     for branch in (elbow,) if elbow else ELBOWS:
         q = _on_branch(model, limits, points, start, branch)
         failure = _position_failure(model, limits, q, branch)
@@ -145,7 +152,7 @@ def _on_branch(model: RobotModel, limits: JointLimits, points: Array, start: Arr
 
 
 def _position_failure(model: RobotModel, limits: JointLimits, q: Array,
-                      elbow: Elbow) -> RrrPlannerError | None:
+                      elbow: Elbow) -> LimitViolationError | None:
     """Return the error of the first via point out of a joint's range."""
     low, high = limits.min_position, limits.max_position
     broken = np.argwhere((q < low) | (q > high))

@@ -12,10 +12,9 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from scipy.linalg import solveh_banded
-
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.barrier import Chain, Derivatives, derivatives, value
+from scipy.linalg import solveh_banded
 
 # The barrier's gap, relative to the total time: what a better answer could save at most.
 RELATIVE_GAP = 2e-7
@@ -88,8 +87,13 @@ def least_stretch(chain: Chain, durations: Array) -> tuple[float, Solution]:
 class _Problem(Protocol):
     """What is minimised along the central path."""
 
-    chain: Chain
-    floor: Array | None
+    @property
+    def chain(self) -> Chain:
+        """The via points."""
+
+    @property
+    def floor(self) -> Array | None:
+        """Least durations, if there are any [s]."""
 
     def objective(self, T: Array) -> float:
         """Return what is minimised."""
