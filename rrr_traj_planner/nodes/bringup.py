@@ -9,7 +9,7 @@ import sys
 
 from rrr_traj_planner.nodes.configuration_files import arm_file
 from rrr_traj_planner.nodes.entry import guarded, parse
-from rrr_traj_planner.nodes.processes import NodeProcesses
+from rrr_traj_planner.nodes.processes import ending, NodeProcesses
 
 DESCRIPTION = 'Run the trajectory planner and the simulated arm, until Ctrl-C.'
 
@@ -46,7 +46,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 def _run(arm: str, ros_arguments: list[str]) -> int:
     with NodeProcesses(node_arguments(arm_file(arm, Path.cwd()), ros_arguments)) as processes:
         name, code = processes.wait()
-    print(f'bringup: {name} ended with exit code {code}', file=sys.stderr)
+    print(f'bringup: {ending(name, code)}', file=sys.stderr)
     return code if code >= 0 else 128 - code
 
 

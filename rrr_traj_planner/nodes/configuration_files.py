@@ -65,7 +65,7 @@ def read_task(file: str) -> Task:
         content = yaml.safe_load(path.read_text())
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise InvalidInputError(f'{path}: {" ".join(str(error).split())}') from None
-    if not isinstance(content, dict) or 'via_points' not in content:
+    if not isinstance(content, dict) or not content.get('via_points'):
         raise InvalidInputError(f'{path}: no via_points')
     unknown = sorted(set(map(str, content)) - set(FIELDS))
     if unknown:
@@ -74,8 +74,8 @@ def read_task(file: str) -> Task:
     try:
         return Task(
             name=path.stem, via_points=finite_array('via_points', content['via_points'], (-1, 3)),
-            arm=arm_file(str(content.get('arm', 'thesis_arm.yaml')), path.parent),
-            planner_id=str(content.get('planner_id') or ''),
+            arm=arm_file(_text(content, 'arm') or 'thesis_arm.yaml', path.parent),
+            planner_id=_text(content, 'planner_id'),
             segment_durations=_durations(content.get('segment_durations')))
     except InvalidInputError as error:
         raise InvalidInputError(f'{path}: {error}') from None
@@ -106,6 +106,13 @@ def arm_file(name: str, folder: Path) -> Path:
     return _found(name, folder)
 
 
+def _text(content: dict[str, Any], field: str) -> str:
+    value = content.get(field)
+    if value is not None and not isinstance(value, str):
+        raise InvalidInputError(f'{field} is {value!r}, must be a text')
+    return value or ''
+
+
 def _durations(value: Any) -> Array:
     return finite_array('segment_durations', [] if value is None else value, (-1,))
 
@@ -115,7 +122,7 @@ def _found(name: str, folder: Path) -> Path:
         if path.is_file():
             return path.resolve()
     shipped = ', '.join(sorted(p.name for p in shipped_folder().glob('*.yaml')))
-    raise InvalidInputError(f"no file '{name}', neither here nor among the package's: {shipped}")
+    raise InvalidInputError(f"no file '{name}' in {folder}, nor among the package's: {shipped}")
 
 
 def shipped_folder() -> Path:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 import sys
 
@@ -57,8 +58,9 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.processes import NodeProcesses
 
     task = read_task(options.task)
+    task = replace(task, planner_id=options.planner or task.planner_id)
     with NodeProcesses(node_arguments(task.arm, ros_arguments)) as processes:
-        run = run_on_arm(task, options.planner, ros_arguments, processes.ended)
+        run = run_on_arm(task, ros_arguments, processes.ended)
     found = figures(run)
     print(table(run, found))
     plot = Path(f'demo_{task.name}.png') if options.plot is None else options.plot
@@ -76,8 +78,12 @@ def _plot(run: object, file: Path) -> None:
     except ImportError as error:
         print(f'demo: no plot, matplotlib is missing ({error})', file=sys.stderr)
         return
-    file.parent.mkdir(parents=True, exist_ok=True)
-    draw(run, file)  # type: ignore[arg-type]
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        draw(run, file)  # type: ignore[arg-type]
+    except (OSError, ValueError) as error:  # ValueError: an ending that is no picture's
+        print(f'demo: no plot: {error}', file=sys.stderr)
+        return
     print(f'plot: {file}')
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import Thread
 from time import monotonic, sleep
 from typing import Any
@@ -12,17 +12,20 @@ from geometry_msgs.msg import Pose, PoseArray
 import numpy as np
 from rcl_interfaces.srv import GetParameters
 import rclpy
+from rclpy.client import Client
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 from rclpy.time import Time
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
-from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics, wrap_into_limits
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.configuration_files import Task
-from rrr_traj_planner.nodes.entry import StartError
+from rrr_traj_planner.nodes.entry import end_ros, made, start_ros, StartError
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
+from rrr_traj_planner.nodes.processes import ending
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
@@ -31,7 +34,7 @@ PATIENCE = 20.0       # s that a node is given to appear or to answer
 HEAD_START = 0.5      # s between sending a trajectory and its start
 SETTLING = 0.5        # s that is recorded after the end
 PROGRESS_PERIOD = 0.5  # s
-AT_FIRST_POINT = 1e-6  # m
+AT_START = 1e-6       # rad
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,10 +47,9 @@ class Run:
     planned: TrajectoryPoints
     recorded: TrajectoryPoints  # of the arm; time 0 is the motion's start
     torque: Array             # of the motors, at the recorded points [N m]
-    desired: TrajectoryPoints  # what the arm's controller followed
 
 
-def run_on_arm(task: Task, planner_id: str, ros_arguments: list[str],
+def run_on_arm(task: Task, ros_arguments: list[str],
                ended: Callable[[], tuple[str, int] | None]) -> Run:
     """
     Plan a task and run it on the arm.
@@ -56,8 +58,6 @@ def run_on_arm(task: Task, planner_id: str, ros_arguments: list[str],
     ----------
     task : Task
         The via points.
-    planner_id : str
-        Empty: the task's.
     ros_arguments : list of str
         For the client's own node.
     ended : callable
@@ -72,24 +72,30 @@ def run_on_arm(task: Task, planner_id: str, ros_arguments: list[str],
     ------
     StartError
         If a node does not appear or ends, or the plan is refused.
+    KeyboardInterrupt
+        After SIGINT or SIGTERM.
 
     """
-    rclpy.init(args=ros_arguments)
+    start_ros(ros_arguments)
     client = executor = thread = None
     try:
-        client = _Client(ended)
+        client = made(lambda: _Client(ended))
         executor = SingleThreadedExecutor()
         executor.add_node(client)
         thread = Thread(target=_spin, args=(executor,), daemon=True)
         thread.start()
-        return client.run(task, planner_id or task.planner_id)
+        return client.run(task)
+    except rclpy_implementation.RCLError:
+        if rclpy.ok():  # else a signal has shut ROS down under the client's feet
+            raise
+        raise KeyboardInterrupt from None
     finally:
         if executor is not None and thread is not None:
             executor.shutdown(timeout_sec=1.0)
             thread.join(1.0)
         if client is not None:
             client.destroy_node()
-        rclpy.try_shutdown()
+        end_ros()
 
 
 def _spin(executor: SingleThreadedExecutor) -> None:
@@ -97,6 +103,9 @@ def _spin(executor: SingleThreadedExecutor) -> None:
         executor.spin()
     except ExternalShutdownException:
         pass
+    except rclpy_implementation.RCLError:
+        if rclpy.ok():
+            raise
 
 
 class _Client(Node):
@@ -105,30 +114,34 @@ class _Client(Node):
     def __init__(self, ended: Callable[[], tuple[str, int] | None]) -> None:
         super().__init__('demo')
         self._ended = ended
-        self._actual: list[JointState] = []
-        self._desired: list[JointState] = []
-        self.create_subscription(JointState, 'joint_states', self._actual.append, 100)
-        self.create_subscription(JointState, 'desired_joint_states', self._desired.append, 100)
+        self._states: list[JointState] = []
+        self.create_subscription(JointState, 'joint_states', self._states.append, 100)
         self._send = self.create_publisher(JointTrajectory, 'joint_trajectory', 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
         self._ask = self.create_client(GetParameters, 'trajectory_planner/get_parameters')
 
-    def run(self, task: Task, planner_id: str) -> Run:
+    def run(self, task: Task) -> Run:
         """Do the whole story."""
         print('waiting for planner and arm ...', flush=True)
         self._wait(self._plan.service_is_ready, 'the planner')
-        self._wait(lambda: self._actual and self._send.get_subscription_count(), 'the arm')
+        self._wait(lambda: self._states and self._send.get_subscription_count(), 'the arm')
+        self._check_alone()
         config = self._planner_config()
-        self._go_to_first_point(task, config)
-        response = self._planned(_request(task, planner_id))
+        response = self._planned(_request(task))
         print(f'planned {len(task.via_points)} via points with '
-              f"'{planner_id or config.default_planner_id}' in "
+              f"'{task.planner_id or config.default_planner_id}' in "
               f'{1e3 * response.planning_time:.0f} ms: {response.via_times[-1]:.3f} s, '
               f'{len(response.trajectory.points)} points', flush=True)
+        planned = _points(response.trajectory)
+        self._go_to(planned.positions[0], task, config)
         start = self._drive(response.trajectory, 'driving')
-        actual, torque = _recorded(list(self._actual), config, start)
-        desired, _ = _recorded(list(self._desired), config, start)
-        return Run(task, config, response, _points(response.trajectory), actual, torque, desired)
+        recorded, torque = _recorded(list(self._states), config, start)
+        return Run(task, config, response, planned, recorded, torque)
+
+    def _check_alone(self) -> None:
+        """Refuse to share topics with another arm: both would drive, and both report."""
+        if max(self._send.get_subscription_count(), self.count_publishers('joint_states')) > 1:
+            raise StartError('another arm is running here: end it, or set another ROS_DOMAIN_ID')
 
     def _planner_config(self) -> PlannerConfig:
         """Return the planner's parameters, asked of the node itself."""
@@ -136,31 +149,34 @@ class _Client(Node):
         return PlannerConfig.from_values(self._parameter_values(list(rows_of(PLANNER, names))))
 
     def _parameter_values(self, names: list[str]) -> dict[str, Any]:
-        self._wait(self._ask.service_is_ready, "the planner's parameters")
-        answer = self._ask.call(GetParameters.Request(names=names), timeout_sec=PATIENCE)
-        if answer is None:
-            raise StartError('the planner does not tell its parameters')
+        answer = self._answer(self._ask, GetParameters.Request(names=names))
         return dict(zip(names, map(parameter_value_to_python, answer.values)))
 
-    def _go_to_first_point(self, task: Task, config: PlannerConfig) -> None:
-        """Bring the arm to the first via point, if it is elsewhere."""
-        state = self._actual[-1]
-        q = _in_order([state], config, 'position')[0]
-        if np.abs(forward_kinematics(config.model, q) - task.via_points[0]).max() > AT_FIRST_POINT:
-            request = _request(task, '')
-            request.via_points.poses = request.via_points.poses[:1]
-            request.segment_durations = []
-            request.start_state.name = list(state.name)
-            request.start_state.position = list(state.position)
-            self._drive(self._planned(request).trajectory, 'moving to the first via point')
+    def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
+        """Bring the arm to the start of the motion, if it is elsewhere."""
+        state = self._states[-1]
+        if np.abs(_in_order([state], config, 'position')[0] - q).max() <= AT_START:
+            return
+        request = _request(replace(task, via_points=task.via_points[:1],
+                                   segment_durations=np.array([])))
+        request.elbow = min(ELBOWS, key=lambda elbow: np.abs(wrap_into_limits(inverse_kinematics(
+            config.model, task.via_points[0], elbow, q), config.limits, q) - q).max())
+        request.start_state.name = list(state.name)
+        request.start_state.position = list(state.position)
+        self._drive(self._planned(request).trajectory, 'moving to the first via point')
 
     def _planned(self, request: PlanTrajectory.Request) -> Any:
-        response = self._plan.call(request, timeout_sec=PATIENCE)
-        if response is None:
-            raise StartError(f'the planner has not answered within {PATIENCE:g} s')
+        response = self._answer(self._plan, request)
         if response.error_code != response.SUCCESS:
             raise StartError(f'the planner refuses ({response.error_code}): {response.message}')
         return response
+
+    def _answer(self, client: Client, request: Any) -> Any:
+        """Return a service's answer."""
+        self._wait(client.service_is_ready, client.srv_name)
+        future = client.call_async(request)
+        self._wait(future.done, f'an answer of {client.srv_name}')
+        return future.result()
 
     def _drive(self, trajectory: JointTrajectory, what: str) -> float:
         """Send a trajectory, wait for its end, and return when it started [s]."""
@@ -168,15 +184,14 @@ class _Client(Node):
         trajectory.header.stamp = Time(nanoseconds=start).to_msg()
         last = trajectory.points[-1].time_from_start
         duration = last.sec + 1e-9 * last.nanosec
-        self._actual.clear()
-        self._desired.clear()
+        self._states.clear()
         self._send.publish(trajectory)
         shown = -1.0
         begin = start * 1e-9
 
         def over() -> bool:
             nonlocal shown
-            now = _stamp(self._actual[-1]) - begin if self._actual else -HEAD_START
+            now = _stamp(self._states[-1]) - begin if self._states else -HEAD_START
             if now - shown >= PROGRESS_PERIOD and now >= 0.0 and shown < duration:
                 shown = now
                 print(f'{what}: {min(now, duration):5.2f} of {duration:.2f} s', flush=True)
@@ -189,18 +204,18 @@ class _Client(Node):
         """Wait for a condition; say what did not come, or which node ended."""
         deadline = monotonic() + patience
         while not ready():
-            ended = self._ended()
-            if ended is not None:
-                raise StartError(f'{ended[0]} ended with exit code {ended[1]}')
             if not self.context.ok():
                 raise KeyboardInterrupt
+            ended = self._ended()
+            if ended is not None:
+                raise StartError(ending(*ended))
             if monotonic() > deadline:
                 raise StartError(f'waited {patience:.0f} s for {what} in vain')
             sleep(0.02)
 
 
-def _request(task: Task, planner_id: str) -> PlanTrajectory.Request:
-    request = PlanTrajectory.Request(planner_id=planner_id)
+def _request(task: Task) -> PlanTrajectory.Request:
+    request = PlanTrajectory.Request(planner_id=task.planner_id)
     request.segment_durations = task.segment_durations.tolist()
     request.via_points = PoseArray(poses=[Pose() for _ in task.via_points])
     for pose, (x, y, z) in zip(request.via_points.poses, task.via_points.tolist()):
@@ -218,13 +233,12 @@ def _points(trajectory: JointTrajectory) -> TrajectoryPoints:
 
 def _recorded(states: list[JointState], config: PlannerConfig,
               start: float) -> tuple[TrajectoryPoints, Array]:
-    """Return recorded states with times from the start, and the torques (zero if not told)."""
+    """Return recorded states with times from the start, and the torques."""
     times = np.array([_stamp(s) for s in states]) - start
     fresh = np.concatenate(([True], np.diff(times) > 0.0))
-    q, qd = (_in_order(states, config, f)[fresh] for f in ('position', 'velocity'))
-    torque = _in_order(states, config, 'effort') if len(states[0].effort) else np.zeros(
-        (len(states), 3))
-    return TrajectoryPoints(times[fresh], q, qd), torque[fresh]
+    q, qd, torque = (_in_order(states, config, f)[fresh]
+                     for f in ('position', 'velocity', 'effort'))
+    return TrajectoryPoints(times[fresh], q, qd), torque
 
 
 def _in_order(states: list[JointState], config: PlannerConfig, field: str) -> Array:

@@ -7,6 +7,9 @@ from typing import Any
 
 import matplotlib
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import MultipleLocator
+from mpl_toolkits.mplot3d import proj3d
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics import inverse_dynamics
@@ -16,10 +19,14 @@ from rrr_traj_planner.nodes.demo_client import Run
 
 COLOURS = ('#0072b2', '#d55e00', '#009e73')  # told apart by colour-blind eyes, and in print
 STEPS = 2000
+SAME_PLACE = 1e-6  # of the picture
 STYLE = {
     'font.size': 9, 'axes.grid': True, 'grid.alpha': 0.25, 'grid.linewidth': 0.6,
     'axes.spines.top': False, 'axes.spines.right': False, 'lines.linewidth': 1.4,
     'legend.frameon': False, 'figure.constrained_layout.use': True}
+LIMIT = {'color': '0.4', 'linewidth': 0.9, 'linestyle': '--', 'zorder': 1}
+DRIVEN = {'color': 'black', 'linewidth': 1.0, 'linestyle': ':'}
+VIA = {'color': '0.75', 'linewidth': 0.8, 'zorder': 0}
 
 
 def draw(run: Run, file: Path) -> None:
@@ -35,18 +42,20 @@ def draw(run: Run, file: Path) -> None:
 
     """
     with matplotlib.rc_context(STYLE):
-        figure = Figure(figsize=(11.0, 9.0))
-        grid = figure.add_gridspec(5, 2, width_ratios=(1.25, 1.0))
-        _profiles(figure, grid, run)
-        _space(figure.add_subplot(grid[:3, 1], projection='3d'), run)
-        _tracking(figure.add_subplot(grid[3:, 1]), run)
+        figure = Figure(figsize=(10.0, 8.0))
+        left, right = figure.subfigures(1, 2, width_ratios=(1.25, 1.0))
+        profiles = _profiles(left, run)
+        grid = right.add_gridspec(2, 1, height_ratios=(2.0, 1.0))
+        _space(right.add_subplot(grid[0], projection='3d'), run)
+        _tracking(right.add_subplot(grid[1]), run)
         planner = run.task.planner_id or run.config.default_planner_id
         figure.suptitle(f'{run.task.name}: {len(run.task.via_points)} via points, planner '
                         f'{planner}, {run.response.via_times[-1]:.3f} s', fontsize=11)
+        left.align_ylabels(profiles)
         figure.savefig(file, dpi=150)
 
 
-def _profiles(figure: Figure, grid: Any, run: Run) -> None:
+def _profiles(figure: Any, run: Run) -> list[Any]:
     """Draw position to torque over time, one above the other."""
     limits, names = run.config.limits, run.config.model.joint_names
     t = np.linspace(0.0, run.planned.duration, STEPS)
@@ -57,25 +66,29 @@ def _profiles(figure: Figure, grid: Any, run: Run) -> None:
         ('position [rad]', q, None), ('velocity [rad/s]', qd, limits.max_velocity),
         ('acceleration [rad/s²]', qdd, limits.max_acceleration),
         ('jerk [rad/s³]', jerk, limits.max_jerk), ('torque [N m]', torque, limits.max_effort)]
-    first = None
-    for row, (label, values, limit) in enumerate(rows):
-        axes = figure.add_subplot(grid[row, 0], sharex=first)
-        first = first or axes
+    profiles = list(figure.subplots(len(rows), 1, sharex=True))
+    for axes, (label, values, limit) in zip(profiles, rows):
         for joint, colour in enumerate(COLOURS):
             axes.plot(t, values[:, joint], color=colour, label=names[joint])
-        if label.startswith('torque'):
-            for joint, colour in enumerate(COLOURS):
-                axes.plot(run.recorded.times, run.torque[:, joint], color=colour, linewidth=0.8,
-                          linestyle=':')
         if limit is not None:
             _limit_lines(axes, limit)
-        for via in run.response.via_times:
-            axes.axvline(via, color='0.75', linewidth=0.8, zorder=0)
+        _via_lines(axes, run)
         axes.set_ylabel(label)
-        axes.tick_params(labelbottom=row == len(rows) - 1)
-    first.set_xlim(0.0, run.planned.duration)
-    axes.set_xlabel('time [s]; grey: via points; dashed: limits; dotted: torque driven')
-    figure.axes[0].legend(ncols=3, loc='lower center', bbox_to_anchor=(0.5, 1.0))
+    for joint in range(len(COLOURS)):
+        profiles[-1].plot(run.recorded.times, run.torque[:, joint], **DRIVEN)
+    profiles[0].set_xlim(0.0, run.planned.duration)
+    profiles[-1].set_xlabel('time [s]')
+    profiles[0].legend(handles=[
+        *profiles[0].get_lines()[:len(COLOURS)], Line2D([], [], **LIMIT, label='limit'),
+        Line2D([], [], **DRIVEN, label='driven'), Line2D([], [], **VIA, label='via point')],
+        ncols=6, loc='lower center', bbox_to_anchor=(0.5, 1.0), fontsize=8, columnspacing=1.0,
+        handlelength=1.6)
+    return profiles
+
+
+def _via_lines(axes: Any, run: Run) -> None:
+    for via in run.response.via_times:
+        axes.axvline(via, **VIA)
 
 
 def _limit_lines(axes: Any, limit: Array) -> None:
@@ -84,30 +97,55 @@ def _limit_lines(axes: Any, limit: Array) -> None:
     for joint, colour in enumerate(COLOURS):
         if np.isfinite(limit[joint]):
             for sign in (-1.0, 1.0):
-                axes.axhline(sign * limit[joint], color='0.4' if same else colour,
-                             linewidth=0.9, linestyle='--', zorder=1)
+                axes.axhline(sign * limit[joint], **{**LIMIT, **({} if same else {
+                    'color': colour})})
 
 
 def _space(axes: Any, run: Run) -> None:
     """Draw the tip's path, the via points and the arm at each of them."""
     model = run.config.model
     q = Interpolant(run.planned)(np.linspace(0.0, run.planned.duration, STEPS))[0]
-    axes.plot(*forward_kinematics(model, q).T, color='#cc79a7', label='planned')
-    driven = run.recorded.positions[run.recorded.times >= 0.0]
-    axes.plot(*forward_kinematics(model, driven).T, color='black', linestyle=':',
-              linewidth=1.0, label='driven')
     at_via = Interpolant(run.planned)(np.array(run.response.via_times))[0]
     for i, pose in enumerate(at_via):
-        axes.plot(*_links(run, pose).T, color='0.6', linewidth=2.0, marker='o', markersize=3,
+        axes.plot(*_links(run, pose).T, color='0.65', linewidth=2.0, marker='o', markersize=3,
                   label='arm at via points' if i == 0 else None)
-    axes.scatter(*run.task.via_points.T, color='#e69f00', edgecolor='black', s=36, depthshade=False,
-                 label='via points', zorder=5)
-    for i, point in enumerate(run.task.via_points):
-        axes.text(*point, f'  {i}')
+    axes.plot(*forward_kinematics(model, q).T, color='#cc79a7', linewidth=2.0, label='planned')
+    driven = run.recorded.positions[run.recorded.times >= 0.0]
+    axes.plot(*forward_kinematics(model, driven).T, **DRIVEN, label='driven')
+    axes.scatter(*run.task.via_points.T, color='#e69f00', edgecolor='black', s=30,
+                 depthshade=False, label='via points', zorder=5)
     axes.set(xlabel='x [m]', ylabel='y [m]', zlabel='z [m]')
     axes.set_aspect('equal')
-    axes.view_init(elev=22.0, azim=-60.0)
-    axes.legend(loc='upper left', fontsize=8)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MultipleLocator(_tick_step(axes)))
+    axes.tick_params(pad=1)
+    axes.view_init(elev=24.0, azim=-62.0)
+    _number(axes, run.task.via_points)
+    axes.legend(loc='upper center', bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=8)
+
+
+def _tick_step(axes: Any) -> float:
+    """Return a step of ticks for all three directions, which share their scale."""
+    longest = max(np.ptp(limits) for limits in (
+        axes.get_xlim(), axes.get_ylim(), axes.get_zlim()))
+    return next(step for step in (0.1 * 2.0 ** k for k in range(-9, 30)) if step > longest / 5.0)
+
+
+def _number(axes: Any, points: Array) -> None:
+    """Write each via point's index beside it, on the side away from its nearest neighbour."""
+    x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
+    seen = np.column_stack((x, y))
+    for i, point in enumerate(seen):
+        away = point - seen
+        distance = np.linalg.norm(away, axis=1)
+        same = np.flatnonzero(distance <= SAME_PLACE)
+        if same[0] < i:
+            continue  # it stands beside the first one there
+        distance[same] = np.inf
+        nearest = distance.argmin()
+        direction = away[nearest] / distance[nearest] if len(same) < len(seen) else (1.0, 0.0)
+        axes.annotate(', '.join(map(str, same)), point, 10.0 * np.array(direction),
+                      textcoords='offset points', ha='center', va='center')
 
 
 def _links(run: Run, q: Array) -> Array:
@@ -126,8 +164,7 @@ def _tracking(axes: Any, run: Run) -> None:
     wanted = Interpolant(run.planned)(t)[0]
     error = np.linalg.norm(forward_kinematics(run.config.model, driven)
                            - forward_kinematics(run.config.model, wanted), axis=1)
-    axes.plot(t, 1e6 * error, color='black')
-    for via in run.response.via_times:
-        axes.axvline(via, color='0.75', linewidth=0.8, zorder=0)
+    axes.plot(t, 1e6 * error, color='black', linewidth=1.0)
+    _via_lines(axes, run)
     axes.set(xlabel='time [s]', ylabel='tip off the plan [µm]', xlim=(0.0, t[-1]))
     axes.set_ylim(bottom=0.0)

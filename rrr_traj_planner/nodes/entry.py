@@ -31,6 +31,10 @@ EPILOG = (
     '--ros-args --params-file FILE -p NAME:=VALUE -r FROM:=TO')
 
 
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+WATCH_PERIOD = 0.25  # s
+
+
 class StartError(RrrPlannerError):
     """A script that cannot start: its text is all that a user needs."""
 
@@ -154,10 +158,12 @@ def guarded(name: str, work: Callable[[], int]) -> int:
     """
     try:
         _interrupt.raises = True
-        for number in (signal.SIGINT, signal.SIGTERM):
+        for number in SIGNALS:
             signal.signal(number, _interrupt)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)  # see processes.py
         return work()
     except KeyboardInterrupt:
+        ignore_signals()  # nothing is left to be ended
         return 0
     except RrrPlannerError as error:
         text = str(error)
@@ -176,6 +182,7 @@ def guarded(name: str, work: Callable[[], int]) -> int:
 def _spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int:
     """Start ROS and the node, spin until the context is shut down, and clean up."""
     import rclpy
+    from rclpy.clock import Clock, ClockType
     from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
@@ -184,7 +191,11 @@ def _spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> in
     try:
         start_ros(ros_arguments)
         executor = SingleThreadedExecutor()
-        node = _made(make_node)
+        node = made(make_node)
+        # A signal wakes the executor before it shuts the context down: on a busy machine the
+        # executor may find the context well and go to sleep for good. So it looks again.
+        node.create_timer(WATCH_PERIOD, lambda: None, clock=Clock(
+            clock_type=ClockType.STEADY_TIME))
         executor.add_node(node)
         executor.spin()
     except (KeyboardInterrupt, ExternalShutdownException):
@@ -220,8 +231,39 @@ def start_ros(ros_arguments: list[str]) -> None:
         raise StartError(f'ROS refuses to start: {_one_line(error)}') from error
 
 
-def _made(make_node: Callable[[], Any]) -> Any:
-    """Make the node; names and parameter files that ROS refuses are the user's to read."""
+def end_ros() -> None:
+    """End ROS; from then on SIGINT and SIGTERM interrupt the script again."""
+    import rclpy
+    rclpy.try_shutdown()
+    _interrupt.raises = True
+
+
+def ignore_signals() -> None:
+    """Let no further SIGINT or SIGTERM disturb the end of the process."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+
+
+def made(make_node: Callable[[], Any]) -> Any:
+    """
+    Make a node; names and parameter files that ROS refuses are the user's to read.
+
+    Parameters
+    ----------
+    make_node : callable
+        Its class.
+
+    Returns
+    -------
+    Node
+        The node.
+
+    Raises
+    ------
+    StartError
+        If ROS refuses.
+
+    """
     import rclpy
     from rclpy.exceptions import NameValidationException, ParameterException
     from rclpy.impl.implementation_singleton import rclpy_implementation
@@ -236,8 +278,7 @@ def _made(make_node: Callable[[], Any]) -> Any:
 def _clean_up(executor: Any, node: Any) -> None:
     """End what was started, also when a second signal comes meanwhile."""
     import rclpy
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)
+    ignore_signals()
     # What a signal has kept the executor from starting is no news.
     warnings.filterwarnings('ignore', 'coroutine .* was never awaited', RuntimeWarning)
     if executor is not None:

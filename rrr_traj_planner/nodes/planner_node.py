@@ -3,32 +3,41 @@
 from __future__ import annotations
 
 from queue import SimpleQueue
-from threading import Thread
+from threading import Lock, Thread
 from time import perf_counter
 import traceback
-from typing import Any
+from typing import Any, NamedTuple
 
+from builtin_interfaces.msg import Time
 from nav_msgs.msg import Path
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
-from rrr_traj_planner.core.errors import RrrPlannerError
+from rrr_traj_planner.core.errors import ConvergenceError, RrrPlannerError
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
 from rrr_traj_planner.nodes.parameters import PLANNER
 from rrr_traj_planner.nodes.planning_messages import (
-    fill_refusal,
-    fill_response,
+    failure,
     planning_request,
+    refusal,
+    success,
     tip_path,
 )
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import Plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class _Answer(NamedTuple):
+    """What a request comes to."""
+
+    response: PlanTrajectory.Response
+    path: Path | None = None  # the tip's, where there is a plan
+    trace: str = ''           # of a bug, for the log
 
 
 class TrajectoryPlanner(Node):
@@ -55,54 +64,39 @@ class TrajectoryPlanner(Node):
         self._trajectory = self.create_publisher(JointTrajectory, 'planned_trajectory', LATCHED)
         self._path = self.create_publisher(Path, 'planned_path', LATCHED)
         self._work: SimpleQueue[Any] = SimpleQueue()
-        self._worker = Thread(target=self._run_worker, name='planning', daemon=True)
-        self._worker.start()
+        self._answered = self.create_guard_condition(lambda: None)  # wakes the executor
+        self._ending, self._ended = Lock(), False
+        Thread(target=self._run_worker, name='planning', daemon=True).start()
         # A group of its own, held while a request is planned: the next one waits its turn.
         self.create_service(PlanTrajectory, 'plan_trajectory', self._plan,
                             callback_group=MutuallyExclusiveCallbackGroup())
 
     async def _plan(self, request: PlanTrajectory.Request,
-                    response: PlanTrajectory.Response) -> PlanTrajectory.Response:
+                    _: PlanTrajectory.Response) -> PlanTrajectory.Response:
         """Answer a request; the executor goes on with other work until the plan is there."""
-        config = self._parameters_declared.config
         done = Future()
-        self._work.put((request, response, config, done))
-        found = await done
-        self._report(response)
-        if found is not None:
-            self._trajectory.publish(response.trajectory)
-            self._path.publish(tip_path(found.points, config, self.get_clock().now().to_msg()))
-        return response
+        self._work.put((request, self._parameters_declared.config,
+                        self.get_clock().now().to_msg(), done))
+        answer = await done
+        self._report(answer)
+        if answer.path is not None:
+            self._trajectory.publish(answer.response.trajectory)
+            self._path.publish(answer.path)
+        return answer.response
 
     def _run_worker(self) -> None:
         """Plan what is asked, until the node is destroyed."""
-        for request, response, config, done in iter(self._work.get, None):
-            done.set_result(self._answer(request, response, config))
-            executor = self.executor
-            if executor is not None:
-                executor.wake()
+        for request, config, stamp, done in iter(self._work.get, None):
+            answer = _answer(request, config, stamp)
+            with self._ending:
+                if self._ended:
+                    return
+                done.set_result(answer)
+                self._answered.trigger()
 
-    def _answer(self, request: PlanTrajectory.Request, response: PlanTrajectory.Response,
-                config: PlannerConfig) -> Plan | None:
-        """Fill a response, in the planning thread; return the plan where there is one."""
-        started, found = perf_counter(), None
-        try:
-            found = plan(config.model, config.limits, planning_request(request, config))
-            response.planning_time = perf_counter() - started
-            fill_response(response, found, config)
-        except RrrPlannerError as error:
-            response.planning_time = perf_counter() - started
-            fill_refusal(response, error)
-        except Exception as error:  # a bug: the caller is told, the log has the trace
-            response.planning_time = perf_counter() - started
-            response.error_code, response.failed_via_point = response.FAILURE, -1
-            response.message = f'internal error, {type(error).__name__}: {error}'
-            self.get_logger().error(traceback.format_exc())
-        return found
-
-    def _report(self, response: PlanTrajectory.Response) -> None:
-        """Log one line for each request."""
-        log = self.get_logger()
+    def _report(self, answer: _Answer) -> None:
+        """Log one line for each request, and the trace of a bug."""
+        log, response = self.get_logger(), answer.response
         ms = 1e3 * response.planning_time
         if response.error_code == response.SUCCESS:
             points = response.trajectory.points
@@ -110,12 +104,32 @@ class TrajectoryPlanner(Node):
             log.info(f'planned {len(response.via_times)} via points in {ms:.0f} ms: '
                      f'{last.sec + 1e-9 * last.nanosec:.3f} s, {len(points)} points'
                      + (f'; {response.message}' if response.message else ''))
-        elif response.error_code == response.FAILURE:
-            log.error(response.message)
+        elif answer.trace:
+            log.error(f'{response.message}\n{answer.trace}')
         else:
             log.warning(f'refused in {ms:.0f} ms ({response.error_code}): {response.message}')
 
     def destroy_node(self) -> None:
-        """End the planning thread with the node."""
+        """End the planning thread with the node; what it is at is not waited for."""
+        with self._ending:
+            self._ended = True
         self._work.put(None)
         super().destroy_node()
+
+
+def _answer(request: PlanTrajectory.Request, config: PlannerConfig, stamp: Time) -> _Answer:
+    """Plan, in the planning thread; whatever goes wrong is an answer too."""
+    started = perf_counter()
+    path, trace = None, ''
+    try:
+        found = plan(config.model, config.limits, planning_request(request, config))
+        seconds = perf_counter() - started
+        response, path = success(found, config), tip_path(found.points, config, stamp)
+    except Exception as error:
+        seconds = perf_counter() - started
+        if isinstance(error, RrrPlannerError) and not isinstance(error, ConvergenceError):
+            response = refusal(error)
+        else:  # a bug: the caller is told, the log has the trace
+            response, trace = failure(error), traceback.format_exc()
+    response.planning_time = seconds
+    return _Answer(response, path, trace)

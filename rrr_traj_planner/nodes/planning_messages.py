@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from array import array
+from math import inf, isfinite
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Path
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import (
     InvalidInputError,
     LimitViolationError,
     RrrPlannerError,
     StartStateError,
-    TimingError,
     UnreachableError,
 )
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
@@ -46,7 +46,6 @@ _CODES: tuple[tuple[type[RrrPlannerError], int], ...] = (
     (InvalidInputError, _RESPONSE.INVALID_GOAL_CONSTRAINTS),
     (UnreachableError, _RESPONSE.NO_IK_SOLUTION),
     (LimitViolationError, _RESPONSE.GOAL_CONSTRAINTS_VIOLATED),
-    (TimingError, _RESPONSE.PLANNING_FAILED),
     (RrrPlannerError, _RESPONSE.PLANNING_FAILED),
 )
 
@@ -75,11 +74,16 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig) -> 
     """
     frame = message.via_points.header.frame_id
     if frame not in ('', config.base_frame):
-        raise FrameError(f"via_points are in frame '{frame}', must be in '{config.base_frame}'")
+        raise FrameError(f"via_points are in frame '{frame}', must be in '{config.base_frame}' "
+                         '(an empty frame_id means the same)')
     period = message.sample_period
-    if period != 0.0 and not period >= LEAST_SAMPLE_PERIOD:
-        raise InvalidInputError(
-            f'sample_period is {period} s, must be 0 or at least {LEAST_SAMPLE_PERIOD} s')
+    if period != 0.0 and not LEAST_SAMPLE_PERIOD <= period < inf:
+        raise InvalidInputError(f'sample_period is {period:g} s, must be 0 or at least '
+                                f'{LEAST_SAMPLE_PERIOD:g} s, and finite')
+    deviation = message.max_deviation
+    if not 0.0 <= deviation < inf:
+        raise InvalidInputError(f'max_deviation is {deviation:g} m, must be 0 or positive, and '
+                                'finite')
     return PlanningRequest(
         via_points=_tip_positions(message.via_points.poses),
         start=_start(message.start_state, config.model),
@@ -90,49 +94,72 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig) -> 
         acceleration_scaling=_unless_zero(message.max_acceleration_scaling_factor, 1.0),
         sample_period=_unless_zero(period, config.sample_period),
         elbow=message.elbow or None,
-        max_deviation=_unless_zero(message.max_deviation, config.max_deviation))
+        max_deviation=_unless_zero(deviation, config.max_deviation))
 
 
-def fill_response(response: PlanTrajectory.Response, plan: Plan, config: PlannerConfig) -> None:
+def success(plan: Plan, config: PlannerConfig) -> PlanTrajectory.Response:
     """
-    Put a plan into a response.
+    Return a plan as the response.
 
     Parameters
     ----------
-    response : PlanTrajectory.Response
-        An empty one.
     plan : Plan
         The plan.
     config : PlannerConfig
         The node's parameters.
 
+    Returns
+    -------
+    PlanTrajectory.Response
+        Complete but for the planning time.
+
     """
-    response.error_code = response.SUCCESS
-    response.message = plan.note
-    response.failed_via_point = -1
-    response.trajectory = joint_trajectory(plan.points, config)
-    response.via_times = plan.via_times.tolist()
-    response.peak_velocity = plan.peaks.velocity.tolist()
-    response.peak_acceleration = plan.peaks.acceleration.tolist()
-    response.peak_jerk = plan.peaks.jerk.tolist()
-    response.peak_effort = plan.effort.tolist()
+    return PlanTrajectory.Response(
+        error_code=_RESPONSE.SUCCESS, message=plan.note, failed_via_point=-1,
+        trajectory=joint_trajectory(plan.points, config), via_times=plan.via_times.tolist(),
+        peak_velocity=plan.peaks.velocity.tolist(),
+        peak_acceleration=plan.peaks.acceleration.tolist(),
+        peak_jerk=plan.peaks.jerk.tolist(), peak_effort=plan.effort.tolist())
 
 
-def fill_refusal(response: PlanTrajectory.Response, error: RrrPlannerError) -> None:
+def refusal(error: RrrPlannerError) -> PlanTrajectory.Response:
     """
-    Put an error into a response.
+    Return the response to a request that cannot be met.
 
     Parameters
     ----------
-    response : PlanTrajectory.Response
-        An empty one.
     error : RrrPlannerError
         Why there is no plan.
 
+    Returns
+    -------
+    PlanTrajectory.Response
+        Code, message and via point to blame; no trajectory.
+
     """
-    response.error_code = next(code for kind, code in _CODES if isinstance(error, kind))
-    response.message = str(error)
-    response.failed_via_point = error.via_point
+    return PlanTrajectory.Response(
+        error_code=next(code for kind, code in _CODES if isinstance(error, kind)),
+        message=str(error), failed_via_point=error.via_point)
+
+
+def failure(error: Exception) -> PlanTrajectory.Response:
+    """
+    Return the response to a request that has met a bug.
+
+    Parameters
+    ----------
+    error : Exception
+        The bug.
+
+    Returns
+    -------
+    PlanTrajectory.Response
+        Code and message; no trajectory.
+
+    """
+    return PlanTrajectory.Response(
+        error_code=_RESPONSE.FAILURE, failed_via_point=-1,
+        message=f'internal error, {type(error).__name__}: {error}')
 
 
 def joint_trajectory(points: TrajectoryPoints, config: PlannerConfig) -> JointTrajectory:
@@ -232,24 +259,23 @@ def _start(state: JointState, model: RobotModel) -> Array | None:
     names, position, velocity = list(state.name), list(state.position), list(state.velocity)
     if not (names or position or velocity):
         return None
-    missing = [n for n in model.joint_names if n not in names]
-    if missing or len(set(names)) != len(names):
-        raise StartStateError(
-            f'start state names joints {names}, must name each of {list(model.joint_names)} once')
+    for name in model.joint_names:
+        if names.count(name) != 1:
+            raise StartStateError(f'start state names {name} {names.count(name)} times, must '
+                                  f"name each of {', '.join(model.joint_names)} once")
     if len(position) != len(names) or len(velocity) not in (0, len(names)):
         raise StartStateError(
-            f'start state has {len(position)} positions and {len(velocity)} velocities '
-            f'for {len(names)} names')
+            f'start state has {len(names)} names, {len(position)} positions and '
+            f'{len(velocity)} velocities, must have a position for each name, and a velocity '
+            'for each or none')
     order = [names.index(n) for n in model.joint_names]
-    try:
-        q = finite_array('start state position', [position[i] for i in order], (3,))
-        qd = finite_array('start state velocity', [velocity[i] for i in order] if velocity
-                          else np.zeros(3), (3,))
-    except InvalidInputError as error:
-        raise StartStateError(str(error)) from None
-    if (np.abs(qd) > AT_REST).any():
-        joint = int(np.abs(qd).argmax())
-        raise StartStateError(
-            f'start state: {model.joint_names[joint]} moves at {qd[joint]:.6g} rad/s, '
-            'the motion must start at rest')
-    return q
+    q = [position[i] for i in order]
+    qd = [velocity[i] for i in order] if velocity else [0.0] * len(order)
+    for name, x, v in zip(model.joint_names, q, qd):
+        if not isfinite(x):
+            raise StartStateError(f'start state: {name} is at {x:g} rad, must be finite')
+        if not abs(v) <= AT_REST:
+            raise StartStateError(
+                f'start state: {name} moves at {v:g} rad/s, must be at rest (no faster than '
+                f'{AT_REST:g} rad/s)')
+    return np.array(q)

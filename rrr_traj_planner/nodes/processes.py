@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 import signal
 import subprocess
 import sys
 from time import monotonic
 from types import TracebackType
+
+from rrr_traj_planner.nodes.entry import SIGNALS
 
 MODULES = {'planner': 'rrr_traj_planner.nodes.planner',
            'simulated_arm': 'rrr_traj_planner.nodes.simulated_arm'}
@@ -28,12 +31,19 @@ class NodeProcesses:
     """
 
     def __init__(self, ros_arguments: Sequence[str]) -> None:
-        self._processes = {
-            name: subprocess.Popen([sys.executable, '-m', module, *ros_arguments])
-            for name, module in MODULES.items()}
+        self._ros_arguments = list(ros_arguments)
+        self._processes: dict[str, subprocess.Popen[bytes]] = {}
 
     def __enter__(self) -> NodeProcesses:
-        """Return itself; the processes run already."""
+        """Start both, or none."""
+        try:
+            with signals_held():
+                for name, module in MODULES.items():
+                    self._processes[name] = subprocess.Popen(
+                        [sys.executable, '-m', module, *self._ros_arguments])
+        except BaseException:
+            self.stop()
+            raise
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
@@ -78,13 +88,58 @@ class NodeProcesses:
 
     def stop(self) -> None:
         """End both: SIGINT, and SIGKILL for what does not heed it."""
-        deadline = monotonic() + PATIENCE
-        for process in self._processes.values():
-            if process.poll() is None:
-                process.send_signal(signal.SIGINT)
-        for process in self._processes.values():
-            try:
-                process.wait(max(deadline - monotonic(), 0.0))
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+        with signals_held():
+            deadline = monotonic() + PATIENCE
+            for process in self._processes.values():
+                if process.poll() is None:
+                    process.send_signal(signal.SIGINT)
+            for process in self._processes.values():
+                try:
+                    process.wait(max(deadline - monotonic(), 0.0))
+                except subprocess.TimeoutExpired:
+                    process.kill()
+                    process.wait()
+
+
+def ending(name: str, code: int) -> str:
+    """
+    Return what has become of a process.
+
+    Parameters
+    ----------
+    name : str
+        The node.
+    code : int
+        Exit code, or the negative number of the signal that has killed it.
+
+    Returns
+    -------
+    str
+        For people.
+
+    """
+    if code < 0:
+        return f'{name} was killed by {signal.Signals(-code).name}'
+    return f'{name} ended with exit code {code}'
+
+
+@contextmanager
+def signals_held() -> Iterator[None]:
+    """
+    Hold SIGINT and SIGTERM back until the end: half done, processes would be left behind.
+
+    Processes that are started meanwhile begin with both blocked; `entry.guarded` lets them in
+    when it can answer them.
+    """
+    arrived: list[int] = []
+    handlers = {number: signal.signal(number, lambda n, _: arrived.append(n))
+                for number in SIGNALS}
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+        if arrived:
+            signal.raise_signal(arrived[0])

@@ -218,17 +218,20 @@ def _segment_stretch(task: JointTask, motion: _Motion) -> Array:
 
 def _stretched_for_torque(task: JointTask, chain: Chain, motion: _Motion) -> _Motion:
     """Return the motion slowed as a whole, just enough for its torques."""
+    factor = torque_stretch(task, motion.trajectory)
     for _ in range(STRETCH_ROUNDS):
-        factor = torque_stretch(task, motion.trajectory)
-        if factor <= 1.0 + TORQUE_TOLERANCE:
-            return motion
-        if np.isinf(factor):
-            raise cannot_hold(task, motion.trajectory)
+        if factor <= 1.0 + TORQUE_TOLERANCE or np.isinf(factor):
+            break
         durations = motion.durations * factor * (1.0 + DURATION_ROOM)
         slower = _with_durations(task, chain, durations)
         motion = slower if slower is not None else _Motion(
             motion.trajectory.stretched(factor), durations)
-    return _Motion(motion.trajectory.stretched(factor), motion.durations * factor)
+        factor = torque_stretch(task, motion.trajectory)
+    if np.isinf(factor):
+        raise cannot_hold(task, motion.trajectory)
+    if factor > 1.0 + TORQUE_TOLERANCE:
+        return _Motion(motion.trajectory.stretched(factor), motion.durations * factor)
+    return motion
 
 
 def _too_short(task: JointTask, chain: Chain, durations: Array) -> TimingError:

@@ -95,8 +95,8 @@ class Ros:
         """End everything, in the order that leaves nothing behind."""
         self._executor.shutdown(timeout_sec=DEADLINE)
         self._thread.join(DEADLINE)
-        for node in self._nodes:
-            node.destroy_node()
+        while self._nodes:
+            self._nodes.pop().destroy_node()
         self.context.try_shutdown()
         assert not self._thread.is_alive()
 
@@ -104,7 +104,16 @@ class Ros:
 @pytest.fixture
 def ros():
     """Give a test its own ROS."""
-    ros = Ros()
+    yield from closed_after_use(Ros())
+
+
+@pytest.fixture(scope='module')
+def module_ros():
+    """Give the tests of a module one ROS to share."""
+    yield from closed_after_use(Ros())
+
+
+def closed_after_use(ros):
     try:
         yield ros
     finally:

@@ -43,7 +43,7 @@ def random_task(seed):
     kind = KINDS[seed % len(KINDS)]
     model = RobotModel() if rng.random() < 0.6 else random_model(rng)
     limits = random_limits(rng, model)
-    n = int(rng.integers(2, 9))
+    n = int(rng.choice(np.arange(2, 9), p=[0.28, 0.3, 0.2, 0.1, 0.04, 0.04, 0.04]))
     if kind in ('reversal', 'at a limit'):
         n = max(n, 3)
     while True:
@@ -70,16 +70,16 @@ def random_limits(rng, model):
     low, high = middle - half, middle + half
     q = rng.uniform(low, high, (200, 3))
     typical = np.abs(gravity_torque(model, q)).max(axis=0)
-    effort = rng.uniform(0.7, 3.0, 3) * np.maximum(typical, 5.0)
+    effort = rng.uniform(1.1, 5.0, 3) * np.maximum(typical, 5.0)
 
     def bound(least, most, share):
         value = np.exp(rng.uniform(np.log(least), np.log(most), 3))
         return np.where(rng.random(3) < share, value, np.inf) if rng.random() < 0.7 else value
 
     return JointLimits(
-        min_position=low, max_position=high, max_velocity=bound(0.2, 3.0, 0.6),
-        max_acceleration=np.exp(rng.uniform(np.log(0.3), np.log(6.0), 3)),
-        max_jerk=bound(1.0, 100.0, 0.5),
+        min_position=low, max_position=high, max_velocity=bound(0.4, 3.0, 0.6),
+        max_acceleration=np.exp(rng.uniform(np.log(0.5), np.log(6.0), 3)),
+        max_jerk=bound(3.0, 200.0, 0.5),
         max_effort=np.where(rng.random(3) < 0.8, effort, np.inf))
 
 

@@ -1,0 +1,98 @@
+"""The script `demo`, end to end: plan, drive, table, plot, exit code; refused and interrupted."""
+
+from __future__ import annotations
+
+import re
+import signal
+
+from matplotlib.image import imread
+import pytest
+
+from scripts import DEADLINE, Script, script
+
+UNREACHABLE = 'via_points: [[1.02, 0.59, 0.97], [3.0, 0.0, 0.5]]\n'
+PNG = b'\x89PNG\r\n\x1a\n'
+
+
+@pytest.mark.parametrize(('arguments', 'name', 'seconds'), [
+    ((), 'table_6_1', 2.850), (('table_6_3.yaml',), 'table_6_3', 3.490)])
+def test_demo_runs_its_task_and_shows_it(tmp_path, arguments, name, seconds):
+    with Script(script('demo'), *arguments, cwd=tmp_path) as demo:
+        demo.read_until('driving:')
+        children = demo.started(2)
+        code, output, errors = demo.ended()
+        assert all(child.has_ended() for child in children)
+    assert code == 0, errors
+    shown = float(re.search(rf'^{name}: (\S+) s$', output, re.MULTILINE)[1])
+    assert shown == pytest.approx(seconds, abs=5e-3)  # the reference solution's
+    for text in ('error reached [mm]', 'at rest', 'torque driven [N m]', 'joint_3',
+                 '22 of 22 figures are inside their bounds', f'plot: demo_{name}.png'):
+        assert text in output
+    assert 'Traceback' not in errors
+    file = tmp_path / f'demo_{name}.png'
+    assert file.read_bytes().startswith(PNG)
+    picture = imread(file)
+    assert min(picture.shape[:2]) >= 1000
+    assert (picture[..., :3].min(axis=2) < 0.9).mean() > 0.02  # more than an empty frame
+    assert [f.name for f in tmp_path.iterdir()] == [file.name]
+
+
+def test_demo_with_points_out_of_reach_shows_the_refusal(tmp_path):
+    (tmp_path / 'far.yaml').write_text(UNREACHABLE)
+    with Script(script('demo'), 'far.yaml', cwd=tmp_path) as demo:
+        demo.read_until('waiting for planner and arm')
+        children = demo.started(2)
+        code, output, errors = demo.ended()
+        assert all(child.has_ended() for child in children)
+    assert code == 1
+    assert ('demo: the planner refuses (-31): via point 1: (3, 0, 0.5) m is 3 m from the '
+            "shoulder, beyond the arm's reach of 1.6 m: it misses by 1.4 m\n") in errors
+    assert 'Traceback' not in errors
+    assert not list(tmp_path.glob('*.png'))
+
+
+@pytest.mark.parametrize(('number', 'when'), [
+    (signal.SIGINT, 'waiting for planner and arm'), (signal.SIGTERM, 'driving:')])
+def test_signal_ends_the_demo_and_its_nodes(tmp_path, number, when):
+    with Script(script('demo'), cwd=tmp_path) as demo:
+        demo.read_until(when)
+        children = demo.started(2)
+        demo.process.send_signal(number)
+        code, output, errors = demo.ended()
+        assert all(child.has_ended() for child in children)
+    assert code == 0
+    assert 'Traceback' not in errors
+    assert 'figures' not in output
+    assert not list(tmp_path.glob('*.png'))
+
+
+def test_node_that_dies_ends_the_demo(tmp_path):
+    with Script(script('demo'), '--planner', 'cycloid_approach_a', cwd=tmp_path) as demo:
+        demo.read_until("planned 3 via points with 'cycloid_approach_a' in ")
+        children = demo.started(2)
+        arm, = (c for c in children if 'rrr_traj_planner.nodes.simulated_arm' in c.command)
+        arm.kill()
+        code, _, errors = demo.ended()
+        assert all(child.has_ended() for child in children)
+    assert code == 1
+    assert errors.endswith('demo: simulated_arm was killed by SIGKILL\n')
+
+
+@pytest.mark.parametrize(('arguments', 'code', 'text'), [
+    (('nowhere.yaml',), 1, "demo: no file 'nowhere.yaml' in "),
+    (('thesis_arm.yaml',), 1, 'thesis_arm.yaml: no via_points'),
+    (('--planner',), 2, 'expected one argument')])
+def test_wrong_arguments_are_told(arguments, code, text):
+    with Script(script('demo'), *arguments) as demo:
+        ended, _, errors = demo.ended()
+    assert ended == code
+    assert text in errors
+    assert 'Traceback' not in errors
+
+
+def test_help_tells_the_options():
+    with Script(script('demo'), '--help') as demo:
+        output, errors = demo.process.communicate(timeout=DEADLINE)
+    assert (demo.process.returncode, errors) == (0, '')
+    for text in ('--planner ID', '--plot PNG', '--ros-args'):
+        assert text in output
