@@ -26,5 +26,5 @@ bench: setup  ## run the benchmarks
 	@$(in_env) python benchmarks/run.py $(ARGS)
 
 clean:  ## leave what a fresh clone has
-	rm -rf .venv build install log .*_cache .hypothesis
+	rm -rf .venv build install log .*_cache .hypothesis demo_*.png
 	find . -name __pycache__ -prune -exec rm -rf {} +

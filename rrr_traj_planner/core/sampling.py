@@ -13,6 +13,9 @@ NANOSECOND = 1e-9
 # No regular sample is nearer to a via point's than this part of the period.
 LEAST_GAP = 0.1
 
+# More points than this are of use to nobody, and would fill the memory.
+MOST_POINTS = 200_000
+
 
 def sample(trajectory: Trajectory, period: float) -> TrajectoryPoints:
     """
@@ -63,11 +66,15 @@ def sample_times(trajectory: Trajectory, period: float) -> tuple[Array, Array]:
     Raises
     ------
     InvalidInputError
-        If the period is not positive.
+        If the period is not positive, or there would be too many points.
 
     """
     if not (np.isfinite(period) and period > 0.0):
         raise InvalidInputError(f'sample_period is {period} s, must be positive')
+    if not trajectory.duration / period <= MOST_POINTS:
+        raise InvalidInputError(
+            f'a motion of {trajectory.duration:.6g} s with a point every {period:.6g} s has more '
+            f'than {MOST_POINTS} points')
     fixed = np.concatenate(([0.0], trajectory.via_times, [trajectory.duration]))
     fixed = fixed[np.concatenate(([True], np.diff(fixed) >= 1.5 * NANOSECOND))]
     fixed[-1] = trajectory.duration

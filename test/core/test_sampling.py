@@ -176,3 +176,9 @@ def test_regular_point_gives_way_to_the_end_too():
 def test_impossible_period_is_refused(period):
     with pytest.raises(InvalidInputError, match=f'^sample_period is {period} s, must be positive'):
         sample(cruising(1.5), period)
+
+
+def test_more_points_than_memory_holds_are_refused_before_they_are_made():
+    trajectory = cruising(1.0, duration=1e9)
+    with pytest.raises(InvalidInputError, match='has more than 200000 points'):
+        sample(trajectory, 0.01)
