@@ -44,6 +44,29 @@ def finite_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = No
     return array
 
 
+def number_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = None) -> Array:
+    """
+    Return a read-only float copy of numbers that may be anything, NaN too.
+
+    Parameters
+    ----------
+    name, value, shape
+        As in `finite_array`.
+
+    Returns
+    -------
+    ndarray
+        A copy that cannot be written to.
+
+    Raises
+    ------
+    InvalidInputError
+        If the value is no array of numbers or has another shape.
+
+    """
+    return _checked(name, value, shape)
+
+
 def bound_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = None) -> Array:
     """
     Return a read-only float copy of bounds: finite or infinite, never NaN.

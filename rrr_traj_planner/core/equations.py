@@ -35,7 +35,7 @@ class Terms(NamedTuple):
     H11: Any
     H22: Any
     H23: Any
-    H33: float
+    H33: Any
     D2: Any   # dH11 / dtheta2
     D3: Any   # dH11 / dtheta3
     bc3: Any  # m3 a2 l3 c3

@@ -95,12 +95,12 @@ class Interpolant:
 
     def peaks(self, per_segment: int = 16) -> tuple[Array, Array]:
         """
-        Return the largest velocity and acceleration of each joint, on a grid of each segment.
+        Return the largest velocity and acceleration of each joint.
 
         Parameters
         ----------
         per_segment : int
-            Steps between two points.
+            Steps between two points, for the velocity; accelerations are exact.
 
         Returns
         -------
@@ -108,17 +108,27 @@ class Interpolant:
             [rad/s], [rad/s^2].
 
         """
-        widths = np.diff(self.points.times)
+        widths = np.diff(self.points.times)[:, np.newaxis]
         velocity, acceleration = np.zeros(3), np.zeros(3)
         if len(widths) == 0:  # a single point rests
             return velocity, acceleration
         for s in np.linspace(0.0, 1.0, per_segment + 1):
-            x = (s * widths)[:, np.newaxis]
             velocity = np.maximum(
-                velocity, np.abs(_polynomial(self.coefficients, x, 1)).max(axis=0))
+                velocity, np.abs(_polynomial(self.coefficients, s * widths, 1)).max(axis=0))
+        for x in (0.0 * widths, widths, *self._turns_of_acceleration(widths)):
             acceleration = np.maximum(
                 acceleration, np.abs(_polynomial(self.coefficients, x, 2)).max(axis=0))
         return velocity, acceleration
+
+    def _turns_of_acceleration(self, widths: Array) -> tuple[Array, ...]:
+        """Return times since each knot, within its segment, at which the jerk is zero."""
+        c = self.coefficients
+        if len(c) < 6:  # the acceleration of lines and cubics is largest at the ends
+            return ()
+        A, B, C = 60.0 * c[5], 24.0 * c[4], 6.0 * c[3]
+        with np.errstate(divide='ignore', invalid='ignore'):
+            half = -0.5 * (B + np.copysign(np.sqrt(np.maximum(B * B - 4.0 * A * C, 0.0)), B))
+            return tuple(np.clip(np.nan_to_num(x), 0.0, widths) for x in (half / A, C / half))
 
 
 def hermite(T: float | Array, start: tuple[Array, ...], end: tuple[Array, ...]) -> list[Array]:

@@ -14,9 +14,9 @@ from rrr_traj_planner.core.trajectory import times_within, Trajectory
 
 # Torque is analytic between knots. So many steps there, none longer than LONGEST_STEP unless the
 # motion is so slow that MOST_STEPS are enough, put every high peak in a bracket of its own.
-STEPS_PER_INTERVAL = 12
+STEPS_PER_INTERVAL = 20
 MOST_STEPS = 400
-LONGEST_STEP = 0.02  # s
+LONGEST_STEP = 0.012  # s
 
 # Each round narrows the bracket of a peak to a quarter; a smooth peak's value then stands to
 # the square of that.

@@ -121,6 +121,8 @@ class PiecewiseTrajectory(Trajectory):
         One for each joint.
     via_times : array_like
         When each via point is passed [s].
+    note : str
+        See `Trajectory`.
 
     Raises
     ------
@@ -130,8 +132,9 @@ class PiecewiseTrajectory(Trajectory):
 
     """
 
-    def __init__(self, profiles: Sequence[JointProfile], via_times: ArrayLike) -> None:
-        self.profiles = tuple(profiles)
+    def __init__(self, profiles: Sequence[JointProfile], via_times: ArrayLike,
+                 note: str = '') -> None:
+        self.profiles, self.note = tuple(profiles), note
         self.via_times = finite_array('via_times', via_times, (-1,))
         self.duration = self.profiles[0].duration
         lengths = np.array([p.duration for p in self.profiles])
@@ -176,4 +179,4 @@ class PiecewiseTrajectory(Trajectory):
     def stretched(self, factor: float) -> PiecewiseTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""
         return PiecewiseTrajectory([p.stretched(factor) for p in self.profiles],
-                                   self.via_times * factor)
+                                   self.via_times * factor, self.note)

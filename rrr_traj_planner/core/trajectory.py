@@ -31,11 +31,14 @@ class Trajectory(ABC):
         [s].
     via_times : ndarray
         When each via point is passed [s], never decreasing.
+    note : str
+        What there is to be said of how the motion was made; mostly empty.
 
     """
 
     duration: float
     via_times: Array
+    note: str = ''
 
     @abstractmethod
     def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:

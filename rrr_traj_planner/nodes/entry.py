@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Sequence
+import os
 import signal
 import sys
 from types import FrameType
@@ -156,6 +157,9 @@ def guarded(name: str, work: Callable[[], int]) -> int:
         has a text for users. Other exceptions are bugs and pass.
 
     """
+    # The planners' matrices are small: more threads only wait for each other. Told before NumPy
+    # is loaded, and to the children too.
+    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     try:
         _interrupt.raises = True
         for number in SIGNALS:

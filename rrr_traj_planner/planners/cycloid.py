@@ -32,12 +32,12 @@ from rrr_traj_planner.planners.via_velocities import least_stretch, least_time
 
 # Durations are longer than the least by this part, so that they can be prescribed again.
 DURATION_ROOM = 1e-6
+DURATION_TOLERANCE = 1e-9  # s, to which prescribed durations are kept
 STRETCH_TOLERANCE = 3e-7   # of prescribed durations: jerk then keeps its limit to 1e-6
 TORQUE_TOLERANCE = 5e-7    # of the stretch that torque asks for
 
 STRAIGHTENING_ROUNDS = 5   # of lowering via velocities of a path that gravity blocks
 SLOWING_ROUNDS = 8         # of giving more time to the segments that lack torque
-STRETCH_ROUNDS = 20        # of stretching the whole motion
 OVERSHOOT_ROUNDS = 8       # of lowering via velocities that overshoot a joint's range
 OVERSHOOT_REDUCTION = 0.5
 
@@ -70,7 +70,8 @@ def plan(task: JointTask) -> Trajectory:
     chain = chain_of(task)
     if task.durations is None:
         return _fastest(task, chain, None).trajectory
-    motion = _prescribed(task, chain, task.durations)
+    motion = _prescribed(task, chain, task.durations) or _slowed_fastest(
+        task, chain, task.durations)
     if motion is None:
         raise _too_short(task, chain, task.durations)
     return motion.trajectory
@@ -86,20 +87,20 @@ class _Motion(NamedTuple):
 def _fastest(task: JointTask, chain: Chain, floor: Array | None) -> _Motion:
     """Return the motion of least total time, slowed where torque asks for it."""
     chain, motion, stretch = _holdable_motion(task, chain, floor)
-    if stretch.max() <= 1.0:
-        return _stretched_for_torque(task, chain, motion)
-    uniform = motion.durations.sum() * stretch.max()
-    slower, slower_floor = motion, floor
+    best, least = motion, motion.durations.sum() * max(1.0, stretch.max())
+    lacking = np.zeros(len(stretch), dtype=bool)
     for _ in range(SLOWING_ROUNDS):
-        slow = stretch > 1.0
-        if not slow.any() or np.isinf(stretch).any():
+        lacking |= stretch > 1.0
+        if not lacking.any() or np.isinf(stretch).any():
             break
-        least = np.where(slow, slower.durations * stretch, 0.0)
-        slower_floor = least if slower_floor is None else np.maximum(slower_floor, least)
-        slower = _least_time_motion(task, chain, slower_floor)
-        stretch = _segment_stretch(task, slower)
-    local = slower.durations.sum() * max(1.0, stretch.max())
-    return _stretched_for_torque(task, chain, slower if local < uniform else motion)
+        # as long as torque asks for, neither more nor less
+        slow = np.where(lacking, motion.durations * stretch, 0.0)
+        motion = _least_time_motion(task, chain, slow if floor is None else np.maximum(slow, floor))
+        stretch = _segment_stretch(task, motion)
+        total = motion.durations.sum() * max(1.0, stretch.max())
+        if total < least:
+            best, least = motion, total
+    return _stretched_for_torque(task, best)
 
 
 def _holdable_motion(task: JointTask, chain: Chain,
@@ -135,45 +136,68 @@ def _least_time_motion(task: JointTask, chain: Chain, floor: Array | None) -> _M
 
 
 def _prescribed(task: JointTask, chain: Chain, durations: Array) -> _Motion | None:
-    """Return a motion of given durations within all limits; None if none is found."""
-    for _ in range(STRAIGHTENING_ROUNDS):
-        motion = _with_durations(task, chain, durations)
-        if motion is None:
-            return None
-        if torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
-            return motion
-        lacking = _segment_stretch(task, motion) > 1.0
+    """
+    Return a motion of given durations within all limits; None if none is found.
+
+    Where the gentle one lacks torque, the fastest of the same proportions may have it once it is
+    slowed to these durations; else lower via velocities may help.
+    """
+    for round_ in range(STRAIGHTENING_ROUNDS + 1):
+        if round_ == STRAIGHTENING_ROUNDS:
+            chain = _at_rest(chain)
+        for gently in (True, False):
+            motion = _with_durations(task, chain, durations, gently)
+            if motion is None:
+                return None
+            stretch = _segment_stretch(task, motion)
+            if torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
+                return motion
+        lacking = stretch > 1.0
         chain = _slower_at(chain, np.tile(lacking[:, np.newaxis], 3))
-    motion = _with_durations(task, _at_rest(chain), durations)
-    if motion is not None and torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
-        return motion
     return None
 
 
-def _with_durations(task: JointTask, chain: Chain, durations: Array) -> _Motion | None:
+def _slowed_fastest(task: JointTask, chain: Chain, durations: Array) -> _Motion | None:
+    """Return the fastest motion, slowed, if that gives the durations; else None."""
+    fastest = _fastest(task, chain, None)
+    slower = float(np.mean(durations / fastest.durations))
+    if slower < 1.0 - STRETCH_TOLERANCE or (
+            np.abs(durations - slower * fastest.durations).max() > DURATION_TOLERANCE):
+        return None
+    return _Motion(fastest.trajectory.stretched(slower), durations)
+
+
+def _with_durations(task: JointTask, chain: Chain, durations: Array,
+                    gently: bool) -> _Motion | None:
     """Return a motion of given durations within the kinematic limits; None if there is none."""
-    for _ in range(OVERSHOOT_ROUNDS):
-        motion, overshoot = _motion(task, chain, durations)
+    for round_ in range(OVERSHOOT_ROUNDS + 1):
+        if round_ == OVERSHOOT_ROUNDS:
+            chain = _at_rest(chain)
+        motion, overshoot = _motion(task, chain, durations, gently)
         if motion is None or not overshoot.any():
             return motion
         chain = _slower_at(chain, overshoot)
-    return _motion(task, _at_rest(chain), durations)[0]
+    return motion
 
 
-def _motion(task: JointTask, chain: Chain,
-            durations: Array) -> tuple[_Motion | None, BoolArray]:
-    """Return a motion of given durations, and which segments overshoot a joint's range."""
+def _motion(task: JointTask, chain: Chain, durations: Array,
+            gently: bool = True) -> tuple[_Motion | None, BoolArray]:
+    """
+    Return a motion of given durations, and which segments overshoot a joint's range.
+
+    Time to spare makes it gentle, or else slows the fastest motion of the same proportions.
+    """
     factor, solution = least_stretch(chain, durations)
     v, T = solution.velocities, solution.durations
     if factor > 1.0 + STRETCH_TOLERANCE:
         return None, np.zeros_like(chain.displacements, dtype=bool)
-    if factor <= 1.0:
-        v, T = v * factor, durations
+    if factor <= 1.0 and gently:
+        v, T, factor = v * factor, durations, 1.0
     v0, v1 = np.vstack((np.zeros(3), v)), np.vstack((v, np.zeros(3)))
     parts = segment_motion.gentle_parts(
         chain.law, chain.max_velocity, v0, v1, T[:, np.newaxis], chain.displacements)
     trajectory = segment_motion.trajectory(task.points, v0, v1, T[:, np.newaxis], parts)
-    if factor > 1.0:
+    if factor != 1.0:
         trajectory = trajectory.stretched(1.0 / factor)
     return _Motion(trajectory, durations), _overshoot(task, trajectory)
 
@@ -216,29 +240,21 @@ def _segment_stretch(task: JointTask, motion: _Motion) -> Array:
     return np.sqrt(worst)
 
 
-def _stretched_for_torque(task: JointTask, chain: Chain, motion: _Motion) -> _Motion:
+def _stretched_for_torque(task: JointTask, motion: _Motion) -> _Motion:
     """Return the motion slowed as a whole, just enough for its torques."""
     factor = torque_stretch(task, motion.trajectory)
-    for _ in range(STRETCH_ROUNDS):
-        if factor <= 1.0 + TORQUE_TOLERANCE or np.isinf(factor):
-            break
-        durations = motion.durations * factor * (1.0 + DURATION_ROOM)
-        slower = _with_durations(task, chain, durations)
-        motion = slower if slower is not None else _Motion(
-            motion.trajectory.stretched(factor), durations)
-        factor = torque_stretch(task, motion.trajectory)
     if np.isinf(factor):
         raise cannot_hold(task, motion.trajectory)
-    if factor > 1.0 + TORQUE_TOLERANCE:
-        return _Motion(motion.trajectory.stretched(factor), motion.durations * factor)
-    return motion
+    if factor <= 1.0 + TORQUE_TOLERANCE:
+        return motion
+    return _Motion(motion.trajectory.stretched(factor), motion.durations * factor)
 
 
 def _too_short(task: JointTask, chain: Chain, durations: Array) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
     feasible = _least_feasible(task, chain, durations)
     asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
-    short = np.flatnonzero(durations < feasible - 2e-6).tolist()
+    short = np.flatnonzero(durations * (1.0 + 2.0 * DURATION_ROOM) < feasible - 2e-6).tolist()
     return TimingError(
         f'segment_durations {asked} s are too short for segment'
         f'{"s" * (len(short) > 1)} {", ".join(map(str, short))}: the least feasible are '
@@ -260,4 +276,4 @@ def _least_feasible(task: JointTask, chain: Chain, durations: Array) -> Array:
 def _fastest_with_stops(task: JointTask, chain: Chain, floor: Array) -> _Motion:
     """Return the motion of least total time with a stop at every via point."""
     stops = _at_rest(chain)
-    return _stretched_for_torque(task, stops, _least_time_motion(task, stops, floor))
+    return _stretched_for_torque(task, _least_time_motion(task, stops, floor))

@@ -32,7 +32,7 @@ FIRST_STEP = 0.08          # relative
 STEP_REDUCTION = 0.5
 TORQUE_TOLERANCE = 5e-7
 PRESCRIBED_ROUNDS = 12
-STRETCH_SEARCH = 60
+STRETCHES = np.geomspace(1.0, 30.0, 40)  # of what the search finds, tried in turn
 
 
 @register('cycloid_approach_a')
@@ -77,13 +77,16 @@ def _fastest(task: JointTask, chain: Chain) -> Array:
     durations = _beam_search(chain)
     if len(durations) <= REFINED_SEGMENTS:
         durations = _refined(chain, durations)
-    for factor in np.geomspace(1.0, 1e3, STRETCH_SEARCH):
+    for factor in STRETCHES:
         if _motion(task, chain, chain.law, factor * durations) is not None:
             return np.asarray(factor * durations)
-    raise ConvergenceError('approach (a): no feasible durations found')
+    raise TimingError(
+        'approach (a) leaves every via point at the cruise velocity of the segment before it: no '
+        'durations are found at which every joint then stays in its range')
 
 
 def _beam_search(chain: Chain) -> Array:
+    """Return durations chosen one after the other, the best beginnings kept; else very long ones."""
     D, law, limit = chain.displacements, chain.law, chain.max_velocity
     grids = np.maximum(chain.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
     v, elapsed, chosen = np.zeros((1, 3)), np.zeros(1), np.zeros((1, 0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.errors import ConvergenceError, TimingError
+from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError, TimingError
 from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
 from rrr_traj_planner.core.limit_check import violations
 from rrr_traj_planner.core.limits import JointLimits
@@ -22,7 +22,7 @@ from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 SAME_POINT = 1e-9  # rad
 
 # The quintic through the sampled points keeps velocity and acceleration limits to this part.
-INTERPOLATION_TOLERANCE = 4e-4
+INTERPOLATION_TOLERANCE = 8e-4
 RESAMPLING_ROUNDS = 10
 MOST_RESAMPLING_STRETCH = 2.0  # beyond it the motion itself is at fault
 
@@ -53,19 +53,26 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
         If the planner's motion breaks a limit, which is a bug.
 
     """
-    find = planner(request.planner_id)
+    method, durations = planner(request.planner_id), request.segment_durations
+    if durations is not None and np.isnan(durations).any() and not method.some_durations:
+        raise InvalidInputError(
+            f'segment_durations[{int(np.isnan(durations).argmax())}] is nan: planner '
+            f'{request.planner_id} takes every duration or none')
     limits = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
     start = None if request.start is None else check_start(model, limits, request.start)
     q = joint_via_points(model, limits, request.via_points, start, request.elbow)
     if start is not None:
         q = np.vstack((start, q))
-    same = _repeated(q) if request.segment_durations is None else np.zeros(len(q) - 1, bool)
+    same = _repeated(q)
+    if durations is not None:  # where a stay is prescribed, a point counts twice
+        same &= np.isnan(durations)
+        durations = None if np.isnan(durations[~same]).all() else durations[~same]
     distinct = q[np.concatenate(([True], ~same))]
     if len(distinct) == 1:
         return _rest(model, limits, request, q)
-    trajectory = find(JointTask(
-        model, limits, distinct, request.segment_durations, request.sample_period,
-        np.flatnonzero(~same)))
+    trajectory = method.plan(JointTask(
+        model, limits, distinct, durations, request.sample_period, np.flatnonzero(~same),
+        request.should_stop))
     index = np.cumsum(np.concatenate(([0], ~same)))
     via_times = trajectory.via_times[index][len(q) - len(request.via_points):]
     return _checked(model, limits, request, trajectory, via_times)
@@ -107,12 +114,14 @@ def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
     if broken:
         raise ConvergenceError(
             f'planner {request.planner_id} broke a limit: {broken[0].text(model.joint_names)}')
-    return Plan(trajectory, points, via_times, peaks, effort)
+    return Plan(trajectory, points, via_times, peaks, effort, trajectory.note)
 
 
 def _stretch_for_interpolation(limits: JointLimits, points: TrajectoryPoints) -> float:
     """Return by how much to slow down so that the quintic through the points keeps its limits."""
     velocity, acceleration = Interpolant(points).peaks()
-    excess = max(float((velocity / limits.max_velocity).max()),
-                 float(np.sqrt((acceleration / limits.max_acceleration).max())))
-    return 1.0 if excess <= 1.0 + INTERPOLATION_TOLERANCE else excess
+    faster = float((velocity / limits.max_velocity).max())
+    harder = float((acceleration / limits.max_acceleration).max())
+    if max(faster, harder) <= 1.0 + INTERPOLATION_TOLERANCE:
+        return 1.0
+    return max(faster, float(np.sqrt(harder)))

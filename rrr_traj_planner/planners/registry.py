@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib import import_module
 from pkgutil import iter_modules
+from typing import NamedTuple
 
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.trajectory import Trajectory
@@ -13,10 +14,19 @@ from rrr_traj_planner.planners.request import JointTask
 
 JointPlanner = Callable[[JointTask], Trajectory]
 
-_planners: dict[str, JointPlanner] = {}
+
+class Registered(NamedTuple):
+    """A planner, and what it can do."""
+
+    plan: JointPlanner
+    some_durations: bool  # whether durations may be prescribed for some segments only
 
 
-def register(planner_id: str) -> Callable[[JointPlanner], JointPlanner]:
+_planners: dict[str, Registered] = {}
+
+
+def register(planner_id: str,
+             some_durations: bool = False) -> Callable[[JointPlanner], JointPlanner]:
     """
     Return a decorator that makes a function the planner of an id.
 
@@ -24,6 +34,8 @@ def register(planner_id: str) -> Callable[[JointPlanner], JointPlanner]:
     ----------
     planner_id : str
         The id, as requests name it.
+    some_durations : bool
+        Whether it takes durations that are NaN, for segments that are free.
 
     Returns
     -------
@@ -32,7 +44,7 @@ def register(planner_id: str) -> Callable[[JointPlanner], JointPlanner]:
 
     """
     def remember(planner: JointPlanner) -> JointPlanner:
-        _planners[planner_id] = planner
+        _planners[planner_id] = Registered(planner, some_durations)
         return planner
 
     return remember
@@ -45,7 +57,7 @@ def planner_ids() -> list[str]:
     return sorted(_planners)
 
 
-def planner(planner_id: str) -> JointPlanner:
+def planner(planner_id: str) -> Registered:
     """
     Return the planner of an id.
 
@@ -56,7 +68,7 @@ def planner(planner_id: str) -> JointPlanner:
 
     Returns
     -------
-    callable
+    Registered
         The planner.
 
     Raises

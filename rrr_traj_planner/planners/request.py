@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, number_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.inverse_kinematics import Elbow, ELBOWS
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
+
+
+def never() -> bool:
+    """Return that there is no reason to stop."""
+    return False
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +34,8 @@ class PlanningRequest:
     planner_id : str
         The method.
     segment_durations : array_like, optional
-        Durations [s], one for each segment; None: as fast as the limits allow.
+        Durations [s], one for each segment; NaN leaves a segment free, where the planner can do
+        that. None: as fast as the limits allow.
     velocity_scaling, acceleration_scaling : float
         Factors in (0, 1] on the limits.
     sample_period : float
@@ -37,6 +44,8 @@ class PlanningRequest:
         Branch; None: the first that keeps the limits.
     max_deviation : float
         How far a Cartesian path may leave the polyline [m].
+    should_stop : callable
+        Asked now and then; once it answers True, the best motion so far is the answer.
 
     Raises
     ------
@@ -54,6 +63,7 @@ class PlanningRequest:
     sample_period: float = 0.01
     elbow: Elbow | None = None
     max_deviation: float = 0.05
+    should_stop: Callable[[], bool] = never
 
     def __post_init__(self) -> None:
         """Check every value and make the arrays read-only."""
@@ -76,16 +86,17 @@ class PlanningRequest:
             self._check_durations()
 
     def _check_durations(self) -> None:
-        durations = finite_array('segment_durations', [] if self.segment_durations is None
+        durations = number_array('segment_durations', [] if self.segment_durations is None
                                  else self.segment_durations, (-1,))
         object.__setattr__(self, 'segment_durations', durations)
         if len(durations) != self.segments:
             raise InvalidInputError(
                 f'{len(durations)} segment_durations given for {self.segments} segments')
-        if (durations <= 0.0).any():
-            k = int((durations <= 0.0).argmax())
+        wrong = (durations <= 0.0) | np.isinf(durations)
+        if wrong.any():
+            k = int(wrong.argmax())
             raise InvalidInputError(
-                f'segment_durations[{k}] is {durations[k]} s, must be positive')
+                f'segment_durations[{k}] is {durations[k]} s, must be positive and finite')
 
     @property
     def segments(self) -> int:
@@ -107,11 +118,13 @@ class JointTask:
     points : ndarray, shape (n + 1, 3)
         Joint positions [rad], within the limits, each of which the motors can hold.
     durations : ndarray, shape (n,), optional
-        Prescribed durations of the segments [s].
+        Prescribed durations of the segments [s]; NaN where one is free.
     sample_period : float
         [s].
     segment_numbers : ndarray of int, shape (n,), optional
         What the caller calls the segments, where it has more of them; None: 0, 1, 2, ...
+    should_stop : callable
+        As in `PlanningRequest`.
 
     """
 
@@ -121,6 +134,7 @@ class JointTask:
     durations: Array | None
     sample_period: float
     segment_numbers: IntArray | None = None
+    should_stop: Callable[[], bool] = never
 
     def segment_number(self, segment: int) -> int:
         """

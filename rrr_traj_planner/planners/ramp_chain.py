@@ -1,0 +1,205 @@
+"""
+Motions whose acceleration is a chain of half-period ramps between node values (3.4 with 1/a = pi).
+
+Each segment between via points has n ramps of equal length. Node accelerations are the unknowns:
+the acceleration keeps its limits everywhere if it does at the nodes, jerk is continuous, zero at
+every node and closed-form at its peaks, and position and velocity are linear in them.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core import cycloid
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+
+# Displacement of a ramp of length h from rest: h^2 (a0 / 2 + (a1 - a0) RAMP_SHARE).
+RAMP_SHARE = 0.25 - 1.0 / np.pi ** 2
+
+
+class Motion(NamedTuple):
+    """Unknowns of a chain of N segments of n ramps."""
+
+    inner: Array     # node accelerations within the segments [rad/s^2], shape (N, n - 1, 3)
+    v: Array         # velocities at the via points [rad/s], (N - 1, 3)
+    a: Array         # accelerations there [rad/s^2], (N - 1, 3)
+    T: Array         # durations [s], (N,)
+
+
+class States(NamedTuple):
+    """A motion at its points: nodes, then the middles between them; or its rate of change."""
+
+    q: Array     # shape (N, 2 n + 1, 3)
+    qd: Array
+    qdd: Array
+    jerk: Array  # the peak of each ramp, signed, shape (N, n, 3)
+
+
+class Grid:
+    """
+    Constant matrices of n ramps in a segment.
+
+    Parameters
+    ----------
+    n : int
+        Number of ramps, at least 4.
+
+    Attributes
+    ----------
+    qdd, qd, q : ndarray, shape (2 n + 1, n + 1)
+        From node accelerations to acceleration, velocity gained / h and way gained / h^2 at the
+        points, h the length of a ramp.
+    jerk : ndarray, shape (n, n + 1)
+        To the jerk's peaks times h.
+    elapsed : ndarray, shape (2 n + 1,)
+        Time of each point / h.
+
+    """
+
+    def __init__(self, n: int) -> None:
+        self.n = n
+        one = np.eye(n + 1)
+        qd, q = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
+        for j in range(n):
+            qd[j + 1] = qd[j] + 0.5 * (one[j] + one[j + 1])
+            q[j + 1] = q[j] + qd[j] + 0.5 * one[j] + RAMP_SHARE * (one[j + 1] - one[j])
+        rise = one[1:] - one[:-1]
+        self.qdd = np.vstack((one, 0.5 * (one[1:] + one[:-1])))
+        # half a ramp: (1 - cos)/2 integrated once and twice up to s = 1/2
+        self.qd = np.vstack((qd, qd[:-1] + 0.5 * one[:-1] + (0.25 - 0.5 / np.pi) * rise))
+        self.q = np.vstack((q, q[:-1] + 0.5 * qd[:-1] + 0.125 * one[:-1]
+                            + (0.0625 - 0.5 / np.pi ** 2) * rise))
+        self.jerk = 0.5 * np.pi * rise
+        self.elapsed = np.concatenate((np.arange(n + 1.0), np.arange(n) + 0.5))
+        self._restore = self._restoring_shapes()
+
+    def _restoring_shapes(self) -> Array:
+        """Return smooth changes of inner accelerations that add a unit of velocity, and of way."""
+        s = np.arange(1, self.n) / self.n
+        shapes = np.stack((np.sin(np.pi * s), np.sin(2.0 * np.pi * s)), axis=1)
+        gains = np.stack((self.qd[self.n], self.q[self.n]))[:, 1:-1] @ shapes
+        return shapes @ np.linalg.inv(gains)
+
+    def nodes(self, m: Motion) -> tuple[Array, Array, Array]:
+        """Return accelerations of all nodes (N, n + 1, 3), and velocities at segments' ends."""
+        rest = np.zeros((1, 3))
+        a, v = np.concatenate((rest, m.a, rest)), np.concatenate((rest, m.v, rest))
+        nodes = np.concatenate((a[:-1, np.newaxis], m.inner, a[1:, np.newaxis]), axis=1)
+        return nodes, v[:-1], v[1:]
+
+    def states(self, points: Array, m: Motion) -> States:
+        """Return the motion at its points; it begins each segment at its via point."""
+        nodes, v0, _ = self.nodes(m)
+        h = (m.T / self.n)[:, np.newaxis, np.newaxis]
+        v0 = v0[:, np.newaxis]
+        way = h * (self.elapsed[:, np.newaxis] * v0 + h * (self.q @ nodes))
+        return States(
+            points[:-1, np.newaxis] + way,
+            v0 + h * (self.qd @ nodes), self.qdd @ nodes, (self.jerk @ nodes) / h)
+
+    def changes(self, m: Motion) -> States:
+        """
+        Return how states change with a segment's own unknowns y, alike for all joints.
+
+        y is the velocity at the segment's start, then its n + 1 node accelerations; arrays have
+        shape (N, points, n + 2).
+        """
+        h = (m.T / self.n)[:, np.newaxis, np.newaxis]
+        zero, one = np.zeros((len(h), 2 * self.n + 1, 1)), np.ones((len(h), 2 * self.n + 1, 1))
+        qdd = np.broadcast_to(self.qdd, (len(h), *self.qdd.shape))
+        return States(
+            np.concatenate((h * self.elapsed[:, np.newaxis], h ** 2 * self.q), axis=2),
+            np.concatenate((one, h * self.qd), axis=2), np.concatenate((zero, qdd), axis=2),
+            np.concatenate((zero[:, :self.n], self.jerk / h), axis=2))
+
+    def changes_by_duration(self, m: Motion, at: States) -> States:
+        """Return how states change with a segment's duration, accelerations kept."""
+        nodes, v0, _ = self.nodes(m)
+        T = m.T[:, np.newaxis, np.newaxis]
+        h, v0 = T / self.n, v0[:, np.newaxis]
+        return States(
+            (self.elapsed[:, np.newaxis] * v0 + 2.0 * h * (self.q @ nodes)) / self.n,
+            (at.qd - v0) / T, np.zeros_like(at.qdd), -at.jerk / T)
+
+    def end_changes(self, m: Motion) -> tuple[Array, Array]:
+        """Return how velocity and place at the segments' ends change: by y (N, 2, n + 2), by T."""
+        n, at = self.n, self.states(np.zeros((len(m.T) + 1, 3)), m)
+        by_y, by_T = self.changes(m), self.changes_by_duration(m, at)
+        return (np.stack((by_y.qd[:, n], by_y.q[:, n]), axis=1),
+                np.stack((by_T.qd[:, n], by_T.q[:, n]), axis=1))
+
+    def moved(self, points: Array, m: Motion, step: Motion, size: float) -> Motion:
+        """
+        Return the motion after a step, again through every via point.
+
+        Accelerations follow the durations as if time were stretched, which keeps the way; what
+        is left of the step's second order is mended by smooth changes.
+        """
+        T = m.T + size * step.T
+        v, a = m.v + size * step.v, m.a + size * step.a
+        if not (T > 0.0).all():
+            return Motion(m.inner, v, a, T)
+        ratio = (m.T / T)[:, np.newaxis, np.newaxis]
+        rate = (step.T / m.T)[:, np.newaxis, np.newaxis]
+        inner = (m.inner + size * (step.inner + 2.0 * rate * m.inner)) * ratio ** 2
+        return self.restored(points, Motion(inner, v, a, T))
+
+    def slowed(self, m: Motion, T: Array) -> Motion:
+        """Return a motion with stops at every via point, run through in other durations."""
+        return m._replace(inner=m.inner * ((m.T / T) ** 2)[:, np.newaxis, np.newaxis], T=T)
+
+    def stretched(self, m: Motion, factor: float) -> Motion:
+        """Return a motion run through more slowly by a factor, as a whole."""
+        return Motion(m.inner / factor ** 2, m.v / factor, m.a / factor ** 2, m.T * factor)
+
+    def restored(self, points: Array, m: Motion) -> Motion:
+        """Return the motion with inner accelerations mended to meet the via points exactly."""
+        nodes, v0, v1 = self.nodes(m)
+        h = (m.T / self.n)[:, np.newaxis]
+        wanted = np.stack(((v1 - v0) / h, (np.diff(points, axis=0) - m.T[:, np.newaxis] * v0)
+                           / h ** 2), axis=1)
+        lacking = wanted - np.stack((self.qd[self.n], self.q[self.n])) @ nodes
+        return m._replace(inner=m.inner + self._restore @ lacking)
+
+    def trajectory(self, points: Array, m: Motion) -> PiecewiseTrajectory:
+        """Return the motion as cycloid pieces."""
+        nodes, _, _ = self.nodes(m)
+        at = self.states(points, m)
+        h = np.broadcast_to((m.T / self.n)[:, np.newaxis], (len(m.T), self.n)).ravel()
+        profiles = []
+        for j in range(3):
+            q, qd, a0, a1 = (f.ravel() for f in (
+                at.q[:, :self.n, j], at.qd[:, :self.n, j], nodes[:, :-1, j], nodes[:, 1:, j]))
+            profiles.append(JointProfile(cycloid.ramp(h, q, qd, a0, a1)))
+        return PiecewiseTrajectory(profiles, np.concatenate(([0.0], np.cumsum(m.T))))
+
+    def rest_to_rest(self, points: Array) -> Array:
+        """Return node accelerations, times T^2, of straight motions with a stop at every point."""
+        shape = np.sin(2.0 * np.pi * np.arange(self.n + 1) / self.n)
+        shape *= self.n ** 2 / (self.q[self.n] @ shape)
+        return shape[:, np.newaxis] * np.diff(points, axis=0)[:, np.newaxis]
+
+    def rest_to_rest_legs(self, points: Array) -> Array:
+        """
+        Return node accelerations of a segment of 1 s that stops at points on its way.
+
+        Parameters
+        ----------
+        points : ndarray, shape (legs + 1, 3)
+            Where it begins, stops and ends [rad].
+
+        Returns
+        -------
+        ndarray, shape (n + 1, 3)
+            [rad/s^2].
+
+        """
+        legs = len(points) - 1
+        ends = np.round(np.linspace(0.0, self.n, legs + 1)).astype(int)
+        nodes = np.zeros((self.n + 1, 3))
+        for leg, (first, last) in enumerate(zip(ends[:-1], ends[1:])):
+            part = Grid(last - first).rest_to_rest(points[leg:leg + 2])[0]
+            nodes[first:last + 1] += part * (self.n / (last - first)) ** 2
+        return nodes

@@ -1,0 +1,140 @@
+"""Chains of ramps whose durations, all or some, are prescribed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.errors import TimingError
+from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_constraints import Constraints
+from rrr_traj_planner.planners.ramp_newton import Freedom
+from rrr_traj_planner.planners.ramp_problem import fastest, mended, Solved
+from rrr_traj_planner.planners.ramp_start import rest_to_rest
+from rrr_traj_planner.planners.request import JointTask
+
+DURATION_TOLERANCE = 1e-7  # relative: a stretch of prescribed durations that counts as none
+FREE_WEIGHT = 1e-3         # of free durations while it is found out whether the others can be kept
+GENTLER = 1.02             # how near the least peak of acceleration is looked for
+GENTLENESS_ROUNDS = 12
+ROOM = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)  # of durations that are offered instead
+
+
+def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
+    """
+    Return a motion of prescribed durations.
+
+    Where all are, the gentlest: the peak of acceleration over its limit is the least. Where some
+    are free, the fastest.
+
+    Parameters
+    ----------
+    task : JointTask
+        The via points, the arm and its limits.
+    grid : Grid
+        The family of motions.
+    durations : ndarray, shape (N,)
+        [s], NaN where free.
+
+    Returns
+    -------
+    Solved or None
+        None where no way is found along which the motors can hold the arm.
+
+    Raises
+    ------
+    TimingError
+        If the durations are too short; with feasible ones.
+
+    """
+    kept = _kept(task, grid, durations)
+    if kept is None:
+        return None
+    if _stretch(kept, durations) > 1.0 + DURATION_TOLERANCE:
+        raise _too_short(task, grid, durations)
+    if np.isnan(durations).any():
+        return _fastest_of_free(task, grid, durations, kept)
+    return _gentlest(task, grid, durations, kept)
+
+
+def _kept(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
+    """Return the motion that stretches prescribed durations, as a whole, least."""
+    free = np.isnan(durations)
+    tie = np.where(free, 0.0, durations)
+    weights = np.where(free, FREE_WEIGHT, 1.0 / np.where(free, 1.0, durations) / (~free).sum())
+
+    def begin(planned: JointTask, constraints: Constraints) -> Motion | None:
+        m = rest_to_rest(planned, constraints)
+        if m is None:
+            return None
+        stretch = float((m.T / durations)[~free].max())
+        return grid.slowed(m, np.where(free, m.T, stretch * tie))
+
+    return mended(task, grid, Freedom(free, tie, weights, _no_stops(durations)), begin)
+
+
+def _stretch(solved: Solved, durations: Array) -> float:
+    """Return by how much a motion stretches the prescribed durations."""
+    return float(np.nanmax(np.diff(solved.trajectory.via_times) / durations))
+
+
+def _in_time(solved: Solved, durations: Array) -> Solved:
+    """Return a motion run through at the rate at which it keeps its durations exactly."""
+    z = _stretch(solved, durations)
+    return solved._replace(trajectory=solved.trajectory.stretched(1.0 / z))
+
+
+def _gentlest(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> Solved:
+    """
+    Return the motion of least peak acceleration over its limit.
+
+    A motion with time to spare, slowed to its durations, keeps lower acceleration limits; under
+    these there is less time to spare, until there is none.
+    """
+    limit = np.minimum(task.limits.max_acceleration, kept.trajectory.peaks().acceleration.max())
+    best = _in_time(kept, durations)
+    for _ in range(GENTLENESS_ROUNDS):
+        z = _stretch(kept, durations)
+        if z ** 2 > 1.0 / GENTLER:
+            break
+        limit = limit * z ** 2
+        gentler = replace(task, limits=replace(task.limits, max_acceleration=limit))
+        found = _kept(gentler, grid, durations)
+        if found is None or _stretch(found, durations) > 1.0 + DURATION_TOLERANCE:
+            break
+        kept, best = found, _in_time(found, durations)
+    return best
+
+
+def _fastest_of_free(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> Solved:
+    """Return the motion whose free durations are least, the others as prescribed."""
+    free, z = np.isnan(durations), _stretch(kept, durations)
+    m = kept.outcome.motion
+    z = float(np.nanmax(m.T / durations))
+    start = grid.restored(task.points, Motion(
+        m.inner * z ** 2, m.v * z, m.a * z ** 2, np.where(free, m.T / z, durations)))
+    freedom = Freedom(free, np.zeros(len(free)), free.astype(float), _no_stops(durations))
+    found = mended(task, grid, freedom, lambda planned, constraints: start)
+    if found is None or _stretch(found, durations) > 1.0 + DURATION_TOLERANCE:
+        return _in_time(kept, durations)
+    return found
+
+
+def _no_stops(durations: Array) -> BoolArray:
+    return np.zeros((len(durations) - 1, 3), dtype=bool)
+
+
+def _too_short(task: JointTask, grid: Grid, durations: Array) -> TimingError:
+    """Return the error of prescribed durations that are too short, with feasible ones."""
+    floor = np.nan_to_num(durations)
+    found = fastest(task, grid, floor)
+    least = np.maximum(np.diff(found.trajectory.via_times), floor) if found else floor
+    for room in ROOM:
+        feasible = np.ceil(least * (1.0 + room) * 1e6) / 1e6
+        kept = _kept(task, grid, feasible)
+        if kept is not None and _stretch(kept, feasible) <= 1.0 + DURATION_TOLERANCE:
+            break
+    asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
+    return TimingError(f'segment_durations {asked} s are too short: the least feasible are '
+                       f'{offered} s', tuple(offered))

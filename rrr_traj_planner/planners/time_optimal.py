@@ -1,0 +1,110 @@
+"""
+`time_optimal`: as fast as velocity, acceleration, jerk and torque allow, with continuous jerk.
+
+The acceleration is a chain of the thesis's half-period ramps; node accelerations, via velocities
+and durations are optimised together, from rest at every via point on, by an interior-point method
+whose every iterate is a valid motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.ramp_chain import Grid
+from rrr_traj_planner.planners.ramp_prescribed import prescribed
+from rrr_traj_planner.planners.ramp_problem import fastest, Solved
+from rrr_traj_planner.planners.ramp_start import cannot_be_held
+from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.request import JointTask
+
+RAMPS = 20            # in a segment
+MOST_RAMPS = 40      # where neither jerk nor sampling shapes them
+SHAPED = 0.1          # part of a segment above which a full swing of acceleration shapes ramps
+SAMPLES_PER_RAMP = 1.0
+
+
+@register('time_optimal', some_durations=True)
+def plan(task: JointTask) -> Trajectory:
+    """
+    Return the fastest motion of the family, or the gentlest of prescribed durations.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked; durations that are NaN are free.
+
+    Returns
+    -------
+    Trajectory
+        Within the limits; its note says where the method ended before it converged.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has neither an acceleration nor an effort limit.
+    TimingError
+        If prescribed durations are too short; with feasible ones.
+    LimitViolationError
+        If no way between two via points is found along which the motors can hold the arm.
+
+    """
+    task = replace(task, limits=_with_jerk_limits(task))
+    grid = Grid(_ramps(task))
+    found = fastest(task, grid) if task.durations is None else prescribed(
+        task, grid, task.durations)
+    if found is None:
+        raise cannot_be_held(task, grid)
+    return PiecewiseTrajectory(found.trajectory.profiles, found.trajectory.via_times, _note(found))
+
+
+def _note(found: Solved) -> str:
+    """Return what there is to be said of how the method ended."""
+    if found.outcome.converged:
+        return ''
+    part = 100.0 * min(found.outcome.gap / found.trajectory.duration, 1.0)
+    return f'planning ended before it converged: at most {part:.2g} % of the time could be saved'
+
+
+def _with_jerk_limits(task: JointTask) -> JointLimits:
+    """
+    Return limits whose jerk keeps ramps so long that samples can follow them.
+
+    A full swing of acceleration lasts two samples, four where the acceleration that a controller
+    rebuilds from them must keep a limit.
+    """
+    limits = task.limits
+    samples = np.where(np.isinf(limits.max_acceleration), 2.0, 4.0)
+    jerk = np.pi * _acceleration_scale(task) / (samples * task.sample_period)
+    return replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk))
+
+
+def _acceleration_scale(task: JointTask) -> Array:
+    """Return the acceleration that each joint can have, by its limit or by its torque."""
+    limits = task.limits
+    lacking = np.isinf(limits.max_acceleration) & np.isinf(limits.max_effort)
+    if lacking.any():
+        raise InvalidInputError(
+            'planner time_optimal needs an acceleration or an effort limit on every joint, '
+            f'{task.model.joint_names[int(lacking.argmax())]} has neither')
+    inertia = np.diagonal(inertia_matrix(task.model, task.points), axis1=1, axis2=2)
+    torque = limits.max_effort + np.abs(gravity_torque(task.model, task.points))
+    return np.asarray(np.minimum(limits.max_acceleration, (torque / inertia).max(axis=0)))
+
+
+def _ramps(task: JointTask) -> int:
+    """Return how many ramps a segment has: more where jerk leaves room for shorter ones."""
+    scale, D = _acceleration_scale(task), np.abs(np.diff(task.points, axis=0))
+    T = float(np.median(np.maximum(2.0 * np.sqrt(D / scale),
+                                   D / task.limits.max_velocity).max(axis=1)))
+    swing = float((np.pi * scale / task.limits.max_jerk).max())
+    if swing >= SHAPED * T:
+        return RAMPS
+    return int(np.clip(T / (SAMPLES_PER_RAMP * task.sample_period), RAMPS, MOST_RAMPS))
+

@@ -1,0 +1,33 @@
+"""Hard tasks, replayed: names, joint positions [rad] and what is unusual about the limits."""
+
+import numpy as np
+
+
+def _smooth_chain(n):
+    """Return n points close together on a smooth curve through joint space."""
+    s = np.linspace(0.0, 2.0 * np.pi, n)
+    return np.stack((0.8 + 0.5 * np.sin(s), 1.5 + 0.3 * np.cos(2.0 * s), 0.3 * np.sin(3.0 * s)),
+                    axis=1)
+
+
+# name: joint positions, and limits other than the thesis arm's.
+HARD_CASES = {
+    'dense smooth chain of 80 points': (_smooth_chain(80), {}),
+    'dense chain with a tight jerk limit': (_smooth_chain(40), {'max_jerk': [2.0, 2.0, 2.0]}),
+    'steps of a microradian between large ones': (
+        [[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [1.0, 1.8 + 1e-6, 0.3], [0.4, 1.5, -0.4]], {}),
+    'one joint moves alone, there and back': (
+        [[0.5, 1.6, 0.2], [0.5, 1.6, 0.9], [0.5, 1.6, 0.2], [0.5, 1.6, 0.9]], {}),
+    'corner of the joint ranges': (
+        [[0.3, 1.4, 0.0], [0.0, 2.0, 0.2], [np.pi / 2, 1.5, -0.3], [0.2, 1.3, 0.1]], {}),
+    'limits of very different sizes': (
+        [[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [0.2, 1.3, -0.5]],
+        {'max_velocity': [0.01, 5.0, np.inf], 'max_acceleration': [10.0, 0.1, 1.0]}),
+    'torque all but used up by gravity': (
+        [[0.3, 1.4, 0.0], [1.0, 1.2, 0.1], [0.2, 1.5, -0.2]],
+        {'max_effort': [150.0, 123.8, 200.0]}),
+}
+
+# What approach (a) cannot do, because it leaves a via point in the direction that it came from:
+# beyond it the range ends, or gravity is too much.
+NOT_FOR_APPROACH_A = ('corner of the joint ranges', 'torque all but used up by gravity')

@@ -1,0 +1,286 @@
+"""The front door: the thesis's tables, hard cases, prescribed durations, scaling and refusals."""
+
+from dataclasses import replace
+
+from hard_cases import HARD_CASES, NOT_FOR_APPROACH_A
+import numpy as np
+import pytest
+from random_tasks import Measured, random_task, Task
+from rrr_traj_planner.core.errors import (
+    ConvergenceError,
+    InvalidInputError,
+    LimitViolationError,
+    RrrPlannerError,
+    StartStateError,
+    TimingError,
+    UnreachableError,
+)
+from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners import planning
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.registry import planner_ids, Registered
+from rrr_traj_planner.planners.request import PlanningRequest
+from thesis_cases import POINTS
+
+ARM, LIMITS = RobotModel(), JointLimits()
+STRONG = replace(LIMITS, max_effort=[150.0, 250.0, 200.0])  # joint 2 as table 6.3 needs it
+FREE = replace(LIMITS, max_effort=np.full(3, np.inf))
+PLANNERS = ['cycloid', 'cycloid_approach_a']
+LIMIT_ROOM = 1.0 + 1e-6
+
+
+def table(name, **request):
+    return PlanningRequest([POINTS[f'{name} point {k}'][0] for k in (1, 2, 3)], **request)
+
+
+def through(q, **request):
+    return PlanningRequest(forward_kinematics(ARM, np.asarray(q, dtype=float)), **request)
+
+
+def duration(limits, request):
+    return plan(ARM, limits, request).trajectory.duration
+
+
+@pytest.mark.parametrize(('planner_id', 'name', 'seconds', 'worse'), [
+    ('cycloid', '6.1', 2.850, 1.0005), ('cycloid', '6.3', 3.490, 1.0005),
+    ('cycloid_approach_a', '6.1', 3.552, 1.01), ('cycloid_approach_a', '6.3', 4.045, 1.01)])
+def test_tables_take_the_times_that_are_known(planner_id, name, seconds, worse):
+    found = duration(FREE, table(name, planner_id=planner_id))
+    assert seconds - 5.1e-4 <= found <= seconds * worse + 5.1e-4
+
+
+@pytest.mark.parametrize('planner_id', PLANNERS)
+def test_table_6_3_with_the_thesis_s_own_limits_is_refused_by_name(planner_id):
+    with pytest.raises(LimitViolationError, match=(
+            r'^via point 2: joint_2 needs 218\.9 N m to hold, limit 200 N m$')) as refusal:
+        plan(ARM, LIMITS, table('6.3', planner_id=planner_id, elbow='up'))
+    assert refusal.value.via_point == 2
+    assert refusal.value.joint == 'joint_2'
+    assert refusal.value.limit == 200.0
+    assert refusal.value.value == pytest.approx(218.9, abs=0.051)
+
+
+@pytest.mark.parametrize('planner_id', PLANNERS)
+def test_table_6_3_is_refused_on_either_branch_and_planned_with_a_stronger_joint_2(planner_id):
+    with pytest.raises(LimitViolationError, match='joint_2 needs 218.9 N m to hold'):
+        plan(ARM, LIMITS, table('6.3', planner_id=planner_id))
+    answer = plan(ARM, STRONG, table('6.3', planner_id=planner_id))
+    assert (answer.effort <= STRONG.max_effort * LIMIT_ROOM).all()
+
+
+@pytest.mark.parametrize('planner_id', PLANNERS)
+@pytest.mark.parametrize('name', HARD_CASES)
+def test_hard_cases_are_planned_within_every_limit_or_refused_for_a_reason(planner_id, name):
+    q, changes = HARD_CASES[name]
+    limits = replace(LIMITS, **changes)
+    task = Task(0, name, ARM, limits, np.asarray(q), through(q, planner_id=planner_id))
+    if planner_id == 'cycloid_approach_a' and name in NOT_FOR_APPROACH_A:
+        with pytest.raises(RrrPlannerError, match='on its way|no feasible durations'):
+            plan(ARM, limits, task.request)
+        return
+    answer = plan(ARM, limits, task.request)
+    m = Measured(task, answer)
+    assert answer.trajectory(answer.via_times)[0] == pytest.approx(task.q, abs=1e-9)
+    for values, limit in (('qd', 'max_velocity'), ('qdd', 'max_acceleration'),
+                          ('qddd', 'max_jerk'), ('torque', 'max_effort')):
+        assert (m.largest(values) <= getattr(limits, limit) * LIMIT_ROOM).all()
+    assert (m.q >= limits.min_position - 1e-9).all()
+    assert (m.q <= limits.max_position + 1e-9).all()
+
+
+@pytest.mark.parametrize('factor', [0.3, 0.7])
+def test_scaling_factors_scale_the_limits(factor):
+    request = table('6.1', velocity_scaling=factor, acceleration_scaling=factor ** 2)
+    expected = replace(FREE, max_velocity=factor * FREE.max_velocity,
+                       max_acceleration=factor ** 2 * FREE.max_acceleration)
+    assert duration(FREE, request) == pytest.approx(duration(expected, table('6.1')), rel=1e-9)
+    # Velocities by k, accelerations by k^2: the same motion, 1 / k as long.
+    unlimited = replace(FREE, max_jerk=np.full(3, np.inf))
+    assert duration(unlimited, request) == pytest.approx(
+        duration(unlimited, table('6.1')) / factor, rel=1e-6)
+
+
+@pytest.mark.parametrize('planner_id', PLANNERS)
+def test_points_in_reverse_order_take_cycloid_the_same_time(planner_id):
+    forwards, backwards = (through(q, planner_id=planner_id) for q in (
+        [[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [0.2, 1.3, -0.5]],
+        [[0.2, 1.3, -0.5], [1.0, 1.8, 0.3], [0.3, 1.4, 0.0]]))
+    if planner_id == 'cycloid':
+        assert duration(FREE, forwards) == pytest.approx(duration(FREE, backwards), rel=1e-6)
+    else:  # approach (a) is no friend of reversal: it leaves a point as it came to it
+        assert duration(FREE, forwards) != pytest.approx(duration(FREE, backwards), rel=1e-3)
+
+
+@pytest.mark.parametrize('planner_id', PLANNERS)
+def test_joint_1_mirrored_takes_the_same_time(planner_id):
+    wide = replace(LIMITS, min_position=[-3.0, 0.0, -np.pi], max_position=[3.0, np.pi, np.pi])
+    q = np.array([[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [0.2, 1.3, -0.5]])
+    times = [duration(wide, through(q * side, planner_id=planner_id))
+             for side in ([1.0, 1.0, 1.0], [-1.0, 1.0, 1.0])]
+    assert times[0] == pytest.approx(times[1], rel=1e-6)
+
+
+def asked_again(task, answer):
+    first = [] if task.request.start is None else [0.0]
+    return np.diff(np.concatenate((first, answer.via_times)))
+
+
+TIMED = [s for s in range(32) if s % 8 != 2 and s % 8 != 6]  # repeated points have no duration
+MOST_REFUSED_AGAIN = 0.05
+
+
+def test_a_plan_s_own_durations_are_nearly_always_accepted_and_kept():
+    refused, accepted = [], 0
+    for seed in TIMED:
+        task = random_task(seed)
+        durations = asked_again(task, plan(task.model, task.limits, task.request))
+        try:
+            answer = plan(task.model, task.limits, task.asked_of(
+                'cycloid', segment_durations=durations))
+        except TimingError:
+            refused.append(seed)
+            continue
+        accepted += 1
+        assert asked_again(task, answer) == pytest.approx(durations, abs=1e-9)
+    assert len(refused) <= MOST_REFUSED_AGAIN * accepted
+
+
+@pytest.mark.parametrize('planner_id', PLANNERS)
+@pytest.mark.parametrize('durations', [[4.0, 4.0], [10.0, 3.5], [3.0, 30.0]])
+def test_prescribed_durations_are_kept(planner_id, durations):
+    if planner_id == 'cycloid_approach_a' and durations != [4.0, 4.0]:
+        return
+    answer = plan(ARM, LIMITS, table('6.1', planner_id=planner_id, segment_durations=durations))
+    assert answer.via_times == pytest.approx([0.0, durations[0], sum(durations)], abs=1e-9)
+    assert (answer.effort <= LIMITS.max_effort * LIMIT_ROOM).all()
+
+
+@pytest.mark.parametrize('planner_id', PLANNERS)
+@pytest.mark.parametrize('durations', [[0.5, 0.5], [1.0, 1.2], [1.6, 1.0]])
+def test_durations_too_short_are_refused_with_feasible_ones_that_are_then_accepted(
+        planner_id, durations):
+    request = table('6.1', planner_id=planner_id, segment_durations=durations)
+    with pytest.raises(TimingError, match=(
+            r'^segment_durations \[.*\] s are too short.*: the least feasible .*\[.*\] s$')) as no:
+        plan(ARM, LIMITS, request)
+    least = no.value.least_durations
+    assert str(list(least)) in str(no.value)
+    assert (np.array(least) >= durations).all()
+    answer = plan(ARM, LIMITS, replace(request, segment_durations=least))
+    assert np.diff(answer.via_times) == pytest.approx(least, abs=1e-9)
+    # And they are the least: no via velocities do with 1 % less of all of them.
+    if planner_id == 'cycloid' and durations == [0.5, 0.5]:
+        with pytest.raises(TimingError):
+            plan(ARM, LIMITS, replace(request, segment_durations=0.99 * np.array(least)))
+
+
+def test_refusal_of_durations_names_the_segments_that_are_too_short():
+    with pytest.raises(TimingError, match=r'too short for segment 1: the least feasible are \[9'):
+        plan(ARM, LIMITS, table('6.1', segment_durations=[9.0, 0.3]))
+    with pytest.raises(TimingError, match='too short for segments 0, 1: '):
+        plan(ARM, LIMITS, table('6.1', segment_durations=[0.3, 0.3]))
+
+
+def test_repeated_points_share_a_via_time_and_cost_nothing():
+    q = [[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [1.0, 1.8, 0.3], [0.2, 1.3, -0.5]]
+    answer = plan(ARM, LIMITS, through(q))
+    assert answer.via_times[1] == answer.via_times[2]
+    assert answer.trajectory.duration == pytest.approx(
+        duration(LIMITS, through([q[0], q[1], q[3]])), rel=1e-12)
+
+
+def test_points_all_one_are_rest_for_a_sample_period():
+    answer = plan(ARM, LIMITS, through([[0.3, 1.4, 0.0]] * 3, sample_period=0.02))
+    assert answer.trajectory.duration == 0.02
+    assert answer.via_times.tolist() == [0.0, 0.0, 0.0]
+    assert answer.points.velocities.tolist() == [[0.0] * 3] * 2
+    assert answer.peaks.velocity.tolist() == [0.0] * 3
+
+
+def test_start_state_is_a_point_before_the_first():
+    q = [[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [0.2, 1.3, -0.5]]
+    answer = plan(ARM, LIMITS, through(q[1:], start=q[0]))
+    assert len(answer.via_times) == 2
+    assert answer.via_times[0] > 0.0
+    assert answer.trajectory(0.0)[0].tolist() == q[0]
+    assert answer.trajectory.duration == pytest.approx(duration(LIMITS, through(q)), rel=1e-9)
+    alone = plan(ARM, LIMITS, through(q[1:2], start=q[0], segment_durations=[5.0]))
+    assert alone.via_times == pytest.approx([5.0], abs=1e-9)
+
+
+@pytest.mark.parametrize(('start', 'message'), [
+    ([1.7, 1.4, 0.0], r'^start state: joint_1 is at 1\.7 rad, limits 0 to 1\.5708 rad$'),
+    ([0.3, 0.0, np.pi / 2], r'^start state: joint_2 needs 243\.3 N m to hold, limit 200 N m$')])
+def test_impossible_start_states_are_refused(start, message):
+    # By hand: 16 * 0.5 * 9.81 + 12 * 9.81 * (0.9 + 0.5) = 243.3 N m.
+    with pytest.raises(StartStateError, match=message):
+        plan(ARM, LIMITS, through([[0.3, 1.4, 0.0]], start=start))
+
+
+@pytest.mark.parametrize('planner_id', PLANNERS)
+def test_a_way_that_cannot_be_held_is_refused_by_segment_joint_and_torque(planner_id):
+    # Both ends hold 0 N m at joint 3 (theta_2 + theta_3 a multiple of pi); half-way the forearm
+    # is level: 12 * 9.81 * 0.5 = 58.9 N m.
+    weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
+    q = [[0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
+    with pytest.raises(LimitViolationError, match=(
+            r'^segment 0: on its way joint_3 needs 58\.9 N m to hold, limit 50 N m$')) as no:
+        plan(ARM, weak, through(q, planner_id=planner_id))
+    assert no.value.via_point == -1
+    assert no.value.joint == 'joint_3'
+
+
+def test_refused_segment_is_counted_as_the_caller_counts():
+    weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
+    q = [[0.3, 1.5, -1.5], [0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
+    with pytest.raises(LimitViolationError, match='^segment 1: on its way joint_3'):
+        plan(ARM, weak, through(q))
+
+
+def test_unreachable_point_is_refused_with_its_miss():
+    with pytest.raises(UnreachableError, match=(
+            r'^via point 1: \(3, 0, 0\.5\) m is 3 m from the shoulder, .* by 1\.4 m$')) as no:
+        plan(ARM, LIMITS, PlanningRequest([[1.0, 0.6, 1.0], [3.0, 0.0, 0.5]]))
+    assert no.value.via_point == 1
+    assert no.value.distance == pytest.approx(1.4)
+
+
+@pytest.mark.parametrize('planner_id', PLANNERS)
+def test_missing_acceleration_limit_is_refused_by_joint(planner_id):
+    limits = replace(LIMITS, max_acceleration=[1.0, np.inf, 1.0])
+    with pytest.raises(InvalidInputError, match='needs acceleration limits, joint_2 has none$'):
+        plan(ARM, limits, table('6.1', planner_id=planner_id))
+
+
+@pytest.mark.parametrize(('changes', 'message'), [
+    ({'velocity_scaling': 1.5}, r'^max_velocity_scaling_factor is 1\.5, must be in \(0, 1\]$'),
+    ({'acceleration_scaling': 0.0},
+     r'^max_acceleration_scaling_factor is 0\.0, must be in \(0, 1\]$'),
+    ({'planner_id': 'teleport'}, r"^planner_id 'teleport' is unknown, known are cycloid, ")])
+def test_malformed_requests_are_refused(changes, message):
+    with pytest.raises(InvalidInputError, match=message):
+        plan(ARM, LIMITS, table('6.1', **changes))
+
+
+def test_sample_period_too_long_for_prescribed_durations_is_refused():
+    request = table('6.1', sample_period=1.4)
+    # Without durations the motion is slowed until the quintic keeps the limits.
+    slowed = plan(ARM, LIMITS, request)
+    assert slowed.trajectory.duration > duration(LIMITS, table('6.1'))
+
+
+def test_every_planner_is_found_by_its_id():
+    assert set(PLANNERS) <= set(planner_ids())
+
+
+def test_a_planner_that_breaks_a_limit_is_caught(monkeypatch):
+    quick = plan(ARM, LIMITS, table('6.1')).trajectory.stretched(0.9)
+    monkeypatch.setattr(planning, 'planner', lambda _: Registered(lambda task: quick, False))
+    tight = replace(LIMITS, max_jerk=[1.0, 1.0, 1.0], max_acceleration=[9.0] * 3,
+                    max_velocity=[9.0] * 3)
+    with pytest.raises(ConvergenceError, match=(
+            r'^planner cycloid broke a limit: joint_\d jerk reaches [\d.]+ rad/s\^3, '
+            r'limit 1 rad/s\^3$')):
+        plan(ARM, tight, table('6.1'))
