@@ -34,6 +34,7 @@ class PlannerConfig:
     default_planner_id: str
     sample_period: float
     max_deviation: float
+    planning_time_limit: float
 
     @classmethod
     def from_values(cls, values: Values) -> PlannerConfig:
@@ -64,7 +65,7 @@ class PlannerConfig:
             robot_model(values), joint_limits(values),
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
-                'max_deviation')})
+                'max_deviation', 'planning_time_limit')})
 
 
 @dataclass(frozen=True, eq=False)

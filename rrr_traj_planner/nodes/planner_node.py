@@ -122,7 +122,9 @@ def _answer(request: PlanTrajectory.Request, config: PlannerConfig, stamp: Time)
     started = perf_counter()
     path, trace = None, ''
     try:
-        found = plan(config.model, config.limits, planning_request(request, config))
+        deadline = started + config.planning_time_limit
+        found = plan(config.model, config.limits, planning_request(
+            request, config, lambda: perf_counter() > deadline))
         seconds = perf_counter() - started
         response, path = success(found, config), tip_path(found.points, config, stamp)
     except Exception as error:

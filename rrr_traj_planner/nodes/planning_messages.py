@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Callable
 from math import inf, isfinite
 from typing import Any
 
@@ -21,7 +22,7 @@ from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.nodes.configuration import PlannerConfig
-from rrr_traj_planner.planners.request import Plan, PlanningRequest
+from rrr_traj_planner.planners.request import never, Plan, PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -50,7 +51,8 @@ _CODES: tuple[tuple[type[RrrPlannerError], int], ...] = (
 )
 
 
-def planning_request(message: PlanTrajectory.Request, config: PlannerConfig) -> PlanningRequest:
+def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
+                     should_stop: Callable[[], bool] = never) -> PlanningRequest:
     """
     Return what a message asks, with the node's defaults in the empty fields.
 
@@ -60,6 +62,8 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig) -> 
         The message.
     config : PlannerConfig
         The node's parameters.
+    should_stop : callable
+        See `PlanningRequest`.
 
     Returns
     -------
@@ -94,7 +98,8 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig) -> 
         acceleration_scaling=_unless_zero(message.max_acceleration_scaling_factor, 1.0),
         sample_period=_unless_zero(period, config.sample_period),
         elbow=message.elbow or None,
-        max_deviation=_unless_zero(deviation, config.max_deviation))
+        max_deviation=_unless_zero(deviation, config.max_deviation),
+        should_stop=should_stop)
 
 
 def success(plan: Plan, config: PlannerConfig) -> PlanTrajectory.Response:

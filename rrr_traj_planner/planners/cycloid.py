@@ -95,7 +95,8 @@ def _fastest(task: JointTask, chain: Chain, floor: Array | None) -> _Motion:
             break
         # as long as torque asks for, neither more nor less
         slow = np.where(lacking, motion.durations * stretch, 0.0)
-        motion = _least_time_motion(task, chain, slow if floor is None else np.maximum(slow, floor))
+        slow = slow if floor is None else np.maximum(slow, floor)
+        motion = _least_time_motion(task, chain, slow)
         stretch = _segment_stretch(task, motion)
         total = motion.durations.sum() * max(1.0, stretch.max())
         if total < least:

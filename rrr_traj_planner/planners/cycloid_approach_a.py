@@ -86,7 +86,7 @@ def _fastest(task: JointTask, chain: Chain) -> Array:
 
 
 def _beam_search(chain: Chain) -> Array:
-    """Return durations chosen one after the other, the best beginnings kept; else very long ones."""
+    """Return durations chosen one after the other; where that ends, very long ones."""
     D, law, limit = chain.displacements, chain.law, chain.max_velocity
     grids = np.maximum(chain.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
     v, elapsed, chosen = np.zeros((1, 3)), np.zeros(1), np.zeros((1, 0))

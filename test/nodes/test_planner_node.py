@@ -75,14 +75,14 @@ class Gate:
     def __call__(self, task):
         self.begun.set()
         assert self.open.wait(DEADLINE)
-        return registry.planner('cycloid')(task)
+        return registry.planner('cycloid').plan(task)
 
 
 @pytest.fixture
 def gate(ros, monkeypatch):
     """Return the planner 'waiting'; it is let go before the node is closed."""
     gate = Gate()
-    monkeypatch.setitem(registry._planners, 'waiting', gate)
+    monkeypatch.setitem(registry._planners, 'waiting', registry.Registered(gate, False))
     try:
         yield gate
     finally:
@@ -184,7 +184,7 @@ def test_bug_is_told_logged_and_survived(ros, monkeypatch, error, text):
     def broken(task):
         raise error
 
-    monkeypatch.setitem(registry._planners, 'broken', broken)
+    monkeypatch.setitem(registry._planners, 'broken', registry.Registered(broken, False))
     log = ros.listen(Log, '/rosout', 100)
     made(ros)
     is_refused(plan(ros, planner_id='broken'), CODES.FAILURE, text)
