@@ -1,0 +1,69 @@
+"""How near are the motions of `time_optimal` to the physical limit, and to other planners'?"""
+
+from __future__ import annotations
+
+import argparse
+
+from limit import limit_of
+from measuring import compared, Row, setting, table
+import numpy as np
+from rrr_traj_planner.planners.planning import plan
+from tasks import duration, full_torque, gentle, random_tasks, Task, thesis_tasks, WEAK
+
+SEED = 20
+TASKS = 56
+MOST_SECONDS = (2.22, 2.67, 1.10, 1.60, 0.935)  # on the thesis's tables
+MEDIAN, WORST = 'median', 'worst'
+TARGETS = {  # of random tasks: limits, target of the median, of the worst
+    'v, a, jerk 10': (gentle(), 1.025, 1.05),
+    'v, jerk 100, torque': (full_torque(WEAK), 1.035, 1.06),
+}
+
+
+def tables() -> list[Row]:
+    """Return our times over the limits, and the times that were asked for."""
+    rows = []
+    for (task, _), most in zip(thesis_tasks(), MOST_SECONDS):
+        ours, best = _times(task)
+        rows.append(compared(f'{task.name}: time_optimal / limit', most / best, ours, best))
+    return rows
+
+
+def random(count: int = TASKS, seed: int = SEED, say: bool = False) -> list[Row]:
+    """Return the median and the worst ratio to the limit over random tasks."""
+    rows = []
+    for label, (limits, median, worst) in TARGETS.items():
+        times = []
+        for task in random_tasks(seed, count, limits):
+            times.append(_times(task))
+            if say:
+                ours, best = times[-1]
+                print(f'{label}, {task.name}: {len(task.request.via_points)} points, '
+                      f'{ours:.4f} s, limit {best:.4f} s, {ours / best:.4f}', flush=True)
+        times.sort(key=lambda t: t[0] / t[1])
+        for name, target, (ours, best) in ((MEDIAN, median, times[len(times) // 2]),
+                                           (WORST, worst, times[-1])):
+            rows.append(compared(f'{count} random tasks, {label}: time_optimal / limit, {name}',
+                                 target, ours, best))
+    return rows
+
+
+def _times(task: Task) -> tuple[float, float]:
+    """Return our time and the limit; not a number where the solver finds none."""
+    own = plan(task.model, task.limits, task.asked_of('time_optimal'))
+    found = limit_of(task, own.trajectory)
+    return duration(own), found.duration if found.solved else np.nan
+
+
+def main() -> None:
+    """Print every ratio."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--tasks', type=int, default=TASKS, help='random tasks of each kind')
+    parser.add_argument('--seed', type=int, default=SEED)
+    options = parser.parse_args()
+    print(setting())
+    print(table(tables() + random(options.tasks, options.seed, say=True)))
+
+
+if __name__ == '__main__':
+    main()
