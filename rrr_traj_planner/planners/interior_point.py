@@ -18,7 +18,10 @@ from rrr_traj_planner.planners.ramp_newton import curvature, Freedom, newton_ste
 
 RELATIVE_GAP = 1e-3          # of the total time
 BARRIER_REDUCTION = 0.1
-CENTRED = 0.02               # gain left per constraint at which the barrier is lowered
+CENTRED = 0.1                # gain left per constraint at which the barrier is lowered
+MOST_STEPS = 12              # after which it is lowered all the same
+START = 0.3                  # the first barrier per constraint, over the start's total time
+CONVERGED = 5e-3             # relative gap that counts as convergence
 ITERATIONS = 120
 BACKTRACKS = 30
 SUFFICIENT_GAIN = 1e-4
@@ -63,32 +66,52 @@ def minimise(constraints: Constraints, motion: Motion, freedom: Freedom,
     objective = _Objective(freedom)
     slacks = constraints.slacks(motion)
     count = sum(s.size for s in slacks)
-    barrier = nearness * objective(motion) / count
+    barrier = START * nearness * objective(motion) / count
     duals = [barrier / s for s in slacks]
-    best = motion
+    best, steps, gap = motion, 0, np.inf
     for _ in range(ITERATIONS):
         if should_stop():
             break
         local = _Local(constraints, motion, duals, freedom, barrier)
+        step, rates, size, moved = _best_step(constraints, objective, motion, local, barrier)
+        dual_steps = [barrier / s - d - d / s * r
+                      for s, d, r in zip(local.slacks, duals, rates)]
         slacks = local.slacks
-        size, moved = 0.0, None
-        for step in local.steps():
-            rates = [_rate(constraints, x, step.motion) for x in local.changes]
-            size, moved = _line_search(
-                constraints, objective, motion, slacks, rates, step, barrier)
-            if size > SHORT:
-                break
-        dual_steps = [barrier / s - d - d / s * r for s, d, r in zip(slacks, duals, rates)]
         if moved is not None:
             motion, slacks = moved
             if objective(motion) < objective(best):
                 best = motion
         duals = _moved_duals(duals, dual_steps, slacks, barrier)
-        if moved is None or step.gain < CENTRED * count * barrier:
+        steps += 1
+        # what is left to gain at this barrier, and below it
+        gap = min(gap, step.gain * (1.0 - 0.5 * size) + count * barrier)
+        if moved is None or steps == MOST_STEPS or step.gain < CENTRED * count * barrier:
             if count * barrier < RELATIVE_GAP * objective(motion):
-                return Outcome(best, count * barrier, True)
-            barrier *= BARRIER_REDUCTION
-    return Outcome(best, sum(float((d * s).sum()) for d, s in zip(duals, slacks)), False)
+                break
+            barrier, steps = barrier * BARRIER_REDUCTION, 0
+    return Outcome(best, gap, gap < CONVERGED * objective(best))
+
+
+class _Tried(NamedTuple):
+    """A step, how slacks change along it, how far it goes, and what it leads to."""
+
+    step: Step
+    rates: list[Array]
+    size: float
+    moved: tuple[Motion, list[Array]] | None
+
+
+def _best_step(constraints: Constraints, objective: _Objective, motion: Motion, local: _Local,
+               barrier: float) -> _Tried:
+    """Return the first of the suggested steps that gets far, else the one that gets furthest."""
+    tried: list[_Tried] = []
+    for step in local.steps():
+        rates = [_rate(constraints, x, step.motion) for x in local.changes]
+        tried.append(_Tried(step, rates, *_line_search(
+            constraints, objective, motion, local.slacks, rates, step, barrier)))
+        if tried[-1].size > SHORT:
+            break
+    return max(tried, key=lambda t: t.size)
 
 
 class _Objective:

@@ -68,7 +68,7 @@ def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved |
     if np.isfinite(task.limits.max_acceleration).all():
         free = replace(task.limits, max_effort=np.full(3, np.inf))
         found = mended(replace(task, limits=free), grid, freedom, rest_to_rest, floor)
-        if found is not None and stretch_to_fit(task, found.trajectory) <= 1.0 + ROUNDING:
+        if found is not None and _torque_fits(task, found.trajectory):
             return found
     return mended(task, grid, freedom, rest_to_rest, floor)
 
@@ -113,7 +113,8 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
         beyond, stretch = _beyond_range(task, trajectory), stretch_to_fit(task, trajectory)
         if not beyond.any() and np.isfinite(stretch):
             slowed = _stretched(trajectory, stretch)
-            if stretch_to_fit(task, slowed) <= 1.0 + ROUNDING:
+            # slowing can ask for more torque where the motion hurries past what it cannot hold
+            if slowed is trajectory or stretch_to_fit(task, slowed) <= 1.0 + ROUNDING:
                 found.append(Solved(slowed, outcome))
                 if stretch <= 1.0 + STRETCH_WORTH_IT:
                     break
@@ -227,10 +228,15 @@ def stretch_to_fit(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
                     np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
                     np.cbrt((peaks.jerk / limits.max_jerk).max()))
     # a motion may pass, but not slowly, where gravity alone would be too much
-    torque = peak_torque(task.model, trajectory).value
-    if (torque <= limits.max_effort * (1.0 + ROUNDING)).all():
+    if _torque_fits(task, trajectory):
         return float(kinematic)
     return float(max(kinematic, torque_stretch(task, trajectory)))
+
+
+def _torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:
+    effort = task.limits.max_effort
+    return bool(np.isinf(effort).all() or (peak_torque(
+        task.model, trajectory).value <= effort * (1.0 + ROUNDING)).all())
 
 
 def _stretched(trajectory: PiecewiseTrajectory, factor: float) -> PiecewiseTrajectory:
