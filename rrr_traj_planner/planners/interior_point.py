@@ -19,8 +19,11 @@ from rrr_traj_planner.planners.ramp_newton import curvature, Freedom, newton_ste
 RELATIVE_GAP = 1e-3          # of the total time
 BARRIER_REDUCTION = 0.1
 CENTRED = 0.1                # gain left per constraint at which the barrier is lowered
-MOST_STEPS = 12              # after which it is lowered all the same
+PATIENCE = 6                 # steps in which it is lowered all the same, where they gain less
+STALL = 3e-4                 # than this part of the total time
 START = 0.3                  # the first barrier per constraint, over the start's total time
+FAR_FROM_CENTRE = 1e5        # gain over barrier at the start at which the barrier is raised
+RAISES = 6
 CONVERGED = 5e-3             # relative gap that counts as convergence
 ITERATIONS = 120
 BACKTRACKS = 30
@@ -67,8 +70,9 @@ def minimise(constraints: Constraints, motion: Motion, freedom: Freedom,
     slacks = constraints.slacks(motion)
     count = sum(s.size for s in slacks)
     barrier = START * nearness * objective(motion) / count
-    duals = [barrier / s for s in slacks]
-    best, steps, gap = motion, 0, np.inf
+    barrier, duals = _first_barrier(constraints, motion, freedom, barrier)
+    best, gap = motion, np.inf
+    merits: list[float] = []  # at this barrier
     for _ in range(ITERATIONS):
         if should_stop():
             break
@@ -82,14 +86,28 @@ def minimise(constraints: Constraints, motion: Motion, freedom: Freedom,
             if objective(motion) < objective(best):
                 best = motion
         duals = _moved_duals(duals, dual_steps, slacks, barrier)
-        steps += 1
+        merits.append(objective(motion) - barrier * _log(slacks))
         # what is left to gain at this barrier, and below it
         gap = min(gap, step.gain * (1.0 - 0.5 * size) + count * barrier)
-        if moved is None or steps == MOST_STEPS or step.gain < CENTRED * count * barrier:
+        stalled = moved is None or len(merits) > PATIENCE and (
+            merits[-1 - PATIENCE] - merits[-1] < STALL * objective(motion))
+        if stalled or step.gain < CENTRED * count * barrier:
             if count * barrier < RELATIVE_GAP * objective(motion):
                 break
-            barrier, steps = barrier * BARRIER_REDUCTION, 0
+            barrier, merits = barrier * BARRIER_REDUCTION, []
     return Outcome(best, gap, gap < CONVERGED * objective(best))
+
+
+def _first_barrier(constraints: Constraints, motion: Motion, freedom: Freedom,
+                   barrier: float) -> tuple[float, list[Array]]:
+    """Return a barrier high enough to lead away from limits that the start is close to."""
+    for _ in range(RAISES):
+        duals = [barrier / s for s in constraints.slacks(motion)]
+        step = next(_Local(constraints, motion, duals, freedom, barrier).steps())
+        if step.gain < FAR_FROM_CENTRE * barrier:
+            break
+        barrier /= BARRIER_REDUCTION
+    return barrier, duals
 
 
 class _Tried(NamedTuple):

@@ -58,12 +58,19 @@ class Constraints:
         The family of motions.
     points : ndarray, shape (N + 1, 3)
         Via points [rad].
-    margins : ndarray, shape (2, N, 3)
-        How far inside the range each joint is to stay in each segment, above and below [rad].
+    margins : ndarray, shape (2, N, 2 n + 1, 3)
+        How far inside the range each joint is to stay at each point, above and below [rad].
     effort_margins : ndarray, shape (N, 2 n + 1, 3)
         How far below its limit each torque is to stay at each point [N m].
     floor : ndarray, shape (N,), optional
         Least durations of the segments [s].
+
+    Attributes
+    ----------
+    effort : ndarray, shape (N, 2 n, 3)
+        Bounds of the torques, margins taken off, at all points but a segment's first [N m].
+    with_torque : bool
+        Whether torque is limited; without it the joints are independent but for time.
 
     """
 
@@ -77,17 +84,17 @@ class Constraints:
                    ('qdd', np.arange(1, n + 1), -limits.max_acceleration,
                     limits.max_acceleration),
                    ('jerk', np.arange(n), -limits.max_jerk, limits.max_jerk),
-                   ('q', inside, *self._ranges(margins)))
+                   ('q', inside, *self._ranges(margins[:, :, inside])))
         self._boxes = [(name, rows, np.maximum(lower, -FAR), np.minimum(upper, FAR))
                        for name, rows, lower, upper in bounded
                        if np.isfinite(upper).any() or np.isfinite(lower).any()]
-        self._effort = (np.minimum(limits.max_effort, FAR) - effort_margins)[:, 1:]
+        self.effort = (np.minimum(limits.max_effort, FAR) - effort_margins)[:, 1:]
         self.floor = floor
         # without torque the joints are independent but for time
         self.with_torque = bool(np.isfinite(limits.max_effort).any())
 
     def _ranges(self, margins: Array) -> tuple[Array, Array]:
-        above, below = margins[:, :, np.newaxis]
+        above, below = margins
         return self.limits.min_position - EDGE + below, self.limits.max_position + EDGE - above
 
     def slacks(self, m: Motion) -> list[Array]:
@@ -128,7 +135,7 @@ class Constraints:
         return found
 
     def _torque_room(self, tau: Array) -> Array:
-        effort, tau = self._effort, tau[:, 1:]
+        effort, tau = self.effort, tau[:, 1:]
         return np.stack((effort - tau, effort + tau))
 
     def _terms(self, q: Array) -> Terms:

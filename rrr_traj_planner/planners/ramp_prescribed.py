@@ -15,6 +15,7 @@ from rrr_traj_planner.planners.ramp_start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
 
 DURATION_TOLERANCE = 1e-7  # relative: a stretch of prescribed durations that counts as none
+LEAST_STRETCH = 0.2         # of prescribed durations: shorter than that need not be found out
 FREE_WEIGHT = 1e-3         # of free durations while it is found out whether the others can be kept
 GENTLER = 1.02             # how near the least peak of acceleration is looked for
 GENTLENESS_ROUNDS = 12
@@ -71,7 +72,8 @@ def _kept(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
         stretch = float((m.T / durations)[~free].max())
         return grid.slowed(m, np.where(free, m.T, stretch * tie))
 
-    return mended(task, grid, Freedom(free, tie, weights, _no_stops(durations)), begin)
+    return mended(task, grid, Freedom(free, tie, weights, _no_stops(durations)), begin,
+                  LEAST_STRETCH * tie)
 
 
 def _stretch(solved: Solved, durations: Array) -> float:

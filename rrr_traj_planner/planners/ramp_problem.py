@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.motion_torque import peak_torque
@@ -25,6 +25,7 @@ REPAIRS = 6              # rounds of mending what happens between the points tha
 REPAIR_ROOM = 1.2
 ROUNDING = 1e-7         # relative
 LOOKS = 6                # at the torque between two points, to mend it
+ROOM_PARTS = (1.0, 0.3, 0.1, 0.0)
 WARM_ROOM = 3e-3         # by which a motion is slowed to begin again with less room
 WARM_NEARNESS = 0.02
 STRETCH_WORTH_IT = 1e-3  # a longer stretch than this is better mended by planning again
@@ -98,29 +99,34 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
 
     """
     room, start, nearness = _Room.none(task, grid, freedom), None, 1.0
+    first: Motion | None = None
     found: list[Solved] = []
     for _ in range(REPAIRS):
-        planned = replace(task, limits=room.limits)
-        constraints = Constraints(task.model, room.limits, grid, task.points, room.margins,
-                                  room.effort_margins, floor)
-        if start is None or not _strictly_within(constraints, start):
-            start, nearness = begin(planned, constraints), 1.0
+        for part in ROOM_PARTS:  # with less room where a start would not find any
+            constraints = room.constraints(task, grid, part, floor)
+            if start is None or not _strictly_within(constraints, start):
+                start, nearness = begin(replace(task, limits=room.limits), constraints), 1.0
+            if start is None or _strictly_within(constraints, start):
+                break
         if start is None or not _strictly_within(constraints, start):
             break
+        first = first or start  # slow: what ranges and gravity leave there can be kept free
         outcome = minimise(constraints, start, freedom._replace(still=room.still),
                            task.should_stop, nearness)
         trajectory = grid.trajectory(task.points, outcome.motion)
         beyond, stretch = _beyond_range(task, trajectory), stretch_to_fit(task, trajectory)
         if not beyond.any() and np.isfinite(stretch):
             slowed = _stretched(trajectory, stretch)
-            # slowing can ask for more torque where the motion hurries past what it cannot hold
-            if slowed is trajectory or stretch_to_fit(task, slowed) <= 1.0 + ROUNDING:
+            # slowing can ask for more torque where the motion hurries past what it cannot hold;
+            # and durations that are fixed must not be stretched
+            if slowed is trajectory or stretch <= 1.0 + ROUNDING or (
+                    _may_stretch(freedom) and stretch_to_fit(task, slowed) <= 1.0 + ROUNDING):
                 found.append(Solved(slowed, outcome))
                 if stretch <= 1.0 + STRETCH_WORTH_IT:
                     break
         if not found:
             found += _unimproved(task, grid, start)
-        room = room.grown(task, grid, outcome.motion, trajectory, beyond)
+        room = room.grown(task, grid, first, outcome.motion, trajectory, beyond)
         start, nearness = None, 1.0
         if np.isfinite(stretch) and not beyond.any() and freedom.free.all():
             start = grid.stretched(outcome.motion, stretch * (1.0 + WARM_ROOM))
@@ -154,7 +160,7 @@ class _Room(NamedTuple):
     """What is kept free of limits, for what happens between the points that are looked at."""
 
     limits: JointLimits
-    margins: Array         # of positions, (2, N, 3)
+    margins: Array         # of positions, (2, N, 2 n + 1, 3)
     effort_margins: Array  # (N, 2 n + 1, 3)
     still: BoolArray       # via velocities that stay zero, (N - 1, 3)
 
@@ -162,28 +168,38 @@ class _Room(NamedTuple):
     def none(cls, task: JointTask, grid: Grid, freedom: Freedom) -> _Room:
         """Return no room at all."""
         segments = len(freedom.free)
-        return cls(task.limits, np.zeros((2, segments, 3)),
-                   np.zeros((segments, 2 * grid.n + 1, 3)), freedom.still)
+        points = (segments, 2 * grid.n + 1, 3)
+        return cls(task.limits, np.zeros((2, *points)), np.zeros(points), freedom.still)
 
-    def grown(self, task: JointTask, grid: Grid, m: Motion, trajectory: PiecewiseTrajectory,
-              beyond: Array) -> _Room:
-        """Return more room where a motion breaks limits."""
+    def constraints(self, task: JointTask, grid: Grid, part: float,
+                    floor: Array | None) -> Constraints:
+        """Return the constraints with a part of the room."""
+        return Constraints(task.model, self.limits, grid, task.points, part * self.margins,
+                           part * self.effort_margins, floor)
+
+    def grown(self, task: JointTask, grid: Grid, first: Motion, m: Motion,
+              trajectory: PiecewiseTrajectory, beyond: Array) -> _Room:
+        """Return more room where a motion breaks limits, as far as the first one leaves it."""
+        q = grid.states(task.points, first).q
         velocity = trajectory.peaks().velocity / task.limits.max_velocity
-        margins, still = self._positions(task, beyond)
+        margins, still = self._positions(task, q, beyond)
+        spare = task.limits.max_effort - np.abs(gravity_torque(task.model, q))
         return _Room(
             replace(self.limits, max_velocity=self.limits.max_velocity / np.maximum(
                 1.0, 1.0 + REPAIR_ROOM * (velocity - 1.0))),
-            margins, self.effort_margins + REPAIR_ROOM * _excess_torque(task, grid, m, trajectory),
-            still)
+            margins, np.minimum(
+                self.effort_margins + REPAIR_ROOM * _excess_torque(task, grid, m, trajectory),
+                np.maximum(0.5 * spare, self.effort_margins)), still)
 
-    def _positions(self, task: JointTask, beyond: Array) -> tuple[Array, BoolArray]:
+    def _positions(self, task: JointTask, q: Array, beyond: Array) -> tuple[Array, BoolArray]:
         """Keep joints further inside their range; at via points too near its end, at rest."""
+        room = np.stack((task.limits.max_position - q, q - task.limits.min_position))
+        most = self.margins.max(axis=2) + REPAIR_ROOM * beyond
+        wanted = np.where((beyond > 0.0)[:, :, np.newaxis], most[:, :, np.newaxis], self.margins)
+        margins = np.minimum(wanted, np.maximum(0.5 * room, 0.0))
         ends = np.stack((task.points[:-1], task.points[1:]))
         room = np.stack((task.limits.max_position - ends, ends - task.limits.min_position))
-        wanted = np.where(beyond > 0.0, self.margins + REPAIR_ROOM * beyond, self.margins)
-        margins = np.minimum(wanted, np.maximum(0.5 * room.min(axis=1), 0.0))
-        near = (beyond > 0.0) & (margins < wanted)
-        at_start, at_end = (near & (room[:, k] <= 2.0 * wanted) for k in (0, 1))
+        at_start, at_end = ((beyond > 0.0) & (room[:, k] <= 2.0 * most) for k in (0, 1))
         return margins, self.still | (at_end[:, :-1] | at_start[:, 1:]).any(axis=0)
 
 
@@ -231,6 +247,11 @@ def stretch_to_fit(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
     if _torque_fits(task, trajectory):
         return float(kinematic)
     return float(max(kinematic, torque_stretch(task, trajectory)))
+
+
+def _may_stretch(freedom: Freedom) -> bool:
+    """Return whether no duration is fixed."""
+    return bool((freedom.free | (freedom.tie > 0.0)).all())
 
 
 def _torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:

@@ -48,8 +48,8 @@ def rest_to_rest(task: JointTask, constraints: Constraints) -> Motion | None:
             nodes[k] = way
     rest, one = np.zeros((len(nodes) - 1, 3)), np.ones(len(nodes))
     m = Motion(nodes[:, 1:-1], rest, rest, one)
-    m = grid.slowed(m, _least_durations(task, constraints, m))
-    return grid.restored(task.points, m)
+    T = _least_durations(task, constraints, m)
+    return None if T is None else grid.restored(task.points, grid.slowed(m, T))
 
 
 def _holdable_way(task: JointTask, grid: Grid, ends: Array) -> Array | None:
@@ -82,7 +82,7 @@ def _holds(task: JointTask, grid: Grid, ends: Array, nodes: Array) -> bool:
                 and (q <= limits.max_position + RANGE_ROOM).all())
 
 
-def _least_durations(task: JointTask, constraints: Constraints, m: Motion) -> Array:
+def _least_durations(task: JointTask, constraints: Constraints, m: Motion) -> Array | None:
     """Return durations that fit all limits, from a motion of 1 s a segment, shape (N,)."""
     limits, at = task.limits, constraints.grid.states(task.points, m)
     by_limit = [(np.abs(at.qd) / limits.max_velocity).max(axis=(1, 2)),
@@ -91,9 +91,10 @@ def _least_durations(task: JointTask, constraints: Constraints, m: Motion) -> Ar
     if constraints.with_torque:
         gravity = gravity_torque(task.model, at.q)
         moving = inverse_dynamics(task.model, at.q, at.qd, at.qdd) - gravity
-        room = limits.max_effort - np.sign(moving) * gravity
-        inner = np.s_[:, 1:]
-        by_limit.append(np.sqrt((np.abs(moving) / room)[inner].max(axis=(1, 2))))
+        room = constraints.effort - (np.sign(moving) * gravity)[:, 1:]
+        if (room <= 0.0).any():
+            return None
+        by_limit.append(np.sqrt((np.abs(moving[:, 1:]) / room).max(axis=(1, 2))))
     if constraints.floor is not None:
         by_limit.append(constraints.floor)
     return np.asarray(np.maximum(ROOM * np.max(by_limit, axis=0), LEAST_DURATION))

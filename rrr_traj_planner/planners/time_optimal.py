@@ -69,7 +69,7 @@ def _note(found: Solved) -> str:
     if found.outcome.converged:
         return ''
     part = 100.0 * min(found.outcome.gap / found.trajectory.duration, 1.0)
-    return f'planning ended before it converged: at most {part:.2g} % of the time could be saved'
+    return f'planning ended before it converged: at most {part:.3g} % of the time could be saved'
 
 
 def _with_jerk_limits(task: JointTask) -> JointLimits:
