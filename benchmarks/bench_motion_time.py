@@ -7,11 +7,14 @@ import argparse
 from limit import limit_of
 from measuring import compared, Row, setting, table
 import numpy as np
+from peers import ruckig_duration, toppra_duration
+from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.planners.planning import plan
-from tasks import duration, full_torque, gentle, random_tasks, Task, thesis_tasks, WEAK
+from tasks import full_torque, gentle, random_tasks, Task, thesis_tasks, WEAK
 
 SEED = 20
 TASKS = 56
+PEER_TASKS = 49
 MOST_SECONDS = (2.22, 2.67, 1.10, 1.60, 0.935)  # on the thesis's tables
 MEDIAN, WORST = 'median', 'worst'
 TARGETS = {  # of random tasks: limits, target of the median, of the worst
@@ -48,11 +51,34 @@ def random(count: int = TASKS, seed: int = SEED, say: bool = False) -> list[Row]
     return rows
 
 
+def peers(count: int = PEER_TASKS, seed: int = SEED) -> list[Row]:
+    """Return our times over those of TOPP-RA's and Ruckig's motions, without torque."""
+    tasks = random_tasks(seed, count, gentle())
+    pairs = [task for task in tasks if len(task.request.via_points) == 2]
+    more = [task for task in tasks if len(task.request.via_points) > 2]
+    rows = []
+    for name, chosen, theirs, target in (('TOPP-RA', more, toppra_duration, 1.05),
+                                         ('Ruckig, 2 via points', pairs, ruckig_duration, 1.04)):
+        times = sorted(((_own(task), theirs(task.joint_task())) for task in chosen),
+                       key=lambda t: t[0] / t[1])
+        rows.append(compared(f'{len(chosen)} random tasks, v, a, jerk 10: time_optimal / {name}, '
+                             f'{MEDIAN}', target, *times[len(times) // 2]))
+    return rows
+
+
+def _own(task: Task) -> float:
+    return plan(task.model, task.limits, task.asked_of('time_optimal')).trajectory.duration
+
+
 def _times(task: Task) -> tuple[float, float]:
-    """Return our time and the limit; not a number where the solver finds none."""
-    own = plan(task.model, task.limits, task.asked_of('time_optimal'))
-    found = limit_of(task, own.trajectory)
-    return duration(own), found.duration if found.solved else np.nan
+    """Return our time, infinite where we fail, and the limit; NaN where the solver finds none."""
+    try:
+        own = plan(task.model, task.limits, task.asked_of('time_optimal')).trajectory
+    except RrrPlannerError as error:
+        print(f'{task.name}: {error}', flush=True)
+        own = None
+    found = limit_of(task, own)
+    return (own.duration if own else np.inf), (found.duration if found.solved else np.nan)
 
 
 def main() -> None:
@@ -62,7 +88,7 @@ def main() -> None:
     parser.add_argument('--seed', type=int, default=SEED)
     options = parser.parse_args()
     print(setting())
-    print(table(tables() + random(options.tasks, options.seed, say=True)))
+    print(table(tables() + random(options.tasks, options.seed, say=True) + peers()))
 
 
 if __name__ == '__main__':

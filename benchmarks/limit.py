@@ -7,6 +7,7 @@ acceleration, jerk, torque and position keep their limits at the nodes.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 import sys
 from typing import NamedTuple
@@ -55,7 +56,8 @@ def limit(task: JointTask, guesses: list[Trajectory], nodes: int = NODES) -> Lim
 
     """
     problem = _Problem(task, nodes)
-    return min((problem.solved_from(g) for g in guesses), key=lambda s: (not s.solved, s.duration))
+    found = [problem.solved_from(g) for g in guesses]
+    return min(found, key=lambda s: (not s.solved, s.duration), default=Limit(np.nan, False))
 
 
 class _Problem:
@@ -124,14 +126,13 @@ def _column(q: np.ndarray, v: np.ndarray, a: np.ndarray, T: np.ndarray) -> np.nd
     return np.concatenate([part.ravel(order='F') for part in (q, v, a)] + [T])
 
 
-def limit_of(task: Task, own: Trajectory) -> Limit:
-    """Return the limit of a task, from our own motion on and from a slower one."""
+def limit_of(task: Task, own: Trajectory | None) -> Limit:
+    """Return the limit of a task, from our own motion on, if there is one, and a slow one."""
     slow = replace(task.limits, max_acceleration=np.minimum(task.limits.max_acceleration, 1.0),
                    max_jerk=np.minimum(task.limits.max_jerk, 10.0), max_effort=NONE)
-    try:
-        guesses = [own, plan(task.model, slow, task.asked_of('cycloid')).trajectory]
-    except RrrPlannerError:
-        guesses = [own]
+    guesses = [] if own is None else [own]
+    with suppress(RrrPlannerError):  # a joint's range may keep it from being planned
+        guesses.append(plan(task.model, slow, task.asked_of('cycloid')).trajectory)
     return limit(task.joint_task(), guesses)
 
 

@@ -10,7 +10,7 @@ from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics, wrap_in
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.planners.request import JointTask, Plan, PlanningRequest
+from rrr_traj_planner.planners.request import JointTask, PlanningRequest
 from rrr_traj_planner.planners.via_points import joint_via_points
 
 ARM = RobotModel()
@@ -103,8 +103,3 @@ def random_tasks(seed: int, count: int, limits: JointLimits) -> list[Task]:
     """Return tasks of 2 to 8 via points."""
     rng = np.random.default_rng(seed)
     return [random_task(rng, limits, 2 + k % 7, f'random {seed}/{k}') for k in range(count)]
-
-
-def duration(plan: Plan) -> float:
-    """Return how long a planned motion takes [s]."""
-    return plan.trajectory.duration

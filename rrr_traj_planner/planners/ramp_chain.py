@@ -83,14 +83,42 @@ class Grid:
         return shapes @ np.linalg.inv(gains)
 
     def nodes(self, m: Motion) -> tuple[Array, Array, Array]:
-        """Return accelerations of all nodes (N, n + 1, 3), and velocities at segments' ends."""
+        """
+        Return accelerations of all nodes, and velocities at the segments' ends.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        tuple of ndarray
+            Accelerations (N, n + 1, 3) [rad/s^2]; velocities at starts and at ends (N, 3) [rad/s].
+
+        """
         rest = np.zeros((1, 3))
         a, v = np.concatenate((rest, m.a, rest)), np.concatenate((rest, m.v, rest))
         nodes = np.concatenate((a[:-1, np.newaxis], m.inner, a[1:, np.newaxis]), axis=1)
         return nodes, v[:-1], v[1:]
 
     def states(self, points: Array, m: Motion) -> States:
-        """Return the motion at its points; it begins each segment at its via point."""
+        """
+        Return the motion at its points; it begins each segment at its via point.
+
+        Parameters
+        ----------
+        points : ndarray, shape (N + 1, 3)
+            Via points [rad].
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        States
+            Position [rad], velocity [rad/s], acceleration [rad/s^2], peaks of jerk [rad/s^3].
+
+        """
         nodes, v0, _ = self.nodes(m)
         h = (m.T / self.n)[:, np.newaxis, np.newaxis]
         v0 = v0[:, np.newaxis]
@@ -103,8 +131,18 @@ class Grid:
         """
         Return how states change with a segment's own unknowns y, alike for all joints.
 
-        y is the velocity at the segment's start, then its n + 1 node accelerations; arrays have
-        shape (N, points, n + 2).
+        y is the velocity at the segment's start, then its n + 1 node accelerations.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        States
+            Arrays of shape (N, 2 n + 1, n + 2), of jerk (N, n, n + 2).
+
         """
         h = (m.T / self.n)[:, np.newaxis, np.newaxis]
         zero, one = np.zeros((len(h), 2 * self.n + 1, 1)), np.ones((len(h), 2 * self.n + 1, 1))
@@ -115,7 +153,22 @@ class Grid:
             np.concatenate((zero[:, :self.n], self.jerk / h), axis=2))
 
     def changes_by_duration(self, m: Motion, at: States) -> States:
-        """Return how states change with a segment's duration, accelerations kept."""
+        """
+        Return how states change with a segment's duration, node accelerations kept.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+        at : States
+            The motion at its points.
+
+        Returns
+        -------
+        States
+            Per second.
+
+        """
         nodes, v0, _ = self.nodes(m)
         T = m.T[:, np.newaxis, np.newaxis]
         h, v0 = T / self.n, v0[:, np.newaxis]
@@ -124,7 +177,20 @@ class Grid:
             (at.qd - v0) / T, np.zeros_like(at.qdd), -at.jerk / T)
 
     def end_changes(self, m: Motion) -> tuple[Array, Array]:
-        """Return how velocity and place at the segments' ends change: by y (N, 2, n + 2), by T."""
+        """
+        Return how velocity and place at the segments' ends change.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        tuple of ndarray
+            By y, as in `changes`, (N, 2, n + 2); by duration (N, 2, 3).
+
+        """
         n, at = self.n, self.states(np.zeros((len(m.T) + 1, 3)), m)
         by_y, by_T = self.changes(m), self.changes_by_duration(m, at)
         return (np.stack((by_y.qd[:, n], by_y.q[:, n]), axis=1),
@@ -136,6 +202,23 @@ class Grid:
 
         Accelerations follow the durations as if time were stretched, which keeps the way; what
         is left of the step's second order is mended by smooth changes.
+
+        Parameters
+        ----------
+        points : ndarray, shape (N + 1, 3)
+            Via points [rad].
+        m : Motion
+            Its unknowns.
+        step : Motion
+            Change of every unknown.
+        size : float
+            Part of the step that is taken.
+
+        Returns
+        -------
+        Motion
+            Not mended where a duration is not positive.
+
         """
         T = m.T + size * step.T
         v, a = m.v + size * step.v, m.a + size * step.a
@@ -147,15 +230,60 @@ class Grid:
         return self.restored(points, Motion(inner, v, a, T))
 
     def slowed(self, m: Motion, T: Array) -> Motion:
-        """Return a motion with stops at every via point, run through in other durations."""
+        """
+        Return a motion with stops at every via point, run through in other durations.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+        T : ndarray, shape (N,)
+            The durations [s].
+
+        Returns
+        -------
+        Motion
+            The same way.
+
+        """
         return m._replace(inner=m.inner * ((m.T / T) ** 2)[:, np.newaxis, np.newaxis], T=T)
 
     def stretched(self, m: Motion, factor: float) -> Motion:
-        """Return a motion run through more slowly by a factor, as a whole."""
+        """
+        Return a motion run through more slowly, as a whole.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+        factor : float
+            What every time is multiplied by.
+
+        Returns
+        -------
+        Motion
+            The same way.
+
+        """
         return Motion(m.inner / factor ** 2, m.v / factor, m.a / factor ** 2, m.T * factor)
 
     def restored(self, points: Array, m: Motion) -> Motion:
-        """Return the motion with inner accelerations mended to meet the via points exactly."""
+        """
+        Return the motion with inner accelerations mended to meet the via points exactly.
+
+        Parameters
+        ----------
+        points : ndarray, shape (N + 1, 3)
+            Via points [rad].
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        Motion
+            Of the same via velocities, via accelerations and durations.
+
+        """
         nodes, v0, v1 = self.nodes(m)
         h = (m.T / self.n)[:, np.newaxis]
         wanted = np.stack(((v1 - v0) / h, (np.diff(points, axis=0) - m.T[:, np.newaxis] * v0)
@@ -164,7 +292,22 @@ class Grid:
         return m._replace(inner=m.inner + self._restore @ lacking)
 
     def trajectory(self, points: Array, m: Motion) -> PiecewiseTrajectory:
-        """Return the motion as cycloid pieces."""
+        """
+        Return the motion as cycloid pieces.
+
+        Parameters
+        ----------
+        points : ndarray, shape (N + 1, 3)
+            Via points [rad].
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        PiecewiseTrajectory
+            A half-period ramp from node to node.
+
+        """
         nodes, _, _ = self.nodes(m)
         at = self.states(points, m)
         h = np.broadcast_to((m.T / self.n)[:, np.newaxis], (len(m.T), self.n)).ravel()
@@ -176,7 +319,20 @@ class Grid:
         return PiecewiseTrajectory(profiles, np.concatenate(([0.0], np.cumsum(m.T))))
 
     def rest_to_rest(self, points: Array) -> Array:
-        """Return node accelerations, times T^2, of straight motions with a stop at every point."""
+        """
+        Return node accelerations of straight motions of 1 s with a stop at every point.
+
+        Parameters
+        ----------
+        points : ndarray, shape (N + 1, 3)
+            Via points [rad].
+
+        Returns
+        -------
+        ndarray, shape (N, n + 1, 3)
+            [rad/s^2]; those of a motion of T seconds are 1 / T^2 as large.
+
+        """
         shape = np.sin(2.0 * np.pi * np.arange(self.n + 1) / self.n)
         shape *= self.n ** 2 / (self.q[self.n] @ shape)
         return shape[:, np.newaxis] * np.diff(points, axis=0)[:, np.newaxis]

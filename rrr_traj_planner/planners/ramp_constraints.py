@@ -98,7 +98,20 @@ class Constraints:
         return self.limits.min_position - EDGE + below, self.limits.max_position + EDGE - above
 
     def slacks(self, m: Motion) -> list[Array]:
-        """Return the room above and below of every limited quantity, shape (2, N, p, 3) each."""
+        """
+        Return the room that a motion leaves to its limits.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        list of ndarray, shape (2, N, p, 3)
+            Above and below, for each limited quantity; positive strictly within.
+
+        """
         at = self.grid.states(self.points, m)
         found = self._room(at, m.T)
         if self.with_torque:
@@ -106,7 +119,21 @@ class Constraints:
         return found
 
     def linear(self, m: Motion) -> tuple[list[Array], list[Change], TorqueCurvature | None]:
-        """Return slacks, how the limited quantities change, and what torque's curvature needs."""
+        """
+        Return the room to the limits, and how the limited quantities change.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        tuple
+            Room as of `slacks`; a `Change` for each limited quantity; what torque's curvature
+            needs, None where torque is not limited.
+
+        """
         grid = self.grid
         at = grid.states(self.points, m)
         by_y, by_T = grid.changes(m), grid.changes_by_duration(m, at)

@@ -1,0 +1,64 @@
+"""The same tasks given to TOPP-RA and to Ruckig."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from rrr_traj_planner.core import equations
+from rrr_traj_planner.planners.request import JointTask
+import ruckig
+import toppra
+from toppra import algorithm, constraint
+
+GRID_POINTS = 200
+
+toppra.setup_logging('ERROR')
+
+
+def toppra_duration(task: JointTask) -> float:
+    """
+    Return how long TOPP-RA's motion along the cubic spline through the via points takes [s].
+
+    It keeps velocity, and acceleration and torque where they are limited; jerk it does not know.
+    """
+    points, limits = task.points, task.limits
+    path = toppra.SplineInterpolator(np.linspace(0.0, 1.0, len(points)), points)
+    wanted = [constraint.JointVelocityConstraint(_both(limits.max_velocity))]
+    if np.isfinite(limits.max_acceleration).all():
+        wanted.append(constraint.JointAccelerationConstraint(_both(limits.max_acceleration)))
+    if np.isfinite(limits.max_effort).all():
+        wanted.append(constraint.JointTorqueConstraint(
+            _inverse_dynamics(task), _both(limits.max_effort), np.zeros(3)))
+    solver = algorithm.TOPPRA(wanted, path, gridpoints=np.linspace(0.0, 1.0, GRID_POINTS + 1),
+                              solver_wrapper='seidel')
+    trajectory = solver.compute_trajectory(0.0, 0.0)
+    return math.nan if trajectory is None else float(trajectory.duration)
+
+
+def ruckig_duration(task: JointTask) -> float:
+    """Return how long Ruckig's motion from the first via point to the last takes [s]."""
+    limits, asked = task.limits, ruckig.InputParameter(3)
+    asked.current_position, asked.target_position = task.points[0].tolist(), task.points[
+        -1].tolist()
+    asked.max_velocity = limits.max_velocity.tolist()
+    asked.max_acceleration = limits.max_acceleration.tolist()
+    asked.max_jerk = limits.max_jerk.tolist()
+    trajectory = ruckig.Trajectory(3)
+    ruckig.Ruckig(3).calculate(asked, trajectory)
+    return float(trajectory.duration)
+
+
+def _both(bound: np.ndarray) -> np.ndarray:
+    return np.stack((-bound, bound), axis=1)
+
+
+def _inverse_dynamics(task: JointTask):
+    """Return the arm's inverse dynamics of one state, in floats: the fastest there is here."""
+    k = equations.constants(task.model)
+
+    def torque(q, qd, qdd):
+        terms = equations.terms(k, float(q[1]), float(q[2]), math.sin, math.cos)
+        return np.array(equations.torques(terms, *qd.tolist(), *qdd.tolist()))
+
+    return torque

@@ -1,0 +1,132 @@
+"""Does `time_optimal` ever fail or break a limit? Thousands of hard tasks that are feasible."""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+import os
+import time
+from typing import NamedTuple
+
+os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')  # before numpy; one process a core
+
+from measuring import setting  # noqa: E402
+import numpy as np  # noqa: E402
+from rrr_traj_planner.core.dynamics import inverse_dynamics  # noqa: E402
+from rrr_traj_planner.core.kinematics import forward_kinematics  # noqa: E402
+from rrr_traj_planner.planners.planning import plan  # noqa: E402
+from rrr_traj_planner.planners.request import Plan  # noqa: E402
+from soak_tasks import KINDS, soak_task  # noqa: E402
+from tasks import Task  # noqa: E402
+
+PER_SAMPLE = 20          # checked points between two samples
+ROOM = 1e-6              # relative, the promise of every planner
+POSITION_ROOM = 1e-9     # rad
+PLACE_ROOM = 1e-8        # m, and s for what rests
+KNOT_WIDTH = 1e-9        # s, the distance over which jerk is looked at for jumps
+JUMP = 1e-3              # of the largest jerk, that counts as none
+PERCENTILES = (50, 90, 99, 100)
+
+
+class Result(NamedTuple):
+    """What came of one task."""
+
+    seed: int
+    points: int
+    seconds: float
+    duration: float
+    note: str
+    failure: str
+    violations: list[str]
+
+
+def soak(seed: int, planner_id: str) -> Result:
+    """Plan the task of a seed and check the answer."""
+    task = soak_task(seed)
+    request = task.asked_of(planner_id)
+    begin, found, failure = time.perf_counter(), None, ''
+    try:
+        found = plan(task.model, task.limits, request)
+    except Exception as error:  # noqa: BLE001  whatever it is, it is counted
+        failure = f'{type(error).__name__}: {error}'
+    seconds = time.perf_counter() - begin
+    broken = violations(task, found) if found else []
+    return Result(seed, len(request.via_points), seconds, found.trajectory.duration if found
+                  else np.nan, found.note if found else '', failure, broken)
+
+
+def violations(task: Task, found: Plan) -> list[str]:
+    """Return what a plan breaks on a dense grid, by nothing but evaluating it there."""
+    motion, limits = found.trajectory, task.limits
+    n = int(np.ceil(motion.duration * PER_SAMPLE / task.request.sample_period))
+    t = np.union1d(np.linspace(0.0, motion.duration, n + 1), motion.knots)
+    q, qd, qdd, jerk = motion(t)
+    tau = inverse_dynamics(task.model, q, qd, qdd)
+    broken = [f'{name}: {np.abs(x).max(axis=0)} over {bound}' for name, x, bound in (
+        ('velocity', qd, limits.max_velocity), ('acceleration', qdd, limits.max_acceleration),
+        ('jerk', jerk, limits.max_jerk), ('torque', tau, limits.max_effort))
+        if (np.abs(x) > bound * (1.0 + ROOM)).any()]
+    outside = np.maximum(limits.min_position - q, q - limits.max_position).max()
+    if outside > POSITION_ROOM:
+        broken.append(f'position: {outside:.3g} rad outside its range')
+    missed = np.abs(forward_kinematics(task.model, motion(found.via_times)[0])
+                    - task.request.via_points).max()
+    if missed > PLACE_ROOM:
+        broken.append(f'via point missed by {missed:.3g} m')
+    if np.abs([*qd[[0, -1]], *qdd[[0, -1]]]).max() > PLACE_ROOM:
+        broken.append('not at rest at an end')
+    return broken + _jumps(found, float(np.abs(jerk).max()))
+
+
+def _jumps(found: Plan, largest: float) -> list[str]:
+    """Return the largest jump of jerk at a knot, if there is one."""
+    motion = found.trajectory
+    knots = motion.knots[1:-1]
+    before, after = motion(knots - KNOT_WIDTH)[3], motion(knots + KNOT_WIDTH)[3]
+    jump = np.abs(after - before).max(initial=0.0)
+    return [f'jerk jumps by {jump:.3g} rad/s^3'] if jump > JUMP * largest else []
+
+
+def report(results: list[Result]) -> str:
+    """Return counts, percentiles of planning time by number of via points, and every fault."""
+    faulty = [r for r in results if r.failure or r.violations]
+    lines = [f'seed {r.seed} ({KINDS[r.seed % len(KINDS)]}, {r.points} points): '
+             f'{r.failure or "; ".join(r.violations)}' for r in faulty]
+    for label, least, most in (('2 to 8', 2, 8), ('more', 9, 99)):
+        seconds = [r.seconds for r in results if least <= r.points <= most]
+        if seconds:
+            values = ', '.join(f'{p} %: {v:.3f} s' for p, v in zip(
+                PERCENTILES, np.percentile(seconds, PERCENTILES)))
+            lines.append(f'planning time, {label} via points: {values}')
+    noted = [r for r in results if r.note]
+    kinds = Counter(KINDS[r.seed % len(KINDS)] for r in noted)
+    lines += [f'{len(noted)} with a note: '
+              + ', '.join(f'{kind} {count}' for kind, count in kinds.items()),
+              f'{len(results)} tasks, {sum(bool(r.failure) for r in results)} failures, '
+              f'{sum(bool(r.violations) for r in results)} with violations']
+    return '\n'.join(lines)
+
+
+def main() -> int:
+    """Run the tasks of consecutive seeds and print what came of them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('tasks', type=int, help='how many')
+    parser.add_argument('seed', type=int, help='of the first; the others follow')
+    parser.add_argument('--jobs', type=int, default=1, help='processes')
+    parser.add_argument('--planner', default='time_optimal')
+    options = parser.parse_args()
+    print(setting(), flush=True)
+    seeds = range(options.seed, options.seed + options.tasks)
+    with ProcessPoolExecutor(options.jobs) as pool:
+        results = []
+        for result in pool.map(soak, seeds, [options.planner] * len(seeds)):
+            results.append(result)
+            if result.failure or result.violations:
+                print(f'seed {result.seed}: {result.failure or result.violations}', flush=True)
+    print(report(results))
+    return int(any(r.failure or r.violations for r in results))
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

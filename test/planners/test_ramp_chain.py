@@ -1,0 +1,170 @@
+"""Chains of ramps against the thesis's function, quadrature and finite differences."""
+
+import numpy as np
+import pytest
+from ramp_cases import own_unknowns, random_motion, random_step, shifted
+from random_cases import central_difference
+from rrr_traj_planner.core.cycloid import ramp
+from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+
+SEEDS = range(12)
+EXACT = {'rel': 1e-11, 'abs': 1e-11}      # rounding
+DIFFERENCE = {'rel': 1e-6, 'abs': 1e-7}   # of a fourth-order difference
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_states_are_those_of_consecutive_ramps_of_the_thesis(seed):
+    grid, points, m = random_motion(seed)
+    at, (nodes, v0, _) = grid.states(points, m), grid.nodes(m)
+    for k, T in enumerate(m.T):
+        q, qd = points[k], v0[k]
+        for i in range(grid.n):
+            piece = ramp(T / grid.n, q, qd, nodes[k, i], nodes[k, i + 1])
+            for row, s in ((i, 0.0), (grid.n + 1 + i, 0.5), (i + 1, 1.0)):
+                expected = piece.at(s)
+                assert at.q[k, row] == pytest.approx(expected[0], **EXACT)
+                assert at.qd[k, row] == pytest.approx(expected[1], **EXACT)
+                assert at.qdd[k, row] == pytest.approx(expected[2], **EXACT)
+            assert at.jerk[k, i] == pytest.approx(piece.at(0.5)[3], **EXACT)
+            q, qd = piece.at(1.0)[:2]
+
+
+def test_states_are_the_integrals_of_the_acceleration():
+    grid, points, m = random_motion(3, n=6, segments=1)
+    nodes, h = grid.nodes(m)[0][0], m.T[0] / 6
+    t = np.linspace(0.0, m.T[0], 6 * 4000 + 1)
+    i = np.minimum((t / h).astype(int), 5)
+    s = (t / h - i)[:, np.newaxis]
+    qdd = nodes[i] + (nodes[i + 1] - nodes[i]) * 0.5 * (1.0 - np.cos(np.pi * s))
+    dt = t[1]
+    qd = np.vstack((np.zeros(3), np.cumsum(0.5 * dt * (qdd[1:] + qdd[:-1]), axis=0)))
+    q = points[0] + np.vstack((np.zeros(3), np.cumsum(0.5 * dt * (qd[1:] + qd[:-1]), axis=0)))
+    at, rows = grid.states(points, m), np.concatenate((np.arange(7) * 4000,
+                                                       np.arange(6) * 4000 + 2000))
+    assert at.q[0] == pytest.approx(q[rows], abs=1e-6)
+    assert at.qd[0] == pytest.approx(qd[rows], abs=1e-6)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_restored_motions_meet_every_via_point_at_its_velocity(seed):
+    grid, points, m = random_motion(seed)
+    at, (_, _, v1) = grid.states(points, m), grid.nodes(m)
+    assert at.q[:, grid.n] == pytest.approx(points[1:], **EXACT)
+    assert at.qd[:, grid.n] == pytest.approx(v1, **EXACT)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_restoring_changes_nothing_but_inner_accelerations_and_those_only_once(seed):
+    grid, points, m = random_motion(seed)
+    off = m._replace(inner=m.inner + random_step(seed, m).inner)
+    back = grid.restored(points, off)
+    assert all(f is g for f, g in zip(back[1:], off[1:]))
+    assert grid.restored(points, back).inner == pytest.approx(back.inner, **EXACT)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+@pytest.mark.parametrize('size', [1.0, 0.1])
+def test_moved_motions_meet_every_via_point_at_its_velocity(seed, size):
+    grid, points, m = random_motion(seed)
+    step = random_step(seed, m)
+    step = step._replace(T=0.2 * np.tanh(step.T) * m.T)
+    moved = grid.moved(points, m, step, size)
+    assert grid.states(points, moved).q[:, grid.n] == pytest.approx(points[1:], **EXACT)
+    assert grid.states(points, moved).qd[:, grid.n] == pytest.approx(
+        grid.nodes(moved)[2], **EXACT)
+    assert moved.T == pytest.approx(m.T + size * step.T)
+    assert moved.v == pytest.approx(m.v + size * step.v)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_a_step_that_keeps_the_ends_to_first_order_is_followed_to_first_order(seed):
+    grid, points, m = random_motion(seed)
+    step = random_step(seed, m)
+    step = step._replace(T=0.1 * step.T)
+    # mend the step's own inner accelerations: its ends must not move to first order
+    tiny = 1e-6
+    inner = (grid.restored(points, shifted(m, step, tiny)).inner
+             - grid.restored(points, shifted(m, step, -tiny)).inner) / (2.0 * tiny)
+    step = step._replace(inner=inner)
+    for size in (1e-3, 1e-4):
+        moved = grid.moved(points, m, step, size)
+        scale = np.abs(step.inner).max() + np.abs(m.inner).max()
+        assert moved.inner == pytest.approx(
+            m.inner + size * step.inner, abs=300.0 * size ** 2 * scale)
+
+
+def test_moved_motions_of_no_duration_are_returned_as_such():
+    grid, points, m = random_motion(1)
+    step = random_step(1, m)._replace(T=-1.1 * m.T)
+    assert (grid.moved(points, m, step, 1.0).T < 0.0).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+@pytest.mark.parametrize('kind', ['q', 'qd', 'qdd', 'jerk'])
+def test_changes_are_finite_differences_of_states(seed, kind):
+    grid, points, m = random_motion(seed)
+    step = random_step(seed, m)
+    by_y, by_T = grid.changes(m), grid.changes_by_duration(m, grid.states(points, m))
+    found = getattr(by_y, kind) @ own_unknowns(grid, step)
+    found = found + getattr(by_T, kind) * step.T[:, np.newaxis, np.newaxis]
+    difference = central_difference(
+        lambda x: getattr(grid.states(points, shifted(m, step, x)), kind), 0.0, 1e-3)
+    assert found == pytest.approx(difference, **DIFFERENCE)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_end_changes_are_finite_differences_at_the_segments_ends(seed):
+    grid, points, m = random_motion(seed)
+    step = random_step(seed, m)
+    by_y, by_T = grid.end_changes(m)
+    found = by_y @ own_unknowns(grid, step) + by_T * step.T[:, np.newaxis, np.newaxis]
+    for row, kind in enumerate(('qd', 'q')):
+        difference = central_difference(lambda x, kind=kind: getattr(
+            grid.states(points, shifted(m, step, x)), kind)[:, grid.n], 0.0, 1e-3)
+        assert found[:, row] == pytest.approx(difference, **DIFFERENCE)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_trajectories_run_through_the_states(seed):
+    grid, points, m = random_motion(seed)
+    trajectory, at = grid.trajectory(points, m), grid.states(points, m)
+    starts = np.concatenate(([0.0], np.cumsum(m.T)))
+    assert trajectory.via_times == pytest.approx(starts)
+    for k, T in enumerate(m.T):
+        q, qd, qdd, _ = trajectory(starts[k] + T * grid.elapsed / grid.n)
+        for found, expected in ((q, at.q), (qd, at.qd), (qdd, at.qdd)):
+            assert found == pytest.approx(expected[k], rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize('n', [4, 7, 20])
+def test_straight_motions_stop_at_every_point_and_never_turn_back(n):
+    points = np.array([[0.0, 1.0, 0.0], [0.5, 0.7, 0.0], [-0.3, 1.2, 0.4]])
+    grid = Grid(n)
+    rest = np.zeros((1, 3))
+    m = Motion(grid.rest_to_rest(points)[:, 1:-1], rest, rest, np.ones(2))
+    slow = grid.slowed(m, np.array([2.0, 3.0]))
+    for motion in (m, slow):
+        at = grid.states(points, motion)
+        assert at.q[:, n] == pytest.approx(points[1:], **EXACT)
+        assert at.qd[:, n] == pytest.approx(np.zeros((2, 3)), abs=1e-12)
+        assert (at.qd * np.diff(points, axis=0)[:, np.newaxis] >= -1e-12).all()
+    assert grid.states(points, slow).q == pytest.approx(grid.states(points, m).q, **EXACT)
+
+
+def test_stops_on_the_way_are_made():
+    points = np.array([[0.0, 1.0, 0.0], [0.0, 1.5, -0.5], [0.8, 1.5, -0.4], [0.8, 1.1, 0.0]])
+    grid, rest = Grid(20), np.zeros((0, 3))
+    m = Motion(grid.rest_to_rest_legs(points)[np.newaxis, 1:-1], rest, rest, np.ones(1))
+    at = grid.states(points[[0, -1]], m)
+    for row, point in zip((7, 13, 20), points[1:]):
+        assert at.q[0, row] == pytest.approx(point, abs=1e-12)
+        assert at.qd[0, row] == pytest.approx(np.zeros(3), abs=1e-11)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_stretched_motions_go_the_same_way_more_slowly(seed):
+    grid, points, m = random_motion(seed)
+    at, slow = grid.states(points, m), grid.states(points, grid.stretched(m, 1.7))
+    assert slow.q == pytest.approx(at.q, **EXACT)
+    assert slow.qd == pytest.approx(at.qd / 1.7, **EXACT)
+    assert slow.jerk == pytest.approx(at.jerk / 1.7 ** 3, **EXACT)
