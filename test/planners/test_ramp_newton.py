@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from ramp_cases import all_free, bounds, FREE, LIMITS, own_unknowns, random_motion, slow_start
-from rrr_traj_planner.planners.ramp_chain import Grid, Motion
-from rrr_traj_planner.planners.ramp_newton import curvature, Curvature, Freedom, newton_step
+from rrr_traj_planner.planners.ramp_chain import Motion
+from rrr_traj_planner.planners.ramp_newton import Curvature, curvature, Freedom, newton_step
 
 SEEDS = range(8)
 
@@ -150,9 +150,3 @@ def test_band_that_rounding_left_indefinite_still_gives_a_finite_step():
     flat = Curvature(1e-18 * c.yy, 0.0 * c.yT, c.TT, c.y, c.T)
     step = newton_step(grid.n, ends, flat, all_free(3))
     assert all(np.isfinite(f).all() for f in step.motion)
-
-
-def test_cost_is_linear_in_the_number_of_segments():
-    shapes = [problem(0, FREE, n=8, segments=N)[3][1][0].by_y.size for N in (5, 50)]
-    assert shapes[1] == 10 * shapes[0]
-    assert Grid(8).n == 8

@@ -1,0 +1,133 @@
+"""The interior-point method against a general solver, closed forms and its own promises."""
+
+from dataclasses import replace
+from itertools import count
+
+import numpy as np
+import pytest
+from ramp_cases import all_free, FREE, LIMITS, NONE, random_motion, slow_start
+from rrr_traj_planner.planners.interior_point import minimise
+from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_newton import Freedom
+from scipy.optimize import minimize
+
+GAP = 6e-3  # relative: what counts as converged
+SEEDS = range(6)
+
+
+def never():
+    return False
+
+
+def solve(limits, grid, points, should_stop=never, freedom=None):
+    constraints, m = slow_start(limits, grid, points)
+    seen = []
+    linear = constraints.linear
+    constraints.linear = lambda m: (seen.append(m), linear(m))[1]
+    outcome = minimise(constraints, m, freedom or all_free(len(m.T)), should_stop)
+    return constraints, m, seen, outcome
+
+
+def reference(limits, grid, points, start):
+    """Return the least time of one segment in which joint 1 alone moves, by SLSQP."""
+    def motion(x):
+        inner, rest = np.zeros((1, grid.n - 1, 3)), np.zeros((0, 3))
+        inner[0, :, 0] = x[:-1]
+        return Motion(inner, rest, rest, x[-1:])
+
+    def ends(x):
+        at = grid.states(points, motion(x))
+        return [at.q[0, grid.n, 0] - points[1, 0], at.qd[0, grid.n, 0]]
+
+    def room(x):
+        at = grid.states(points, motion(x))
+        return np.concatenate([(bound[0] - sign * value[0, :, 0]) for sign in (-1.0, 1.0)
+                               for value, bound in ((at.qd, limits.max_velocity),
+                                                    (at.qdd, limits.max_acceleration),
+                                                    (at.jerk, limits.max_jerk))])
+
+    x = minimize(lambda x: x[-1], np.append(start.inner[0, :, 0], start.T), method='SLSQP',
+                 constraints=[{'type': 'eq', 'fun': ends}, {'type': 'ineq', 'fun': room}],
+                 options={'maxiter': 500, 'ftol': 1e-10})
+    assert x.success
+    return x.fun
+
+
+@pytest.mark.parametrize(('v', 'a', 'J'), [(9.0, 1.0, 50.0), (0.4, 1.0, 8.0), (9.0, 9.0, 3.0)])
+@pytest.mark.parametrize('n', [6, 11])
+def test_one_segment_takes_what_a_general_solver_finds(n, v, a, J):
+    limits = replace(FREE, max_velocity=[v] * 3, max_acceleration=[a] * 3, max_jerk=[J] * 3)
+    points, grid = np.array([[0.1, 1.4, 0.0], [0.8, 1.4, 0.0]]), Grid(n)
+    _, start, _, outcome = solve(limits, grid, points)
+    least = reference(limits, grid, points, start)
+    assert outcome.converged
+    assert least * (1.0 - 1e-6) <= outcome.motion.T.sum() <= least * (1.0 + GAP)
+    assert outcome.motion.T.sum() - outcome.gap <= least * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize('n', [8, 20])
+def test_acceleration_alone_gives_full_acceleration_forth_and_back(n):
+    # n ramps, nodes at +a, then -a, 0 at both ends and half-way: D = (n / 2)(n / 2 - 1) a h^2.
+    limits = replace(FREE, max_velocity=NONE, max_acceleration=[1.0] * 3, max_jerk=NONE)
+    points = np.array([[0.0, 1.4, 0.0], [1.0, 1.4, 0.0]])
+    found = solve(limits, Grid(n), points)[3].motion
+    expected = n / np.sqrt(0.5 * n * (0.5 * n - 1.0))
+    assert found.T[0] == pytest.approx(expected, rel=GAP)
+
+
+@pytest.mark.parametrize('limits', [FREE, LIMITS, replace(
+    LIMITS, max_acceleration=NONE, max_jerk=[50.0] * 3)], ids=['free', 'all', 'torque'])
+@pytest.mark.parametrize('seed', SEEDS)
+def test_every_iterate_is_strictly_feasible_and_through_the_via_points(seed, limits):
+    grid, points, _ = random_motion(seed)
+    constraints, start, seen, outcome = solve(limits, grid, points)
+    assert len(seen) > 5
+    for m in (*seen, outcome.motion):
+        assert min(s.min() for s in constraints.slacks(m)) > 0.0
+        at = grid.states(points, m)
+        assert at.q[:, grid.n] == pytest.approx(points[1:], abs=1e-10)
+        assert at.qd[:, grid.n] == pytest.approx(grid.nodes(m)[2], abs=1e-10)
+    assert outcome.motion.T.sum() <= start.T.sum()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_gap_bounds_what_a_longer_search_finds_where_the_problem_is_without_torque(seed):
+    grid, points, _ = random_motion(seed)
+    best = solve(FREE, grid, points)[3].motion.T.sum()
+    for stop in (2, 5, 8):
+        counter = count()
+        early = solve(FREE, grid, points, lambda counter=counter, stop=stop: next(
+            counter) >= stop)[3]
+        assert early.motion.T.sum() - early.gap <= best * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_stopped_at_once_it_returns_its_start(seed):
+    grid, points, _ = random_motion(seed)
+    _, start, seen, outcome = solve(FREE, grid, points, lambda: True)
+    assert outcome.motion is start
+    assert not outcome.converged
+    assert seen == []
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_fixed_durations_stay_and_tied_ones_keep_their_ratio(seed):
+    grid, points, _ = random_motion(seed, segments=3)
+    still = np.zeros((2, 3), bool)
+    fixed = Freedom(np.array([True, False, True]), np.zeros(3), np.array([1.0, 0.0, 1.0]), still)
+    _, start, _, outcome = solve(FREE, grid, points, freedom=fixed)
+    assert outcome.motion.T[1] == start.T[1]
+    assert outcome.motion.T[[0, 2]].sum() < start.T[[0, 2]].sum()
+    tied = Freedom(np.zeros(3, bool), start.T, np.ones(3), still)
+    _, start, _, outcome = solve(FREE, grid, points, freedom=tied)
+    ratio = outcome.motion.T / start.T
+    assert ratio == pytest.approx(np.full(3, ratio[0]), rel=1e-9)
+    assert ratio[0] < 1.0
+
+
+def test_velocities_that_are_still_stay_zero():
+    grid, points, _ = random_motion(4, segments=3)
+    still = np.array([[True, False, False], [False, False, True]])
+    found = solve(FREE, grid, points, freedom=all_free(3)._replace(still=still))[3].motion
+    assert np.abs(found.v[still]).max() <= 1e-12
+    assert np.abs(found.v[~still]).min() > 1e-3
