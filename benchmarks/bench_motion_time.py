@@ -1,4 +1,4 @@
-"""How near are the motions of `time_optimal` to the physical limit, and to other planners'?"""
+"""How near the motions of `time_optimal` are to the physical limit, and to other planners."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long does planning take, beside TOPP-RA, and how does it grow with the via points?"""
+"""How long planning takes, beside TOPP-RA, and how it grows with the via points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Does `time_optimal` ever fail or break a limit? Thousands of hard tasks that are feasible."""
+"""Whether `time_optimal` ever fails or breaks a limit, on many hard tasks that are feasible."""
 
 from __future__ import annotations
 

