@@ -13,7 +13,7 @@ from rrr_traj_planner.planners.request import JointTask
 
 NONE = np.full(3, np.inf)
 ARM = RobotModel()
-LIMITS = JointLimits(min_position=[-3.0] * 3, max_position=[3.0] * 3)
+LIMITS = JointLimits(min_position=[-2.9] * 3, max_position=[3.1] * 3)  # not symmetric
 FREE = replace(LIMITS, max_effort=NONE)
 
 

@@ -102,12 +102,12 @@ def test_gap_bounds_what_a_longer_search_finds_where_the_problem_is_without_torq
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_stopped_at_once_it_returns_its_start(seed):
+def test_stopped_at_once_it_returns_a_motion_within_limits_not_slower_than_its_start(seed):
     grid, points, _ = random_motion(seed)
-    _, start, seen, outcome = solve(FREE, grid, points, lambda: True)
-    assert outcome.motion is start
+    constraints, start, _, outcome = solve(FREE, grid, points, lambda: True)
+    assert outcome.motion.T.sum() <= start.T.sum()
+    assert min(s.min() for s in constraints.slacks(outcome.motion)) > 0.0
     assert not outcome.converged
-    assert len(seen) <= 1
 
 
 @pytest.mark.parametrize('seed', SEEDS)
