@@ -21,9 +21,9 @@ test: lint  ## linters and every test; options for pytest in ARGS
 lint: setup  ## ruff, and mypy on the core and the planners
 	@$(in_env) ruff check && mypy
 
-bench: setup  ## run the benchmarks
-	@test -f benchmarks/run.py || { echo 'benchmarks/run.py is missing: benchmarks live there'; exit 1; }
-	@$(in_env) python benchmarks/run.py $(ARGS)
+bench: setup  ## run the benchmarks; options in ARGS
+	@$(in_env) python -m pip install --quiet --no-deps -r requirements/bench.txt
+	@$(in_env) OPENBLAS_NUM_THREADS=1 python benchmarks/run.py $(ARGS)
 
 clean:  ## leave what a fresh clone has
 	rm -rf .venv build install log .*_cache .hypothesis demo_*.png

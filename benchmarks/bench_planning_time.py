@@ -13,7 +13,7 @@ from tasks import table as thesis_table
 
 SEED = 7
 FEW, MANY, GROWTH = 10, 100, 12.0  # via points, and by how much longer the many may take
-GROWTH_REPETITIONS = 5
+GROWTH_REPETITIONS = 3
 
 
 def beside_toppra(repetitions: int = REPETITIONS) -> list[Row]:

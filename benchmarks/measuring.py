@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-PACKAGES = ('numpy', 'scipy', 'toppra', 'casadi', 'ruckig', 'pin')
+PACKAGES = ('numpy', 'scipy', 'toppra', 'casadi', 'ruckig')
 REPETITIONS = 21
 
 

@@ -18,12 +18,14 @@ toppra.setup_logging('ERROR')
 
 def toppra_duration(task: JointTask) -> float:
     """
-    Return how long TOPP-RA's motion along the cubic spline through the via points takes [s].
+    Return how long TOPP-RA takes along the natural cubic spline through the via points [s].
 
-    It keeps velocity, and acceleration and torque where they are limited; jerk it does not know.
+    The spline's parameter is the way in joint space. Velocity is kept, and acceleration and torque
+    where they are limited; jerk is not known.
     """
     points, limits = task.points, task.limits
-    path = toppra.SplineInterpolator(np.linspace(0.0, 1.0, len(points)), points)
+    way = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
+    path = toppra.SplineInterpolator(way / way[-1], points, 'natural')
     wanted = [constraint.JointVelocityConstraint(_both(limits.max_velocity))]
     if np.isfinite(limits.max_acceleration).all():
         wanted.append(constraint.JointAccelerationConstraint(_both(limits.max_acceleration)))

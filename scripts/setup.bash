@@ -123,7 +123,8 @@ if [ "$AMENT_PREFIX_PATH" != "$root/.venv" ]; then
     [ "$ros" = jazzy ] || die "this shell has ROS 2 $ros sourced, and Jazzy is needed: use another"
 fi
 
-key=$({ echo "$ros $root" && cat requirements/*; } | sha256sum)
+key=$({ echo "$ros $root" && cat $(find requirements -type f ! -name 'bench.*' | sort); } |
+    sha256sum)  # make bench installs its own
 is_fresh .venv "$key" && is_same_python || make_venv "$key"
 hash -r
 build rrr_traj_planner_interfaces 'about 30 s' \

@@ -22,7 +22,9 @@ LONGEST_STEP = 0.012  # s
 # the square of that.
 ZOOM_ROUNDS = 6
 ZOOM_POINTS = 9
-CANDIDATES = 6  # brackets followed for each joint
+# Brackets followed for each joint, the highest first: a torque that is at its limit for long has
+# many peaks, each of which may hide the highest.
+CANDIDATES = 400
 
 TORQUE_TOLERANCE = 1e-9  # relative, for the rounding of a torque that is just at its limit
 
@@ -164,9 +166,12 @@ def maximum_over_time(quantity: Callable[[Array], Array], grid: Array) -> Extrem
         at = quantity(t.ravel()).reshape(t.shape + (3,))
         own = at[np.arange(len(t))[:, np.newaxis], np.arange(ZOOM_POINTS), column[:, np.newaxis]]
         top = own.argmax(axis=1)
-        for row, col in enumerate(column):
-            if own[row, top[row]] > value[col]:
-                value[col], time[col] = own[row, top[row]], t[row, top[row]]
+        highest = own[np.arange(len(t)), top]
+        for j in range(3):
+            rows = np.flatnonzero(column == j)
+            if len(rows) and highest[rows].max() > value[j]:
+                row = rows[highest[rows].argmax()]
+                value[j], time[j] = highest[row], t[row, top[row]]
         centre = t[np.arange(len(t)), top]
         low, high = np.maximum(centre - width, low), np.minimum(centre + width, high)
     return Extreme(value, time)

@@ -106,8 +106,10 @@ def test_short_durations_are_refused_with_ones_that_do(ask, planner_id, asked):
      '2 segment_durations given for 3 segments'),
     ({'segment_durations': [-1.0, 3.0]}, 'segment_durations[0] is -1.0 s, must be positive'),
     ({'segment_durations': [3.0, 0.0]}, 'segment_durations[1] is 0.0 s, must be positive'),
-    ({'segment_durations': [nan, 3.0]}, 'segment_durations[0] is nan, must be finite'),
-    ({'segment_durations': [3.0, inf]}, 'segment_durations[1] is inf, must be finite'),
+    ({'segment_durations': [nan, 3.0]},
+     'segment_durations[0] is nan: planner cycloid takes every duration or none'),
+    ({'segment_durations': [3.0, inf]},
+     'segment_durations[1] is inf s, must be positive and finite'),
     *(({f'max_{kind}_scaling_factor': value},
        f'max_{kind}_scaling_factor is {value}, must be in (0, 1]')
       for kind in ('velocity', 'acceleration') for value in (1.5, -1.0, nan, inf)),
