@@ -27,7 +27,7 @@ HIT = 1e-9            # rad at the via points; rad, rad/s, rad/s^2 across a knot
 LIMIT_ROOM = 1e-6     # relative
 BETWEEN_POINTS = 1e-3  # relative, of the quintic through the sampled points
 NANOSECOND = 1e-9
-TORQUE_MISS = 2e-5    # relative, of a peak of torque between the points of its search
+TORQUE_MISS = 1e-6    # relative, of a peak of torque between the points of its search
 
 
 @cache
