@@ -1,0 +1,28 @@
+"""How a printed equation is told from a true one, and derivatives to judge both by."""
+
+import numpy as np
+
+# A printed form fails if it is this far off: a million times what rounding may do here.
+VISIBLE = 1e-3
+# Sums and products of values of the order of 1 to 10.
+ROUNDING = 1e-12
+# Fourth-order differences of such functions.
+DIFFERENCES = 1e-8
+
+COMPLEX_STEP = 1e-30
+
+
+def differ(printed, truth):
+    """Return whether two results differ by far more than rounding, in some case at least."""
+    return float(np.max(np.abs(np.asarray(printed) - np.asarray(truth)))) > VISIBLE
+
+
+def rate(function, x, direction=1.0):
+    """Return the derivative of an analytic function along a direction, exact to rounding."""
+    x, direction = np.asarray(x, dtype=float), np.asarray(direction, dtype=float)
+    return np.imag(function(x + 1j * COMPLEX_STEP * direction)) / COMPLEX_STEP
+
+
+def length(v):
+    """Return the Euclidean length over the last axis, analytic in its components."""
+    return np.sqrt((v * v).sum(axis=-1))

@@ -1,0 +1,66 @@
+"""Tables 6.3, B.1 and B.3 as printed and as corrected, and what gravity says to them."""
+
+from comparison import differ
+import numpy as np
+from pinocchio_arm import PinocchioArm
+import pytest
+from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics, wrap_into_limits
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+import table_5_1
+import thesis_cases as thesis
+
+TURN = 2.0 * np.pi
+POINTS = {name: point for name, (point, _, _) in thesis.POINTS.items()}
+
+
+def test_table_6_3_s_third_point_cannot_be_held():
+    arm, limit = RobotModel(), JointLimits().max_effort[1]
+    assert limit == 200.0  # table B.3
+    held = {}
+    for name, point in POINTS.items():
+        needed = [PinocchioArm(arm).gravity_torque(inverse_kinematics(arm, point, elbow))[1]
+                  for elbow in ELBOWS]
+        held[name] = min(needed) <= limit
+    assert [name for name, can in held.items() if not can] == ['6.3 point 3']
+
+
+def test_table_6_3_s_third_point_seems_light_with_5_53_as_printed():
+    arm = RobotModel()
+    q = inverse_kinematics(arm, POINTS['6.3 point 3'])
+    _, m2, m3 = arm.mass
+    printed = (m2 * arm.l2 * np.cos(q[1]) + m3 * (
+        arm.a2 * np.cos(q[1]) + arm.l3 * np.cos(q[1] + q[2]))) * arm.gravity
+    true = PinocchioArm(arm).gravity_torque(q)[1]
+    assert printed < 200.0 < true
+    assert true == pytest.approx(218.9, abs=thesis.TORQUE_TOLERANCE)
+    assert printed == pytest.approx(190.5, abs=thesis.TORQUE_TOLERANCE)
+
+
+@pytest.mark.parametrize('elbow', ELBOWS)
+def test_table_b_3_s_range_of_joint_2_holds_no_branch_of_the_thesis_s_points(elbow):
+    angles = [inverse_kinematics(RobotModel(), point, elbow)[1] for point in POINTS.values()]
+    inside = [np.pi <= angle % TURN <= TURN for angle in angles]
+    assert not all(inside)
+
+
+def test_table_b_3_mirrored_holds_all_points_elbow_up():
+    limits = JointLimits()
+    assert np.rad2deg((limits.min_position[1], limits.max_position[1])) == pytest.approx((0, 180))
+    for point in POINTS.values():
+        q = wrap_into_limits(inverse_kinematics(RobotModel(), point, 'up'), limits)
+        assert (limits.min_position <= q).all()
+        assert (q <= limits.max_position).all()
+
+
+def test_table_b_1_s_d3_is_d4():
+    # As an offset along z2, 0.7 m could not bring the tip beyond 1.14 m from the shoulder.
+    arm, point = RobotModel(), np.array(POINTS['6.1 point 1'])
+    as_offset = np.hypot(arm.a2, arm.d4)
+    distance = np.linalg.norm(point - (0.0, 0.0, arm.d1))
+    assert distance > as_offset
+    q = inverse_kinematics(arm, point)
+    assert table_5_1.tip(arm, q) == pytest.approx(point, abs=1e-12)
+    second = table_5_1.frames(arm, q)[1]
+    offset = second @ table_5_1.denavit_hartenberg(q[2], 0.0, arm.d4, np.pi / 2)
+    assert differ(offset[:3, 3], point)
