@@ -1,0 +1,68 @@
+"""The arc of a circle as the curved zone of a path: thesis section 5.4.2."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
+
+
+class ArcZones:
+    """
+    Arcs of unit radius, each in a plane of its own.
+
+    The origin of each plane is the via point, x the tangent of the path there, y the normal.
+
+    Parameters
+    ----------
+    before, after : array_like, shape (k,)
+        Angles by which each arc turns before and after its via point [rad].
+
+    Raises
+    ------
+    InvalidInputError
+        If an angle is not finite.
+
+    """
+
+    def __init__(self, before: ArrayLike, after: ArrayLike) -> None:
+        self.before = finite_array('before', before, (-1,))
+        self.after = finite_array('after', after, (-1,))
+
+    @staticmethod
+    def ends(angle: Array) -> tuple[Array, Array]:
+        """
+        Return where an arc meets the line after it.
+
+        Parameters
+        ----------
+        angle : ndarray
+            Half the angle by which the path turns [rad].
+
+        Returns
+        -------
+        tuple of ndarray
+            x and y, in radii.
+
+        """
+        return np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2
+
+    def at(self, zone: IntArray, sigma: Array) -> Array:
+        """
+        Return points of arcs and their derivatives.
+
+        Parameters
+        ----------
+        zone : ndarray of int, shape (m,)
+            Which arc.
+        sigma : ndarray, shape (m,)
+            Length from the via point, in radii.
+
+        Returns
+        -------
+        ndarray, shape (4, 2, m)
+            x and y, and their first to third derivatives by sigma.
+
+        """
+        s, c = np.sin(sigma), np.cos(sigma)
+        return np.array([[s, 2.0 * np.sin(0.5 * sigma) ** 2], [c, s], [-s, c], [-c, -s]])

@@ -1,0 +1,80 @@
+"""The largest radii whose path stays within a deviation from the polyline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cartesian_path import CartesianPath
+from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError
+from rrr_traj_planner.core.path_design import check_points
+
+# A turn so slight that its radius would be more than this many times the polyline's length.
+MOST_LENGTHS = 10.0
+ROUNDS = 30
+TOLERANCE = 1e-4  # relative, by which the deviation may stay below the one allowed
+
+
+def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: ArrayLike,
+                  max_deviation: float) -> CartesianPath:
+    """
+    Return the path with the largest radii that keep a deviation at every point.
+
+    Parameters
+    ----------
+    family : callable
+        `line_arc` or `line_polynomial`.
+    points : array_like, shape (n, 3)
+        Via points [m].
+    max_deviation : float
+        Largest distance between path and polyline [m].
+
+    Returns
+    -------
+    CartesianPath
+        Its `radii` are the largest; its `deviation` is at the bound but where a radius was
+        limited by a neighbouring zone, or by MOST_LENGTHS.
+
+    Raises
+    ------
+    InvalidInputError
+        If the deviation is not positive, or no path passes the points without a stop.
+    ConvergenceError
+        If the radii were not found.
+
+    """
+    points = check_points(points)
+    if not 0.0 < max_deviation < np.inf:
+        raise InvalidInputError(f'max_deviation is {max_deviation} m, must be positive')
+    legs = np.diff(points, axis=0)
+    lengths = np.linalg.norm(legs, axis=1)
+    u = legs / lengths[:, np.newaxis]
+    half = 0.5 * np.linalg.norm(u[1:] - u[:-1], axis=1)  # sine of half the turn
+    most = np.full(len(points) - 2, MOST_LENGTHS * lengths.sum())
+    # The deviation of an arc between long legs, and half the leg that an arc needs.
+    with np.errstate(divide='ignore'):
+        radii = np.minimum(max_deviation / (1.0 - np.sqrt(np.maximum(1.0 - half ** 2, 0.0))),
+                           np.minimum(lengths[1:], lengths[:-1]) / (2.0 * half))
+    return _adjusted(family, points, np.minimum(radii, most), most, max_deviation)
+
+
+def _adjusted(family: Callable[[Array, ArrayLike], CartesianPath], points: Array, radii: Array,
+              most: Array, max_deviation: float) -> CartesianPath:
+    """Return the path after its radii are scaled until they use the deviation up."""
+    for round_ in range(2 * ROUNDS):
+        path = family(points, radii)
+        # What was shrunk stays so: from here it can only become smaller.
+        most = np.where(path.radii < path.radii_asked, path.radii, most)
+        with np.errstate(divide='ignore'):
+            factor = max_deviation * (1.0 - 0.5 * TOLERANCE) / path.deviation
+        wanted = np.minimum(path.radii * np.clip(factor, 0.5, 2.0), most)
+        kept = path.deviation <= max_deviation
+        settled = round_ >= ROUNDS  # neighbours that rob each other of room: only shrink now
+        if kept.all() and (settled or (wanted <= path.radii * (1.0 + TOLERANCE)).all()):
+            return path
+        radii = np.where(kept, path.radii, wanted) if settled else wanted
+    raise ConvergenceError(
+        f'largest radii not found: deviation is {path.deviation.tolist()} m after {2 * ROUNDS} '
+        f'rounds, {max_deviation:.6g} m wanted')

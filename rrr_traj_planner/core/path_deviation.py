@@ -1,0 +1,72 @@
+"""How far a path leaves the polyline through its via points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, IntArray
+
+SAMPLES = 33        # on each half of a zone
+ZOOM_POINTS = 9     # each round narrows the bracket of the largest distance to a quarter
+ZOOM_ROUNDS = 8
+
+
+def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s: Array,
+                       zone_ends: Array) -> Array:
+    """
+    Return the largest distance between each zone and the legs that meet at its via point.
+
+    Along a line the distance from a leg is convex, so it is largest at an end, which belongs to
+    a zone: nothing of the path is farther away.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Via points [m].
+    position : callable
+        Points of the path, shape (m, 3), at places of shape (m,) [m].
+    via_s : ndarray, shape (n,)
+        Places of the via points [m].
+    zone_ends : ndarray, shape (n - 2, 2)
+        Where each zone begins and ends [m].
+
+    Returns
+    -------
+    ndarray, shape (n - 2,)
+        Distances [m].
+
+    """
+    k = len(zone_ends)
+    if k == 0:
+        return np.zeros(0)
+    middle = via_s[1:-1]
+    # A row for each half of a zone: first those before the via points, then those after.
+    low = np.concatenate((zone_ends[:, 0], middle))
+    high = np.concatenate((middle, zone_ends[:, 1]))
+    corner = np.tile(np.arange(1, k + 1), 2)
+    largest = np.zeros(2 * k)
+    left, right, count = low, high, SAMPLES
+    for _ in range(1 + ZOOM_ROUNDS):
+        s = left[:, np.newaxis] + np.linspace(0.0, 1.0, count) * (right - left)[:, np.newaxis]
+        distance = _leg_distance(points, position(s.ravel()).reshape(s.shape + (3,)), corner)
+        best = distance.argmax(axis=1)
+        rows = np.arange(2 * k)
+        largest = np.maximum(largest, distance[rows, best])
+        width = (right - left) / (count - 1)
+        left = np.maximum(s[rows, best] - width, low)
+        right = np.minimum(s[rows, best] + width, high)
+        count = ZOOM_POINTS
+    return np.asarray(largest.reshape(2, k).max(axis=0))
+
+
+def _leg_distance(points: Array, at: Array, corner: IntArray) -> Array:
+    """Return the distance of points, a row for each corner, from the nearer of its legs."""
+    nearest = np.full(at.shape[:-1], np.inf)
+    for other in (-1, 1):
+        from_corner = at - points[corner][:, np.newaxis]
+        leg = points[corner + other] - points[corner]
+        share = np.einsum('kmi,ki->km', from_corner, leg) / (leg * leg).sum(axis=1)[:, np.newaxis]
+        foot = np.clip(share, 0.0, 1.0)[..., np.newaxis] * leg[:, np.newaxis]
+        nearest = np.minimum(nearest, np.linalg.norm(from_corner - foot, axis=-1))
+    return nearest

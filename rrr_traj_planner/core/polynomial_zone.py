@@ -1,0 +1,165 @@
+"""The polynomial curved zone (3.18): curvature zero at both ends, greatest at the via point."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
+from rrr_traj_planner.core.errors import ConvergenceError
+
+# The zone is a quintic in u, -1 <= u <= 1, symmetric about the via point. Its six control points
+# lie on the two lines, three on each, so that curvature is zero at both ends whatever the other
+# two of each three are: at the distances 1 (the end), alpha and beta from the corner, in units of
+# the first. Of all alpha and beta those are taken that give the least peak curvature between the
+# same two ends, among zones whose curvature changes along half the zone by no more than RISE
+# times the peak at its steepest: curvature that rises more steeply saves a few per cent of radius
+# and costs any multiple of jerk. As functions of c = cos(half the turn) they are 1 - c A(c) and
+# 1 - c B(c), fitted to within 3 % of the best peak, and such that the peak stands at the via
+# point for every turn below half a revolution: so the least radius is known in closed form.
+RISE = 4.0
+ALPHA = (0.7477, -0.7612, 0.6555, -0.3403, 0.0630)
+BETA = (1.9301, -2.9182, 3.3966, -2.3619, 0.7009)
+
+# Coefficients of u, u^3, u^5 along the tangent and of u^2, u^4 along the normal; a row for each
+# pair of control points.
+ALONG = np.array([[5.0, 10.0, 1.0], [15.0, -10.0, -5.0], [10.0, -20.0, 10.0]]) / 16.0
+ACROSS = np.array([[10.0, 5.0], [10.0, -15.0], [-20.0, 10.0]]) / 16.0
+
+# Terms of the series of the zone's length: exact to rounding up to turns of 179 degrees.
+LENGTH_TERMS = 40
+INVERSIONS = 30
+LENGTH_TOLERANCE = 1e-14  # in radii, times the zone's length
+
+
+class _Quintic(NamedTuple):
+    """Coefficients of zones with least radius 1, a row for each power, a column for each zone."""
+
+    along: Array   # of u, u^3, u^5
+    across: Array  # of u^2, u^4
+
+
+class PolynomialZones:
+    """
+    Polynomial zones of least radius 1, each in a plane of its own.
+
+    The origin of each plane is the via point, x the tangent of the path there, y the normal.
+
+    Parameters
+    ----------
+    angle : array_like, shape (k,)
+        Half the angle by which the path turns in each zone [rad], in (0, pi/2).
+
+    Raises
+    ------
+    InvalidInputError
+        If an angle is not finite.
+
+    """
+
+    def __init__(self, angle: ArrayLike) -> None:
+        angle = finite_array('angle', angle, (-1,))
+        self._quintic = _quintic(angle)
+        nodes = 0.5 * (1.0 + chebyshev.chebpts1(LENGTH_TERMS))
+        x, y = _derivative(self._quintic, 1, nodes[:, np.newaxis])
+        series = np.linalg.solve(chebyshev.chebvander(2.0 * nodes - 1.0, LENGTH_TERMS - 1),
+                                 np.hypot(x, y))
+        self._length: Array = np.asarray(chebyshev.chebint(series, lbnd=-1.0, scl=0.5))
+        self.before: Array = np.asarray(chebyshev.chebval(1.0, self._length))
+        self.after = self.before
+
+    @staticmethod
+    def ends(angle: Array) -> tuple[Array, Array]:
+        """
+        Return where a zone meets the line after it.
+
+        Parameters
+        ----------
+        angle : ndarray
+            Half the angle by which the path turns [rad].
+
+        Returns
+        -------
+        tuple of ndarray
+            x and y, in least radii.
+
+        """
+        zone = _quintic(angle)
+        return zone.along.sum(axis=0), zone.across.sum(axis=0)
+
+    def at(self, zone: IntArray, sigma: Array) -> Array:
+        """
+        Return points of zones and their derivatives by arc length.
+
+        Parameters
+        ----------
+        zone : ndarray of int, shape (m,)
+            Which zone.
+        sigma : ndarray, shape (m,)
+            Length from the via point, in least radii.
+
+        Returns
+        -------
+        ndarray, shape (4, 2, m)
+            x and y, and their first to third derivatives by sigma.
+
+        Raises
+        ------
+        ConvergenceError
+            If a length could not be inverted.
+
+        """
+        quintic = _Quintic(*(c[:, zone] for c in self._quintic))
+        u = np.sign(sigma) * self._parameter(zone, quintic, np.abs(sigma))
+        r0, r1, r2, r3 = (np.array(_derivative(quintic, order, u)) for order in range(4))
+        rate = np.hypot(*r1)
+        rate1 = (r1 * r2).sum(axis=0) / rate
+        rate2 = ((r2 * r2).sum(axis=0) + (r1 * r3).sum(axis=0) - rate1 ** 2) / rate
+        first = r1 / rate
+        second = (r2 - first * rate1) / rate ** 2
+        third = (r3 - 3.0 * second * rate * rate1 - first * rate2) / rate ** 3
+        return np.array([r0, first, second, third])
+
+    def _parameter(self, zone: IntArray, quintic: _Quintic, sigma: Array) -> Array:
+        """Return u at lengths that are not negative: Newton's method."""
+        length, whole = self._length[:, zone], self.after[zone]
+        u = np.minimum(sigma / whole, 1.0)
+        for _ in range(INVERSIONS):
+            miss = chebyshev.chebval(2.0 * u - 1.0, length, tensor=False) - sigma
+            if (np.abs(miss) <= LENGTH_TOLERANCE * whole).all():
+                return u
+            u = np.clip(u - miss / np.hypot(*_derivative(quintic, 1, u)), 0.0, 1.0)
+        worst = float(np.abs(miss / whole).max())
+        if worst > 10.0 * LENGTH_TOLERANCE:
+            raise ConvergenceError(
+                f'length along a polynomial zone is off by {worst:.3g} of it after '
+                f'{INVERSIONS} steps')
+        return u
+
+
+def _quintic(angle: Array) -> _Quintic:
+    """Return the zone of least radius 1 for each half turn."""
+    c, s = np.cos(angle), np.sin(angle)
+    alpha = 1.0 - c * np.polynomial.polynomial.polyval(c, ALPHA)
+    beta = 1.0 - c * np.polynomial.polynomial.polyval(c, BETA)
+    # The curvature at u = 0 with the end at distance 1 from the corner.
+    leg = 12.8 * s * (1.0 + alpha - 2.0 * beta) / (c * (1.0 + 3.0 * alpha + 2.0 * beta)) ** 2
+    shape = np.stack((np.ones_like(c), alpha, beta))
+    return _Quintic(leg * c * np.tensordot(ALONG.T, shape, 1),
+                    leg * s * np.tensordot(ACROSS.T, shape, 1))
+
+
+def _derivative(zone: _Quintic, order: int, u: Array) -> tuple[Array, Array]:
+    """Return x and y, or one of their derivatives, at values of u."""
+    a1, a3, a5 = zone.along
+    b2, b4 = zone.across
+    v = u * u
+    if order == 0:
+        return u * (a1 + v * (a3 + v * a5)), v * (b2 + v * b4)
+    if order == 1:
+        return a1 + v * (3.0 * a3 + v * 5.0 * a5), u * (2.0 * b2 + v * 4.0 * b4)
+    if order == 2:
+        return u * (6.0 * a3 + v * 20.0 * a5), 2.0 * b2 + 12.0 * v * b4
+    return 6.0 * a3 + 60.0 * v * a5, 24.0 * u * b4

@@ -1,0 +1,227 @@
+"""Lines that are tangent to the curved zones at both their ends, each zone through its point."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import ConvergenceError
+
+# Half turn of a zone -> where it meets its lines (x along the tangent, y along the normal), for
+# least radius 1.
+ZoneEnds: TypeAlias = Callable[[Array], tuple[Array, Array]]
+
+ITERATIONS = 40
+HALVINGS = 12
+TOLERANCE = 1e-14   # by how far a line may miss a zone's end, relative to the largest extent
+ROUNDING = 2e-13    # the same, where rounding stops the iteration earlier
+DIFFERENCE = 1e-7   # rad, step of the numerical derivative
+LARGEST_STEP = 0.3  # rad
+
+# Each line's miss depends on its own direction and its two neighbours' alone: every third line
+# is turned at once.
+COLOURS = 3
+
+
+class Tangents(NamedTuple):
+    """Lines from zone to zone, n - 1 of them for n points."""
+
+    direction: Array  # unit vectors, shape (..., n - 1, 3)
+    start: Array      # where each line leaves the zone before it [m]
+    stop: Array       # where it meets the zone after it [m]
+    angle: Array      # half turn of each zone [rad], shape (..., n - 2)
+
+    @property
+    def length(self) -> Array:
+        """Signed lengths of the lines [m]; negative where neighbouring zones overlap."""
+        return np.asarray(np.einsum('...i,...i', self.direction, self.stop - self.start))
+
+
+def tangents(points: Array, radii: Array, ends: ZoneEnds, direction: Array) -> Tangents:
+    """
+    Return the lines for given directions; they miss their zones unless the directions fit.
+
+    A zone whose lines have the directions d1 and d2 has its tangent along d1 + d2 and its normal
+    along d2 - d1 at the via point (5.56 and 5.64 with unit vectors).
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Via points [m].
+    radii : ndarray, shape (n - 2,)
+        Least radius of each zone [m].
+    ends : callable
+        The kind of zone.
+    direction : ndarray, shape (..., n - 1, 3)
+        Unit vectors.
+
+    Returns
+    -------
+    Tangents
+        Lines, and half the angle between each two.
+
+    """
+    along = 0.5 * (direction[..., :-1, :] + direction[..., 1:, :])
+    inward = 0.5 * (direction[..., 1:, :] - direction[..., :-1, :])
+    cosine, sine = np.linalg.norm(along, axis=-1), np.linalg.norm(inward, axis=-1)
+    angle = np.arctan2(sine, cosine)
+    x, y = ends(angle)
+    straight = sine == 0.0
+    forward = (radii * x / cosine)[..., np.newaxis] * along
+    across = np.where(straight, 0.0, radii * y / np.where(straight, 1.0, sine))
+    centre = points[1:-1] + across[..., np.newaxis] * inward
+    first = np.broadcast_to(points[:1], direction.shape[:-2] + (1, 3))
+    last = np.broadcast_to(points[-1:], first.shape)
+    return Tangents(direction, np.concatenate((first, centre + forward), axis=-2),
+                    np.concatenate((centre - forward, last), axis=-2), angle)
+
+
+def tangent_lines(points: Array, radii: Array, ends: ZoneEnds,
+                  near: Array | None = None) -> Tangents:
+    """
+    Return the lines that are tangent to every zone while each zone contains its via point.
+
+    The corners where neighbouring lines meet lie outside the polyline. Newton's method on the
+    directions of the lines, which stay well defined where the corners recede to infinity.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Via points [m].
+    radii : ndarray, shape (n - 2,)
+        Least radius of each zone [m].
+    ends : callable
+        The kind of zone.
+    near : ndarray, shape (n - 1, 3), optional
+        Directions to begin with; without them, the polyline's.
+
+    Returns
+    -------
+    Tangents
+        The lines; their lengths are negative where zones overlap.
+
+    Raises
+    ------
+    ConvergenceError
+        If there are no such lines, or none were found: the radii are too large.
+
+    """
+    legs = np.diff(points, axis=0)
+    direction = _unit(legs) if near is None else near
+    scale = max(float(np.ptp(points, axis=0).max()), float(np.abs(points).max()))
+    basis = _basis(direction)
+    lines = tangents(points, radii, ends, direction)
+    miss = _largest(_misses(lines, basis))
+    for _ in range(ITERATIONS):
+        if miss <= TOLERANCE * scale:
+            return lines
+        step = _newton_step(points, radii, ends, lines, basis)
+        better = _damped(points, radii, ends, lines, basis, step, miss)
+        if better is None:
+            break
+        lines, basis = better, _basis(better.direction)
+        miss = _largest(_misses(lines, basis))
+    if miss <= ROUNDING * scale:
+        return lines
+    raise ConvergenceError(
+        f'no lines are tangent to zones with radii {radii.tolist()} m: the best miss by '
+        f'{miss:.3g} m')
+
+
+def frames(first: Array, second: Array) -> tuple[Array, Array]:
+    """
+    Return the path's tangent and normal at via points from the directions before and after.
+
+    5.56 and 5.64 with unit vectors in place of the legs; orthogonal to rounding however little
+    or much the path turns.
+
+    Parameters
+    ----------
+    first, second : ndarray, shape (k, 3)
+        Unit vectors.
+
+    Returns
+    -------
+    tuple of ndarray, shape (k, 3)
+        Tangents and normals; a normal is zero where the path is straight.
+
+    """
+    along, inward = first + second, second - first
+    cosine, sine = (np.linalg.norm(v, axis=-1, keepdims=True) for v in (along, inward))
+    with np.errstate(divide='ignore', invalid='ignore'):
+        T, N = along / cosine, np.where(sine > 0.0, inward / sine, 0.0)
+    common = (T * N).sum(axis=-1, keepdims=True)
+    T, N = (np.where(cosine < sine, _unit(T - common * N), T),
+            np.where(cosine < sine, N, N - common * T))
+    size = np.linalg.norm(N, axis=-1, keepdims=True)
+    return T, N / np.where(size > 0.0, size, 1.0)
+
+
+def _damped(points: Array, radii: Array, ends: ZoneEnds, lines: Tangents, basis: Array,
+            step: Array, miss: float) -> Tangents | None:
+    """Return the lines after as much of a step as makes them miss by less, or None."""
+    share = min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
+    for _ in range(HALVINGS):
+        tried = tangents(points, radii, ends, _turned(lines.direction, basis, share * step))
+        if _largest(_misses(tried, _basis(tried.direction))) < miss:
+            return tried
+        share *= 0.5
+    return None
+
+
+def _newton_step(points: Array, radii: Array, ends: ZoneEnds, lines: Tangents,
+                 basis: Array) -> Array:
+    """Return by what angles the lines are to be turned, shape (n - 1, 2) [rad]."""
+    n = len(lines.direction)
+    line = np.arange(n)
+    turns = np.zeros((COLOURS, 2, n, 2))
+    for colour in range(COLOURS):
+        turns[colour, :, colour::COLOURS] = np.eye(2)[:, np.newaxis] * DIFFERENCE
+    turned = tangents(points, radii, ends, _turned(lines.direction, basis, turns))
+    base = _misses(lines, basis)
+    slope = (_misses(turned, basis) - base) / DIFFERENCE  # colour, turn, line, component
+    J = np.zeros((n, 2, n, 2))
+    for offset in (-1, 0, 1):
+        own = line[(line + offset >= 0) & (line + offset < n)]
+        J[own + offset, :, own, :] = np.swapaxes(slope[own % COLOURS, :, own + offset], 1, 2)
+    if not np.isfinite(J).all():
+        raise ConvergenceError(f'no lines are tangent to zones with radii {radii.tolist()} m')
+    try:
+        step = np.linalg.solve(J.reshape(2 * n, 2 * n), -base.ravel())
+    except np.linalg.LinAlgError:
+        raise ConvergenceError(
+            f'lines tangent to zones with radii {radii.tolist()} m are not unique') from None
+    return np.asarray(step, dtype=float).reshape(n, 2)
+
+
+def _misses(lines: Tangents, basis: Array) -> Array:
+    """Return by how far each line misses the zone after it, across itself [m]."""
+    way = lines.stop - lines.start
+    off = way - lines.direction * lines.length[..., np.newaxis]
+    return np.asarray(np.einsum('...ki,kji->...kj', off, basis))
+
+
+def _largest(misses: Array) -> float:
+    """Return the largest magnitude, infinite where one is no number."""
+    worst = float(np.abs(misses).max())
+    return worst if np.isfinite(worst) else np.inf
+
+
+def _turned(direction: Array, basis: Array, angles: Array) -> Array:
+    """Return directions turned a little along their basis vectors."""
+    return _unit(direction + np.einsum('...kj,kji->...ki', angles, basis))
+
+
+def _basis(direction: Array) -> Array:
+    """Return two unit vectors across each direction, shape (n, 2, 3)."""
+    axis = np.eye(3)[np.abs(direction).argmin(axis=-1)]
+    basis = np.empty(direction.shape[:-1] + (2, 3))
+    basis[..., 0, :] = _unit(np.asarray(np.cross(direction, axis), dtype=float))
+    basis[..., 1, :] = np.cross(direction, basis[..., 0, :])
+    return basis
+
+
+def _unit(vectors: Array) -> Array:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True), dtype=float)
