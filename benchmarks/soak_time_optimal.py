@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 import os
 import time
 from typing import NamedTuple
@@ -41,11 +42,12 @@ class Result(NamedTuple):
     violations: list[str]
 
 
-def soak(seed: int, planner_id: str) -> Result:
-    """Plan the task of a seed and check the answer."""
+def soak(seed: int, planner_id: str, limit: float) -> Result:
+    """Plan the task of a seed, in a limited time [s] as the node does, and check the answer."""
     task = soak_task(seed)
-    request = task.asked_of(planner_id)
     begin, found, failure = time.perf_counter(), None, ''
+    request = replace(task.asked_of(planner_id),
+                      should_stop=lambda: time.perf_counter() > begin + limit)
     try:
         found = plan(task.model, task.limits, request)
     except Exception as error:  # noqa: BLE001  whatever it is, it is counted
@@ -115,12 +117,14 @@ def main() -> int:
     parser.add_argument('seed', type=int, help='of the first; the others follow')
     parser.add_argument('--jobs', type=int, default=1, help='processes')
     parser.add_argument('--planner', default='time_optimal')
+    parser.add_argument('--limit', type=float, default=1.0, help='planning time [s]')
     options = parser.parse_args()
     print(setting(), flush=True)
     seeds = range(options.seed, options.seed + options.tasks)
     with ProcessPoolExecutor(options.jobs) as pool:
         results = []
-        for result in pool.map(soak, seeds, [options.planner] * len(seeds)):
+        for result in pool.map(soak, seeds, [options.planner] * len(seeds),
+                               [options.limit] * len(seeds)):
             results.append(result)
             if result.failure or result.violations:
                 print(f'seed {result.seed}: {result.failure or result.violations}', flush=True)

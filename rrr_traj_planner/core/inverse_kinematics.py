@@ -134,3 +134,21 @@ def _distance_in_reach(model: RobotModel, point: tuple[float, float, float], W: 
 def _wrapped(angle: float) -> float:
     """Return the angle in (-pi, pi]."""
     return angle - 2.0 * pi * ceil((angle - pi) / (2.0 * pi))
+
+
+def elbow_of(q: Array) -> Elbow:
+    """
+    Return the branch that a pose is on.
+
+    Parameters
+    ----------
+    q : ndarray, shape (3,)
+        Joint positions [rad].
+
+    Returns
+    -------
+    {'up', 'down'}
+        By the sign of cos theta_3 (5.10): up where theta_3 is within a right angle of 0.
+
+    """
+    return 'up' if np.cos(q[2]) >= 0.0 else 'down'

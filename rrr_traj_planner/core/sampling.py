@@ -19,7 +19,7 @@ MOST_POINTS = 200_000
 
 def sample(trajectory: Trajectory, period: float) -> TrajectoryPoints:
     """
-    Return points at every period, at every via time, and at the end.
+    Return points at every period, at every via time, where acceleration steps, and at the end.
 
     Parameters
     ----------
@@ -75,7 +75,12 @@ def sample_times(trajectory: Trajectory, period: float) -> tuple[Array, Array]:
         raise InvalidInputError(
             f'a motion of {trajectory.duration:.6g} s with a point every {period:.6g} s has more '
             f'than {MOST_POINTS} points')
-    fixed = np.concatenate(([0.0], trajectory.via_times, [trajectory.duration]))
+    vias = np.concatenate(([0.0], trajectory.via_times, [trajectory.duration]))
+    steps = trajectory.step_times
+    after = np.clip(np.searchsorted(vias, steps), 1, len(vias) - 1)
+    apart = np.minimum(steps - vias[after - 1], vias[after] - steps) >= LEAST_GAP * period
+    apart[1:] &= np.diff(steps) >= LEAST_GAP * period
+    fixed = np.sort(np.concatenate((vias, steps[apart])))
     fixed = fixed[np.concatenate(([True], np.diff(fixed) >= 1.5 * NANOSECOND))]
     fixed[-1] = trajectory.duration
     regular = period * np.arange(1, int(trajectory.duration / period) + 1)

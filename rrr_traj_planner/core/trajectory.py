@@ -62,6 +62,11 @@ class Trajectory(ABC):
     def knots(self) -> Array:
         """Times between which the motion is analytic, increasing, 0 and duration included."""
 
+    @property
+    def step_times(self) -> Array:
+        """Times [s] at which acceleration steps, increasing; mostly none."""
+        return np.zeros(0)
+
     @abstractmethod
     def peaks(self) -> Peaks:
         """Return the exact extremes over the continuous motion."""

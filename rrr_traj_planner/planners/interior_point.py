@@ -8,13 +8,20 @@ what it has is a valid motion, and it knows how far the optimum can be.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.ramp_chain import Motion
-from rrr_traj_planner.planners.ramp_constraints import Change, Constraints, torque_hessian
-from rrr_traj_planner.planners.ramp_newton import curvature, Freedom, newton_step, Step
+from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_constraints import Change
+from rrr_traj_planner.planners.ramp_newton import (
+    Curvature,
+    curvature,
+    Freedom,
+    newton_step,
+    pulled,
+    Step,
+)
 
 RELATIVE_GAP = 1e-3          # of the total time
 BARRIER_REDUCTION = 0.1
@@ -29,21 +36,46 @@ ITERATIONS = 120
 BACKTRACKS = 30
 SUFFICIENT_GAIN = 1e-4
 SHORT = 0.05                 # a step of less than this part of it is tried again, simpler
+LEAST_BEND = 1e-3            # size of step at which it is found out how slacks leave their rates
 TO_BOUNDARY = 0.995          # part of the way to the boundary that a step may go
-LEAST_ROOM_KEPT = 0.005      # part of its room that a constraint keeps in a step
+LEAST_ROOM_KEPT = 0.005     # part of its room that a constraint keeps in a step
 DUAL_CORRIDOR = 1e6          # how far multipliers may be from barrier / slack
+
+
+class Constraints(Protocol):
+    """Limits on a motion, as the method sees them."""
+
+    grid: Grid
+    points: Array
+
+    def slacks(self, m: Motion) -> list[Array]:
+        """Return the room to the limits, each of shape (2, N, p, K)."""
+
+    def linear(self, m: Motion) -> tuple[list[Array], list[Change], Any]:
+        """Return room, how the limited quantities change, and what `hessian` needs, or None."""
+
+    def hessian(self, bent: Any, duals: Array) -> tuple[Array, Array, Array]:
+        """Return the second derivatives of the last quantity's weighted sum."""
+
+
+class Centre(NamedTuple):
+    """A motion strictly within its limits, and the barrier that keeps it there."""
+
+    motion: Motion
+    barrier: float | None  # None: not known
 
 
 class Outcome(NamedTuple):
     """What the method ended with."""
 
     motion: Motion
-    gap: float        # what a better motion could save at most, by duality [s]
+    gap: float             # what a better motion could save at most, by duality [s]
     converged: bool
+    centres: list[Centre]  # that it passed, slowest first
 
 
-def minimise(constraints: Constraints, motion: Motion, freedom: Freedom,
-             should_stop: Callable[[], bool], nearness: float = 1.0) -> Outcome:
+def minimise(constraints: Constraints, start: Centre, freedom: Freedom,
+             should_stop: Callable[[], bool], least_barrier: float = 0.0) -> Outcome:
     """
     Return the fastest motion.
 
@@ -51,14 +83,14 @@ def minimise(constraints: Constraints, motion: Motion, freedom: Freedom,
     ----------
     constraints : Constraints
         The limits.
-    motion : Motion
+    start : Centre
         Strictly within them.
     freedom : Freedom
         What may change.
     should_stop : callable
         Asked before every iteration; True ends the method with what it has.
-    nearness : float
-        About how far the start is from the optimum, relative; less is faster.
+    least_barrier : float
+        The method ends at its centre.
 
     Returns
     -------
@@ -66,18 +98,21 @@ def minimise(constraints: Constraints, motion: Motion, freedom: Freedom,
         Never slower than the start.
 
     """
-    objective = _Objective(freedom)
+    objective, (motion, known) = _Objective(freedom), start
     slacks = constraints.slacks(motion)
     count = sum(s.size for s in slacks)
-    barrier = START * nearness * objective(motion) / count
-    barrier, duals = _first_barrier(constraints, motion, freedom, barrier)
-    best, gap = motion, np.inf
+    barrier, duals = _first_barrier(
+        constraints, motion, freedom, known or START * objective(motion) / count)
+    best, gap, centres = motion, np.inf, []
     merits: list[float] = []  # at this barrier
     for _ in range(ITERATIONS):
         if should_stop():
             break
         local = _Local(constraints, motion, duals, freedom, barrier)
-        step, rates, size, moved = _best_step(constraints, objective, motion, local, barrier)
+        tried = _best_step(constraints, objective, motion, local, barrier)
+        if tried is None:
+            break
+        step, rates, size, moved = tried
         dual_steps = [barrier / s - d - d / s * r
                       for s, d, r in zip(local.slacks, duals, rates)]
         slacks = local.slacks
@@ -94,8 +129,11 @@ def minimise(constraints: Constraints, motion: Motion, freedom: Freedom,
         if stalled or step.gain < CENTRED * count * barrier:
             if count * barrier < RELATIVE_GAP * objective(motion):
                 break
+            centres.append(Centre(motion, barrier))
+            if barrier <= least_barrier:
+                break
             barrier, merits = barrier * BARRIER_REDUCTION, []
-    return Outcome(best, gap, gap < CONVERGED * objective(best))
+    return Outcome(best, gap, gap < CONVERGED * objective(best), centres)
 
 
 def _first_barrier(constraints: Constraints, motion: Motion, freedom: Freedom,
@@ -103,8 +141,8 @@ def _first_barrier(constraints: Constraints, motion: Motion, freedom: Freedom,
     """Return a barrier high enough to lead away from limits that the start is close to."""
     for _ in range(RAISES):
         duals = [barrier / s for s in constraints.slacks(motion)]
-        step = next(_Local(constraints, motion, duals, freedom, barrier).steps())
-        if step.gain < FAR_FROM_CENTRE * barrier:
+        step = next(_Local(constraints, motion, duals, freedom, barrier).steps(), None)
+        if step is None or step.gain < FAR_FROM_CENTRE * barrier:
             break
         barrier /= BARRIER_REDUCTION
     return barrier, duals
@@ -120,16 +158,24 @@ class _Tried(NamedTuple):
 
 
 def _best_step(constraints: Constraints, objective: _Objective, motion: Motion, local: _Local,
-               barrier: float) -> _Tried:
+               barrier: float) -> _Tried | None:
     """Return the first of the suggested steps that gets far, else the one that gets furthest."""
     tried: list[_Tried] = []
-    for step in local.steps():
+
+    def attempt(step: Step, bend: Motion | None = None) -> _Tried:
         rates = [_rate(constraints, x, step.motion) for x in local.changes]
-        tried.append(_Tried(step, rates, *_line_search(
-            constraints, objective, motion, local.slacks, rates, step, barrier)))
+        return _Tried(step, rates, *_line_search(
+            constraints, objective, motion, local.slacks, rates, step, bend, barrier))
+
+    for step in local.steps():
+        tried.append(attempt(step))
+        if tried[-1].size <= SHORT:
+            bend = local.bend(constraints, motion, tried[-1])
+            if bend is not None:
+                tried.append(attempt(step, bend))
         if tried[-1].size > SHORT:
             break
-    return max(tried, key=lambda t: t.size)
+    return max(tried, key=lambda t: t.size, default=None)
 
 
 class _Objective:
@@ -147,7 +193,8 @@ class _Local:
 
     def __init__(self, constraints: Constraints, motion: Motion, duals: list[Array],
                  freedom: Freedom, barrier: float) -> None:
-        self.slacks, self.changes, self._torque = constraints.linear(motion)
+        self.slacks, self.changes, self._bent = constraints.linear(motion)
+        self._hessian = constraints.hessian
         self._n, self._ends = constraints.grid.n, constraints.grid.end_changes(motion)
         self._duals, self._freedom = duals, freedom
         self._simple = curvature(self.slacks, self.changes, duals, barrier, freedom.weights)
@@ -155,13 +202,34 @@ class _Local:
     def steps(self) -> Iterator[Step]:
         """Give the step with torque's own curvature, which may lead astray, then one without."""
         c = self._simple
-        if self._torque is not None:
-            yy, yT, TT = torque_hessian(self._torque, self._duals[-1])
+        if self._bent is not None:
+            yy, yT, TT = self._hessian(self._bent, self._duals[-1])
             full = c._replace(yy=c.yy + yy, yT=c.yT + yT, TT=c.TT + TT)
-            step = newton_step(self._n, self._ends, full, self._freedom)
-            if step.gain > 0.0:
+            step = self._step(full)
+            if step is not None and step.gain > 0.0:
                 yield step
-        yield newton_step(self._n, self._ends, c, self._freedom)
+        step = self._step(c)
+        if step is not None:
+            yield step
+
+    def _step(self, c: Curvature) -> Step | None:
+        try:
+            return newton_step(self._n, self._ends, c, self._freedom)
+        except np.linalg.LinAlgError:
+            return None
+
+    def bend(self, constraints: Constraints, motion: Motion, tried: _Tried) -> Motion | None:
+        """Return the change, by size squared, that mends what slacks do beside their rates."""
+        size = max(tried.size, LEAST_BEND)
+        moved = constraints.grid.moved(constraints.points, motion, tried.step.motion, size)
+        if not (moved.T > 0.0).all():
+            return None
+        aside = [(room - s - size * r) / size ** 2 for room, s, r in zip(
+            constraints.slacks(moved), self.slacks, tried.rates)]
+        push = [d / s * e for d, s, e in zip(self._duals, self.slacks, aside)]
+        y, T = pulled(self.changes, [p[1] - p[0] for p in push])
+        step = self._step(self._simple._replace(y=y, T=T))
+        return None if step is None else step.motion
 
 
 def _rate(constraints: Constraints, x: Change, step: Motion) -> Array:
@@ -174,7 +242,7 @@ def _rate(constraints: Constraints, x: Change, step: Motion) -> Array:
 
 
 def _line_search(constraints: Constraints, objective: _Objective, motion: Motion,
-                 slacks: list[Array], rates: list[Array], step: Step,
+                 slacks: list[Array], rates: list[Array], step: Step, bend: Motion | None,
                  barrier: float) -> tuple[float, tuple[Motion, list[Array]] | None]:
     """Return a step's size and what it leads to, feasible and of less objective + barrier."""
     merit = objective(motion) - barrier * _log(slacks)
@@ -182,7 +250,9 @@ def _line_search(constraints: Constraints, objective: _Objective, motion: Motion
     if size <= 0.0:
         size = 1.0
     for _ in range(BACKTRACKS):
-        moved = constraints.grid.moved(constraints.points, motion, step.motion, size)
+        towards = step.motion if bend is None else Motion(
+            *(x + size * b for x, b in zip(step.motion, bend)))
+        moved = constraints.grid.moved(constraints.points, motion, towards, size)
         if (moved.T > 0.0).all():
             room = constraints.slacks(moved)
             if all((r >= LEAST_ROOM_KEPT * s).all() for r, s in zip(room, slacks)) and (

@@ -5,8 +5,17 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError, TimingError
+from rrr_traj_planner.core.errors import (
+    ConvergenceError,
+    InvalidInputError,
+    LimitViolationError,
+    RrrPlannerError,
+    TimingError,
+    UnreachableError,
+)
 from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.inverse_kinematics import Elbow, elbow_of, ELBOWS
+from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limit_check import violations
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
@@ -14,12 +23,13 @@ from rrr_traj_planner.core.motion_torque import peak_torque
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.sampling import sample
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.registry import planner
-from rrr_traj_planner.planners.request import JointTask, Plan, PlanningRequest
+from rrr_traj_planner.planners.registry import CartesianPlanner, planner
+from rrr_traj_planner.planners.request import CartesianTask, JointTask, Plan, PlanningRequest
 from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 
 # Via points nearer than this in every joint are one point.
 SAME_POINT = 1e-9  # rad
+SAME_TIP = 1e-9    # m, of a path
 
 # The quintic through the sampled points keeps velocity and acceleration limits to this part.
 INTERPOLATION_TOLERANCE = 8e-4
@@ -53,16 +63,17 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
         If the planner's motion breaks a limit, which is a bug.
 
     """
-    method, durations = planner(request.planner_id), request.segment_durations
+    method = planner(request.planner_id)
+    limits = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
+    start = None if request.start is None else check_start(model, limits, request.start)
+    if method.plan_path is not None:
+        return _planned_path(method.plan_path, model, limits, request, start)
+    durations = request.segment_durations
     if durations is not None and np.isnan(durations).any() and not method.some_durations:
         raise InvalidInputError(
             f'segment_durations[{int(np.isnan(durations).argmax())}] is nan: planner '
             f'{request.planner_id} takes every duration or none')
-    limits = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
-    start = None if request.start is None else check_start(model, limits, request.start)
-    q = joint_via_points(model, limits, request.via_points, start, request.elbow)
-    if start is not None:
-        q = np.vstack((start, q))
+    q = _joint_points(model, limits, request, start, request.elbow)
     same = _repeated(q)
     if durations is not None:  # where a stay is prescribed, a point counts twice
         same &= np.isnan(durations)
@@ -70,12 +81,74 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
     distinct = q[np.concatenate(([True], ~same))]
     if len(distinct) == 1:
         return _rest(model, limits, request, q)
+    assert method.plan is not None
     trajectory = method.plan(JointTask(
         model, limits, distinct, durations, request.sample_period, np.flatnonzero(~same),
         request.should_stop))
+    return _checked(model, limits, request, trajectory, _via_times(request, trajectory, same))
+
+
+def _planned_path(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
+                  request: PlanningRequest, start: Array | None) -> Plan:
+    """Return the plan along a path of the tip, on the first branch that can follow it."""
+    if request.segment_durations is not None:
+        raise InvalidInputError(
+            f'planner {request.planner_id} takes no segment_durations: its time is the least')
+    failures: list[LimitViolationError | UnreachableError] = []
+    for elbow in (request.elbow,) if request.elbow else ELBOWS:
+        try:
+            return _path_on(method, model, limits, request, start, elbow)
+        except (LimitViolationError, UnreachableError) as error:
+            failures.append(error)
+    raise failures[0]
+
+
+def _path_on(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
+             request: PlanningRequest, start: Array | None, elbow: Elbow) -> Plan:
+    """Return the plan along a path of the tip, on one branch."""
+    if start is not None and elbow_of(start) != elbow:
+        raise LimitViolationError(
+            f'the start state is on elbow branch {elbow_of(start)}: along a path of the tip the '
+            f'arm cannot come to {elbow}', model.joint_names[2], float(start[2]), 0.0)
+    q = _joint_points(model, limits, request, start, elbow)
+    tips = request.via_points
+    if start is not None:
+        tips = np.vstack((forward_kinematics(model, start), tips))
+    same = np.linalg.norm(np.diff(tips, axis=0), axis=1) <= SAME_TIP
+    distinct = tips[np.concatenate(([True], ~same))]
+    if len(distinct) == 1:
+        return _rest(model, limits, request, q)
+    try:
+        trajectory = method(CartesianTask(
+            model, limits, distinct, q[0], elbow, request.max_deviation, request.max_tip_speed,
+            request.steady_zones, request.sample_period, request.should_stop))
+    except RrrPlannerError as error:
+        raise _as_counted(error, same, start is not None) from error
+    return _checked(model, limits, request, trajectory, _via_times(request, trajectory, same))
+
+
+def _as_counted(error: RrrPlannerError, same: BoolArray, started: bool) -> RrrPlannerError:
+    """Return an error whose via points are counted as the request does."""
+    numbers = np.concatenate(([0], np.flatnonzero(~same) + 1)) - started
+    if error.via_point is not None and error.via_point >= 0:
+        error.via_point = int(numbers[error.via_point])
+    if (numbers != np.arange(len(numbers))).any():
+        names = ', '.join('start' if n < 0 else str(n) for n in numbers)
+        error.args = (f'{error} (points counted along the path, via points: {names})',)
+    return error
+
+
+def _joint_points(model: RobotModel, limits: JointLimits, request: PlanningRequest,
+                  start: Array | None, elbow: Elbow | None) -> Array:
+    """Return joint positions of the start, if there is one, and of the via points."""
+    q = joint_via_points(model, limits, request.via_points, start, elbow)
+    return q if start is None else np.vstack((start, q))
+
+
+def _via_times(request: PlanningRequest, trajectory: Trajectory, same: BoolArray) -> Array:
+    """Return when each of the request's via points is passed, repeated ones too."""
     index = np.cumsum(np.concatenate(([0], ~same)))
-    via_times = trajectory.via_times[index][len(q) - len(request.via_points):]
-    return _checked(model, limits, request, trajectory, via_times)
+    return np.asarray(trajectory.via_times[index][len(index) - len(request.via_points):])
 
 
 def _repeated(q: Array) -> BoolArray:

@@ -18,13 +18,15 @@ from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 # Displacement of a ramp of length h from rest: h^2 (a0 / 2 + (a1 - a0) RAMP_SHARE).
 RAMP_SHARE = 0.25 - 1.0 / np.pi ** 2
 
+LEAST_RAMPS = 4  # of a motion from rest to rest
+
 
 class Motion(NamedTuple):
-    """Unknowns of a chain of N segments of n ramps."""
+    """Unknowns of a chain of N segments of n ramps, of J coordinates (the joints: J = 3)."""
 
-    inner: Array     # node accelerations within the segments [rad/s^2], shape (N, n - 1, 3)
-    v: Array         # velocities at the via points [rad/s], (N - 1, 3)
-    a: Array         # accelerations there [rad/s^2], (N - 1, 3)
+    inner: Array     # node accelerations within the segments [rad/s^2], shape (N, n - 1, J)
+    v: Array         # velocities at the via points [rad/s], (N - 1, J)
+    a: Array         # accelerations there [rad/s^2], (N - 1, J)
     T: Array         # durations [s], (N,)
 
 
@@ -97,7 +99,7 @@ class Grid:
             Accelerations (N, n + 1, 3) [rad/s^2]; velocities at starts and at ends (N, 3) [rad/s].
 
         """
-        rest = np.zeros((1, 3))
+        rest = np.zeros((1, m.inner.shape[-1]))
         a, v = np.concatenate((rest, m.a, rest)), np.concatenate((rest, m.v, rest))
         nodes = np.concatenate((a[:-1, np.newaxis], m.inner, a[1:, np.newaxis]), axis=1)
         return nodes, v[:-1], v[1:]
@@ -191,7 +193,7 @@ class Grid:
             By y, as in `changes`, (N, 2, n + 2); by duration (N, 2, 3).
 
         """
-        n, at = self.n, self.states(np.zeros((len(m.T) + 1, 3)), m)
+        n, at = self.n, self.states(np.zeros((len(m.T) + 1, m.inner.shape[-1])), m)
         by_y, by_T = self.changes(m), self.changes_by_duration(m, at)
         return (np.stack((by_y.qd[:, n], by_y.q[:, n]), axis=1),
                 np.stack((by_T.qd[:, n], by_T.q[:, n]), axis=1))
@@ -200,8 +202,8 @@ class Grid:
         """
         Return the motion after a step, again through every via point.
 
-        Accelerations follow the durations as if time were stretched, which keeps the way; what
-        is left of the step's second order is mended by smooth changes.
+        Velocities and accelerations follow the durations as if time were stretched, which keeps
+        the way; what is left of the step's second order is mended by smooth changes.
 
         Parameters
         ----------
@@ -221,12 +223,16 @@ class Grid:
 
         """
         T = m.T + size * step.T
-        v, a = m.v + size * step.v, m.a + size * step.a
         if not (T > 0.0).all():
-            return Motion(m.inner, v, a, T)
-        ratio = (m.T / T)[:, np.newaxis, np.newaxis]
-        rate = (step.T / m.T)[:, np.newaxis, np.newaxis]
-        inner = (m.inner + size * (step.inner + 2.0 * rate * m.inner)) * ratio ** 2
+            return m._replace(T=T)
+        rate = step.T[:, np.newaxis] / m.T[:, np.newaxis]
+        # of the segments that a via point is between, above all the shorter: its way has less play
+        play = m.T[:, np.newaxis] ** 3
+        beside = (rate[:-1] * play[1:] + rate[1:] * play[:-1]) / (play[:-1] + play[1:])
+        v = (m.v + size * (step.v + beside * m.v)) / (1.0 + size * beside)
+        a = (m.a + size * (step.a + 2.0 * beside * m.a)) / (1.0 + size * beside) ** 2
+        rate = rate[:, np.newaxis]
+        inner = (m.inner + size * (step.inner + 2.0 * rate * m.inner)) / (1.0 + size * rate) ** 2
         return self.restored(points, Motion(inner, v, a, T))
 
     def slowed(self, m: Motion, T: Array) -> Motion:
@@ -344,7 +350,7 @@ class Grid:
         Parameters
         ----------
         points : ndarray, shape (legs + 1, 3)
-            Where it begins, stops and ends [rad].
+            Where it begins, stops and ends [rad]; longer legs have more of the n ramps.
 
         Returns
         -------
@@ -353,7 +359,10 @@ class Grid:
 
         """
         legs = len(points) - 1
-        ends = np.round(np.linspace(0.0, self.n, legs + 1)).astype(int)
+        long = np.sqrt(np.abs(np.diff(points, axis=0)).max(axis=1))
+        spare = (self.n - LEAST_RAMPS * legs) * np.cumsum(long) / long.sum()
+        ends = np.concatenate(([0], LEAST_RAMPS * np.arange(1, legs + 1)
+                               + np.round(spare).astype(int)))
         nodes = np.zeros((self.n + 1, 3))
         for leg, (first, last) in enumerate(zip(ends[:-1], ends[1:])):
             part = Grid(last - first).rest_to_rest(points[leg:leg + 2])[0]

@@ -60,6 +60,8 @@ class Constraints:
         Via points [rad].
     margins : ndarray, shape (2, N, 2 n + 1, 3)
         How far inside the range each joint is to stay at each point, above and below [rad].
+    velocity_margins : ndarray, shape (N, 2 n + 1, 3)
+        How far below its limit each velocity is to stay at each point [rad/s].
     effort_margins : ndarray, shape (N, 2 n + 1, 3)
         How far below its limit each torque is to stay at each point [N m].
     floor : ndarray, shape (N,), optional
@@ -75,12 +77,14 @@ class Constraints:
     """
 
     def __init__(self, model: RobotModel, limits: JointLimits, grid: Grid, points: Array,
-                 margins: Array, effort_margins: Array, floor: Array | None = None) -> None:
+                 margins: Array, velocity_margins: Array, effort_margins: Array,
+                 floor: Array | None = None) -> None:
         self.grid, self.points, self.limits = grid, points, limits
         self._constants = equations.constants(model)
         n = grid.n
         inside = np.r_[1:n, n + 1:2 * n + 1]  # not at the via points, where the place is given
-        bounded = (('qd', np.arange(1, 2 * n + 1), -limits.max_velocity, limits.max_velocity),
+        fastest = limits.max_velocity - velocity_margins[:, 1:]
+        bounded = (('qd', np.arange(1, 2 * n + 1), -fastest, fastest),
                    ('qdd', np.arange(1, n + 1), -limits.max_acceleration,
                     limits.max_acceleration),
                    ('jerk', np.arange(n), -limits.max_jerk, limits.max_jerk),
@@ -151,6 +155,25 @@ class Constraints:
         changes.append(self._torque_change(curvature))
         return slacks, changes, curvature
 
+    def hessian(self, bent: TorqueCurvature, duals: Array) -> tuple[Array, Array, Array]:
+        """
+        Return second derivatives of the torques' weighted sum; see `torque_hessian`.
+
+        Parameters
+        ----------
+        bent : TorqueCurvature
+            What they are made of.
+        duals : ndarray, shape (2, N, p, 3)
+            Multipliers of the torque's upper and lower limits.
+
+        Returns
+        -------
+        tuple of ndarray
+            By y twice, by y and T, by T twice.
+
+        """
+        return torque_hessian(bent, duals)
+
     def _room(self, at: States, T: Array) -> list[Array]:
         found = []
         if self.floor is not None:
@@ -207,7 +230,7 @@ def torque_hessian(c: TorqueCurvature, duals: Array) -> tuple[Array, Array, Arra
     """
     Return the second derivatives of (upper - lower multipliers) . torque, summed over points.
 
-    Those by position twice are left out: a segment's own unknowns hardly move it.
+    Of those by position twice only gravity's count: they are its own terms, negative.
 
     Parameters
     ----------
@@ -236,7 +259,9 @@ def torque_hessian(c: TorqueCurvature, duals: Array) -> tuple[Array, Array, Arra
         by_point[..., k, 8] = s2 * H23
     by_point[..., 3, 4], by_point[..., 3, 5] = s1 * t.D2, s1 * t.D3
     by_point[..., 4, 5] = 2.0 * s2 * t.bc3
+    by_point[..., 1, 2] = -(s2 + s3) * t.g3
     by_point += np.swapaxes(by_point, -1, -2)
+    by_point[..., 1, 1], by_point[..., 2, 2] = -(s2 * t.g2 + s3 * t.g3), -(s2 + s3) * t.g3
     by_point[..., 3, 3] = -(s2 * t.D2 + s3 * t.D3)
     by_point[..., 4, 4] = -2.0 * s3 * t.bc3
     by_point[..., 5, 5] = 2.0 * s2 * t.bc3

@@ -17,9 +17,6 @@ from rrr_traj_planner.planners.ramp_chain import Motion
 from rrr_traj_planner.planners.ramp_constraints import Change
 from scipy.linalg import solveh_banded
 
-# A segment's border, in this order: v0 (3), a0 (3), v1 (3), a1 (3).
-BORDER = 12
-
 STIFF = 1e60  # holds an unknown where it is
 STIFFENING = (0.0, 1e-9, 1e-6, 1e-3, 1.0)
 
@@ -27,10 +24,10 @@ STIFFENING = (0.0, 1e-9, 1e-6, 1e-3, 1.0)
 class Curvature(NamedTuple):
     """Gradient and Gauss-Newton Hessian of the barrier in each segment's own unknowns."""
 
-    yy: Array  # (N, 3, m, m) where joints are independent, else (N, 3 m, 3 m)
-    yT: Array  # (N, 3, m)
+    yy: Array  # (N, J, m, m) where joints are independent, else (N, J m, J m)
+    yT: Array  # (N, J, m)
     TT: Array  # (N,)
-    y: Array   # (N, 3, m)
+    y: Array   # (N, J, m)
     T: Array   # (N,)
 
 
@@ -41,7 +38,7 @@ def curvature(slacks: list[Array], linear: list[Change], duals: list[Array],
 
     Parameters
     ----------
-    slacks : list of ndarray, shape (2, N, p, 3)
+    slacks : list of ndarray, shape (2, N, p, K)
         Room below and above.
     linear : list of Change
         How the limited quantities change.
@@ -58,34 +55,66 @@ def curvature(slacks: list[Array], linear: list[Change], duals: list[Array],
         Of all segments.
 
     """
-    N, m = linear[0].by_y.shape[0], linear[0].by_y.shape[-1]
+    N, J, m = _sizes(linear)
     coupled = any(x.by_y.ndim > 3 for x in linear)
-    yy, yT, y = np.zeros((N, 3, m, m)), np.zeros((N, 3, m)), np.zeros((N, 3, m))
-    TT, T = np.zeros(N), weights.copy()
-    full = np.zeros((N, 3 * m, 3 * m)) if coupled else None
+    y, T = pulled(linear, [barrier * (1.0 / s[0] - 1.0 / s[1]) for s in slacks])
+    T += weights
+    yy, yT, TT = np.zeros((N, J, m, m)), np.zeros((N, J, m)), np.zeros(N)
+    full = np.zeros((N, J * m, J * m)) if coupled else None
     for s, x, dual in zip(slacks, linear, duals):
         weight = (dual / s).sum(axis=0)
-        pull = barrier * (1.0 / s[0] - 1.0 / s[1])
         TT += (weight * x.by_T ** 2).sum(axis=(1, 2))
-        T += (pull * x.by_T).sum(axis=(1, 2))
         if x.by_y.ndim == 3:
             D = x.by_y[:, np.newaxis]                                   # (N, 1, p, m)
             Dt = np.swapaxes(D, -1, -2)
             by_joint = np.moveaxis(weight, -1, 1)[..., np.newaxis]      # (N, 3, p, 1)
             yy += Dt @ (by_joint * D)
             yT += (Dt @ (np.moveaxis(weight * x.by_T, -1, 1)[..., np.newaxis]))[..., 0]
-            y += (Dt @ np.moveaxis(pull, -1, 1)[..., np.newaxis])[..., 0]
         else:
-            D = x.by_y.reshape(N, -1, 3 * m)
+            D = x.by_y.reshape(N, -1, J * m)
             Dt = np.swapaxes(D, -1, -2)
             full += Dt @ (weight.reshape(N, -1, 1) * D)
-            yT += (Dt @ (weight * x.by_T).reshape(N, -1, 1)).reshape(N, 3, m)
-            y += (Dt @ pull.reshape(N, -1, 1)).reshape(N, 3, m)
+            yT += (Dt @ (weight * x.by_T).reshape(N, -1, 1)).reshape(N, J, m)
     if full is None:
         return Curvature(yy, yT, TT, y, T)
-    for j in range(3):
+    for j in range(J):
         full[:, j * m:(j + 1) * m, j * m:(j + 1) * m] += yy[:, j]
     return Curvature(full, yT, TT, y, T)
+
+
+def pulled(linear: list[Change], pulls: list[Array]) -> tuple[Array, Array]:
+    """
+    Return how a weighted sum of the limited quantities changes.
+
+    Parameters
+    ----------
+    linear : list of Change
+        How the limited quantities change.
+    pulls : list of ndarray, shape (N, p, K)
+        Their weights.
+
+    Returns
+    -------
+    tuple of ndarray
+        By each segment's own unknowns (N, J, m), by its duration (N,).
+
+    """
+    N, J, m = _sizes(linear)
+    y, T = np.zeros((N, J, m)), np.zeros(N)
+    for x, pull in zip(linear, pulls):
+        T += (pull * x.by_T).sum(axis=(1, 2))
+        if x.by_y.ndim == 3:
+            y += np.swapaxes(pull, 1, 2) @ x.by_y
+        else:
+            y += (pull.reshape(N, 1, -1) @ x.by_y.reshape(N, -1, J * m)).reshape(N, J, m)
+    return y, T
+
+
+def _sizes(linear: list[Change]) -> tuple[int, int, int]:
+    """Return the numbers of segments, of coordinates and of each segment's own unknowns."""
+    by_y = linear[-1].by_y  # only there may coordinates act on each other
+    return by_y.shape[0], linear[-1].by_T.shape[-1] if by_y.ndim == 3 else by_y.shape[-2], (
+        by_y.shape[-1])
 
 
 class Freedom(NamedTuple):
@@ -98,7 +127,7 @@ class Freedom(NamedTuple):
     free: BoolArray  # (N,)
     tie: Array       # (N,), 0 where free or fixed
     weights: Array   # (N,), in the objective
-    still: BoolArray  # (N - 1, 3), joints whose velocity at a via point stays as it is
+    still: BoolArray  # (N - 1, J), joints whose velocity at a via point stays as it is
 
 
 class Step(NamedTuple):
@@ -118,7 +147,7 @@ def newton_step(n: int, ends: tuple[Array, Array], c: Curvature,
     n : int
         Number of ramps in a segment.
     ends : tuple of ndarray
-        How velocity and way at the segments' ends change: (N, 2, m) by y, (N, 2, 3) by T.
+        How velocity and way at the segments' ends change: (N, 2, m) by y, (N, 2, J) by T.
     c : Curvature
         Gradient and Hessian.
     freedom : Freedom
@@ -132,20 +161,22 @@ def newton_step(n: int, ends: tuple[Array, Array], c: Curvature,
     """
     S, r, back = _without_inner(n, ends, c)
     free, tie, _, still = freedom
-    column, pivot = S[:, :BORDER, BORDER], S[:, BORDER, BORDER]
-    share = np.where(free, 1.0 / pivot, 0.0)  # free durations are eliminated
-    Sb = S[:, :BORDER, :BORDER] - share[:, np.newaxis, np.newaxis] * (
+    J, B = c.y.shape[1], S.shape[-1] - 1
+    column, pivot = S[:, :B, B], S[:, B, B]
+    # free durations are eliminated
+    share = np.divide(1.0, pivot, out=np.zeros_like(pivot), where=free & (pivot != 0.0))
+    Sb = S[:, :B, :B] - share[:, np.newaxis, np.newaxis] * (
         column[:, :, np.newaxis] * column[:, np.newaxis])
-    rb = r[:, :BORDER] - (share * r[:, BORDER])[:, np.newaxis] * column
+    rb = r[:, :B] - (share * r[:, B])[:, np.newaxis] * column
     at_vias, common = _coupled(Sb, rb, tie[:, np.newaxis] * column, float(tie ** 2 @ pivot),
-                               float(tie @ r[:, BORDER]), still)
+                               float(tie @ r[:, B]), still)
     border = np.concatenate((at_vias[:-1], at_vias[1:]), axis=1)
-    dT = np.where(free, -share * (r[:, BORDER] + (column * border).sum(axis=1)), tie * common)
+    dT = np.where(free, -share * (r[:, B] + (column * border).sum(axis=1)), tie * common)
     inner = back(border, dT)
-    own = np.swapaxes(border.reshape(-1, 4, 3)[:, [0, 1, 3]], 1, 2)
+    own = np.swapaxes(border.reshape(-1, 4, J)[:, [0, 1, 3]], 1, 2)
     gain = -float((c.y[:, :, 2:-1] * np.swapaxes(inner, 1, 2)).sum() + c.T @ dT
                   + (c.y[:, :, [0, 1, -1]] * own).sum())
-    return Step(Motion(inner, at_vias[1:-1, :3], at_vias[1:-1, 3:], dT), gain)
+    return Step(Motion(inner, at_vias[1:-1, :J], at_vias[1:-1, J:], dT), gain)
 
 
 def _without_inner(n: int, ends: tuple[Array, Array], c: Curvature) -> tuple[
@@ -153,8 +184,9 @@ def _without_inner(n: int, ends: tuple[Array, Array], c: Curvature) -> tuple[
     """
     Eliminate the inner accelerations.
 
-    Returns the Hessian (N, 13, 13) and gradient (N, 13) left over border and duration, and the
-    function that gives the inner accelerations' step for theirs.
+    Returns the Hessian (N, B + 1, B + 1) and gradient (N, B + 1) left over the segment's border
+    and its duration, and the function that gives the inner accelerations' step for theirs. The
+    border is, in this order, v0, a0, v1 and a1 of all J coordinates; B = 4 J.
     """
     if c.yy.ndim == 4:
         return _without_inner_by_joint(n, ends, c)
@@ -169,9 +201,9 @@ def _without_inner_by_joint(n: int, ends: tuple[Array, Array], c: Curvature) -> 
         Array, Array, Callable[[Array, Array], Array]]:
     """Eliminate where joints are independent; columns v0, a0, v1, a1, duration, gradient."""
     by_y, by_T = ends
-    N, k, inner, own = len(c.T), n - 1, slice(2, n + 1), [0, 1, n + 1]
-    E = np.broadcast_to(by_y[:, np.newaxis], (N, 3, 2, n + 2))
-    K, R = np.zeros((N, 3, k + 2, k + 2)), np.zeros((N, 3, k + 2, 6))
+    N, J, k, inner, own = len(c.T), c.y.shape[1], n - 1, slice(2, n + 1), [0, 1, n + 1]
+    E = np.broadcast_to(by_y[:, np.newaxis], (N, J, 2, n + 2))
+    K, R = np.zeros((N, J, k + 2, k + 2)), np.zeros((N, J, k + 2, 6))
     K[..., :k, :k], K[..., k:, :k] = c.yy[..., inner, inner], E[..., inner]
     K[..., :k, k:] = np.swapaxes(E[..., inner], -1, -2)
     R[..., :k, _OWN], R[..., k:, _OWN] = c.yy[..., inner, own], E[..., own]
@@ -183,17 +215,18 @@ def _without_inner_by_joint(n: int, ends: tuple[Array, Array], c: Curvature) -> 
     left[:, :, _column(_OWN), _OWN] += c.yy[:, :, _column(own), own]
     left[:, :, _OWN, 4] += c.yT[:, :, own]
     left[:, :, _OWN, 5] += c.y[:, :, own]
-    S, r = np.zeros((N, 13, 13)), np.zeros((N, 13))
-    for j in range(3):
-        at = np.arange(4) * 3 + j
+    B = 4 * J
+    S, r = np.zeros((N, B + 1, B + 1)), np.zeros((N, B + 1))
+    for j in range(J):
+        at = np.arange(4) * J + j
         S[:, at[:, np.newaxis], at] = left[:, j, :4, :4]
-        S[:, at, BORDER] = S[:, BORDER, at] = left[:, j, :4, 4]
+        S[:, at, B] = S[:, B, at] = left[:, j, :4, 4]
         r[:, at] = left[:, j, :4, 5]
-    S[:, BORDER, BORDER] = c.TT + left[:, :, 4, 4].sum(axis=1)
-    r[:, BORDER] = c.T + left[:, :, 4, 5].sum(axis=1)
+    S[:, B, B] = c.TT + left[:, :, 4, 4].sum(axis=1)
+    r[:, B] = c.T + left[:, :, 4, 5].sum(axis=1)
 
     def back(border: Array, dT: Array) -> Array:
-        by_joint = np.swapaxes(border.reshape(N, 4, 3), 1, 2)[..., np.newaxis]
+        by_joint = np.swapaxes(border.reshape(N, 4, J), 1, 2)[..., np.newaxis]
         x = X[..., :k, 5] + (X[..., :k, :4] @ by_joint)[..., 0] + X[..., :k, 4] * dT[
             :, np.newaxis, np.newaxis]
         return -np.swapaxes(x, 1, 2)
@@ -205,60 +238,61 @@ def _without_inner_jointly(n: int, ends: tuple[Array, Array], c: Curvature) -> t
         Array, Array, Callable[[Array, Array], Array]]:
     """Eliminate where joints act on each other; columns border, duration, gradient."""
     by_y, by_T = ends
-    N, k, inner, own = len(c.T), 3 * (n - 1), slice(2, n + 1), (0, 1, n + 1)
-    H = c.yy.reshape(N, 3, n + 2, 3, n + 2)
-    K, R = np.zeros((N, k + 6, k + 6)), np.zeros((N, k + 6, 14))
+    N, J, inner, own = len(c.T), c.y.shape[1], slice(2, n + 1), (0, 1, n + 1)
+    k, B = J * (n - 1), 4 * J
+    H = c.yy.reshape(N, J, n + 2, J, n + 2)
+    K, R = np.zeros((N, k + 2 * J, k + 2 * J)), np.zeros((N, k + 2 * J, B + 2))
     K[:, :k, :k] = H[:, :, inner, :, inner].reshape(N, k, k)
-    for j in range(3):
+    for j in range(J):
         rows, columns = slice(k + 2 * j, k + 2 * j + 2), slice(j * (n - 1), (j + 1) * (n - 1))
         K[:, rows, columns] = by_y[..., inner]
         K[:, columns, rows] = np.swapaxes(by_y[..., inner], 1, 2)
-        R[:, k + 2 * j, 6 + j], R[:, rows, BORDER] = -1.0, by_T[:, :, j]
+        R[:, k + 2 * j, 2 * J + j], R[:, rows, B] = -1.0, by_T[:, :, j]
         for kind, source in zip(_OWN, own):
-            R[:, :k, 3 * kind + j] = H[:, :, inner, j, source].reshape(N, k)
-            R[:, rows, 3 * kind + j] = by_y[..., source]
-    R[:, :k, 12], R[:, :k, 13] = (f[..., inner].reshape(N, k) for f in (c.yT, c.y))
+            R[:, :k, J * kind + j] = H[:, :, inner, j, source].reshape(N, k)
+            R[:, rows, J * kind + j] = by_y[..., source]
+    R[:, :k, B], R[:, :k, B + 1] = (f[..., inner].reshape(N, k) for f in (c.yT, c.y))
     X = np.linalg.solve(K, R)
     left = -np.swapaxes(R, 1, 2) @ X
     for kind, source in zip(_OWN, own):
-        at = slice(3 * kind, 3 * kind + 3)
+        at = slice(J * kind, J * kind + J)
         for other, its_source in zip(_OWN, own):
-            left[:, at, 3 * other:3 * other + 3] += H[:, :, source, :, its_source]
-        left[:, at, 12] += c.yT[..., source]
-        left[:, 12, at] += c.yT[..., source]
-        left[:, at, 13] += c.y[..., source]
-    left[:, 12, 12] += c.TT
-    left[:, 12, 13] += c.T
+            left[:, at, J * other:J * other + J] += H[:, :, source, :, its_source]
+        left[:, at, B] += c.yT[..., source]
+        left[:, B, at] += c.yT[..., source]
+        left[:, at, B + 1] += c.y[..., source]
+    left[:, B, B] += c.TT
+    left[:, B, B + 1] += c.T
 
     def back(border: Array, dT: Array) -> Array:
-        x = X[:, :k, 13] + (X[:, :k, :12] @ border[..., np.newaxis])[..., 0] + (
-            X[:, :k, 12] * dT[:, np.newaxis])
-        return -np.swapaxes(x.reshape(N, 3, n - 1), 1, 2)
+        x = X[:, :k, B + 1] + (X[:, :k, :B] @ border[..., np.newaxis])[..., 0] + (
+            X[:, :k, B] * dT[:, np.newaxis])
+        return -np.swapaxes(x.reshape(N, J, n - 1), 1, 2)
 
-    return left[:, :13, :13], left[:, :13, 13], back
+    return left[:, :B + 1, :B + 1], left[:, :B + 1, B + 1], back
 
 
 def _coupled(S: Array, r: Array, tie: Array, tie_tie: float, tie_r: float,
              still: BoolArray) -> tuple[Array, float]:
-    """Return the steps at all via points, (N + 1, 6), and of the common unknown."""
-    vias = len(S) - 1
-    at_vias = np.zeros((vias + 2, 6))
+    """Return the steps at all via points, (N + 1, B), and of the common unknown."""
+    vias, B = len(S) - 1, S.shape[-1] // 2
+    at_vias = np.zeros((vias + 2, B))
     if vias == 0:
         return at_vias, -tie_r / tie_tie if tie_tie else 0.0
-    band = np.zeros((12, 6 * vias))
-    D, beside = S[:-1, 6:, 6:] + S[1:, :6, :6], S[1:-1, 6:, :6]
-    for i in range(6):
+    band = np.zeros((2 * B, B * vias))
+    D, beside = S[:-1, B:, B:] + S[1:, :B, :B], S[1:-1, B:, :B]
+    for i in range(B):
         for j in range(i + 1):
-            band[i - j, j::6] = D[:, i, j]
-        for j in range(6):
-            band[6 + i - j, j:6 * (vias - 1):6] = beside[:, i, j]
-    right = np.stack([(x[:-1, 6:] + x[1:, :6]).ravel() for x in (r, tie)], axis=1)
+            band[i - j, j::B] = D[:, i, j]
+        for j in range(B):
+            band[B + i - j, j:B * (vias - 1):B] = beside[:, i, j]
+    right = np.stack([(x[:-1, B:] + x[1:, :B]).ravel() for x in (r, tie)], axis=1)
     for via, joint in np.argwhere(still):
-        band[0, 6 * via + joint] = STIFF
+        band[0, B * via + joint] = STIFF
     x = _solved(band, right)
     common = -(tie_r - right[:, 1] @ x[:, 0]) / (
         tie_tie - right[:, 1] @ x[:, 1]) if tie_tie else 0.0
-    at_vias[1:-1] = -(x[:, 0] + x[:, 1] * common).reshape(vias, 6)
+    at_vias[1:-1] = -(x[:, 0] + x[:, 1] * common).reshape(vias, B)
     return at_vias, float(common)
 
 

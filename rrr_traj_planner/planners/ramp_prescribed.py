@@ -112,7 +112,7 @@ def _gentlest(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> So
 def _fastest_of_free(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> Solved:
     """Return the motion whose free durations are least, the others as prescribed."""
     free, z = np.isnan(durations), _stretch(kept, durations)
-    m = kept.outcome.motion
+    m = kept.motion
     z = float(np.nanmax(m.T / durations))
     start = grid.restored(task.points, Motion(
         m.inner * z ** 2, m.v * z, m.a * z ** 2, np.where(free, m.T / z, durations)))

@@ -6,24 +6,23 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.errors import LimitViolationError
-from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.holdable_way import gravity_share, holdable_way, HOLDING_ROOM
+from rrr_traj_planner.planners.ramp_chain import Grid, LEAST_RAMPS, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
 from rrr_traj_planner.planners.request import JointTask
 
 ROOM = 1.02             # durations over the least that fit
 LEAST_DURATION = 1e-4   # s
-HOLDING_ROOM = 1e-6     # of the effort limit that gravity must leave along the way
-RANGE_ROOM = 4e-10      # rad, for the rounding of points at the end of a range
-LIFTS = 9               # heights of a detour that are tried
+SLOW = 3.0              # torque makes a straight way so much slower: another is looked for
+STRAIGHT_LOOKS = 100    # at a straight way, for the error of one that is blocked
 
 
 def rest_to_rest(task: JointTask, constraints: Constraints) -> Motion | None:
     """
     Return a motion with a stop at every via point, strictly within all limits.
 
-    Straight in joint space where gravity lets it; else joint 2 is brought towards the vertical,
-    where the upper arm's weight takes no torque, the rest of the way is done there, and it is
-    brought down again, the forearm keeping its direction meanwhile.
+    Straight in joint space, or with further stops on a way along which gravity leaves more
+    torque, where that is the faster.
 
     Parameters
     ----------
@@ -39,65 +38,58 @@ def rest_to_rest(task: JointTask, constraints: Constraints) -> Motion | None:
 
     """
     grid = constraints.grid
+    nodes, T = _fastest_ways(task, constraints)
+    if np.isinf(T).any():
+        return None
+    rest = np.zeros((len(nodes) - 1, 3))
+    m = Motion(nodes[:, 1:-1], rest, rest, np.ones(len(nodes)))
+    return grid.restored(task.points, grid.slowed(m, T))
+
+
+def _fastest_ways(task: JointTask, constraints: Constraints) -> tuple[Array, Array]:
+    """Return node accelerations for durations of 1 s, and least durations, of all segments."""
+    grid = constraints.grid
     nodes = grid.rest_to_rest(task.points)
-    if constraints.with_torque:
-        for k in range(len(nodes)):
-            way = _holdable_way(task, grid, task.points[k:k + 2])
-            if way is None:
-                return None
-            nodes[k] = way
-    rest, one = np.zeros((len(nodes) - 1, 3)), np.ones(len(nodes))
-    m = Motion(nodes[:, 1:-1], rest, rest, one)
-    T = _least_durations(task, constraints, m)
-    return None if T is None else grid.restored(task.points, grid.slowed(m, T))
+    T, without_torque = _least_durations(task, constraints, nodes)
+    for k in np.flatnonzero(T > SLOW * without_torque):
+        corners = holdable_way(task, task.points[k], task.points[k + 1],
+                               grid.n // LEAST_RAMPS)
+        if corners is None:
+            continue
+        around = nodes.copy()
+        around[k] = grid.rest_to_rest_legs(corners)
+        duration = _least_durations(task, constraints, around)[0][k]
+        if duration < T[k]:
+            nodes[k], T[k] = around[k], duration
+    return nodes, T
 
 
-def _holdable_way(task: JointTask, grid: Grid, ends: Array) -> Array | None:
-    """Return node accelerations for a duration of 1 s along which the arm can be held."""
-    start, end = ends
-    straight: Array = grid.rest_to_rest(ends)[0]
-    if _holds(task, grid, ends, straight):
-        return straight
-    direct = np.clip(0.5 * np.pi, *np.sort((start[1], end[1])))
-    for lift in np.linspace(0.0, 1.0, LIFTS):
-        height = direct + lift * (0.5 * np.pi - direct)
-        up, across = start.copy(), end.copy()
-        for pose in (up, across):
-            pose[2] += pose[1] - height  # theta_2 + theta_3 stays
-            pose[1] = height
-        way = grid.rest_to_rest_legs(np.stack((start, up, across, end)))
-        if _holds(task, grid, ends, way):
-            return way
-    return None
+def _least_durations(task: JointTask, constraints: Constraints,
+                     nodes: Array) -> tuple[Array, Array]:
+    """
+    Return durations that fit all limits, and those that fit all but torque's, each (N,).
 
-
-def _holds(task: JointTask, grid: Grid, ends: Array, nodes: Array) -> bool:
-    """Return whether gravity leaves torque, and ranges are kept, at every point of a way."""
-    rest = np.zeros((0, 3))
-    q = grid.states(ends, Motion(nodes[np.newaxis, 1:-1], rest, rest, np.ones(1))).q[0, 1:-1]
-    limits = task.limits
-    torque = np.abs(gravity_torque(task.model, q))
-    return bool((torque < limits.max_effort * (1.0 - HOLDING_ROOM)).all()
-                and (q >= limits.min_position - RANGE_ROOM).all()
-                and (q <= limits.max_position + RANGE_ROOM).all())
-
-
-def _least_durations(task: JointTask, constraints: Constraints, m: Motion) -> Array | None:
-    """Return durations that fit all limits, from a motion of 1 s a segment, shape (N,)."""
-    limits, at = task.limits, constraints.grid.states(task.points, m)
-    by_limit = [(np.abs(at.qd) / limits.max_velocity).max(axis=(1, 2)),
+    Infinite where gravity blocks the way. The node accelerations are those of 1 s a segment.
+    """
+    limits, grid, rest = task.limits, constraints.grid, np.zeros((len(nodes) - 1, 3))
+    at = grid.states(task.points, Motion(nodes[:, 1:-1], rest, rest, np.ones(len(nodes))))
+    T = np.max([(np.abs(at.qd) / limits.max_velocity).max(axis=(1, 2)),
                 np.sqrt((np.abs(at.qdd) / limits.max_acceleration).max(axis=(1, 2))),
-                np.cbrt((np.abs(at.jerk) / limits.max_jerk).max(axis=(1, 2)))]
-    if constraints.with_torque:
-        gravity = gravity_torque(task.model, at.q)
-        moving = inverse_dynamics(task.model, at.q, at.qd, at.qdd) - gravity
-        room = constraints.effort - (np.sign(moving) * gravity)[:, 1:]
-        if (room <= 0.0).any():
-            return None
-        by_limit.append(np.sqrt((np.abs(moving[:, 1:]) / room).max(axis=(1, 2))))
+                np.cbrt((np.abs(at.jerk) / limits.max_jerk).max(axis=(1, 2)))], axis=0)
+    T = np.maximum(ROOM * T, LEAST_DURATION)
     if constraints.floor is not None:
-        by_limit.append(constraints.floor)
-    return np.asarray(np.maximum(ROOM * np.max(by_limit, axis=0), LEAST_DURATION))
+        T = np.maximum(T, ROOM * constraints.floor)
+    if not constraints.with_torque:
+        return T, T
+    gravity = gravity_torque(task.model, at.q)
+    moving = inverse_dynamics(task.model, at.q, at.qd, at.qdd) - gravity
+    room = constraints.effort - (np.sign(moving) * gravity)[:, 1:]
+    with np.errstate(divide='ignore', invalid='ignore'):
+        by_torque = np.sqrt((np.abs(moving[:, 1:]) / room).max(axis=(1, 2)))
+    blocked = (gravity_share(task.model, limits, at.q) >= 1.0 - HOLDING_ROOM)[:, 1:-1]
+    blocked_by_margin = (room <= 0.0).any(axis=(1, 2))
+    by_torque[blocked.any(axis=1) | blocked_by_margin] = np.inf
+    return np.maximum(T, ROOM * by_torque), T
 
 
 def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
@@ -117,13 +109,13 @@ def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
         With the first such segment, and the torque of its straight way.
 
     """
-    for k in range(len(task.points) - 1):
-        ends = task.points[k:k + 2]
-        if _holdable_way(task, grid, ends) is None:
-            break
-    rest = np.zeros((0, 3))
-    straight = Motion(grid.rest_to_rest(ends)[:, 1:-1], rest, rest, np.ones(1))
-    torque = np.abs(gravity_torque(task.model, grid.states(ends, straight).q)).max(axis=(0, 1))
+    ways = zip(task.points[:-1], task.points[1:])
+    straight = np.array([np.linspace(start, end, STRAIGHT_LOOKS) for start, end in ways])
+    needs = np.abs(gravity_torque(task.model, straight)).max(axis=1)
+    blocked = (k for k, (start, end) in enumerate(zip(task.points[:-1], task.points[1:]))
+               if holdable_way(task, start, end, grid.n // LEAST_RAMPS) is None)
+    k = next(blocked, int((needs / task.limits.max_effort).max(axis=1).argmax()))
+    torque = needs[k]
     joint = int((torque / task.limits.max_effort).argmax())
     name = task.model.joint_names[joint]
     needed, limit = float(torque[joint]), float(task.limits.max_effort[joint])

@@ -10,15 +10,17 @@ from typing import NamedTuple
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.trajectory import Trajectory
 import rrr_traj_planner.planners
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.request import CartesianTask, JointTask
 
 JointPlanner = Callable[[JointTask], Trajectory]
+CartesianPlanner = Callable[[CartesianTask], Trajectory]
 
 
 class Registered(NamedTuple):
-    """A planner, and what it can do."""
+    """A planner, of motions in joint space or along a path of the tip, and what it can do."""
 
-    plan: JointPlanner
+    plan: JointPlanner | None
+    plan_path: CartesianPlanner | None
     some_durations: bool  # whether durations may be prescribed for some segments only
 
 
@@ -44,7 +46,29 @@ def register(planner_id: str,
 
     """
     def remember(planner: JointPlanner) -> JointPlanner:
-        _planners[planner_id] = Registered(planner, some_durations)
+        _planners[planner_id] = Registered(planner, None, some_durations)
+        return planner
+
+    return remember
+
+
+def register_path(planner_id: str) -> Callable[[CartesianPlanner], CartesianPlanner]:
+    """
+    Return a decorator that makes a function the planner of Cartesian paths of an id.
+
+    Parameters
+    ----------
+    planner_id : str
+        The id, as requests name it.
+
+    Returns
+    -------
+    callable
+        Returns the function unchanged.
+
+    """
+    def remember(planner: CartesianPlanner) -> CartesianPlanner:
+        _planners[planner_id] = Registered(None, planner, False)
         return planner
 
     return remember

@@ -44,6 +44,10 @@ class PlanningRequest:
         Branch; None: the first that keeps the limits.
     max_deviation : float
         How far a Cartesian path may leave the polyline [m].
+    max_tip_speed : float
+        Bound on the tip's speed along a Cartesian path [m/s]; infinite: none.
+    steady_zones : bool
+        Whether the tip keeps its speed on the curved zones of a Cartesian path.
     should_stop : callable
         Asked now and then; once it answers True, the best motion so far is the answer.
 
@@ -63,6 +67,8 @@ class PlanningRequest:
     sample_period: float = 0.01
     elbow: Elbow | None = None
     max_deviation: float = 0.05
+    max_tip_speed: float = np.inf
+    steady_zones: bool = False
     should_stop: Callable[[], bool] = never
 
     def __post_init__(self) -> None:
@@ -82,6 +88,9 @@ class PlanningRequest:
             value = float(getattr(self, name))
             if not (np.isfinite(value) and value > 0.0):
                 raise InvalidInputError(f'{name} is {value} {unit}, must be positive')
+        if not self.max_tip_speed > 0.0:
+            raise InvalidInputError(
+                f'max_tip_speed is {self.max_tip_speed} m/s, must be positive')
         if self.segment_durations is not None:
             self._check_durations()
 
@@ -152,6 +161,48 @@ class JointTask:
 
         """
         return segment if self.segment_numbers is None else int(self.segment_numbers[segment])
+
+
+@dataclass(frozen=True, eq=False)
+class CartesianTask:
+    """
+    What a planner of Cartesian paths works on: consecutive points that differ.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Scaled as requested.
+    tips : ndarray, shape (n + 1, 3)
+        Tip positions [m]; the start's is the first.
+    start : ndarray, shape (3,)
+        Joint positions [rad] at the first of them.
+    elbow : {'up', 'down'}
+        The branch on which the arm follows the path.
+    max_deviation : float
+        How far the path may leave the polyline [m].
+    max_tip_speed : float
+        [m/s], infinite: none.
+    steady_zones : bool
+        Whether the tip keeps its speed on curved zones.
+    sample_period : float
+        [s].
+    should_stop : callable
+        As in `PlanningRequest`.
+
+    """
+
+    model: RobotModel
+    limits: JointLimits
+    tips: Array
+    start: Array
+    elbow: Elbow
+    max_deviation: float
+    max_tip_speed: float
+    steady_zones: bool
+    sample_period: float
+    should_stop: Callable[[], bool] = never
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,12 +11,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix
-from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.followable import acceleration_scale, followable
 from rrr_traj_planner.planners.ramp_chain import Grid
 from rrr_traj_planner.planners.ramp_prescribed import prescribed
 from rrr_traj_planner.planners.ramp_problem import fastest, Solved
@@ -25,6 +22,7 @@ from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 
 RAMPS = 20            # in a segment
+RAMPS_ALONE = 32      # in a motion's only segment, which has to speed up and to slow down
 MOST_RAMPS = 40      # where neither jerk nor sampling shapes them
 SHAPED = 0.1          # part of a segment above which a full swing of acceleration shapes ramps
 SAMPLES_PER_RAMP = 1.0
@@ -55,7 +53,8 @@ def plan(task: JointTask) -> Trajectory:
         If no way between two via points is found along which the motors can hold the arm.
 
     """
-    task = replace(task, limits=_with_jerk_limits(task))
+    task = replace(task, limits=followable(
+        task.model, task.limits, task.points, task.sample_period))
     grid = Grid(_ramps(task))
     found = fastest(task, grid) if task.durations is None else prescribed(
         task, grid, task.durations)
@@ -66,45 +65,21 @@ def plan(task: JointTask) -> Trajectory:
 
 def _note(found: Solved) -> str:
     """Return what there is to be said of how the method ended."""
-    if found.outcome.converged:
+    if found.converged:
         return ''
-    part = 100.0 * min(found.outcome.gap / found.trajectory.duration, 1.0)
+    part = 100.0 * min(found.gap / found.trajectory.duration, 1.0)
     return f'planning ended before it converged: at most {part:.3g} % of the time could be saved'
-
-
-def _with_jerk_limits(task: JointTask) -> JointLimits:
-    """
-    Return limits whose jerk keeps ramps so long that samples can follow them.
-
-    A full swing of acceleration lasts two samples, four where the acceleration that a controller
-    rebuilds from them must keep a limit.
-    """
-    limits = task.limits
-    samples = np.where(np.isinf(limits.max_acceleration), 2.0, 4.0)
-    jerk = np.pi * _acceleration_scale(task) / (samples * task.sample_period)
-    return replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk))
-
-
-def _acceleration_scale(task: JointTask) -> Array:
-    """Return the acceleration that each joint can have, by its limit or by its torque."""
-    limits = task.limits
-    lacking = np.isinf(limits.max_acceleration) & np.isinf(limits.max_effort)
-    if lacking.any():
-        raise InvalidInputError(
-            'planner time_optimal needs an acceleration or an effort limit on every joint, '
-            f'{task.model.joint_names[int(lacking.argmax())]} has neither')
-    inertia = np.diagonal(inertia_matrix(task.model, task.points), axis1=1, axis2=2)
-    torque = limits.max_effort + np.abs(gravity_torque(task.model, task.points))
-    return np.asarray(np.minimum(limits.max_acceleration, (torque / inertia).max(axis=0)))
 
 
 def _ramps(task: JointTask) -> int:
     """Return how many ramps a segment has: more where jerk leaves room for shorter ones."""
-    scale, D = _acceleration_scale(task), np.abs(np.diff(task.points, axis=0))
+    scale = acceleration_scale(task.model, task.limits, task.points)
+    D = np.abs(np.diff(task.points, axis=0))
     T = float(np.median(np.maximum(2.0 * np.sqrt(D / scale),
                                    D / task.limits.max_velocity).max(axis=1)))
     swing = float((np.pi * scale / task.limits.max_jerk).max())
+    ramps = RAMPS_ALONE if len(D) == 1 else RAMPS
     if swing >= SHAPED * T:
-        return RAMPS
-    return int(np.clip(T / (SAMPLES_PER_RAMP * task.sample_period), RAMPS, MOST_RAMPS))
+        return ramps
+    return int(np.clip(T / (SAMPLES_PER_RAMP * task.sample_period), ramps, MOST_RAMPS))
 

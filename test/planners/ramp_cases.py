@@ -3,6 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+from random_cases import random_model
+from rrr_traj_planner.core.dynamics import gravity_torque
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
@@ -10,11 +12,13 @@ from rrr_traj_planner.planners.ramp_constraints import Constraints
 from rrr_traj_planner.planners.ramp_newton import Freedom
 from rrr_traj_planner.planners.ramp_start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
+from scipy import ndimage
 
 NONE = np.full(3, np.inf)
 ARM = RobotModel()
 LIMITS = JointLimits(min_position=[-2.9] * 3, max_position=[3.1] * 3)  # not symmetric
 FREE = replace(LIMITS, max_effort=NONE)
+COARSE, FINE = 61, 601  # cells of joint 2 and of joint 3 in which a way is looked for
 
 
 def random_motion(seed, n=None, segments=None):
@@ -43,7 +47,7 @@ def bounds(limits, grid, points, floor=None, margin=0.0):
     """Return constraints without room for repairs, or with some for positions."""
     N, p = len(points) - 1, 2 * grid.n + 1
     return Constraints(ARM, limits, grid, points, np.full((2, N, p, 3), margin),
-                       np.zeros((N, p, 3)), floor)
+                       np.zeros((N, p, 3)), np.zeros((N, p, 3)), floor)
 
 
 def all_free(N):
@@ -62,3 +66,60 @@ def own_unknowns(grid, m):
     """Return the unknowns y of every segment, (N, n + 2, 3)."""
     nodes, v0, _ = grid.nodes(m)
     return np.concatenate((v0[:, np.newaxis], nodes), axis=1)
+
+
+def share_of(task, q):
+    """Return the largest part of an effort limit that gravity takes."""
+    return (np.abs(gravity_torque(task.model, q)) / task.limits.max_effort).max(axis=-1)
+
+
+def blocked_task(seed):
+    """Return two poses of a random arm that can be held, not straight between them."""
+    rng = np.random.default_rng(60_000 + seed)
+    while True:
+        model = random_model(rng)
+        middle = rng.uniform([-0.4, 0.3, -0.5], [0.4, 2.0, 0.5])
+        half = rng.uniform([0.5, 1.0, 1.0], [2.0, 3.0, 3.0])
+        q = rng.uniform(middle - half, middle + half, (4000, 3))
+        torque = np.abs(gravity_torque(model, q))
+        effort = np.append(50.0, np.quantile(torque[:, 1:], rng.uniform(0.2, 0.95), axis=0))
+        held = q[(torque < 0.999 * effort).all(axis=1)]
+        if len(held) < 2:
+            continue
+        task = JointTask(model, JointLimits(middle - half, middle + half, max_effort=effort),
+                         held[:2], None, 0.01)
+        pairs = held[rng.integers(len(held), size=(40, 2))]
+        good = share_of(task, np.linspace(pairs[:, 0], pairs[:, 1], 100)).max(axis=0) > 1.02
+        if seed % 4:  # most of them where there is another way
+            start, end = (_parts_of(task, COARSE, 1.0, pairs[:, k]) for k in (0, 1))
+            good &= np.array([bool(a & b) for a, b in zip(start, end)])
+        if good.any():
+            return replace(task, points=pairs[good.argmax()])
+
+
+def is_connected(task, room):
+    """
+    Return whether cells of joints 2 and 3 that can be held connect a task's two poses.
+
+    Room is how much less than its limits gravity may take, in changes from cell to cell.
+    """
+    share = _shares(task, FINE)
+    change = max(np.abs(np.diff(share, axis=k)).max() for k in (0, 1))
+    start, end = _parts_of(task, FINE, 1.0 - room * change, task.points)
+    return bool(start & end)
+
+
+def _shares(task, cells):
+    low, high = task.limits.min_position, task.limits.max_position
+    q = np.zeros((cells, cells, 3))
+    q[..., 1], q[..., 2] = np.meshgrid(*(np.linspace(low[j], high[j], cells) for j in (1, 2)),
+                                       indexing='ij')
+    return share_of(task, q)
+
+
+def _parts_of(task, cells, most, poses):
+    """Return the connected parts, by number, that the corners of the poses' cells are in."""
+    low, high = task.limits.min_position[1:], task.limits.max_position[1:]
+    parts = ndimage.label(_shares(task, cells) <= most)[0]
+    corner = ((poses[:, 1:] - low) / (high - low) * (cells - 1)).astype(int)
+    return [set(parts[i:i + 2, j:j + 2].ravel().tolist()) - {0} for i, j in corner]

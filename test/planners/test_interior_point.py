@@ -5,8 +5,18 @@ from itertools import count
 
 import numpy as np
 import pytest
-from ramp_cases import all_free, FREE, LIMITS, NONE, random_motion, slow_start
-from rrr_traj_planner.planners.interior_point import minimise
+from ramp_cases import (
+    all_free,
+    FREE,
+    LIMITS,
+    NONE,
+    random_motion,
+    random_step,
+    shifted,
+    slow_start,
+)
+from rrr_traj_planner.planners import interior_point
+from rrr_traj_planner.planners.interior_point import _Local, _rate, _Tried, Centre, minimise
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_newton import Freedom
 from scipy.optimize import minimize
@@ -24,7 +34,7 @@ def solve(limits, grid, points, should_stop=never, freedom=None):
     seen = []
     linear = constraints.linear
     constraints.linear = lambda m: (seen.append(m), linear(m))[1]
-    outcome = minimise(constraints, m, freedom or all_free(len(m.T)), should_stop)
+    outcome = minimise(constraints, Centre(m, None), freedom or all_free(len(m.T)), should_stop)
     return constraints, m, seen, outcome
 
 
@@ -131,3 +141,139 @@ def test_velocities_that_are_still_stay_zero():
     found = solve(FREE, grid, points, freedom=all_free(3)._replace(still=still))[3].motion
     assert np.abs(found.v[still]).max() <= 1e-12
     assert np.abs(found.v[~still]).min() > 1e-3
+
+
+# --- Centres of the central path --------------------------------------------------------------
+
+ALL = [FREE, LIMITS, replace(LIMITS, max_acceleration=NONE, max_jerk=[50.0] * 3)]
+NAMES = ['free', 'all', 'torque']
+
+
+def count_of(constraints, m):
+    """Return the number of constraints."""
+    return sum(s.size for s in constraints.slacks(m))
+
+
+@pytest.mark.parametrize('limits', ALL, ids=NAMES)
+@pytest.mark.parametrize('seed', SEEDS)
+def test_centres_are_strictly_within_limits_slowest_first_and_as_near_as_their_barriers(
+        seed, limits):
+    grid, points, _ = random_motion(seed)
+    constraints, start, _, outcome = solve(limits, grid, points)
+    assert len(outcome.centres) >= 2
+    best = outcome.motion.T.sum()
+    for motion, barrier in outcome.centres:
+        assert min(s.min() for s in constraints.slacks(motion)) > 0.0
+        at = grid.states(points, motion)
+        assert at.q[:, grid.n] == pytest.approx(points[1:], abs=1e-10)
+        # the optimum is a constraint's barrier away for every constraint
+        assert motion.T.sum() - best <= count_of(constraints, start) * barrier
+    barriers = np.array([c.barrier for c in outcome.centres])
+    assert barriers[1:] == pytest.approx(0.1 * barriers[:-1])
+    assert (np.diff([c.motion.T.sum() for c in outcome.centres]) < 0.0).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_centres_leave_more_room_the_higher_their_barrier(seed):
+    grid, points, _ = random_motion(seed)
+    constraints, _, _, outcome = solve(LIMITS, grid, points)
+    room = [min(s.min() for s in constraints.slacks(c.motion)) for c in outcome.centres]
+    assert (np.diff(room) < 0.0).all()
+
+
+@pytest.mark.parametrize('limits', ALL, ids=NAMES)
+@pytest.mark.parametrize('seed', SEEDS)
+def test_the_method_ends_at_the_centre_of_the_least_barrier(seed, limits):
+    grid, points, _ = random_motion(seed)
+    constraints, start, _, outcome = solve(limits, grid, points)
+    wanted = outcome.centres[1]
+    found = minimise(constraints, Centre(start, None), all_free(len(start.T)), never,
+                     wanted.barrier)
+    assert [c.barrier for c in found.centres] == [c.barrier for c in outcome.centres[:2]]
+    for one, other in zip(found.centres[-1].motion, wanted.motion):
+        assert (one == other).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_from_a_centre_on_it_finds_the_same_optimum(seed):
+    grid, points, _ = random_motion(seed)
+    constraints, _, _, outcome = solve(LIMITS, grid, points)
+    again = minimise(constraints, outcome.centres[0], all_free(len(outcome.motion.T)), never)
+    assert again.centres[0].barrier <= outcome.centres[0].barrier
+    assert again.motion.T.sum() == pytest.approx(outcome.motion.T.sum(), rel=GAP)
+
+
+# --- The bend of a step that gets nowhere -----------------------------------------------------
+
+class Bent:
+    """A step from a centre where torque's limits are curved, its bend, and weights of errors."""
+
+    def __init__(self, seed):
+        self.grid, self.points, _ = random_motion(seed)
+        self.constraints, _, _, outcome = solve(ALL[2], self.grid, self.points)
+        self.motion, barrier = outcome.centres[1]
+        slacks = self.constraints.slacks(self.motion)
+        duals = [barrier / s for s in slacks]
+        self.weights = [d / s for d, s in zip(duals, slacks)]
+        local = _Local(self.constraints, self.motion, duals, all_free(len(self.motion.T)),
+                       0.1 * barrier)
+        self.slacks, self.changes = local.slacks, local.changes
+        self.step = next(local.steps())
+        self.rates = self.rates_of(self.step.motion)
+        self.bend = lambda size: local.bend(
+            self.constraints, self.motion, _Tried(self.step, self.rates, size, None))
+
+    def rates_of(self, step):
+        return [_rate(self.constraints, x, step) for x in self.changes]
+
+    def aside(self, size, bend=None):
+        """Return what slacks after the step are beside their linear prediction."""
+        step = self.step.motion
+        if bend is not None:
+            step = shifted(step, bend, size)
+        moved = self.grid.moved(self.points, self.motion, step, size)
+        return [after - s - size * r for after, s, r in zip(
+            self.constraints.slacks(moved), self.slacks, self.rates)]
+
+    def error(self, aside):
+        return float(np.sqrt(sum((w * x ** 2).sum() for w, x in zip(self.weights, aside))))
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_a_bent_step_leaves_slacks_nearer_to_their_linear_prediction(seed):
+    case = Bent(seed)
+    plain, bent = (np.array([case.error(case.aside(size, bend)) for size, bend in (
+        (size, case.bend(size) if with_bend else None) for size in (0.2, 0.1, 0.05))])
+        for with_bend in (False, True))
+    # of second order; the limits that are near, which count, are fewer than the unknowns
+    assert plain[:-1] / plain[1:] == pytest.approx([4.0, 4.0], rel=0.1)
+    assert (bent <= 0.35 * plain).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_no_other_bend_that_keeps_the_ends_leaves_less_beside_the_prediction(seed):
+    case, size, tiny = Bent(seed), 0.01, 1e-6
+    bend, aside = case.bend(size), case.aside(size)
+    left = [w * (x / size ** 2 + r) for w, x, r in zip(
+        case.weights, aside, case.rates_of(bend))]
+    total = case.error([x / w for w, x in zip(case.weights, left)])
+    for k in range(5):
+        other = random_step(10 * seed + k, case.motion)
+        inner = (case.grid.restored(case.points, shifted(case.motion, other, tiny)).inner
+                 - case.grid.restored(case.points, shifted(case.motion, other, -tiny)).inner)
+        rates = case.rates_of(other._replace(inner=inner / (2.0 * tiny)))
+        slope = sum((x * r).sum() for x, r in zip(left, rates))
+        assert abs(slope) <= 1e-5 * total * case.error(rates)
+
+
+def test_a_step_whose_equations_are_singular_is_skipped(monkeypatch):
+    grid, points, _ = random_motion(1)
+    constraints, start = slow_start(LIMITS, grid, points)
+
+    def singular(*_):
+        raise np.linalg.LinAlgError('Singular matrix')
+
+    monkeypatch.setattr(interior_point, 'newton_step', singular)
+    outcome = minimise(constraints, Centre(start, None), all_free(len(start.T)), never)
+    assert outcome.motion is start
+    assert not outcome.converged

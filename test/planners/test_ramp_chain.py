@@ -5,7 +5,7 @@ import pytest
 from ramp_cases import own_unknowns, random_motion, random_step, shifted
 from random_cases import central_difference
 from rrr_traj_planner.core.cycloid import ramp
-from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_chain import Grid, LEAST_RAMPS, Motion
 
 SEEDS = range(12)
 EXACT = {'rel': 1e-11, 'abs': 1e-11}      # rounding
@@ -73,7 +73,17 @@ def test_moved_motions_meet_every_via_point_at_its_velocity(seed, size):
     assert grid.states(points, moved).qd[:, grid.n] == pytest.approx(
         grid.nodes(moved)[2], **EXACT)
     assert moved.T == pytest.approx(m.T + size * step.T)
-    assert moved.v == pytest.approx(m.v + size * step.v)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_a_step_that_stretches_time_is_followed_as_a_stretch(seed):
+    grid, points, m = random_motion(seed)
+    for rate, size in ((0.3, 1.0), (-0.4, 0.5)):
+        # the derivative of a stretch by the factor 1 + rate * size
+        step = Motion(-2.0 * rate * m.inner, -rate * m.v, -2.0 * rate * m.a, rate * m.T)
+        moved = grid.moved(points, m, step, size)
+        for found, expected in zip(moved, grid.stretched(m, 1.0 + rate * size)):
+            assert found == pytest.approx(expected, **EXACT)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -91,6 +101,21 @@ def test_a_step_that_keeps_the_ends_to_first_order_is_followed_to_first_order(se
         scale = np.abs(step.inner).max() + np.abs(m.inner).max()
         assert moved.inner == pytest.approx(
             m.inner + size * step.inner, abs=300.0 * size ** 2 * scale)
+        for found, before, change in zip(moved[1:3], m[1:3], step[1:3]):
+            assert found == pytest.approx(before + size * change, abs=30.0 * size ** 2)
+
+
+@pytest.mark.parametrize('first', [True, False])
+def test_a_via_point_follows_the_stretch_of_the_much_shorter_of_its_segments(first):
+    grid, points, m = random_motion(5, segments=2)
+    short = np.array([first, not first])
+    m = grid.restored(points, m._replace(T=np.where(short, 1e-2, 1.0)))
+    nothing = Motion(*(np.zeros_like(f) for f in m))
+    factor = 1.3
+    step = nothing._replace(v=-0.3 * m.v, a=-0.6 * m.a, T=np.where(short, 0.3 * m.T, 0.0))
+    moved = grid.moved(points, m, step, 1.0)
+    assert moved.v == pytest.approx(m.v / factor, rel=1e-5)
+    assert moved.a == pytest.approx(m.a / factor ** 2, rel=1e-5)
 
 
 def test_moved_motions_of_no_duration_are_returned_as_such():
@@ -151,14 +176,44 @@ def test_straight_motions_stop_at_every_point_and_never_turn_back(n):
     assert grid.states(points, slow).q == pytest.approx(grid.states(points, m).q, **EXACT)
 
 
-def test_stops_on_the_way_are_made():
-    points = np.array([[0.0, 1.0, 0.0], [0.0, 1.5, -0.5], [0.8, 1.5, -0.4], [0.8, 1.1, 0.0]])
-    grid, rest = Grid(20), np.zeros((0, 3))
+def stops_on_the_way(seed):
+    """Return points to stop at, and which nodes of the chain through them are at rest at each."""
+    rng = np.random.default_rng(9000 + seed)
+    grid, rest = Grid(int(rng.integers(8, 41))), np.zeros((0, 3))
+    legs = int(rng.integers(1, grid.n // LEAST_RAMPS + 1))
+    points = rng.uniform(-1.0, 1.0, (legs + 1, 3))
     m = Motion(grid.rest_to_rest_legs(points)[np.newaxis, 1:-1], rest, rest, np.ones(1))
     at = grid.states(points[[0, -1]], m)
-    for row, point in zip((7, 13, 20), points[1:]):
-        assert at.q[0, row] == pytest.approx(point, abs=1e-12)
-        assert at.qd[0, row] == pytest.approx(np.zeros(3), abs=1e-11)
+    q, qd = at.q[0, :grid.n + 1], at.qd[0, :grid.n + 1]
+    still = np.abs(qd).max(axis=1) <= 1e-10
+    return grid.n, points, [np.flatnonzero(still & (np.abs(q - p).max(axis=1) <= 1e-11))
+                            for p in points]
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_stops_on_the_way_are_made_in_order(seed):
+    n, points, rows = stops_on_the_way(seed)
+    assert [len(found) for found in rows] == [1] * len(points)
+    row = np.concatenate(rows)
+    assert row[[0, -1]].tolist() == [0, n]
+    assert (np.diff(row) >= LEAST_RAMPS).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_longer_legs_have_no_fewer_ramps_but_for_the_rounding_of_one(seed):
+    _, points, rows = stops_on_the_way(seed)
+    ramps, length = np.diff(np.concatenate(rows)), np.abs(np.diff(points, axis=0)).max(axis=1)
+    by_length = ramps[np.argsort(length)]
+    assert (by_length >= np.maximum.accumulate(by_length) - 1).all()
+
+
+def test_legs_have_ramps_as_the_roots_of_their_lengths_beside_the_least():
+    # 12 ramps to spare, 3 : 1 for legs of 9 and 1
+    points = np.array([[0.0, 0.0, 0.0], [0.0, 0.9, 0.2], [0.1, 0.9, 0.2]])
+    grid, rest = Grid(12 + 2 * LEAST_RAMPS), np.zeros((0, 3))
+    m = Motion(grid.rest_to_rest_legs(points)[np.newaxis, 1:-1], rest, rest, np.ones(1))
+    q = grid.states(points[[0, -1]], m).q[0]
+    assert q[LEAST_RAMPS + 9] == pytest.approx(points[1], abs=1e-12)
 
 
 @pytest.mark.parametrize('seed', SEEDS)

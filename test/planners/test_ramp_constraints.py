@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from ramp_cases import ARM, bounds, LIMITS, NONE, own_unknowns, random_motion, random_step, shifted
 from random_cases import central_difference
-from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.planners.ramp_constraints import torque_hessian
+from rrr_traj_planner.planners.ramp_constraints import Constraints, torque_hessian
 
 SEEDS = range(10)
 # The equations' terms are differentiated by a one-sided difference over 1e-7 rad.
@@ -38,6 +38,21 @@ def test_margins_and_floors_take_their_part():
     floor = 0.5 * m.T
     assert bounds(LIMITS, grid, points, floor).slacks(m)[0][1] == pytest.approx(
         np.broadcast_to((m.T - floor)[:, np.newaxis, np.newaxis], (len(m.T), 1, 3)))
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_margins_of_velocity_torque_and_position_count_at_their_own_points(seed):
+    grid, points, m = random_motion(seed)
+    rng, n = np.random.default_rng(seed), grid.n
+    shape = (len(m.T), 2 * n + 1, 3)
+    q, qd, tau = rng.random((2, *shape)), rng.random(shape), rng.random(shape)
+    plain = bounds(LIMITS, grid, points).slacks(m)
+    found = Constraints(ARM, LIMITS, grid, points, q, qd, tau).slacks(m)
+    assert plain[0] - found[0] == pytest.approx(np.stack((qd, qd))[:, :, 1:])
+    assert plain[3] - found[3] == pytest.approx(np.delete(q, (0, n), axis=2))
+    assert plain[4] - found[4] == pytest.approx(np.stack((tau, tau))[:, :, 1:])
+    for k in (1, 2):
+        assert (plain[k] == found[k]).all()
 
 
 def test_limits_that_are_infinite_never_bind():
@@ -71,7 +86,7 @@ def test_changes_are_finite_differences_of_slacks(seed, with_floor):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_torque_hessian_is_the_difference_of_torque_s_derivatives_but_for_position_twice(seed):
+def test_torque_hessian_is_torque_s_second_difference_by_position_twice_gravity_s_alone(seed):
     grid, points, m = random_motion(seed)
     rng = np.random.default_rng(seed)
     constraints = bounds(LIMITS, grid, points)
@@ -94,7 +109,12 @@ def test_torque_hessian_is_the_difference_of_torque_s_derivatives_but_for_positi
         tau = inverse_dynamics(ARM, at.q + x * dq, at.qd + z * dqd, at.qdd + z * dqdd)
         return (sigma * tau[:, 1:]).sum(axis=(1, 2))
 
-    e = 1e-3  # twice along the whole step, less what position alone has
+    def gravity(x):
+        return (sigma * gravity_torque(ARM, at.q + x * dq)[:, 1:]).sum(axis=(1, 2))
+
+    # twice along the whole step, with gravity's part in the place of what position alone has
+    e = 1e-3
     whole = (total(e, e) - 2.0 * total(0.0, 0.0) + total(-e, -e)) / e ** 2
     position = (total(e, 0.0) - 2.0 * total(0.0, 0.0) + total(-e, 0.0)) / e ** 2
-    assert found == pytest.approx(whole - position, rel=1e-3, abs=1e-3 * np.abs(found).max())
+    expected = whole - position + (gravity(e) - 2.0 * gravity(0.0) + gravity(-e)) / e ** 2
+    assert found == pytest.approx(expected, rel=1e-3, abs=1e-3 * np.abs(found).max())

@@ -4,15 +4,27 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ramp_cases import ARM, bounds, LIMITS, NONE, random_motion, slow_start
-from rrr_traj_planner.core.dynamics import gravity_torque
+from ramp_cases import (
+    ARM,
+    blocked_task,
+    bounds,
+    is_connected,
+    LIMITS,
+    NONE,
+    random_motion,
+    share_of,
+    slow_start,
+)
+from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix, inverse_dynamics
 from rrr_traj_planner.core.errors import LimitViolationError
-from rrr_traj_planner.planners.ramp_chain import Grid
+from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_constraints import Constraints
 from rrr_traj_planner.planners.ramp_start import cannot_be_held, rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
 
 SEEDS = range(12)
 ROOM = 1.02
+BETWEEN_POINTS = 1.1  # of an effort limit, on a way with few points to a leg
 
 
 @pytest.mark.parametrize('limits', [LIMITS, replace(LIMITS, max_effort=NONE), replace(
@@ -44,28 +56,91 @@ def test_floors_are_kept():
     assert (slow_start(LIMITS, grid, points, floor)[1].T == ROOM * floor).all()
 
 
+def started(task):
+    """Return a task of two poses, its constraints and the motion to begin with."""
+    grid = Grid(20)
+    none = np.zeros((1, 2 * grid.n + 1, 3))
+    constraints = Constraints(task.model, task.limits, grid, task.points,
+                              np.stack((none, none)), none, none)
+    return task, constraints, rest_to_rest(task, constraints)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_a_blocked_way_is_gone_around_within_ranges_and_torques(seed):
+    task, constraints, m = started(blocked_task(seed))
+    if m is None:
+        return
+    assert min(s.min() for s in constraints.slacks(m)) > 0.0
+    trajectory = constraints.grid.trajectory(task.points, m)
+    q, qd, qdd, _ = trajectory(np.linspace(0.0, trajectory.duration, 4001))
+    assert q[[0, -1]] == pytest.approx(task.points, abs=1e-9)
+    assert (q >= task.limits.min_position - 1e-9).all()
+    assert (q <= task.limits.max_position + 1e-9).all()
+    # held at any speed on the way, and as fast as it is but for what happens between points
+    assert share_of(task, q).max() < 1.0
+    torque = np.abs(inverse_dynamics(task.model, q, qd, qdd)) / task.limits.max_effort
+    assert torque.max() < BETWEEN_POINTS
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_there_is_a_start_where_cells_with_room_connect_the_poses_and_nowhere_else(seed):
+    task, _, m = started(blocked_task(seed))
+    if is_connected(task, room=2.0):
+        assert m is not None
+    if not is_connected(task, room=-2.0):
+        assert m is None
+
+
+def hardly_open(seed):
+    """Return two poses straight between which gravity takes all of a torque but a thousandth."""
+    task = blocked_task(seed)
+    share = share_of(task, np.linspace(*task.points, 1001)).max()
+    return replace(task, limits=replace(
+        task.limits, max_jerk=NONE, max_effort=task.limits.max_effort * share / 0.999))
+
+
+def test_the_faster_of_the_straight_way_and_another_is_taken():
+    gained = []
+    for seed in range(40):
+        task, constraints, m = started(hardly_open(seed))
+        grid, rest = constraints.grid, np.zeros((0, 3))
+        way = grid.rest_to_rest(task.points)[:, 1:-1]
+
+        def straight_in(part, grid=grid, way=way, rest=rest, T=m.T, constraints=constraints):
+            m = grid.slowed(Motion(way, rest, rest, np.ones(1)), part * T)
+            return min(s.min() for s in constraints.slacks(m)) > 0.0
+
+        assert not straight_in(1.0 / (1.001 * ROOM))
+        gained.append(not straight_in(1.5))
+    assert sum(gained) >= 3
+    assert gained.count(False) >= 3
+
+
+@pytest.mark.parametrize('effort', [100.0, 20.0, 5.0, 1.0])
+def test_joint_1_alone_is_moved_however_weak_its_motor(effort):
+    points = np.array([[0.2, 1.4, 0.1], [1.2, 1.4, 0.1]])
+    limits = replace(LIMITS, max_velocity=NONE, max_acceleration=NONE, max_jerk=[1e4] * 3,
+                     max_effort=[effort, 250.0, 200.0])
+    constraints, m = slow_start(limits, Grid(20), points)
+    assert min(s.min() for s in constraints.slacks(m)) > 0.0
+    # at constant inertia and full torque forth and back: half a turn of a sine is slower by
+    # the square root of pi / 2
+    least = 2.0 * np.sqrt(inertia_matrix(ARM, points[0])[0, 0] / effort)
+    assert least <= m.T[0] <= 1.1 * np.sqrt(0.5 * np.pi) * least
+
+
 def blocked(limit):
-    """Return a task whose straight way takes 80.8 N m of joint 2, its ends 41.3 N m."""
+    """Return a task whose straight way needs more of joint 2; the limit [N m] is given."""
     points = np.array([[0.88, 1.29, -1.47], [0.51, 1.56, 0.91]])
     limits = replace(LIMITS, max_effort=[150.0, limit, 200.0])
     return JointTask(ARM, limits, points, None, 0.01), bounds(limits, Grid(20), points)
 
 
-def test_a_blocked_way_goes_over_the_vertical_and_keeps_the_forearm_s_direction_there():
-    task, constraints = blocked(70.0)
-    straight = np.linspace(*task.points, 201)
-    assert np.abs(gravity_torque(ARM, straight))[:, 1].max() > 80.0
-    m = rest_to_rest(task, constraints)
-    q = constraints.grid.states(task.points, m).q[0]
-    assert (np.abs(gravity_torque(ARM, q)) < task.limits.max_effort).all()
-    assert q[:, 1].max() > task.points[:, 1].max() - 1e-12
-    up = q[:8]  # on the first leg joint 1 waits, and theta_2 + theta_3 stays
-    assert up[:, 0] == pytest.approx(np.full(8, task.points[0, 0]), abs=1e-12)
-    assert up[:, 1:].sum(axis=1) == pytest.approx(np.full(8, up[0, 1:].sum()), abs=1e-12)
-
-
 def test_where_no_way_is_found_there_is_none_and_the_error_names_segment_joint_and_torque():
     task, constraints = blocked(45.0)
+    task = replace(task, limits=replace(
+        task.limits, min_position=[-2.9, 1.2, -2.9], max_position=[3.1, 1.6, 3.1]))
+    assert not is_connected(task, room=-2.0)
     assert rest_to_rest(task, constraints) is None
     error = cannot_be_held(replace(task, segment_numbers=np.array([4])), constraints.grid)
     assert isinstance(error, LimitViolationError)
@@ -76,14 +151,16 @@ def test_where_no_way_is_found_there_is_none_and_the_error_names_segment_joint_a
     assert error.value == pytest.approx(torque, rel=1e-2)
 
 
-def test_detours_stay_in_the_ranges():
-    task, constraints = blocked(70.0)
-    narrow = replace(task.limits, max_position=[3.0, 1.565, 3.0])
-    m = rest_to_rest(replace(task, limits=narrow), constraints)
-    if m is not None:
-        assert (constraints.grid.states(task.points, m).q[..., 1] <= 1.565 + 1e-9).all()
-    # theta_3 of the first pose would rise beyond its range: no detour
-    shut = replace(task.limits, min_position=[-3.0, -3.0, -1.48])
-    m = rest_to_rest(replace(task, limits=shut), constraints)
-    if m is not None:
-        assert (constraints.grid.states(task.points, m).q[..., 2] >= -1.48 - 1e-9).all()
+@pytest.mark.parametrize(('joint', 'side', 'end'), [(1, 'max_position', 1.565),
+                                                    (2, 'min_position', -1.48)])
+def test_detours_stay_in_the_ranges(joint, side, end):
+    task, _ = blocked(70.0)
+    narrow = getattr(task.limits, side).copy()
+    narrow[joint] = end
+    limits = replace(task.limits, **{side: narrow})
+    task = replace(task, limits=limits)
+    constraints = bounds(limits, Grid(20), task.points)
+    assert is_connected(task, room=2.0)
+    q = constraints.grid.states(task.points, rest_to_rest(task, constraints)).q
+    assert (q <= limits.max_position + 1e-9).all()
+    assert (q >= limits.min_position - 1e-9).all()

@@ -13,6 +13,7 @@ import re
 from hard_cases import HARD_CASES
 import numpy as np
 import pytest
+from ramp_cases import blocked_task, is_connected
 from random_tasks import Measured, random_task, Task
 from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix, inverse_dynamics
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, TimingError
@@ -20,8 +21,9 @@ from rrr_traj_planner.core.interpolation import Interpolant
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners import time_optimal
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.request import JointTask, PlanningRequest
 from thesis_cases import POINTS
 
 NONE = np.full(3, np.inf)
@@ -167,11 +169,11 @@ def broken(value):
     return {seed: value for seed, value in found.items() if not value <= 0.0}
 
 
-def test_at_least_60_tasks_are_planned_nearly_all_to_the_optimum():
+def test_at_least_60_tasks_are_planned_all_to_the_optimum():
     planned, _ = outcomes()
     assert len(planned) >= 60
-    far = [seed for seed, m in planned.items() if part_left(m.plan) > 5.0]
-    assert len(far) <= 0.05 * len(planned)
+    left = {seed: part_left(m.plan) for seed, m in planned.items()}
+    assert {seed: part for seed, part in left.items() if part > 1.0} == {}
 
 
 def part_left(answer):
@@ -193,6 +195,34 @@ def test_refusals_name_a_torque_that_the_straight_way_needs():
         assert error.limit == task.limits.max_effort[joint]
         assert torque >= error.limit * (1.0 - 1e-5)
         assert torque == pytest.approx(error.value, rel=2e-2)
+
+
+def segment(task, k):
+    """Return two poses of a random task as a task of their own."""
+    return JointTask(task.model, task.limits, task.q[k:k + 2], None, 0.01)
+
+
+def test_tasks_are_refused_only_where_no_cells_with_room_connect_the_poses():
+    for task, error in outcomes()[1].values():
+        k = int(re.match(r'segment (\d+)', str(error))[1])
+        assert not is_connected(segment(task, k), room=2.0)
+
+
+@pytest.mark.parametrize('seed', range(12))
+def test_where_straight_is_no_way_it_goes_around_if_there_is_another(seed):
+    task = blocked_task(seed)
+    try:
+        trajectory = time_optimal.plan(task)
+    except LimitViolationError:
+        assert not is_connected(task, room=2.0)
+        return
+    assert is_connected(task, room=-2.0)
+    q, qd, qdd, _ = trajectory(np.linspace(0.0, trajectory.duration, 2001))
+    assert q[[0, -1]] == pytest.approx(task.points, abs=HIT)
+    assert (q >= task.limits.min_position - HIT).all()
+    assert (q <= task.limits.max_position + HIT).all()
+    torque = np.abs(inverse_dynamics(task.model, q, qd, qdd)) / task.limits.max_effort
+    assert torque.max() <= 1.0 + LIMIT_ROOM
 
 
 def test_joint_3_is_refused_only_where_no_other_way_exists():
@@ -319,14 +349,13 @@ def stops_everywhere(task):
 
 def test_motion_is_never_slower_than_with_a_stop_at_every_via_point():
     def slower(m):
-        # 2 % of room at the start, 2 % for a chain that only samples the cycloid
         least = 2.5 * m.task.request.sample_period  # too few samples for more speed
-        return m.plan.trajectory.duration - max(1.04 * stops_everywhere(m.task), least)
+        return m.plan.trajectory.duration - max(stops_everywhere(m.task), least)
 
     assert broken(slower) == {}
 
 
-def test_motion_is_much_faster_than_cycloid_on_most_tasks_and_hardly_slower_on_any():
+def test_motion_is_much_faster_than_cycloid_on_most_tasks_and_slower_on_none():
     ratios = {}
     for seed, m in list(outcomes()[0].items())[::4]:
         try:
@@ -335,8 +364,8 @@ def test_motion_is_much_faster_than_cycloid_on_most_tasks_and_hardly_slower_on_a
             continue
         if m.plan.via_times[-1] > 20.0 * m.task.request.sample_period:
             ratios[seed] = float(m.plan.via_times[-1] / cycloid.via_times[-1])
-    assert {seed: ratio for seed, ratio in ratios.items() if ratio > 1.02} == {}
-    assert np.median(list(ratios.values())) <= 0.78
+    assert {seed: ratio for seed, ratio in ratios.items() if ratio > 1.0} == {}
+    assert np.median(list(ratios.values())) <= 0.75
 
 
 def test_same_request_gives_the_same_answer_bit_for_bit():
@@ -374,7 +403,7 @@ def test_special_tasks_are_planned_within_every_limit(limits, name):
     m = measured(limits, SPECIAL[name])
     assert excess(m) == []
     part_left(m.plan)  # a note, if any, is the one that is known
-    if 'pair' not in name and 'ends' not in name:
+    if name != 'close pair and back':
         assert part_left(m.plan) < 1.0
 
 
@@ -391,18 +420,50 @@ def test_repeated_points_share_their_time_and_cost_none():
     assert more.via_times[2] == more.via_times[3]
 
 
-@pytest.mark.xfail(strict=True, reason='the method stalls where all joints turn at a close pair')
-@pytest.mark.parametrize('name', ['close pair', 'close pair and back'])
-def test_close_pairs_where_all_joints_turn_are_planned_to_the_optimum(name):
-    assert part_left(measured(LIMITS, SPECIAL[name]).plan) < 1.0
+@pytest.mark.parametrize('name', ['close pair', 'close pair at the start', 'close pair alone',
+                                  pytest.param('close pair and back', marks=pytest.mark.xfail(
+                                      strict=True, reason='the method stalls there'))])
+@pytest.mark.parametrize('limits', [LIMITS, replace(LIMITS, **QUICK)], ids=['a', 'torque'])
+def test_close_pairs_are_planned_to_the_optimum(limits, name):
+    assert part_left(measured(limits, SPECIAL[name]).plan) < 1.0
 
 
-@pytest.mark.xfail(strict=True, reason='the method stalls where all joints turn at a close pair')
-def test_a_point_in_the_way_costs_little_where_it_is_hardly_off_it():
+@pytest.mark.parametrize('limits', [LIMITS, replace(LIMITS, **QUICK)], ids=['a', 'torque'])
+def test_a_point_in_the_way_costs_hardly_anything_where_it_is_hardly_off_it(limits):
     # Every joint turns at B: a point next to it costs the little time of going there.
-    with_pair, without = (measured(LIMITS, q).plan.via_times[-1]
+    with_pair, without = (measured(limits, q).plan.via_times[-1]
                           for q in ([A, B, NEAR, C], [A, B, C]))
-    assert with_pair <= 1.1 * without
+    assert without * (1.0 - GAP) <= with_pair <= 1.01 * without
+
+
+@pytest.mark.parametrize('effort', [100.0, 20.0, 5.0, 1.0])
+def test_joint_1_alone_is_moved_in_time_however_weak_its_motor(effort):
+    q = [[0.2, 1.4, 0.1], [1.2, 1.4, 0.1]]
+    limits = replace(LIMITS, max_velocity=NONE, max_acceleration=NONE, max_jerk=NONE,
+                     max_effort=[effort, 250.0, 200.0])
+    m = measured(limits, q)
+    assert excess(m) == []
+    # full torque forth and back at the inertia of the two poses; ramps lose a part of it
+    most = 1.05 * 2.0 * np.sqrt(inertia_matrix(ARM, q[0])[0, 0] / effort)
+    assert m.plan.via_times[-1] <= most
+
+
+@pytest.mark.parametrize('joint_1', [-1.4, 1.4])
+def test_ways_around_do_not_depend_on_where_joint_1_is(joint_1):
+    q, torque = blocked_way()
+    limits = replace(LIMITS, min_position=[-3.0, *LIMITS.min_position[1:]],
+                     max_position=[3.0, *LIMITS.max_position[1:]],
+                     max_effort=[150.0, 0.5 * (max(torque[[0, -1]]) + torque.max()), 200.0])
+    aside = np.array([joint_1, 0.0, 0.0])
+    # a range that zero is not in
+    moved = replace(limits, min_position=[joint_1 + 0.3, *LIMITS.min_position[1:]],
+                    max_position=[joint_1 + 1.2, *LIMITS.max_position[1:]])
+    if joint_1 < 0.0:
+        moved = replace(moved, min_position=[-2.0, *LIMITS.min_position[1:]],
+                        max_position=[-0.1, *LIMITS.max_position[1:]])
+    here, there = (measured(x, q + d).plan.via_times[-1] for x, d in (
+        (limits, 0.0), (moved, aside)))
+    assert there == pytest.approx(here, rel=GAP)
 
 
 def test_a_start_state_is_the_first_point_of_the_same_problem():

@@ -1,0 +1,183 @@
+"""A motion along a path of the tip: the path's geometry, and its length as a function of time."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cartesian_path import CartesianPath
+from rrr_traj_planner.core.inverse_kinematics import Elbow
+from rrr_traj_planner.core.joint_path import whole_turns
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.motion_torque import maximum_over_time
+from rrr_traj_planner.core.path_kinematics import JointPath, PathPoints, unlimited_joint_path
+from rrr_traj_planner.core.piecewise import JointProfile
+from rrr_traj_planner.core.trajectory import Peaks, times_within, Trajectory
+
+STEPS_PER_PIECE = 24   # of the path, at which whole turns of the joints are remembered
+STEPS_PER_KNOT = 8     # of the time between knots, at which extremes are looked for
+FAR = 1e3              # rad: makes positions positive, as what maxima are looked for must be
+LEAST_STEP = 1e-6      # rad/s^2: what is less is rounding
+BEFORE = 1e-9          # s before a knot, where what steps there still has its old value
+
+
+@dataclass(frozen=True, eq=False)
+class ArmPath:
+    """
+    A path of the tip as one arm follows it, on one elbow branch.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Whose ranges say how many whole turns each joint has made.
+    path : CartesianPath
+        The path, within the workspace and the ranges.
+    elbow : {'up', 'down'}
+        The branch.
+    previous : ndarray, shape (3,), optional
+        Joint positions [rad] that the start is to be near to, where several turns fit.
+
+    """
+
+    model: RobotModel
+    limits: JointLimits
+    path: CartesianPath
+    elbow: Elbow
+    previous: Array | None = None
+
+    @cached_property
+    def _turning(self) -> tuple[Array, Array]:
+        """Places along the path, and joint positions there with their whole turns."""
+        knots = np.unique(np.concatenate((self.path.via_s, self.path.joins)))
+        share = np.arange(STEPS_PER_PIECE) / STEPS_PER_PIECE
+        s = (knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * share).ravel()
+        s = np.concatenate((s, knots[-1:]))
+        q = unlimited_joint_path(self.model, PathPoints(*self.path(s)), self.elbow).q
+        return s, q + whole_turns(q, self.limits, self.previous)
+
+    def __call__(self, s: Array, left: bool = False) -> JointPath:
+        """
+        Return joint positions and their derivatives by arc length.
+
+        Parameters
+        ----------
+        s : ndarray, shape (m,)
+            Places along the path [m], in any order.
+        left : bool
+            At a join, the values of the piece that ends there.
+
+        Returns
+        -------
+        JointPath
+            Of shape (m, 3) each.
+
+        """
+        found = unlimited_joint_path(self.model, PathPoints(*self.path(s, left)), self.elbow)
+        places, known = self._turning
+        near = np.stack([np.interp(s, places, known[:, j]) for j in range(3)], axis=1)
+        turns = np.round((near - found.q) / (2.0 * np.pi))
+        return found._replace(q=found.q + 2.0 * np.pi * turns)
+
+
+class PathTrajectory(Trajectory):
+    """
+    A motion of the tip along a path.
+
+    Parameters
+    ----------
+    arm_path : ArmPath
+        The path in joint space.
+    progress : JointProfile
+        Length of the path behind the tip [m] over time; from 0 to all of it.
+    via_times : ndarray
+        When each via point is passed [s].
+    join_times : ndarray
+        When each join of the path is passed [s].
+    note : str
+        See `Trajectory`.
+
+    """
+
+    def __init__(self, arm_path: ArmPath, progress: JointProfile, via_times: Array,
+                 join_times: Array, note: str = '') -> None:
+        self.arm_path, self.progress, self.note = arm_path, progress, note
+        self.via_times, self.join_times = via_times, join_times
+        self.duration = progress.duration
+
+    def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """Return position, velocity, acceleration and jerk; see `Trajectory`."""
+        times = np.asarray(t, dtype=float)
+        flat = np.clip(np.atleast_1d(times), 0.0, self.duration)
+        resting = (np.atleast_1d(times) < 0.0) | (np.atleast_1d(times) >= self.duration)
+        s, sd, sdd, sddd = (f[:, np.newaxis] for f in self.progress(flat))
+        length = self.arm_path.path.length
+        q, dq, ddq, dddq = self.arm_path(np.clip(s[:, 0], 0.0, length))
+        qd = dq * sd
+        qdd = ddq * sd ** 2 + dq * sdd
+        qddd = dddq * sd ** 3 + 3.0 * ddq * sd * sdd + dq * sddd
+        for derivative in (qd, qdd, qddd):
+            derivative[resting] = 0.0
+        return tuple(v[0] for v in (q, qd, qdd, qddd)) if times.ndim == 0 else (q, qd, qdd, qddd)
+
+    @property
+    def knots(self) -> Array:
+        """Ends of the pieces of progress; see `Trajectory`."""
+        return self.progress.knots
+
+    @property
+    def step_times(self) -> Array:
+        """When joins are passed at which curvature steps [s]; see `Trajectory`."""
+        stepping = self.acceleration_steps().max(axis=1, initial=0.0) > LEAST_STEP
+        return np.asarray(self.join_times[stepping])
+
+    def peaks(self) -> Peaks:
+        """Return the extremes over the continuous motion, both sides of what steps included."""
+        return self._peaks
+
+    @cached_property
+    def _peaks(self) -> Peaks:
+        grid = times_within(self, STEPS_PER_KNOT)
+        grid = np.unique(np.concatenate((grid, self.knots[1:] - BEFORE)))
+        return Peaks(
+            velocity=maximum_over_time(lambda t: np.abs(self(t)[1]), grid).value,
+            acceleration=maximum_over_time(lambda t: np.abs(self(t)[2]), grid).value,
+            jerk=maximum_over_time(lambda t: np.abs(self(t)[3]), grid).value,
+            min_position=-maximum_over_time(lambda t: FAR - self(t)[0], grid).value + FAR,
+            max_position=maximum_over_time(lambda t: FAR + self(t)[0], grid).value - FAR)
+
+    def stretched(self, factor: float) -> PathTrajectory:
+        """Return the same path run through at another rate; see `Trajectory`."""
+        return PathTrajectory(self.arm_path, self.progress.stretched(factor),
+                              self.via_times * factor, self.join_times * factor, self.note)
+
+    def noted(self, note: str) -> PathTrajectory:
+        """
+        Return the same motion with a note.
+
+        Parameters
+        ----------
+        note : str
+            What there is to be said of it.
+
+        Returns
+        -------
+        PathTrajectory
+            Otherwise the same.
+
+        """
+        found = copy(self)
+        found.note = note
+        return found
+
+    def acceleration_steps(self) -> Array:
+        """Return by how much joint accelerations step at the joins [rad/s^2], (joins, 3)."""
+        joins, speed = self.arm_path.path.joins, self.progress(self.join_times)[1]
+        change = self.arm_path(joins).ddq - self.arm_path(joins, left=True).ddq
+        return np.asarray(np.abs(change) * speed[:, np.newaxis] ** 2)

@@ -1,0 +1,68 @@
+"""What the planners of Cartesian paths share: path, check, timing, and what there is to say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cartesian_path import CartesianPath
+from rrr_traj_planner.core.largest_radii import largest_radii
+from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
+from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.planners.followable import followable
+from rrr_traj_planner.planners.interior_point import CONVERGED
+from rrr_traj_planner.planners.path_timing import fastest_along, PathTask, Timed
+from rrr_traj_planner.planners.request import CartesianTask
+
+Family = Callable[[Array, ArrayLike], CartesianPath]
+
+STEP = 1e-3  # rad/s^2: joint accelerations that step by more are told of
+
+
+def along(task: CartesianTask, family: Family) -> PathTrajectory:
+    """
+    Return the fastest motion of the tip along a path of a family.
+
+    Parameters
+    ----------
+    task : CartesianTask
+        What is asked.
+    family : callable
+        `line_arc` or `line_polynomial` of `core.path_design`.
+
+    Returns
+    -------
+    PathTrajectory
+        On the path of the largest radii that the deviation allows.
+
+    Raises
+    ------
+    InvalidInputError
+        If no path passes the points without a stop.
+    UnreachableError, LimitViolationError
+        If the arm cannot follow the path; with the place.
+
+    """
+    path = largest_radii(family, task.tips, task.max_deviation)
+    joints = check_workspace(task.model, task.limits, path, task.elbow, task.start)
+    arm_path = ArmPath(task.model, task.limits, path, task.elbow, joints.start)
+    limits = followable(task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
+    timed = fastest_along(PathTask(
+        arm_path, limits, task.max_tip_speed, task.steady_zones, task.should_stop))
+    return timed.trajectory.noted(_note(task, timed))
+
+
+def _note(task: CartesianTask, timed: Timed) -> str:
+    """Return what there is to be said of a motion along a path."""
+    notes, T = [], timed.trajectory.duration
+    step = timed.trajectory.acceleration_steps().max(axis=0, initial=0.0)
+    if step.max() > STEP:
+        largest = ', '.join(f'{name} {value:.3g}' for name, value in zip(
+            task.model.joint_names, step))
+        notes.append(f'joint accelerations step where arcs begin and end, at most by {largest} '
+                     'rad/s^2')
+    if timed.gap > CONVERGED * T:
+        notes.append(f'planning ended before it converged: at most {100.0 * timed.gap / T:.3g} % '
+                     'of the time could be saved')
+    return '; '.join(notes)

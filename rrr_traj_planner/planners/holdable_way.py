@@ -1,0 +1,154 @@
+"""
+A way in joint space, between two poses, along which the motors can hold the arm.
+
+Gravity's torques depend on joints 2 and 3 alone: the way is the shortest of those on a grid in
+their plane, where what gravity takes of the torque makes it longer, with as many corners left out
+as can be. If there is a way that leaves room for a cell of the grid, it is found.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, IntArray
+from rrr_traj_planner.core.dynamics import gravity_torque
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.request import JointTask
+from scipy import sparse
+from scipy.sparse import csgraph
+
+HOLDING_ROOM = 1e-6     # of the effort limits that gravity must leave along the way
+RANGE_ROOM = 4e-10      # rad, for the rounding of points at the end of a range
+CELLS = (48, 400)       # of each of the two joints; the finer where the coarser finds no way
+LOOKS = 40              # at a leg, for whether the arm can be held
+ROOM_KEPT = (0.7, 0.3, 0.0)  # of the room along corners that are left out
+NEIGHBOURS = ((1, 0), (0, 1), (1, 1), (1, -1))
+
+
+def gravity_share(model: RobotModel, limits: JointLimits, q: Array) -> Array:
+    """
+    Return the largest part of an effort limit that gravity takes.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits.
+    q : ndarray, shape (..., 3)
+        Joint positions [rad].
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Infinite outside the joints' ranges.
+
+    """
+    share = (np.abs(gravity_torque(model, q)) / limits.max_effort).max(axis=-1)
+    inside = ((q >= limits.min_position - RANGE_ROOM)
+              & (q <= limits.max_position + RANGE_ROOM)).all(axis=-1)
+    return np.where(inside, share, np.inf)
+
+
+def holdable_way(task: JointTask, start: Array, end: Array, most_legs: int) -> Array | None:
+    """
+    Return the corners of a way along which the motors can hold the arm.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    start, end : ndarray, shape (3,)
+        Poses that can be held [rad].
+    most_legs : int
+        Straight parts that the way may have.
+
+    Returns
+    -------
+    ndarray, shape (legs + 1, 3), or None
+        From start to end; None where no such way is found.
+
+    """
+    for cells in CELLS:
+        way = _on_grid(task, start, end, cells)
+        if way is None:
+            continue
+        for kept in ROOM_KEPT:
+            corners = _without_corners(task, way, kept)
+            if corners is not None and len(corners) <= most_legs + 1:
+                return way[corners]
+    return None
+
+
+def _on_grid(task: JointTask, start: Array, end: Array, cells: int) -> Array | None:
+    """Return the shortest way on a grid that both poses are points of, (m, 3)."""
+    if (start[1:] == end[1:]).all():
+        return np.stack((start, end))  # gravity does not know joint 1
+    limits = task.limits
+    axes = [np.unique(np.concatenate((np.linspace(
+        limits.min_position[j], limits.max_position[j], cells), [start[j], end[j]])))
+        for j in (1, 2)]
+    shape = (len(axes[0]), len(axes[1]))
+    q = np.full((*shape, 3), start[0])
+    q[..., 1], q[..., 2] = np.meshgrid(*axes, indexing='ij')
+    share = gravity_share(task.model, limits, q)
+    first, last = (int(np.ravel_multi_index(
+        [int(np.searchsorted(axis, pose[j])) for j, axis in zip((1, 2), axes)], shape))
+        for pose in (start, end))
+    _, before = csgraph.dijkstra(
+        _graph(q, share), directed=False, indices=first, return_predecessors=True)
+    if last != first and before[last] < 0:
+        return None
+    nodes = [last]
+    while nodes[-1] != first:
+        nodes.append(int(before[nodes[-1]]))
+    way = q.reshape(-1, 3)[nodes[::-1]]
+    gone = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(way, axis=0)).max(axis=1))))
+    part = gone / gone[-1] if gone[-1] > 0.0 else np.linspace(0.0, 1.0, len(way))
+    way[:, 0] = start[0] + part * (end[0] - start[0])
+    way[0], way[-1] = start, end
+    return way
+
+
+def _graph(q: Array, share: Array) -> sparse.csr_array:
+    """Return the lengths between neighbours that can be held, longer where little room is left."""
+    number = np.arange(share.size).reshape(share.shape)
+    weight = 1.0 / np.sqrt(np.maximum(1.0 - share, HOLDING_ROOM))
+    open_ = share < 1.0 - HOLDING_ROOM
+    ends, lengths = [], []
+    for rows, columns in NEIGHBOURS:
+        here, there = _pairs(share.shape, rows, columns)
+        both = open_[here] & open_[there]
+        step = np.hypot(*np.moveaxis((q[there] - q[here])[..., 1:], -1, 0))
+        ends.append(np.stack((number[here][both], number[there][both])))
+        lengths.append((step * (weight[here] + weight[there]))[both])
+    i, j = np.concatenate(ends, axis=1)
+    return sparse.csr_array((np.concatenate(lengths), (i, j)), shape=(share.size, share.size))
+
+
+def _pairs(shape: tuple[int, ...], rows: int, columns: int) -> tuple[
+        tuple[slice, slice], tuple[slice, slice]]:
+    """Return where pairs of neighbours begin and end in a grid."""
+    n, m = shape
+    down, up = slice(0, n - rows), slice(rows, n)
+    if columns < 0:
+        return (down, slice(-columns, m)), (up, slice(0, m + columns))
+    return (down, slice(0, m - columns)), (up, slice(columns, m))
+
+
+def _without_corners(task: JointTask, way: Array, kept: float) -> IntArray | None:
+    """Return which corners remain if legs as long as can be held take their place."""
+    share = gravity_share(task.model, task.limits, way)
+    corners = [0]
+    while corners[-1] < len(way) - 1:
+        here = corners[-1]
+        ahead = np.arange(here + 1, len(way))
+        legs = way[here] + np.linspace(0.0, 1.0, LOOKS)[:, np.newaxis, np.newaxis] * (
+            way[ahead] - way[here])
+        most = gravity_share(task.model, task.limits, legs).max(axis=0)
+        along = np.maximum.accumulate(np.maximum(share[here], share[ahead]))
+        good = np.flatnonzero(most < 1.0 - np.maximum(kept * (1.0 - along), HOLDING_ROOM))
+        if len(good) == 0:
+            return None
+        corners.append(int(ahead[good[-1]]))
+    return np.array(corners)

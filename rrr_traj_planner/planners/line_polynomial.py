@@ -1,0 +1,37 @@
+"""`line_polynomial`: lines and zones of continuous curvature, as fast as the limits allow."""
+
+from __future__ import annotations
+
+from rrr_traj_planner.core.path_design import line_polynomial
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.along_path import along
+from rrr_traj_planner.planners.registry import register_path
+from rrr_traj_planner.planners.request import CartesianTask
+
+
+@register_path('line_polynomial')
+def plan(task: CartesianTask) -> Trajectory:
+    """
+    Return the fastest motion of the tip on lines and polynomial zones (3.18).
+
+    The tip does not stop at the via points; joint accelerations are continuous.
+
+    Parameters
+    ----------
+    task : CartesianTask
+        What is asked.
+
+    Returns
+    -------
+    Trajectory
+        Within the limits.
+
+    Raises
+    ------
+    InvalidInputError
+        If the path reverses, or has fewer than two points.
+    UnreachableError, LimitViolationError
+        If the arm cannot follow the path; with the place.
+
+    """
+    return along(task, line_polynomial)

@@ -1,0 +1,226 @@
+"""
+The fastest motion along a given path: its progress is a chain of half-period ramps.
+
+One coordinate, the length behind the tip, takes the place of the joints in the method of
+`time_optimal`: pieces of the path are its segments, and what the joints may do bounds it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core import cycloid
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.errors import LimitViolationError
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.motion_torque import maximum_over_time, stretch_for_torque
+from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
+from rrr_traj_planner.core.piecewise import JointProfile
+from rrr_traj_planner.core.workspace_check import place_on_path
+from rrr_traj_planner.planners.interior_point import Centre, minimise, Outcome
+from rrr_traj_planner.planners.path_constraints import (
+    all_bounds,
+    limited,
+    PathConstraints,
+    Progress,
+    progress_at,
+    QUANTITIES,
+    SPEED,
+)
+from rrr_traj_planner.planners.path_table import Demand, PathTable
+from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_newton import Freedom
+from rrr_traj_planner.planners.ramp_room import near_points
+
+RAMPS = 20         # in a piece of the path
+LOOKS = 8          # between two points
+ROOM = 1.02        # durations of the start over the least that fit
+HOLDING_ROOM = 1e-6
+REPAIRS = 8
+LARGER = 1.2       # room than what was exceeded
+ROUNDING = 1e-7
+
+
+class PathTask(NamedTuple):
+    """A path and the limits on the way along it."""
+
+    arm_path: ArmPath
+    limits: JointLimits
+    max_tip_speed: float               # [m/s], infinite: none
+    steady_zones: bool                 # whether the tip keeps its speed on curved zones (5.58)
+    should_stop: Callable[[], bool]
+
+
+class Timed(NamedTuple):
+    """A motion along a path, and how far it may be from the fastest."""
+
+    trajectory: PathTrajectory
+    gap: float  # [s]
+
+
+def fastest_along(task: PathTask) -> Timed:
+    """
+    Return the fastest motion along a path, from rest to rest.
+
+    Parameters
+    ----------
+    task : PathTask
+        Path and limits.
+
+    Returns
+    -------
+    Timed
+        Its limits kept between the points that are looked at too.
+
+    Raises
+    ------
+    LimitViolationError
+        If the motors cannot hold the arm somewhere on the path; with the place.
+
+    """
+    table, grid = PathTable(task.arm_path), Grid(RAMPS)
+    _refuse_heavy(task, table)
+    N = len(table.ends) - 1
+    freedom = Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 1), bool))
+    margins = np.zeros((N, 2 * grid.n + 1, QUANTITIES))
+    steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
+    centres: list[Centre] = []
+    best: tuple[float, Motion, float] | None = None
+    for _ in range(REPAIRS):
+        constraints = PathConstraints(table, task.limits, task.max_tip_speed, grid, margins,
+                                      steady)
+        start = next((c for c in reversed(centres) if _within(constraints, c.motion)), None)
+        if start is None:
+            start = Centre(_slow_start(task, table, constraints), None)
+            if not _within(constraints, start.motion):
+                break
+        outcome = minimise(constraints, start, freedom, task.should_stop)
+        centres += outcome.centres
+        excess, stretch = _excess(task, table, grid, outcome.motion)
+        best = min(filter(None, (best, _slowed(outcome, stretch))), key=lambda b: b[0])
+        if stretch <= 1.0 + ROUNDING or task.should_stop():
+            break
+        margins = margins + LARGER * excess
+    assert best is not None
+    _, motion, gap = best
+    trajectory = _trajectory(task, table, grid, motion)
+    # what the table's interpolation leaves
+    factor = _exact_stretch(task, trajectory)
+    return Timed(trajectory.stretched(factor) if factor > 1.0 else trajectory, gap)
+
+
+def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
+    """Return which pieces are in curved zones; not the first and the last, which have rest."""
+    middle = 0.5 * (table.ends[1:] + table.ends[:-1])[:, np.newaxis]
+    begin, end = task.arm_path.path.zone_ends.T
+    inside = ((middle > begin) & (middle < end)).any(axis=1)
+    inside[[0, -1]] = False
+    return np.asarray(inside)
+
+
+def _slowed(outcome: Outcome, stretch: float) -> tuple[float, Motion, float]:
+    """Return a motion slowed to keep its limits, its duration and what could be saved."""
+    m, f = outcome.motion, max(stretch, 1.0)
+    T = float(m.T.sum())
+    return f * T, Motion(m.inner / f ** 2, m.v / f, m.a / f ** 2, m.T * f), (
+        outcome.gap + (f - 1.0) * T)
+
+
+def _within(constraints: PathConstraints, m: Motion) -> bool:
+    return min(float(s.min()) for s in constraints.slacks(m)) > 0.0
+
+
+def _refuse_heavy(task: PathTask, table: PathTable) -> None:
+    """Refuse a path on which gravity takes more than a motor has."""
+    share = np.abs(table.holding) / task.limits.max_effort
+    piece, place, joint = map(int, np.unravel_index(int(share.argmax()), share.shape))
+    if share.max() < 1.0 - HOLDING_ROOM:
+        return
+    needed, limit = (float(f) for f in (
+        abs(table.holding[piece, place, joint]), task.limits.max_effort[joint]))
+    where, nearest = place_on_path(task.arm_path.path, float(table.places[piece, place]))
+    name = task.arm_path.model.joint_names[joint]
+    raise LimitViolationError(f'{where}: {name} needs {needed:.1f} N m to hold, limit {limit:g} '
+                              'N m', name, needed, limit, via_point=nearest)
+
+
+def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints) -> Motion:
+    """Return a motion of constant speed, but for the first piece and the last, within limits."""
+    grid, L = constraints.grid, np.diff(table.ends)[:, np.newaxis]
+    N = len(L)
+    if N == 1:
+        inner = grid.rest_to_rest(constraints.points)[:, 1:-1]
+        none = np.zeros((0, 1))
+        m = Motion(inner, none, none, np.ones(1))
+    else:
+        T = L[:, 0].copy()
+        T[[0, -1]] *= 2.0
+        m = grid.restored(constraints.points, Motion(
+            np.zeros((N, grid.n - 1, 1)), np.ones((N - 1, 1)), np.zeros((N - 1, 1)), T))
+    at = progress_at(grid, constraints.points, m)
+    return grid.stretched(m, ROOM * _stretch(
+        task, constraints.demands(at.s)[0], at, constraints.margins))
+
+
+def _stretch(task: PathTask, demand: Demand, at: Progress, room: Array | float = 0.0) -> float:
+    """Return by how much a motion must be slowed for its limits, less room, at given points."""
+    x = limited(demand, at)
+    bounds = all_bounds(task.limits, task.max_tip_speed) - room
+    share = np.abs(x) / bounds
+    moving = x[..., 9:12] - demand.g
+    spare = bounds[..., 9:12] - np.sign(moving) * demand.g
+    with np.errstate(divide='ignore', invalid='ignore'):
+        by_torque = np.where(moving != 0.0, np.abs(moving) / spare, 0.0)
+    by_torque = np.where((spare <= 0.0) & (moving != 0.0), np.inf, by_torque)
+    return float(max(share[..., :3].max(), share[..., SPEED].max(), np.sqrt(share[..., 3:6].max()),
+                     np.cbrt(share[..., 6:9].max()), np.sqrt(by_torque.max())))
+
+
+def _excess(task: PathTask, table: PathTable, grid: Grid, m: Motion) -> tuple[Array, float]:
+    """Return by how much limits are exceeded near each point, and the stretch that mends it."""
+    at = _between(table, grid, m)
+    demand = table(at.s)[0]
+    x = np.abs(limited(demand, at))
+    bounds = all_bounds(task.limits, task.max_tip_speed)
+    return near_points(x, bounds, LOOKS), _stretch(task, demand, at)
+
+
+def _exact_stretch(task: PathTask, trajectory: PathTrajectory) -> float:
+    """Return by how much a motion must be slowed, by its own values."""
+    peaks, limits = trajectory.peaks(), task.limits
+    speed = maximum_over_time(lambda t: trajectory.progress(t)[1][:, np.newaxis].repeat(3, axis=1),
+                              trajectory.knots).value[0]
+    return float(max((peaks.velocity / limits.max_velocity).max(), speed / task.max_tip_speed,
+                     np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
+                     np.cbrt((peaks.jerk / limits.max_jerk).max()),
+                     stretch_for_torque(task.arm_path.model, limits, trajectory).value.max()))
+
+
+def _between(table: PathTable, grid: Grid, m: Motion) -> Progress:
+    """Return a motion's progress at many times of each piece, in order, (N, 2 n LOOKS + 1)."""
+    profile = _profile(table, grid, m)
+    starts = np.concatenate(([0.0], np.cumsum(m.T)[:-1]))
+    share = np.linspace(0.0, 1.0, 2 * grid.n * LOOKS + 1)
+    t = starts[:, np.newaxis] + m.T[:, np.newaxis] * share
+    s, sd, sdd, sddd = (f.reshape(t.shape) for f in profile(t.ravel()))
+    return Progress(np.clip(s, table.ends[:-1, np.newaxis], table.ends[1:, np.newaxis]),
+                    sd, sdd, sddd)
+
+
+def _profile(table: PathTable, grid: Grid, m: Motion) -> JointProfile:
+    """Return progress as cycloid pieces."""
+    nodes, _, _ = grid.nodes(m)
+    at = grid.states(table.ends[:, np.newaxis], m)
+    h = np.repeat(m.T / grid.n, grid.n)
+    s, sd, a0, a1 = (f.ravel() for f in (
+        at.q[:, :grid.n], at.qd[:, :grid.n], nodes[:, :-1], nodes[:, 1:]))
+    return JointProfile(cycloid.ramp(h, s, sd, a0, a1))
+
+
+def _trajectory(task: PathTask, table: PathTable, grid: Grid, m: Motion) -> PathTrajectory:
+    times = np.concatenate(([0.0], np.cumsum(m.T)))
+    joins = np.searchsorted(table.ends, task.arm_path.path.joins)
+    return PathTrajectory(task.arm_path, _profile(table, grid, m), times[table.vias],
+                          times[joins])

@@ -1,0 +1,121 @@
+"""Whether chains of ramps keep their limits everywhere, not only at the points looked at."""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.motion_torque import peak_torque
+from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.planners.motion_law import torque_stretch
+from rrr_traj_planner.planners.request import JointTask
+
+ROUNDING = 1e-7         # relative
+
+
+def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
+           may_stretch: bool) -> PiecewiseTrajectory | None:
+    """
+    Return a motion slowed as a whole until it keeps every limit.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : PiecewiseTrajectory
+        The motion.
+    may_stretch : bool
+        Whether it may be slowed at all.
+
+    Returns
+    -------
+    PiecewiseTrajectory or None
+        None where slowing does not help: a joint leaves its range, or the motion hurries past a
+        pose that the motors cannot hold.
+
+    """
+    if beyond_range(task, trajectory).any():
+        return None
+    factor = stretch_to_fit(task, trajectory)
+    if factor <= 1.0 + ROUNDING:
+        return trajectory.stretched(factor) if factor > 1.0 else trajectory
+    if np.isinf(factor) or not may_stretch:
+        return None
+    slowed = trajectory.stretched(factor)
+    return slowed if stretch_to_fit(task, slowed) <= 1.0 + ROUNDING else None
+
+
+def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
+    """
+    Return how far each joint leaves its range in each segment.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : PiecewiseTrajectory
+        The motion.
+
+    Returns
+    -------
+    ndarray, shape (2, N, 3)
+        Above and below [rad]; 0 within.
+
+    """
+    beyond = np.zeros((2, len(task.points) - 1, 3))
+    starts = trajectory.via_times[1:-1] - 1e-12
+    for j, profile in enumerate(trajectory.profiles):
+        least, most = profile.piece_ranges
+        segment = np.searchsorted(starts, profile.knots[:-1], side='right')
+        np.maximum.at(beyond[0, :, j], segment, most - task.limits.max_position[j])
+        np.maximum.at(beyond[1, :, j], segment, task.limits.min_position[j] - least)
+    return np.where(beyond > POSITION_TOLERANCE, beyond, 0.0)
+
+
+def stretch_to_fit(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
+    """
+    Return by how much a motion must be slowed for every limit but the positions'.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : PiecewiseTrajectory
+        The motion.
+
+    Returns
+    -------
+    float
+        At most 1 where it fits as it is; infinite where no slowing helps.
+
+    """
+    peaks, limits = trajectory.peaks(), task.limits
+    kinematic = max((peaks.velocity / limits.max_velocity).max(),
+                    np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
+                    np.cbrt((peaks.jerk / limits.max_jerk).max()))
+    # a motion may pass, but not slowly, where gravity alone would be too much
+    if torque_fits(task, trajectory):
+        return float(kinematic)
+    return float(max(kinematic, torque_stretch(task, trajectory)))
+
+
+def torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:
+    """
+    Return whether a motion, as fast as it is, keeps the torque limits.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : PiecewiseTrajectory
+        The motion.
+
+    Returns
+    -------
+    bool
+        True where there are none.
+
+    """
+    effort = task.limits.max_effort
+    return bool(np.isinf(effort).all() or (peak_torque(
+        task.model, trajectory).value <= effort * (1.0 + ROUNDING)).all())
