@@ -208,7 +208,7 @@ def _overshoot(task: JointTask, trajectory: PiecewiseTrajectory) -> BoolArray:
     out = np.zeros((len(task.points) - 1, 3), dtype=bool)
     starts = trajectory.via_times[1:-1] - 1e-12
     for joint, profile in enumerate(trajectory.profiles):
-        least, most = profile.piece_ranges()
+        least, most = profile.piece_ranges
         beyond = (least < task.limits.min_position[joint] - POSITION_TOLERANCE) | (
             most > task.limits.max_position[joint] + POSITION_TOLERANCE)
         out[np.searchsorted(starts, profile.knots[:-1][beyond], side='right'), joint] = True
