@@ -2,67 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-import numpy as np
 from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arm_settings import ArmSettings
 from rrr_traj_planner.core.arrays import Array, finite_array
-from rrr_traj_planner.core.control import (
-    computed_torque,
-    ControllerGains,
-    Desired,
-    saturated,
-    State,
-    Triple,
-)
-from rrr_traj_planner.core.desired_motion import holding
+from rrr_traj_planner.core.control import computed_torque, Desired, saturated, State, Triple
+from rrr_traj_planner.core.desired_motion import DesiredMotion, holding
+from rrr_traj_planner.core.dynamics import kinetic_energy, potential_energy
+from rrr_traj_planner.core.encoder import Encoder
+from rrr_traj_planner.core.energy import EnergyLedger, work
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_points import MotionPoints
 from rrr_traj_planner.core.replacement import replacement, Takeover
 from rrr_traj_planner.core.simulation import ArmPhysics
 from rrr_traj_planner.core.stopping import stopping
 
-
-@dataclass(frozen=True, eq=False)
-class ArmSettings:
-    """
-    What the arm and its controller are made of.
-
-    Parameters
-    ----------
-    model : RobotModel
-        The arm.
-    limits : JointLimits
-        Stops at the position limits, torques saturated at the effort limits; the others are
-        kept where the arm moves of its own (stopping, joining a trajectory).
-    gains : ControllerGains
-        Of the computed-torque law.
-    step : float
-        Of the physics and of the controller [s], positive.
-
-    Raises
-    ------
-    InvalidInputError
-        If the step is not positive.
-
-    """
-
-    model: RobotModel
-    limits: JointLimits
-    gains: ControllerGains
-    step: float = 0.001
-
-    def __post_init__(self) -> None:
-        """Check the step."""
-        if not 0.0 < self.step < np.inf:
-            raise InvalidInputError(f'physics_step is {self.step} s, must be positive')
+NO_DISTURBANCE = (0.0, 0.0, 0.0)
 
 
 class ControlledArm:
     """
-    A simulated arm under control, with a time of its own that starts at 0.
+    A simulated arm under control, whose own time starts at 0.
 
     Parameters
     ----------
@@ -76,20 +35,29 @@ class ControlledArm:
     settings : ArmSettings
         As given, or as last configured.
     steps : int
-        Steps done so far.
+        Done so far.
     state : tuple of 6 floats
         Positions [rad] and velocities [rad/s].
     torque : tuple of 3 floats
         The motors' torques over the last step [N m].
     motion : DesiredMotion
         What is followed.
+    disturbance : tuple of 3 floats
+        Torques on the joints besides the motors' [N m]; may be set at any time.
+    ledger : EnergyLedger
+        Work and losses since the last reset.
+    violation : tuple of str
+        What was wrong when a tolerance was last exceeded; empty where none was.
 
     """
 
     def __init__(self, settings: ArmSettings, q: ArrayLike) -> None:
         self.steps = 0
-        self.settings = settings
-        self.configure(settings)
+        self.settings, self.ledger = settings, EnergyLedger()
+        self.disturbance: Triple = NO_DISTURBANCE
+        self.state: State = (*_triple(finite_array('q', q, (3,))), 0.0, 0.0, 0.0)
+        self._enforce(settings)
+        self._encoder = self._new_encoder()
         self.reset(q)
 
     @property
@@ -102,9 +70,21 @@ class ControlledArm:
         """Positions [rad], velocities [rad/s], accelerations [rad/s^2] commanded now."""
         return self.motion(self.time)
 
+    @property
+    def seen(self) -> State:
+        """Positions [rad] and velocities [rad/s] as the encoders tell them."""
+        return self.state if self._encoder is None else self._encoder.seen
+
+    @property
+    def energy(self) -> float:
+        """Energy in the arm: motion, height, bumpers' springs [J]."""
+        model, state = self.settings.loaded_model, self.state
+        return (float(kinetic_energy(model, state[:3], state[3:]) + potential_energy(
+            model, state[:3])) + self._physics.bumper_energy(state))
+
     def configure(self, settings: ArmSettings) -> None:
         """
-        Change limits and gains from the next step on.
+        Change what the arm is made of from the next step on.
 
         Parameters
         ----------
@@ -119,15 +99,16 @@ class ControlledArm:
         """
         if settings.step != self.settings.step:
             raise InvalidInputError('physics_step cannot change while the arm runs')
+        before, encoder = self.energy, self.settings.encoder
         self.settings = settings
-        limits = settings.limits
-        self._physics = ArmPhysics(
-            settings.model, _triple(limits.min_position), _triple(limits.max_position))
-        self._max_effort = _triple(limits.max_effort)
+        self._enforce(settings)
+        if settings.encoder != encoder:
+            self._encoder = self._new_encoder()
+        self.ledger.payload += self.energy - before
 
     def reset(self, q: ArrayLike) -> None:
         """
-        Put the arm somewhere, at rest, to hold its position there.
+        Put the arm somewhere, at rest, to hold its position there; open a new account.
 
         Parameters
         ----------
@@ -141,9 +122,13 @@ class ControlledArm:
 
         """
         q = finite_array('q', q, (3,))
-        self.state: State = (*_triple(q), 0.0, 0.0, 0.0)
-        self.motion = holding(q, self.time)
-        self.torque = self._control(self.state)
+        self.state = (*_triple(q), 0.0, 0.0, 0.0)
+        if self._encoder is not None:
+            self._encoder.restart(self.state)
+        self.ledger.clear()
+        self._stay(holding(q, self.time))
+        self.violation: tuple[str, ...] = ()
+        self.torque = self._control()
 
     def follow(self, points: MotionPoints, origin: float) -> None:
         """
@@ -157,12 +142,16 @@ class ControlledArm:
             What its times are counted from, on the arm's own time [s].
 
         """
-        takeover = Takeover(self.time, self.desired, self.settings.limits, self.settings.model)
+        takeover = Takeover(self.time, self.desired, self.settings.limits,
+                            self.settings.controller_model)
         self.motion = replacement(takeover, points, origin, self.settings.step)
+        self.violation = ()
+        self._watched = self._first_check = True
 
     def hold(self) -> None:
         """Stop as fast as the limits allow, and stay there."""
-        self.motion = stopping(self.desired, self.time, self.settings.limits, self.settings.model)
+        settings = self.settings
+        self._stay(stopping(self.desired, self.time, settings.limits, settings.controller_model))
 
     def advance(self, steps: int) -> None:
         """
@@ -174,24 +163,82 @@ class ControlledArm:
             How many steps.
 
         """
-        # The inner loop of everything that runs an arm: local names, floats, no numpy.
+        if self._plain and self.disturbance == NO_DISTURBANCE and (
+                not self._watched or self.settings.tolerances.are_none):
+            self._advance_plainly(steps)
+        else:
+            for _ in range(steps):
+                self._advance_fully()
+
+    def _advance_plainly(self, steps: int) -> None:
+        """Simulate an arm that its controller knows and sees exactly, undisturbed, unwatched."""
+        # The inner loop of nearly everything that runs an arm: local names, floats, no numpy.
         physics, motion, limit = self._physics, self.motion, self._max_effort
         h, gains = self.settings.step, self.settings.gains
         stiffness, damping = gains.stiffness, gains.damping
-        state, torque = self.state, self.torque
+        state, torque, motors = self.state, self.torque, 0.0
         for n in range(self.steps, self.steps + steps):
             t = physics.terms(state)
             torque = saturated(
                 computed_torque(t, stiffness, damping, state, motion(n * h)), limit)
-            state = physics.step(t, state, torque, h)
+            after = physics.step(t, state, torque, h)
+            motors += work(torque, state, after)
+            state = after
         self.state, self.torque = state, torque
         self.steps += steps
+        self.ledger.motors += motors
 
-    def _control(self, state: State) -> Triple:
+    def _advance_fully(self) -> None:
+        """Simulate a step of whatever arm it is."""
+        self._watch()
+        physics, state = self._physics, self.state
+        self.torque = (n1, n2, n3) = self._control()
+        d1, d2, d3 = self.disturbance
+        after = physics.step(physics.terms(state), state, (n1 + d1, n2 + d2, n3 + d3),
+                             self.settings.step)
+        self.ledger.motors += work(self.torque, state, after)
+        self.ledger.disturbance += work(self.disturbance, state, after)
+        self.state = after
+        self.steps += 1
+        if self._encoder is not None:
+            self._encoder.read(after)
+
+    def _watch(self) -> None:
+        """Give up a trajectory whose tolerances are exceeded, and hold where the arm is."""
+        if self._watched:
+            lines = self.settings.tolerances.violation(
+                self.seen, self.desired, self.time - self.motion.end, self._first_check)
+            self._first_check = False
+            if lines:
+                self._stay(holding(self.seen[:3], self.time))
+                self.violation = lines
+
+    def _stay(self, motion: DesiredMotion) -> None:
+        """Follow a motion that is no trajectory: nothing is watched."""
+        self.motion, self._watched, self._first_check = motion, False, False
+
+    def _control(self) -> Triple:
         """Return the torques that the controller gives now [N m]."""
-        gains = self.settings.gains
-        return saturated(computed_torque(self._physics.terms(state), gains.stiffness,
-                                         gains.damping, state, self.desired), self._max_effort)
+        gains, seen = self.settings.gains, self.seen
+        return saturated(computed_torque(self._known.terms(seen), gains.stiffness, gains.damping,
+                                         seen, self.desired), self._max_effort)
+
+    def _enforce(self, settings: ArmSettings) -> None:
+        """Make the physics and the controller's model of the settings."""
+        low, high = (_triple(x) for x in (
+            settings.limits.min_position, settings.limits.max_position))
+        self._physics = ArmPhysics(settings.loaded_model, low, high, settings.friction,
+                                   settings.soft_stops, self.ledger)
+        self._known = ArmPhysics(settings.controller_model, low, high)
+        self._max_effort = _triple(settings.limits.max_effort)
+        self._plain = settings.encoder.is_true and (
+            settings.payload.known_to_controller or settings.payload.mass == 0.0)
+
+    def _new_encoder(self) -> Encoder | None:
+        """Return encoders that begin now, or none where they would tell the truth."""
+        settings = self.settings
+        return None if settings.encoder.is_true else Encoder(
+            settings.encoder, settings.step, self.state)
 
 
 def _triple(values: Array) -> Triple:

@@ -1,9 +1,9 @@
 """
 Which trajectories the arm accepts: joint_trajectory_controller's rules, in its words.
 
-The checks, their order and their texts are those of the Jazzy controller with its default
-parameters and an arm commanded by position. Beyond them, names that repeat, a negative first
-time and values that are not finite are refused.
+The checks, their order and their texts are those of the Jazzy controller, for an arm that is not
+commanded by effort. Beyond them, names that repeat, a negative first time and values that are not
+finite are refused.
 """
 
 from __future__ import annotations
@@ -43,8 +43,18 @@ class IncomingTrajectory(NamedTuple):
     points: Sequence[IncomingPoint]
 
 
+class Rules(NamedTuple):
+    """What is allowed, by the names of joint_trajectory_controller's parameters."""
+
+    allow_partial_joints_goal: bool = False
+    allow_nonzero_velocity_at_trajectory_end: bool = False
+
+
+STRICT = Rules()
+
+
 def check_trajectory(trajectory: IncomingTrajectory, joint_names: Sequence[str],
-                     now: int) -> None:
+                     now: int, rules: Rules = STRICT) -> None:
     """
     Refuse a trajectory that the arm cannot follow.
 
@@ -56,6 +66,8 @@ def check_trajectory(trajectory: IncomingTrajectory, joint_names: Sequence[str],
         The arm's joints.
     now : int
         The clock [ns].
+    rules : Rules
+        What is allowed.
 
     Raises
     ------
@@ -63,7 +75,9 @@ def check_trajectory(trajectory: IncomingTrajectory, joint_names: Sequence[str],
         With joint_trajectory_controller's text, where it would refuse.
 
     """
-    _check_names(trajectory, joint_names)
+    _check_names(trajectory, joint_names, rules)
+    if not rules.allow_nonzero_velocity_at_trajectory_end:
+        _check_rest(trajectory)
     _check_end(trajectory, now)
     before = 0
     for i, point in enumerate(trajectory.points):
@@ -72,7 +86,8 @@ def check_trajectory(trajectory: IncomingTrajectory, joint_names: Sequence[str],
         before = point.time
 
 
-def motion_points(trajectory: IncomingTrajectory, joint_names: Sequence[str]) -> MotionPoints:
+def motion_points(trajectory: IncomingTrajectory, joint_names: Sequence[str],
+                  held: Sequence[float] = (0.0, 0.0, 0.0)) -> MotionPoints:
     """
     Return the points of an accepted trajectory, joints in the arm's order.
 
@@ -82,6 +97,8 @@ def motion_points(trajectory: IncomingTrajectory, joint_names: Sequence[str]) ->
         What arrived and was checked.
     joint_names : sequence of str
         The arm's joints.
+    held : sequence of float
+        Where joints stay that the trajectory does not name [rad].
 
     Returns
     -------
@@ -89,28 +106,33 @@ def motion_points(trajectory: IncomingTrajectory, joint_names: Sequence[str]) ->
         Times from the trajectory's start [s].
 
     """
-    order = [list(trajectory.joint_names).index(name) for name in joint_names]
-    points = trajectory.points
+    columns = [list(joint_names).index(name) for name in trajectory.joint_names]
+    points, still = trajectory.points, (0.0,) * len(joint_names)
     return MotionPoints(
         np.array([p.time * NANOSECOND for p in points]),
-        _rows([p.positions for p in points], order),
-        _rows([p.velocities for p in points], order),
-        _rows([p.accelerations for p in points], order),
+        _rows([p.positions for p in points], columns, held),
+        _rows([p.velocities for p in points], columns, still),
+        _rows([p.accelerations for p in points], columns, still),
         np.array([len(p.velocities) > 0 for p in points]),
         np.array([len(p.accelerations) > 0 for p in points]))
 
 
-def _rows(values: list[Sequence[float]], order: list[int]) -> Array:
-    """Return one row of joint values a point, zeros where a point carries none."""
-    none = (0.0,) * len(order)
-    rows: Array = np.array([v if len(v) else none for v in values], dtype=float)[:, order]
+def _rows(values: list[Sequence[float]], columns: list[int], missing: Sequence[float]) -> Array:
+    """Return one row of joint values a point, with others where a joint or a point has none."""
+    rows: Array = np.tile(np.asarray(missing, dtype=float), (len(values), 1))
+    given = [i for i, v in enumerate(values) if len(v)]
+    if given:
+        rows[np.ix_(given, columns)] = np.array([values[i] for i in given], dtype=float)
     return rows
 
 
-def _check_names(trajectory: IncomingTrajectory, joint_names: Sequence[str]) -> None:
+def _check_names(trajectory: IncomingTrajectory, joint_names: Sequence[str],
+                 rules: Rules) -> None:
     names = trajectory.joint_names
-    if len(names) != len(joint_names):
+    if not rules.allow_partial_joints_goal and len(names) != len(joint_names):
         raise InvalidInputError("Joints on incoming trajectory don't match the controller joints.")
+    if not names:
+        raise InvalidInputError('Empty joint names on incoming trajectory.')
     if not trajectory.points:
         raise InvalidInputError('Empty trajectory received.')
     for name in names:
@@ -122,13 +144,16 @@ def _check_names(trajectory: IncomingTrajectory, joint_names: Sequence[str]) -> 
             raise InvalidInputError(f'Incoming joint {name} is named twice.')
 
 
-def _check_end(trajectory: IncomingTrajectory, now: int) -> None:
+def _check_rest(trajectory: IncomingTrajectory) -> None:
     last = trajectory.points[-1]
     for name, velocity in zip(trajectory.joint_names, last.velocities):
         if abs(velocity) > FLOAT_EPSILON:
             raise InvalidInputError(
                 f'Velocity of last trajectory point of joint {name} is not zero: {velocity:.15f}')
-    end = trajectory.stamp + last.time
+
+
+def _check_end(trajectory: IncomingTrajectory, now: int) -> None:
+    end = trajectory.stamp + trajectory.points[-1].time
     if trajectory.stamp != 0 and end < now:
         raise InvalidInputError(
             f'Received trajectory with non-zero start time ({trajectory.stamp * NANOSECOND:f}) '

@@ -2,7 +2,7 @@
 The arm's physics: forward dynamics in fixed steps, between hard joint stops.
 
 A step that meets a stop is taken up to the impact exactly, and goes on from there without the
-energy that the stop has taken.
+energy that the stop has taken. An arm with friction or bumpers is `resisted_motion`'s.
 """
 
 from __future__ import annotations
@@ -10,9 +10,13 @@ from __future__ import annotations
 from math import cos, sin
 
 from rrr_traj_planner.core.control import State, Triple
+from rrr_traj_planner.core.energy import EnergyLedger, kinetic
 from rrr_traj_planner.core.equations import accelerations, constants, Terms, terms
+from rrr_traj_planner.core.friction import Friction
 from rrr_traj_planner.core.joint_stops import Contact, contact, FREE, held, permitted
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.resisted_motion import Bounds, ResistedMotion
+from rrr_traj_planner.core.soft_stops import SoftStops
 from rrr_traj_planner.core.time_step import free_step, held_step
 
 # A step is interrupted by at most this many impacts; joints at a stop then wait there for its end.
@@ -36,12 +40,46 @@ class ArmPhysics:
         The arm.
     low, high : tuple of 3 floats
         Where the stops are [rad]; infinite where there is none.
+    friction : Friction, optional
+        Of the joints; none by default.
+    soft_stops : SoftStops, optional
+        Bumpers, from low and high on outwards; none by default.
+    ledger : EnergyLedger, optional
+        Where losses are entered.
+
+    Attributes
+    ----------
+    ledger : EnergyLedger
+        The same.
 
     """
 
-    def __init__(self, model: RobotModel, low: Triple, high: Triple) -> None:
+    def __init__(self, model: RobotModel, low: Triple, high: Triple,
+                 friction: Friction | None = None, soft_stops: SoftStops | None = None,
+                 ledger: EnergyLedger | None = None) -> None:
         self.low, self.high = low, high
+        self.ledger = EnergyLedger() if ledger is None else ledger
         self._constants = constants(model)
+        self._bumper, friction = soft_stops or SoftStops(), friction or Friction()
+        self._resisted = None if friction.is_none and not self._bumper.width else ResistedMotion(
+            self._constants, self.terms, Bounds(low, high), friction, self._bumper, self.ledger)
+
+    def bumper_energy(self, state: State) -> float:
+        """
+        Return what the bumpers' springs hold.
+
+        Parameters
+        ----------
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
+
+        Returns
+        -------
+        float
+            [J].
+
+        """
+        return self._bumper.energy(state, self.low, self.high)
 
     def terms(self, state: State) -> Terms:
         """
@@ -71,7 +109,7 @@ class ArmPhysics:
         state : tuple of 6 floats
             Positions [rad] and velocities [rad/s].
         torque : tuple of 3 floats
-            The motors' torques [N m], held over the step.
+            Of motors and disturbance [N m], held over the step.
         h : float
             Length of the step [s], positive.
 
@@ -81,6 +119,8 @@ class ArmPhysics:
             Positions and velocities; no joint further beyond a stop than it was before.
 
         """
+        if self._resisted is not None:
+            return self._resisted.step(state, torque, h)
         (l1, l2, l3), (u1, u2, u3) = self.low, self.high
         q1, q2, q3 = state[:3]
         if l1 < q1 < u1 and l2 < q2 < u2 and l3 < q3 < u3:
@@ -99,7 +139,9 @@ class ArmPhysics:
         left = h
         for _ in range(MOST_IMPACTS):
             t, at = self.terms(state), contact(state, low, high)
+            w = state[3:]
             state, lock = _after_impact(t, state, torque, at, SHORTEST_REBOUND * h)
+            self._enter_impact(t, w, state[3:])
             taken, state = self._until_impact(t, state, torque, left, lock, low, high)
             left -= taken
             if left <= 0.0:
@@ -107,11 +149,19 @@ class ArmPhysics:
         at = contact(state, low, high)
         t = self.terms(state)
         if left > 0.0:
-            state = held_step(self._constants, t, state[:3] + held(t, state[3:], at), torque,
-                              left, at)
+            w = held(t, state[3:], at)
+            self._enter_impact(t, state[3:], w)
+            state = held_step(self._constants, t, state[:3] + w, torque, left, at)
             state = _within(state, low, high)
             t, at = self.terms(state), contact(state, low, high)
-        return state[:3] + permitted(t, state[3:], at)
+        w = permitted(t, state[3:], at)
+        self._enter_impact(t, state[3:], w)
+        return state[:3] + w
+
+    def _enter_impact(self, t: Terms, before: Triple, after: Triple) -> None:
+        """Enter the energy that stops have taken."""
+        if after != before:
+            self.ledger.stops += kinetic(t, before) - kinetic(t, after)
 
     def _until_impact(self, t: Terms, state: State, torque: Triple, h: float, lock: Contact,
                       low: Triple, high: Triple) -> tuple[float, State]:

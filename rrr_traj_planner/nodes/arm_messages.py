@@ -6,11 +6,57 @@ from array import array
 from collections.abc import Sequence
 
 from builtin_interfaces.msg import Duration, Time
+from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.incoming_trajectory import IncomingPoint, IncomingTrajectory
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
 SECOND = 1_000_000_000  # ns
+
+# No disturbance is larger: more only serves to blow up the simulation [N m].
+LARGEST_DISTURBANCE = 1e5
+
+
+def disturbance_torque(message: JointState,
+                       joint_names: Sequence[str]) -> tuple[float, float, float]:
+    """
+    Return the torques that a message puts on the joints, in the arm's order.
+
+    Parameters
+    ----------
+    message : JointState
+        Names and efforts, nothing else; joints that are not named have no disturbance.
+    joint_names : sequence of str
+        The arm's joints.
+
+    Returns
+    -------
+    tuple of 3 floats
+        [N m].
+
+    Raises
+    ------
+    InvalidInputError
+        If a name is unknown or repeats, sizes differ, there is a position or velocity, or an
+        effort is not finite or too large.
+
+    """
+    if len(message.position) or len(message.velocity):
+        raise InvalidInputError('a disturbance has efforts alone, no positions or velocities')
+    if len(message.name) != len(message.effort):
+        raise InvalidInputError(f'a disturbance has {len(message.name)} names and '
+                                f'{len(message.effort)} efforts, must be as many')
+    torque = dict.fromkeys(joint_names, 0.0)
+    for i, (name, effort) in enumerate(zip(message.name, message.effort)):
+        if name not in torque or name in message.name[:i]:
+            raise InvalidInputError(f"a disturbance names joint '{name}', must name distinct "
+                                    f'joints of {", ".join(joint_names)}')
+        if not abs(effort) <= LARGEST_DISTURBANCE:
+            raise InvalidInputError(f'the disturbance of {name} is {effort:g} N m, must be in '
+                                    f'[{-LARGEST_DISTURBANCE:g}, {LARGEST_DISTURBANCE:g}] N m')
+        torque[name] = float(effort)
+    n1, n2, n3 = torque.values()
+    return n1, n2, n3
 
 
 def incoming_trajectory(message: JointTrajectory) -> IncomingTrajectory:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from time import monotonic_ns
 from typing import Any
 
 from rclpy.clock import Clock
@@ -10,33 +11,32 @@ from rclpy.node import Node
 from rrr_traj_planner.core.controlled_arm import ControlledArm
 from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.incoming_trajectory import check_trajectory, motion_points, NANOSECOND
-from rrr_traj_planner.nodes.arm_messages import incoming_trajectory, JointStateMessage, SECOND
+from rrr_traj_planner.core.tolerances import TIMED_OUT
+from rrr_traj_planner.nodes.arm_messages import (
+    disturbance_torque,
+    incoming_trajectory,
+    JointStateMessage,
+    SECOND,
+)
+from rrr_traj_planner.nodes.arm_time import FollowedClock, OwnClock
 from rrr_traj_planner.nodes.configuration import ArmConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
 from rrr_traj_planner.nodes.parameters import ARM
 from sensor_msgs.msg import JointState
-from std_srvs.srv import Trigger
+from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory
 
 QUEUE_DEPTH = 10
 
-# A tick simulates at most this much time, so that services are answered while the arm catches
-# up with the clock [ns].
-MOST_AT_ONCE = SECOND // 10
-
-# Further behind than this the node says so [ns], and so often [s].
-LATE, WARNING_PERIOD = SECOND // 10, 2.0
-
-# The clock itself has jumped when it is so far behind or ahead of the arm [ns].
-JUMP_BACK, JUMP_AHEAD = SECOND // 10, 10 * SECOND
+NOT_THE_CLOCK = 'the arm follows a clock; only with publish_clock is it one that can stand'
 
 
 class SimulatedArm(Node):
     """
     An arm that follows trajectories as joint_trajectory_controller would have it.
 
-    Simulated time is the node's clock: at every tick physics and control run up to now, in whole
-    steps, and what is published carries the time of the last one.
+    Simulated time is the node's clock, or with `publish_clock` the arm's own (`arm_time.py`):
+    physics and control run in whole steps, and what is published carries the time of the last.
 
     Parameters
     ----------
@@ -45,9 +45,11 @@ class SimulatedArm(Node):
 
     Notes
     -----
-    Subscribes `joint_trajectory`; publishes `joint_states` (position, velocity, the motors'
-    torque) and `desired_joint_states` (what the controller follows); serves `~/reset` and
-    `~/hold`. Parameters: see `parameters.py`.
+    Subscribes `joint_trajectory` and `disturbance` (names and efforts, held until the next one);
+    publishes `joint_states` (position and velocity as the encoders tell them, the motors'
+    torque), `desired_joint_states` (what the controller follows) and `~/tracking_error` (the
+    second less the first), all three with the same stamp; serves `~/reset`, `~/hold`, `~/pause`
+    and `~/step`. Parameters: see `parameters.py`.
 
     """
 
@@ -58,70 +60,69 @@ class SimulatedArm(Node):
         config = self._parameters_declared.config
         self._joint_names = config.settings.model.joint_names
         self._arm = ControlledArm(config.settings, config.initial_positions)
-        self._step = round(config.settings.step * SECOND)  # ns
-        self._actual = JointStateMessage(self._joint_names)
-        self._desired = JointStateMessage(self._joint_names)
-        self._publish_actual = self.create_publisher(
-            JointState, 'joint_states', QUEUE_DEPTH).publish
-        self._publish_desired = self.create_publisher(
-            JointState, 'desired_joint_states', QUEUE_DEPTH).publish
+        self._publishers_of_states = [
+            (JointStateMessage(self._joint_names),
+             self.create_publisher(JointState, topic, QUEUE_DEPTH).publish)
+            for topic in ('joint_states', 'desired_joint_states', '~/tracking_error')]
         self.create_subscription(
             JointTrajectory, 'joint_trajectory', self._follow, QUEUE_DEPTH)
-        self.create_service(Trigger, '~/reset', self._reset)
-        self.create_service(Trigger, '~/hold', self._hold)
-        self._epoch = self._now()  # when the arm's own time began, on the node's clock [ns]
+        self.create_subscription(JointState, 'disturbance', self._disturb, QUEUE_DEPTH)
+        for name, type_, answer in (('reset', Trigger, self._reset), ('hold', Trigger, self._hold),
+                                    ('step', Trigger, self._single_step),
+                                    ('pause', SetBool, self._pause)):
+            self.create_service(type_, f'~/{name}', answer)
+        self._time = OwnClock(
+            self, self._arm, self._publish, config.real_time_factor
+        ) if config.publish_clock else FollowedClock(self, self._arm, self._publish)
         # The timer runs on steady time, whatever the clock does.
         self._timer = self.create_timer(
-            1.0 / config.publish_rate, self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
+            self._time.period(config.publish_rate, config.real_time_factor), self._time.tick,
+            clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def _now(self) -> int:
-        """Return the node's clock [ns]."""
-        return int(self.get_clock().now().nanoseconds)
-
-    def _tick(self) -> None:
-        """Bring the arm up to now, and publish how it is."""
-        self._catch_up()
-        stamp = self._epoch + self._arm.steps * self._step
-        state, desired = self._arm.state, self._arm.desired
-        self._publish_actual(self._actual.filled(
-            stamp, state[:3], state[3:], self._arm.torque))
-        self._publish_desired(self._desired.filled(stamp, desired[:3], desired[3:6]))
-
-    def _catch_up(self) -> None:
-        """Simulate up to now in whole steps, but no more than a tick's worth at once."""
-        behind = self._now() - self._epoch - self._arm.steps * self._step  # ns
-        if not -JUMP_BACK <= behind <= JUMP_AHEAD:
-            self.get_logger().warning(
-                f'the clock jumped by {behind * NANOSECOND:+.3f} s; the arm and what it follows '
-                'go on from there')
-            self._epoch += behind
-            return
-        self._arm.advance(max(min(behind, MOST_AT_ONCE) // self._step, 0))
-        if behind > MOST_AT_ONCE + LATE:
-            self.get_logger().warning(
-                f'simulated time is {(behind - MOST_AT_ONCE) * NANOSECOND:.3f} s behind the '
-                'clock: this machine is busy or too slow', throttle_duration_sec=WARNING_PERIOD)
+    def _publish(self) -> None:
+        """Publish how the arm is, and say what has gone wrong."""
+        stamp, arm = self._time.reached(), self._arm
+        q, w = arm.seen[:3], arm.seen[3:]
+        desired = arm.desired
+        fields = ((q, w, arm.torque), (desired[:3], desired[3:6]), (
+            [a - b for a, b in zip(desired, q)], [a - b for a, b in zip(desired[3:6], w)]))
+        for (message, publish), values in zip(self._publishers_of_states, fields):
+            publish(message.filled(stamp, *values))
+        if arm.violation:
+            log = self.get_logger()
+            for line in arm.violation:
+                (log.warning if line == TIMED_OUT else log.error)(line)
+            arm.violation = ()
 
     def _follow(self, message: JointTrajectory) -> None:
         """Take over a trajectory, or say why not and go on as before."""
-        self._catch_up()
-        trajectory = incoming_trajectory(message)
+        self._time.catch_up()
+        trajectory, arm = incoming_trajectory(message), self._arm
         try:
-            check_trajectory(trajectory, self._joint_names, self._now())
-            points = motion_points(trajectory, self._joint_names)
+            check_trajectory(trajectory, self._joint_names, self._time.now(),
+                             self._parameters_declared.config.rules)
+            points = motion_points(trajectory, self._joint_names, arm.desired[:3])
         except RrrPlannerError as error:
             self.get_logger().error(str(error))
             return
         started = trajectory.stamp != 0
-        origin = (trajectory.stamp - self._epoch) * NANOSECOND if started else self._arm.time
-        self._arm.follow(points, origin)
+        origin = (trajectory.stamp - self._time.epoch) * NANOSECOND if started else arm.time
+        arm.follow(points, origin)
         self.get_logger().info(
             f'following {len(trajectory.points)} points, until '
-            f'{self._arm.motion.end - self._arm.time:.3f} s from now')
+            f'{arm.motion.end - arm.time:.3f} s from now')
+
+    def _disturb(self, message: JointState) -> None:
+        """Put torques on the joints, or say why not."""
+        self._time.catch_up()
+        try:
+            self._arm.disturbance = disturbance_torque(message, self._joint_names)
+        except RrrPlannerError as error:
+            self.get_logger().error(str(error))
 
     def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Put the arm back to its initial positions, at rest."""
-        self._catch_up()
+        self._time.catch_up()
         q = self._parameters_declared.config.initial_positions
         self._arm.reset(q)
         response.success = True
@@ -130,7 +131,7 @@ class SimulatedArm(Node):
 
     def _hold(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Stop the arm as fast as its limits allow."""
-        self._catch_up()
+        self._time.catch_up()
         self._arm.hold()
         motion = self._arm.motion
         response.success = True
@@ -138,10 +139,35 @@ class SimulatedArm(Node):
                             f'{_positions(motion.final)} rad')
         return response
 
+    def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        """Let time stand, or go on."""
+        pace = self._time.pace
+        if pace is None:
+            response.success, response.message = False, NOT_THE_CLOCK
+            return response
+        pace.restart(monotonic_ns(), self._time.now(), paused=request.data)
+        response.success = True
+        response.message = (f'time {"stands" if request.data else "goes on"} at '
+                            f'{self._time.now() * NANOSECOND:.3f} s')
+        return response
+
+    def _single_step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Simulate one step while time stands."""
+        if isinstance(self._time, OwnClock) and self._time.pace.paused:
+            self._time.advance(1)
+            response.success = True
+            response.message = f'stepped to {self._time.now() * NANOSECOND:.3f} s'
+        else:
+            response.success = False
+            response.message = (NOT_THE_CLOCK if self._time.pace is None
+                                else 'time does not stand; call ~/pause first')
+        return response
+
     def _configure(self, config: ArmConfig) -> None:
         """Put changed parameters in force."""
         self._arm.configure(config.settings)
-        self._timer.timer_period_ns = round(SECOND / config.publish_rate)
+        self._timer.timer_period_ns = round(
+            SECOND * self._time.period(config.publish_rate, config.real_time_factor))
 
 
 def _positions(q: Any) -> str:

@@ -8,12 +8,14 @@ from math import inf
 from typing import Any
 
 import numpy as np
+from rrr_traj_planner.core.arm_settings import ArmSettings
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.control import ControllerGains
-from rrr_traj_planner.core.controlled_arm import ArmSettings
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.incoming_trajectory import Rules
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.nodes.arm_options import encoder, physical_options, trajectory_rules
 from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]
@@ -75,6 +77,9 @@ class ArmConfig:
     settings: ArmSettings
     publish_rate: float
     initial_positions: Array
+    rules: Rules
+    publish_clock: bool
+    real_time_factor: float
 
     @classmethod
     def from_values(cls, values: Values) -> ArmConfig:
@@ -106,8 +111,10 @@ class ArmConfig:
                 f'controller.natural_frequency is {gains.natural_frequency:g} rad/s, must be at '
                 f'most {MOST_DAMPING_PER_STEP / (2.0 * gains.damping_ratio * step):g} rad/s with '
                 f'controller.damping_ratio {gains.damping_ratio:g} and physics_step {step:g} s')
-        return cls(ArmSettings(robot_model(values), limits, gains, step),
-                   values['publish_rate'], _initial_positions(values, limits))
+        settings = ArmSettings(robot_model(values), limits, gains, step,
+                               encoder=encoder(values, gains), **physical_options(values))
+        return cls(settings, values['publish_rate'], _initial_positions(values, limits),
+                   trajectory_rules(values), values['publish_clock'], values['real_time_factor'])
 
 
 def robot_model(values: Values) -> RobotModel:

@@ -6,7 +6,12 @@ from array import array
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Generic, TypeVar
 
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rrr_traj_planner.core.errors import InvalidInputError, RrrPlannerError
@@ -119,6 +124,9 @@ def descriptor(row: Row) -> ParameterDescriptor:
         read_only=row.read_only)
     if isinstance(row.default, float):
         result.floating_point_range = [FloatingPointRange(from_value=row.low, to_value=row.high)]
+    elif isinstance(row.default, int) and not isinstance(row.default, bool):
+        result.integer_range = [
+            IntegerRange(from_value=int(row.low), to_value=int(row.high), step=1)]
     return result
 
 

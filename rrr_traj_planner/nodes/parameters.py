@@ -20,7 +20,7 @@ PLANNER, ARM = 'planner', 'arm'
 START_POINT = (1.02, 0.59, 0.97)
 
 HOW_WRITTEN = {
-    bool: '', str: '', float: ' (written with a point, as 5.0)'}
+    bool: '', str: '', int: ' (a whole number)', float: ' (written with a point, as 5.0)'}
 
 
 class Row(NamedTuple):
@@ -53,6 +53,9 @@ class Row(NamedTuple):
         if isinstance(item, str):
             return 'a text'
         return f'in [{self.low:g}, {self.high:g}]' + (f' {self.unit}' if self.unit else '')
+
+
+LARGEST_SEED = 2 ** 31 - 1
 
 
 def _joint_limit(name: str, kind: str, values: tuple[Any, ...], unit: str, low: float,
@@ -102,6 +105,44 @@ TABLE: tuple[Row, ...] = (
         1000.0, nodes=(ARM,)),
     Row('controller.damping_ratio', 1.0, 'of the same; 1 is critical', '', 0.01, 10.0,
         nodes=(ARM,)),
+    Row('payload.mass', 0.0, 'point mass at the tip', 'kg', 0.0, 1e4, nodes=(ARM,)),
+    Row('payload.known_to_controller', False, 'whether the controller reckons with it',
+        nodes=(ARM,)),
+    Row('friction.viscous', [0.0, 0.0, 0.0], 'friction of each joint against its velocity',
+        'N m s/rad', 0.0, 1e5, nodes=(ARM,)),
+    Row('friction.coulomb', [0.0, 0.0, 0.0], 'friction of each joint whatever its velocity',
+        'N m', 0.0, 1e5, nodes=(ARM,)),
+    Row('soft_stops.width', 0.0, 'bumpers between the ends of the ranges and hard stops behind '
+        'them; 0: none', 'rad', 0.0, 1.0, nodes=(ARM,)),
+    Row('soft_stops.stiffness', 1e4, 'of a bumper', 'N m/rad', 0.0, 1e6, nodes=(ARM,)),
+    Row('soft_stops.damping', 0.2, 'of a bumper, a part of its stiffness', 's/rad', 0.0, 100.0,
+        nodes=(ARM,)),
+    Row('encoder.resolution', 0.0, 'positions are seen in multiples of it; 0: any', 'rad', 0.0,
+        0.1, nodes=(ARM,)),
+    Row('encoder.noise', 0.0, 'of the positions seen, standard deviation', 'rad', 0.0, 0.1,
+        nodes=(ARM,)),
+    Row('encoder.seed', 0, 'of the noise', '', 0, LARGEST_SEED, nodes=(ARM,)),
+    Row('encoder.bandwidth', 300.0, 'of the velocities that are made of positions seen, where '
+        'they have resolution or noise', 'rad/s', 1.0, 1e4, nodes=(ARM,)),
+    Row('allow_partial_joints_goal', False, 'whether a trajectory may leave joints out; they '
+        'stay where they are', nodes=(ARM,)),
+    Row('allow_nonzero_velocity_at_trajectory_end', False, 'whether the last point of a '
+        'trajectory may have a velocity', nodes=(ARM,)),
+    Row('constraints.stopped_velocity_tolerance', 0.01, "velocity error that is none at a "
+        "trajectory's end; 0: any", 'rad/s', 0.0, 1e3, nodes=(ARM,)),
+    Row('constraints.goal_time', 0.0, "time after a trajectory's end for meeting the goal's "
+        'tolerances; 0: any', 's', 0.0, 1e6, nodes=(ARM,)),
+    Row('constraints.{joint}.trajectory', (0.0, 0.0, 0.0), 'position error at which a trajectory '
+        'is given up; 0: none', 'rad', 0.0, 1e3, nodes=(ARM,)),
+    Row('constraints.{joint}.goal', (0.0, 0.0, 0.0), "the same from a trajectory's end and "
+        'constraints.goal_time on; 0: none', 'rad', 0.0, 1e3, nodes=(ARM,)),
+    Row('cmd_timeout', 0.0, "time after a trajectory's end after which the position is held that "
+        'the arm then has; ignored unless above constraints.goal_time; 0: never', 's', 0.0, 1e6,
+        nodes=(ARM,)),
+    Row('publish_clock', False, 'whether the arm is the clock, on /clock', read_only=True,
+        nodes=(ARM,)),
+    Row('real_time_factor', 1.0, 'simulated time to wall time where the arm is the clock; 0: as '
+        'fast as it can', '', 0.0, 1000.0, nodes=(ARM,)),
 )
 
 
@@ -163,7 +204,7 @@ def check_value(row: Row, value: Any) -> None:
         raise InvalidInputError(
             f'{row.name} has {len(items)} values, {_shown(value)}, must be {row.range_text}')
     for i, x in enumerate(items):
-        if wanted is float and not (isfinite(x) and row.low <= x <= row.high):
+        if wanted in (int, float) and not (isfinite(x) and row.low <= x <= row.high):
             index = f'[{i}]' if is_list else ''
             unit = f' {row.unit}' if row.unit else ''
             raise InvalidInputError(

@@ -15,8 +15,10 @@ Simulate the arm: it follows the trajectories that it receives, as joint_traject
 would have it, and holds its position otherwise.
 
   subscribes  joint_trajectory (trajectory_msgs/JointTrajectory)
-  publishes   joint_states, desired_joint_states (sensor_msgs/JointState)
-  services    ~/reset, ~/hold (std_srvs/Trigger)
+              disturbance (sensor_msgs/JointState: names and efforts)
+  publishes   joint_states, desired_joint_states, ~/tracking_error (sensor_msgs/JointState)
+              /clock (rosgraph_msgs/Clock), with publish_clock
+  services    ~/reset, ~/hold, ~/step (std_srvs/Trigger), ~/pause (std_srvs/SetBool)
   parameters  config/thesis_arm.yaml shows them all"""
 
 

@@ -13,8 +13,12 @@ AXES_KEPT = np.eye(3)
 class PinocchioArm:
     """A `RobotModel` handed to Pinocchio's own algorithms."""
 
-    def __init__(self, arm):
-        """Place joints, frames and centres of mass as A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha)."""
+    def __init__(self, arm, payload=0.0):
+        """
+        Place joints, frames and centres of mass as A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha).
+
+        A payload is a body of its own: a point mass [kg] at the last frame's origin, the tip.
+        """
         model = pinocchio.Model()
         model.gravity.linear = np.array([0.0, 0.0, -arm.gravity])
         # What lies between the turning part of joint i and frame i, and between that joint and
@@ -34,6 +38,8 @@ class PinocchioArm:
                                          (self.centre_ids, centres[i], 'centre')):
                 ids.append(model.addFrame(pinocchio.Frame(
                     f'{name}{i}', joint, placement, pinocchio.FrameType.OP_FRAME)))
+        model.appendBodyToJoint(
+            joint, pinocchio.Inertia(payload, np.zeros(3), np.zeros((3, 3))), frames[2])
         self.model, self.data = model, model.createData()
 
     def inverse_dynamics(self, q, qd, qdd):

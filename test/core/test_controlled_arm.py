@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm_settings import ArmSettings
 from rrr_traj_planner.core.control import ControllerGains
-from rrr_traj_planner.core.controlled_arm import ArmSettings, ControlledArm
+from rrr_traj_planner.core.controlled_arm import ControlledArm
 from rrr_traj_planner.core.dynamics import gravity_torque
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.limits import JointLimits

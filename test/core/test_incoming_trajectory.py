@@ -13,6 +13,7 @@ from rrr_traj_planner.core.incoming_trajectory import (
     IncomingPoint,
     IncomingTrajectory,
     motion_points,
+    Rules,
 )
 
 NAMES = ('joint_1', 'joint_2', 'joint_3')
@@ -97,6 +98,40 @@ def test_refused_with_the_controller_s_text(case):
     trajectory(point(0.5, velocities=(1.0, 1.0, 1.0)), point())])
 def test_accepted(incoming):
     check_trajectory(incoming, NAMES, NOW)
+
+
+PARTIAL = Rules(allow_partial_joints_goal=True)
+
+
+def test_partial_goal_is_taken_where_it_is_allowed_and_the_rest_held():
+    incoming = trajectory(point(0.5, (3.0, 1.0), velocities=(0.3, 0.1)), point(1.0, (6.0, 4.0)),
+                          names=('joint_3', 'joint_1'))
+    with pytest.raises(InvalidInputError, match="Joints on incoming trajectory don't match"):
+        check_trajectory(incoming, NAMES, NOW)
+    check_trajectory(incoming, NAMES, NOW, PARTIAL)
+    points = motion_points(incoming, NAMES, held=(7.0, 8.0, 9.0))
+    np.testing.assert_array_equal(points.positions, ((1.0, 8.0, 3.0), (4.0, 8.0, 6.0)))
+    np.testing.assert_array_equal(points.velocities, ((0.1, 0.0, 0.3), ZERO))
+    assert points.has_velocity.tolist() == [True, False]
+
+
+@pytest.mark.parametrize(('incoming', 'text'), [
+    (trajectory(point(), names=()), 'Empty joint names on incoming trajectory.'),
+    (trajectory(point(), names=('joint_2',)),
+     'Mismatch between joint_names size (1) and positions (3) at point #0.'),
+    (trajectory(point(q=(0.1,)), names=('elbow',)),
+     "Incoming joint elbow doesn't match the controller's joints."),
+    (trajectory(point(q=(0.1, 0.2)), names=('joint_1', 'joint_1')),
+     'Incoming joint joint_1 is named twice.')])
+def test_partial_goals_are_checked_too(incoming, text):
+    with pytest.raises(InvalidInputError) as caught:
+        check_trajectory(incoming, NAMES, NOW, PARTIAL)
+    assert str(caught.value) == text
+
+
+def test_velocity_at_the_end_is_taken_where_it_is_allowed():
+    incoming = trajectory(point(velocities=(0.0, 0.25, 0.0)))
+    check_trajectory(incoming, NAMES, NOW, Rules(allow_nonzero_velocity_at_trajectory_end=True))
 
 
 def test_joints_come_out_in_the_arm_s_order():

@@ -104,8 +104,9 @@ def test_every_parameter_is_described():
     for row in {**rows_of(PLANNER, JOINT_NAMES), **rows_of(ARM, JOINT_NAMES)}.values():
         shown = descriptor(row)
         assert shown.description and shown.additional_constraints
-        if isinstance(row.default, float) and row.name != 'controller.damping_ratio':
-            assert shown.description.endswith(f'[{row.unit}]') and row.unit
+        if isinstance(row.default, float):
+            if row.name not in ('controller.damping_ratio', 'real_time_factor'):
+                assert shown.description.endswith(f'[{row.unit}]') and row.unit
             assert shown.floating_point_range[0].to_value == row.high < inf
 
 
@@ -125,6 +126,10 @@ def test_every_parameter_is_described():
      '(written with a point, as 5.0)'),
     ('joint_limits.joint_1.has_jerk_limits', 1.0,
      'joint_limits.joint_1.has_jerk_limits is 1.0, must be true or false'),
+    ('encoder.seed', -1, 'encoder.seed is -1, must be in [0, 2.14748e+09]'),
+    ('encoder.seed', 1.0,
+     'encoder.seed is 1.0, must be in [0, 2.14748e+09] (a whole number)'),
+    ('payload.mass', -2.0, 'payload.mass is -2 kg, must be in [0, 10000] kg'),
     ('joint_names', ['a'], "joint_names has 1 values, ['a'], must be 3 distinct texts")])
 def test_wrong_values_are_named_with_their_range(name, value, text):
     with pytest.raises(InvalidInputError) as caught:
@@ -141,6 +146,9 @@ def test_wrong_values_are_named_with_their_range(name, value, text):
     ({'controller.natural_frequency': 200.0, 'controller.damping_ratio': 5.0},
      'controller.natural_frequency is 200 rad/s, must be at most 100 rad/s with '
      'controller.damping_ratio 5 and physics_step 0.001 s'),
+    ({'encoder.noise': 1e-4, 'encoder.bandwidth': 50.0},
+     'encoder.bandwidth is 50 rad/s, must be at least 97.082 rad/s with '
+     'controller.natural_frequency 30 rad/s and controller.damping_ratio 1'),
     ({'arm.mass': [40.0, 16.0, 0.0], 'arm.inertia_3': [0.0, 0.0, 0.0]},
      'link 3 has no inertia about joint axis 3')])
 def test_values_that_contradict_each_other_are_refused(changes, text):
@@ -153,6 +161,26 @@ def test_a_limit_that_is_switched_off_does_not_bind():
     config = PlannerConfig.from_values(
         {**defaults(PLANNER), 'joint_limits.joint_2.has_effort_limits': False})
     assert config.limits.max_effort.tolist() == [150.0, inf, 200.0]
+
+
+def test_options_of_the_arm_reach_its_settings_by_joint():
+    config = ArmConfig.from_values({
+        **defaults(ARM), 'payload.mass': 2.0, 'payload.known_to_controller': True,
+        'friction.viscous': [1.0, 2.0, 3.0], 'friction.coulomb': [4.0, 5.0, 6.0],
+        'soft_stops.width': 0.1, 'encoder.resolution': 1e-4, 'encoder.seed': 5,
+        'constraints.joint_2.trajectory': 0.2, 'constraints.joint_3.goal': 0.3,
+        'constraints.goal_time': 0.4, 'cmd_timeout': 0.5, 'allow_partial_joints_goal': True})
+    settings, tolerances = config.settings, config.settings.tolerances
+    assert (settings.payload.mass, settings.payload.known_to_controller) == (2.0, True)
+    assert settings.friction.viscous.tolist() == [1.0, 2.0, 3.0]
+    assert settings.friction.coulomb.tolist() == [4.0, 5.0, 6.0]
+    assert (settings.soft_stops.width, settings.soft_stops.stiffness) == (0.1, 1e4)
+    assert (settings.encoder.resolution, settings.encoder.seed) == (1e-4, 5)
+    assert tolerances.trajectory.tolist() == [0.0, 0.2, 0.0]
+    assert tolerances.goal.tolist() == [0.0, 0.0, 0.3]
+    assert (tolerances.stopped_velocity, tolerances.goal_time, tolerances.cmd_timeout) == (
+        0.01, 0.4, 0.5)
+    assert config.rules == (True, False)
 
 
 # A running node

@@ -2,76 +2,12 @@
 
 from __future__ import annotations
 
-from builtin_interfaces.msg import Duration, Time
+from arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
 import numpy as np
 import pytest
-from rcl_interfaces.msg import Log, ParameterType, ParameterValue
-from rcl_interfaces.msg import Parameter as ParameterMessage
-from rcl_interfaces.srv import SetParameters
-from rclpy.parameter import Parameter
+from rcl_interfaces.msg import Log
 from rrr_traj_planner.core.dynamics import gravity_torque
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.nodes.arm_messages import nanoseconds
-from rrr_traj_planner.nodes.arm_node import SimulatedArm
-from rrr_traj_planner.nodes.parameters import ARM, rows_of
-from sensor_msgs.msg import JointState
-from std_srvs.srv import Trigger
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
-NAMES = ['joint_1', 'joint_2', 'joint_3']
-START = np.array(rows_of(ARM, NAMES)['initial_positions'].default)
-GOAL = START + (0.05, -0.04, 0.06)
-SECOND = 10 ** 9
-
-
-class Arm:
-    """A running arm node, what it publishes, and a way to send it trajectories."""
-
-    def __init__(self, ros, **overrides):
-        self.ros = ros
-        self.node = SimulatedArm(context=ros.context, parameter_overrides=[
-            Parameter(name, value=value) for name, value in overrides.items()])
-        self.actual = ros.listen(JointState, 'joint_states')
-        self.desired = ros.listen(JointState, 'desired_joint_states')
-        ros.add(self.node)
-        self._publisher = ros.publisher(JointTrajectory, 'joint_trajectory')
-
-    def send(self, *points, names=NAMES, stamp=0):
-        """Send points: time [s], positions, then velocities and accelerations if wanted."""
-        message = JointTrajectory(joint_names=list(names))
-        message.header.stamp = Time(sec=stamp // SECOND, nanosec=stamp % SECOND)
-        for time, *fields in points:
-            ns = round(time * SECOND)
-            point = JointTrajectoryPoint(
-                time_from_start=Duration(sec=ns // SECOND, nanosec=ns % SECOND))
-            for field, values in zip(('positions', 'velocities', 'accelerations'), fields):
-                setattr(point, field, [float(x) for x in values])
-            message.points.append(point)
-        self._publisher.publish(message)
-
-    def trigger(self, name):
-        return self.ros.call(Trigger, f'simulated_arm/{name}')
-
-    def now(self):
-        return self.node.get_clock().now().nanoseconds
-
-
-def stamp(message):
-    return nanoseconds(message.header.stamp)
-
-
-def at(q, tolerance=1e-5):
-    """Return whether a state is at rest at positions."""
-    return lambda m: (np.abs(np.subtract(m.position, q)).max() <= tolerance
-                      and np.abs(m.velocity).max() <= tolerance)
-
-
-def moving(message):
-    return np.abs(message.velocity).max() > 0.01
-
-
-def rest_to_rest(goal, duration):
-    return duration, goal, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
 
 def assert_no_jump(messages, limit=1.0):
@@ -206,11 +142,7 @@ def test_arm_catches_up_after_a_pause(ros):
 
 def test_changed_effort_limit_saturates_the_motors(ros):
     arm = Arm(ros)
-    answer = ros.call(SetParameters, 'simulated_arm/set_parameters', SetParameters.Request(
-        parameters=[ParameterMessage(
-            name='joint_limits.joint_2.max_effort', value=ParameterValue(
-                type=ParameterType.PARAMETER_DOUBLE, double_value=100.0))]))
-    assert answer.results[0].successful
+    assert arm.set('joint_limits.joint_2.max_effort', 100.0).successful
     arm.actual.next(lambda m: m.effort[1] == 100.0)  # it takes 163 N m to hold
     arm.actual.next(lambda m: m.position[1] == 0.0)  # it sinks onto its stop
 

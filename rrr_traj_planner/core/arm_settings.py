@@ -1,0 +1,78 @@
+"""What the simulated arm and its controller are made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from rrr_traj_planner.core.control import ControllerGains
+from rrr_traj_planner.core.encoder import EncoderSettings
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.friction import Friction
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.payload import Payload, with_payload
+from rrr_traj_planner.core.soft_stops import SoftStops
+from rrr_traj_planner.core.step_stability import check_step
+from rrr_traj_planner.core.tolerances import Tolerances
+
+
+@dataclass(frozen=True, eq=False)
+class ArmSettings:
+    """
+    What the arm and its controller are made of.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The bare arm.
+    limits : JointLimits
+        Stops at the position limits, torques saturated at the effort limits; the others are
+        kept where the arm moves of its own (stopping, joining a trajectory).
+    gains : ControllerGains
+        Of the computed-torque law.
+    step : float
+        Of the physics and of the controller [s], positive.
+    payload : Payload
+        At the tip.
+    friction : Friction
+        In the joints; the controller does not know of it.
+    soft_stops : SoftStops
+        Bumpers behind the position limits.
+    encoder : EncoderSettings
+        What the controller sees.
+    tolerances : Tolerances
+        Of following a trajectory.
+
+    Raises
+    ------
+    InvalidInputError
+        If the step is not positive, or too long for the friction or the bumpers.
+
+    """
+
+    model: RobotModel
+    limits: JointLimits
+    gains: ControllerGains
+    step: float = 0.001
+    payload: Payload = field(default_factory=Payload)
+    friction: Friction = field(default_factory=Friction)
+    soft_stops: SoftStops = field(default_factory=SoftStops)
+    encoder: EncoderSettings = field(default_factory=EncoderSettings)
+    tolerances: Tolerances = field(default_factory=Tolerances)
+
+    def __post_init__(self) -> None:
+        """Check the step."""
+        if not 0.0 < self.step < np.inf:
+            raise InvalidInputError(f'physics_step is {self.step} s, must be positive')
+        check_step(self.loaded_model, self.friction, self.soft_stops, self.step)
+
+    @property
+    def loaded_model(self) -> RobotModel:
+        """The arm with its payload."""
+        return with_payload(self.model, self.payload.mass)
+
+    @property
+    def controller_model(self) -> RobotModel:
+        """The arm as its controller knows it."""
+        return self.loaded_model if self.payload.known_to_controller else self.model

@@ -1,0 +1,95 @@
+"""Where the arm's energy comes from and goes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+from rrr_traj_planner.core.control import Triple
+from rrr_traj_planner.core.equations import Terms
+
+
+@dataclass
+class EnergyLedger:
+    """
+    Work done on the arm, and energy lost, since the account was opened [J].
+
+    The energy in the arm (motion, height, bumpers' springs) changes by `supplied - dissipated`.
+
+    Parameters
+    ----------
+    motors, disturbance : float
+        Work of the motors and of the disturbance.
+    payload : float
+        Energy that came with changes of the arm itself (its payload, its bumpers), less what went.
+    viscous, coulomb : float
+        Lost in friction.
+    stops : float
+        Lost in impacts on hard stops and in bumpers.
+
+    """
+
+    motors: float = 0.0
+    disturbance: float = 0.0
+    payload: float = 0.0
+    viscous: float = 0.0
+    coulomb: float = 0.0
+    stops: float = 0.0
+
+    @property
+    def supplied(self) -> float:
+        """All that came in."""
+        return self.motors + self.disturbance + self.payload
+
+    @property
+    def dissipated(self) -> float:
+        """All that was lost."""
+        return self.viscous + self.coulomb + self.stops
+
+    def clear(self) -> None:
+        """Open the account anew."""
+        for entry in fields(self):
+            setattr(self, entry.name, 0.0)
+
+
+def kinetic(t: Terms, w: tuple[float, ...]) -> float:
+    """
+    Return the kinetic energy.
+
+    Parameters
+    ----------
+    t : Terms
+        The equations' terms at the pose.
+    w : tuple of 3 floats
+        Joint velocities [rad/s].
+
+    Returns
+    -------
+    float
+        [J].
+
+    """
+    w1, w2, w3 = w
+    energy: float = (0.5 * (t.H11 * w1 * w1 + t.H22 * w2 * w2 + t.H33 * w3 * w3)
+                     + t.H23 * w2 * w3)
+    return energy
+
+
+def work(torque: Triple, before: tuple[float, ...], after: tuple[float, ...]) -> float:
+    """
+    Return the work of torques that are held while the joints move.
+
+    Parameters
+    ----------
+    torque : tuple of 3 floats
+        [N m].
+    before, after : tuple of floats
+        States, or positions [rad].
+
+    Returns
+    -------
+    float
+        [J], exact.
+
+    """
+    return (torque[0] * (after[0] - before[0]) + torque[1] * (after[1] - before[1])
+            + torque[2] * (after[2] - before[2]))

@@ -1,0 +1,50 @@
+"""Friction in the joints: a torque for each, proportional to velocity, and a constant one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.errors import InvalidInputError
+
+UNITS = {'viscous': 'N m s/rad', 'coulomb': 'N m'}
+
+
+@dataclass(frozen=True, eq=False)
+class Friction:
+    """
+    Friction of the three joints: -viscous qd - coulomb sign(qd) while a joint moves.
+
+    A joint at rest stays there exactly, while less than its Coulomb friction would keep it.
+
+    Parameters
+    ----------
+    viscous : array_like, shape (3,)
+        [N m s/rad], not negative.
+    coulomb : array_like, shape (3,)
+        [N m], not negative.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is negative or not finite.
+
+    """
+
+    viscous: Array = field(default_factory=lambda: np.zeros(3))
+    coulomb: Array = field(default_factory=lambda: np.zeros(3))
+
+    def __post_init__(self) -> None:
+        """Check the values and make the arrays read-only."""
+        for name, unit in UNITS.items():
+            array = finite_array(f'friction.{name}', getattr(self, name), (3,))
+            object.__setattr__(self, name, array)
+            if (array < 0.0).any():
+                raise InvalidInputError(
+                    f'friction.{name} is {array.tolist()} {unit}, must not be negative')
+
+    @property
+    def is_none(self) -> bool:
+        """Whether no joint has any friction."""
+        return not (self.viscous.any() or self.coulomb.any())

@@ -1,0 +1,77 @@
+"""How fast simulated time runs where the simulation is the clock."""
+
+from __future__ import annotations
+
+SECOND = 1_000_000_000  # ns
+
+
+class Pace:
+    """
+    Simulated time against steady wall time: at a rate, as fast as can be, or standing.
+
+    Parameters
+    ----------
+    factor : float
+        Simulated time to wall time; 0: as fast as can be.
+    now : int
+        Steady wall time [ns].
+
+    Attributes
+    ----------
+    factor : float
+        As given, or as last changed.
+    paused : bool
+        Whether simulated time stands.
+
+    """
+
+    def __init__(self, factor: float, now: int) -> None:
+        self.paused = False
+        self.factor = factor
+        self._reached, self._since = 0, now
+
+    def due(self, now: int, reached: int, most: int) -> int:
+        """
+        Return up to when to simulate.
+
+        Parameters
+        ----------
+        now : int
+            Steady wall time [ns].
+        reached : int
+            Simulated time that has been reached [ns].
+        most : int
+            How far to simulate at once where there is no rate [ns].
+
+        Returns
+        -------
+        int
+            Simulated time [ns].
+
+        """
+        if self.paused:
+            return reached
+        if self.factor == 0.0:
+            return reached + most
+        return self._reached + int(self.factor * (now - self._since))
+
+    def restart(self, now: int, reached: int, factor: float | None = None,
+                paused: bool | None = None) -> None:
+        """
+        Go on from here, with another rate, or to or from a pause; what was missed is let go.
+
+        Parameters
+        ----------
+        now : int
+            Steady wall time [ns].
+        reached : int
+            Simulated time that has been reached [ns].
+        factor : float, optional
+            The new rate.
+        paused : bool, optional
+            Whether time stands from now on.
+
+        """
+        self._reached, self._since = reached, now
+        self.factor = self.factor if factor is None else factor
+        self.paused = self.paused if paused is None else paused

@@ -1,0 +1,69 @@
+"""What the arm carries: a point mass at the tip, as a part of link 3."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import isfinite
+
+import numpy as np
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.model import RobotModel
+
+
+@dataclass(frozen=True)
+class Payload:
+    """
+    A point mass at the tip.
+
+    Parameters
+    ----------
+    mass : float
+        [kg], not negative.
+    known_to_controller : bool
+        Whether the controller's model has it too.
+
+    Raises
+    ------
+    InvalidInputError
+        If the mass is negative or not finite.
+
+    """
+
+    mass: float = 0.0
+    known_to_controller: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the mass."""
+        if not (isfinite(self.mass) and self.mass >= 0.0):
+            raise InvalidInputError(f'payload.mass is {self.mass} kg, must not be negative')
+
+
+def with_payload(model: RobotModel, mass: float) -> RobotModel:
+    """
+    Return the arm with a point mass at its tip.
+
+    The tip lies at d4 along z3 from joint axis 3, as link 3's centre of mass lies at l3: both
+    together are a link 3 with another mass, centre and inertia (Steiner).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The bare arm.
+    mass : float
+        At the tip [kg].
+
+    Returns
+    -------
+    RobotModel
+        The same object where the mass is 0.
+
+    """
+    if mass == 0.0:
+        return model
+    m1, m2, m3 = model.mass.tolist()
+    l3 = (m3 * model.l3 + mass * model.d4) / (m3 + mass)
+    spread = m3 * (model.l3 - l3) ** 2 + mass * (model.d4 - l3) ** 2
+    inertia = model.inertia.copy()
+    inertia[2, :2] += spread
+    return replace(model, l3=l3, mass=np.array((m1, m2, m3 + mass)),
+                   inertia=inertia)

@@ -1,0 +1,117 @@
+"""
+Soft joint stops: bumpers between the end of a joint's range and its hard stop.
+
+A bumper pressed in by x pushes back with k x (1 + lambda xd), after Hunt and Crossley: the
+torque begins at zero, whatever the speed, and a bumper never pulls.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+
+from rrr_traj_planner.core.control import State, Triple
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.joint_stops import Contact
+
+
+@dataclass(frozen=True)
+class SoftStops:
+    """
+    The bumpers of all joints; without a width there are none, and ranges end at hard stops.
+
+    Parameters
+    ----------
+    width : float
+        From the end of the range to the hard stop behind it [rad].
+    stiffness : float
+        k [N m/rad].
+    damping : float
+        lambda [s/rad].
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is negative or not finite.
+
+    """
+
+    width: float = 0.0
+    stiffness: float = 0.0
+    damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the values."""
+        for name, unit in (('width', 'rad'), ('stiffness', 'N m/rad'), ('damping', 's/rad')):
+            value = getattr(self, name)
+            if not (isfinite(value) and value >= 0.0):
+                raise InvalidInputError(
+                    f'soft_stops.{name} is {value} {unit}, must not be negative')
+
+    def sides(self, state: State, low: Triple, high: Triple) -> Contact:
+        """
+        Return which joints press their bumpers.
+
+        Parameters
+        ----------
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
+        low, high : tuple of 3 floats
+            Where the bumpers begin [rad].
+
+        Returns
+        -------
+        tuple of 3 ints
+            1 for the lower bumper, -1 for the upper one, 0 between.
+
+        """
+        if self.width == 0.0:
+            return 0, 0, 0
+        q1, q2, q3 = state[:3]
+        return ((q1 < low[0]) - (q1 > high[0]), (q2 < low[1]) - (q2 > high[1]),
+                (q3 < low[2]) - (q3 > high[2]))
+
+    def push(self, depth: float, rate: float) -> tuple[float, float]:
+        """
+        Return what a pressed bumper does.
+
+        Parameters
+        ----------
+        depth : float
+            x, how far it is pressed in [rad].
+        rate : float
+            xd [rad/s].
+
+        Returns
+        -------
+        torque : float
+            Outwards [N m].
+        dissipated : float
+            Power that it turns into heat [W].
+
+        """
+        spring = self.stiffness * depth
+        torque = spring * max(1.0 + self.damping * rate, 0.0)
+        return torque, (torque - spring) * rate
+
+    def energy(self, state: State, low: Triple, high: Triple) -> float:
+        """
+        Return what the bumpers' springs hold.
+
+        Parameters
+        ----------
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
+        low, high : tuple of 3 floats
+            Where the bumpers begin [rad].
+
+        Returns
+        -------
+        float
+            [J].
+
+        """
+        if self.width == 0.0:
+            return 0.0
+        depths = (max(a - q, q - b, 0.0) for q, a, b in zip(state, low, high))
+        return 0.5 * self.stiffness * sum(x * x for x in depths)

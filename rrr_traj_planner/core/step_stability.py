@@ -1,0 +1,63 @@
+"""Whether a time step is short enough for friction and bumpers."""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics import inertia_matrix
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.friction import Friction
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.soft_stops import SoftStops
+
+# The method is stable up to 2.8 times the inverse of a decay's rate, or of a frequency; at 1 it
+# is also accurate.
+LARGEST = 1.0
+
+POSES = 24
+
+
+def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
+               step: float) -> None:
+    """
+    Refuse friction or bumpers that a time step cannot follow.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm, with what it carries.
+    friction : Friction
+        Of its joints.
+    soft_stops : SoftStops
+        Of all joints.
+    step : float
+        [s].
+
+    Raises
+    ------
+    InvalidInputError
+        If viscous friction slows a joint in some pose within less than a step, or a bumper throws
+        it back so.
+
+    """
+    bumper = soft_stops.stiffness if soft_stops.width else 0.0
+    if not friction.viscous.any() and not bumper:
+        return
+    inverse = np.linalg.inv(inertia_matrix(model, _poses()))
+    decay = float(np.abs(np.linalg.eigvals(inverse * friction.viscous)).max())  # [1/s]
+    if decay * step > LARGEST:
+        raise InvalidInputError(
+            f'friction.viscous is {friction.viscous.tolist()} N m s/rad, too much for '
+            f'physics_step {step:g} s: at most {LARGEST / (decay * step):.3g} times that')
+    squared = float(np.abs(np.linalg.eigvals(inverse)).max()) * bumper  # [1/s^2]
+    if squared * step ** 2 > LARGEST:
+        raise InvalidInputError(
+            f'soft_stops.stiffness is {bumper:g} N m/rad, must be at most '
+            f'{bumper * LARGEST / (squared * step ** 2):.3g} N m/rad with physics_step {step:g} s')
+
+
+def _poses() -> Array:
+    """Return positions of the joints that inertia depends on, all round, shape (n, 3)."""
+    angles = np.linspace(-np.pi, np.pi, POSES, endpoint=False)
+    q2, q3 = (x.ravel() for x in np.meshgrid(angles, angles))
+    return np.column_stack((np.zeros_like(q2), q2, q3))

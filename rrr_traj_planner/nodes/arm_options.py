@@ -1,0 +1,120 @@
+"""What parameters say about the simulated arm beyond its model, limits and gains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import sqrt
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.core.control import ControllerGains
+from rrr_traj_planner.core.encoder import EncoderSettings
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.friction import Friction
+from rrr_traj_planner.core.incoming_trajectory import Rules
+from rrr_traj_planner.core.payload import Payload
+from rrr_traj_planner.core.soft_stops import SoftStops
+from rrr_traj_planner.core.tolerances import Tolerances
+
+Values = Mapping[str, Any]
+
+# How much faster than it must be the estimate of velocity is, for a controller that is stable.
+STABILITY_MARGIN = 2.0
+
+
+def physical_options(values: Values) -> dict[str, Any]:
+    """
+    Return what the arm carries, what slows it, and what limits its following.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    dict
+        Arguments of `ArmSettings`.
+
+    """
+    return {
+        'payload': Payload(values['payload.mass'], values['payload.known_to_controller']),
+        'friction': Friction(values['friction.viscous'], values['friction.coulomb']),
+        'soft_stops': SoftStops(*(
+            values[f'soft_stops.{name}'] for name in ('width', 'stiffness', 'damping'))),
+        'tolerances': tolerances(values)}
+
+
+def tolerances(values: Values) -> Tolerances:
+    """
+    Return the tolerances of following a trajectory.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    Tolerances
+        By joint, in the arm's order.
+
+    """
+    of_joints = [np.array([values[f'constraints.{joint}.{name}']
+                           for joint in values['joint_names']]) for name in ('trajectory', 'goal')]
+    return Tolerances(*of_joints, values['constraints.stopped_velocity_tolerance'],
+                      values['constraints.goal_time'], values['cmd_timeout'])
+
+
+def encoder(values: Values, gains: ControllerGains) -> EncoderSettings:
+    """
+    Return the encoders, if the controller is stable with them.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+    gains : ControllerGains
+        Of the controller that uses the velocities.
+
+    Returns
+    -------
+    EncoderSettings
+        Of all joints.
+
+    Raises
+    ------
+    InvalidInputError
+        If their estimate of velocity is too slow for the controller.
+
+    """
+    settings = EncoderSettings(*(
+        values[f'encoder.{name}'] for name in ('resolution', 'noise', 'seed', 'bandwidth')))
+    # Routh's criterion for the tracking loop within the controller's: bandwidth / natural
+    # frequency above (zeta + sqrt(zeta^2 + 4)) / 2.
+    zeta = gains.damping_ratio
+    least = STABILITY_MARGIN * 0.5 * (zeta + sqrt(zeta * zeta + 4.0)) * gains.natural_frequency
+    if not settings.is_true and settings.bandwidth < least:
+        raise InvalidInputError(
+            f'encoder.bandwidth is {settings.bandwidth:g} rad/s, must be at least {least:g} rad/s '
+            f'with controller.natural_frequency {gains.natural_frequency:g} rad/s and '
+            f'controller.damping_ratio {zeta:g}')
+    return settings
+
+
+def trajectory_rules(values: Values) -> Rules:
+    """
+    Return which trajectories are taken.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    Rules
+        By the names of joint_trajectory_controller's parameters.
+
+    """
+    return Rules(*(values[name] for name in Rules._fields))

@@ -1,0 +1,118 @@
+"""Friction, bumpers, event search, pace and step: what each promises by itself."""
+
+from __future__ import annotations
+
+from math import inf, nan, sin
+
+import numpy as np
+import pytest
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.event_search import event, PAST
+from rrr_traj_planner.core.friction import Friction
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.pacing import Pace, SECOND
+from rrr_traj_planner.core.soft_stops import SoftStops
+from rrr_traj_planner.core.step_stability import check_step
+
+LOW, HIGH = (0.0, 0.0, -1.0), (1.0, 2.0, 1.0)
+
+
+# Friction
+
+
+@pytest.mark.parametrize(('fields', 'text'), [
+    ({'viscous': [1.0, -2.0, 0.0]}, r'friction.viscous is \[1.0, -2.0, 0.0\] N m s/rad'),
+    ({'coulomb': [1.0, nan, 0.0]}, r'friction.coulomb\[1\] is nan'),
+    ({'coulomb': [1.0]}, r'friction.coulomb has shape \(1,\)')])
+def test_friction_that_would_push_is_refused(fields, text):
+    with pytest.raises(InvalidInputError, match=text):
+        Friction(**fields)
+
+
+def test_friction_knows_whether_there_is_any():
+    assert Friction().is_none
+    assert not Friction(coulomb=[0.0, 0.0, 1.0]).is_none
+
+
+# Bumpers
+
+
+def test_bumper_pushes_with_spring_and_damper_and_never_pulls():
+    soft = SoftStops(0.1, 100.0, 0.5)
+    assert soft.push(0.02, 0.0) == (2.0, 0.0)
+    torque, heat = soft.push(0.02, 1.0)
+    assert (torque, heat) == (pytest.approx(3.0), pytest.approx(1.0))
+    assert soft.push(0.02, -10.0) == (0.0, pytest.approx(20.0))  # it lags behind
+    rng = np.random.default_rng(2)
+    for depth, rate in rng.uniform((0.0, -50.0), (0.1, 50.0), (200, 2)):
+        torque, heat = soft.push(depth, rate)
+        assert torque >= 0.0
+        assert heat >= -1e-12
+
+
+def test_bumpers_are_pressed_beyond_the_range_alone():
+    soft = SoftStops(0.1, 100.0, 0.5)
+    state = (-0.05, 2.02, 0.5, 0.0, 0.0, 0.0)
+    assert soft.sides(state, LOW, HIGH) == (1, -1, 0)
+    assert soft.energy(state, LOW, HIGH) == pytest.approx(50.0 * (0.05 ** 2 + 0.02 ** 2))
+    assert SoftStops().sides(state, LOW, HIGH) == (0, 0, 0)
+    assert SoftStops().energy(state, LOW, HIGH) == 0.0
+
+
+@pytest.mark.parametrize('name', ['width', 'stiffness', 'damping'])
+def test_bumpers_that_would_pull_are_refused(name):
+    for value in (-1.0, nan, inf):
+        with pytest.raises(InvalidInputError, match=f'soft_stops.{name} is .* must not be'):
+            SoftStops(**{name: value})
+
+
+# Events
+
+
+@pytest.mark.parametrize(('room', 'first', 'when'), [
+    (lambda x: 0.3 - x, 0.3, 0.3), (lambda x: sin(3.0 * x), 0.0, np.pi / 3.0),
+    (lambda x: 1e-3 - x ** 5, 1e-3, 1e-3 ** 0.2), (lambda x: x * (0.9 - x), 0.0, 0.9),
+    (lambda x: 1.0 if x < 0.123 else 0.123 - x, 1.0, 0.123)])
+def test_event_is_found_just_past(room, first, when):
+    h = 1.3
+    time, outcome = event(lambda x: x, room, first, h, room(h))
+    assert time == outcome == pytest.approx(when, abs=1e-9)
+    assert -PAST <= room(time) < 0.0
+
+
+# Pace
+
+
+def test_time_runs_at_its_factor_from_where_it_was_changed():
+    pace = Pace(2.0, 5 * SECOND)
+    assert pace.due(6 * SECOND, 0, SECOND) == 2 * SECOND
+    pace.restart(6 * SECOND, 2 * SECOND, factor=10.0)
+    assert pace.due(7 * SECOND, 2 * SECOND, SECOND) == 12 * SECOND
+
+
+def test_as_fast_as_can_be_there_is_always_more_due():
+    assert Pace(0.0, 0).due(0, 7 * SECOND, SECOND) == 8 * SECOND
+
+
+def test_pause_is_not_made_up_for():
+    pace = Pace(1.0, 0)
+    pace.restart(3 * SECOND, 3 * SECOND, paused=True)
+    assert pace.due(50 * SECOND, 3 * SECOND, SECOND) == 3 * SECOND
+    pace.restart(60 * SECOND, 3 * SECOND, paused=False)
+    assert pace.due(61 * SECOND, 3 * SECOND, SECOND) == 4 * SECOND
+
+
+# Step
+
+
+def test_friction_that_a_step_can_follow_passes():
+    check_step(RobotModel(), Friction([50.0] * 3), SoftStops(0.1, 1e4, 0.2), 1e-3)
+    check_step(RobotModel(), Friction(), SoftStops(0.0, 1e9), 1e-3)  # no width, no bumper
+
+
+@pytest.mark.parametrize(('friction', 'soft', 'text'), [
+    (Friction([0.0, 0.0, 1e5]), SoftStops(), r'friction.viscous is .*, too much for physics_step'),
+    (Friction(), SoftStops(0.1, 1e8), r'soft_stops.stiffness is 1e\+08 N m/rad, must be at most')])
+def test_friction_and_bumpers_that_are_too_hard_for_the_step_are_refused(friction, soft, text):
+    with pytest.raises(InvalidInputError, match=text):
+        check_step(RobotModel(), friction, soft, 1e-3)

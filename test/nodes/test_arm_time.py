@@ -1,0 +1,117 @@
+"""The arm's time: a clock that it follows, or is."""
+
+from __future__ import annotations
+
+from arm_in_ros import Arm, at, GOAL, rest_to_rest, SECOND, stamp
+from builtin_interfaces.msg import Time
+import numpy as np
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import SetBool
+
+STEP = SECOND // 1000
+
+
+def clock_time(message):
+    return message.clock.sec * SECOND + message.clock.nanosec
+
+
+def pause(ros, data):
+    return ros.call(SetBool, 'simulated_arm/pause', SetBool.Request(data=data))
+
+
+def test_arm_is_the_clock_at_its_factor(ros):
+    arm = Arm(ros, publish_clock=True, real_time_factor=4.0)
+    clock = ros.listen(Clock, '/clock')
+    first, begun = clock_time(clock.wait_for()), ros.node.get_clock().now().nanoseconds
+    last = clock_time(clock.wait_for(lambda m: clock_time(m) >= first + 4 * SECOND))
+    wall = ros.node.get_clock().now().nanoseconds - begun
+    assert wall > 0.8 * (last - first) / 4.0  # no faster; a busy machine may be slower
+    for times in ([clock_time(m) for m in clock.messages],
+                  [stamp(m) for m in arm.actual.messages]):
+        between = np.diff(times)
+        assert (between > 0).all()
+        assert (between % (5 * STEP) == 0).all()
+        assert np.median(between) == 5 * STEP  # some may be lost while both sides meet
+
+
+def test_arm_runs_as_fast_as_it_can_and_answers_meanwhile(ros):
+    arm = Arm(ros, publish_clock=True, real_time_factor=0.0)
+    clock = ros.listen(Clock, '/clock')
+    begun, first = ros.node.get_clock().now().nanoseconds, clock_time(clock.wait_for())
+    arm.send(rest_to_rest(GOAL, 0.4))
+    arm.actual.wait_for(at(GOAL))
+    assert arm.trigger('hold').success
+    last = clock_time(clock.wait_for(lambda m: clock_time(m) >= first + 20 * SECOND))
+    assert ros.node.get_clock().now().nanoseconds - begun < last - first
+
+
+def test_time_stands_and_goes_in_single_steps(ros):
+    arm = Arm(ros, publish_clock=True)
+    arm.actual.wait_for()
+    assert not arm.trigger('step').success  # time does not stand
+    answer = pause(ros, True)
+    assert answer.success and answer.message.startswith('time stands at ')
+    before = arm.trigger('step').message  # 'stepped to 0.123 s'
+    after = arm.trigger('step').message
+    reached = [float(text.split()[2]) for text in (before, after)]
+    assert abs(reached[1] - reached[0] - 0.001) < 1e-9
+    stepped = round(reached[1] * SECOND)
+    arm.actual.wait_for(lambda m: stamp(m) == stepped)
+    assert pause(ros, False).success
+    arm.actual.next(lambda m: stamp(m) > stepped + SECOND // 10)
+
+
+def test_arm_that_follows_a_clock_does_not_let_it_stand(ros):
+    arm = Arm(ros)
+    answer, step = pause(ros, True), arm.trigger('step')
+    assert not answer.success and not step.success
+    assert 'publish_clock' in answer.message and 'publish_clock' in step.message
+
+
+def test_factor_changes_at_run_time(ros):
+    arm = Arm(ros, publish_clock=True, real_time_factor=0.5)
+    arm.actual.wait_for()
+    assert arm.set('real_time_factor', 20.0).successful
+    since = stamp(arm.actual.next())
+    arm.actual.next(lambda m: stamp(m) > since + 10 * SECOND)
+
+
+def test_stamped_trajectory_is_followed_on_the_arm_s_own_clock(ros):
+    arm = Arm(ros, publish_clock=True, real_time_factor=2.0)
+    start = stamp(arm.actual.wait_for()) + SECOND
+    arm.send(rest_to_rest(GOAL, 0.1), stamp=start)
+    due = arm.desired.wait_for(lambda m: stamp(m) >= start + SECOND // 10)
+    np.testing.assert_allclose(due.position, GOAL, atol=1e-12)
+
+
+def test_arm_lives_in_simulated_time(ros):
+    publisher = ros.node.create_publisher(Clock, '/clock', 10)
+    arm = Arm(ros, use_sim_time=True)
+    now = [100 * SECOND]
+
+    def advance():
+        now[0] += SECOND // 100
+        publisher.publish(Clock(clock=Time(sec=now[0] // SECOND, nanosec=now[0] % SECOND)))
+
+    ros.node.create_timer(0.005, advance)
+    at_once = arm.actual.wait_for(lambda m: stamp(m) >= 100 * SECOND)
+    arm.actual.wait_for(lambda m: stamp(m) > stamp(at_once) + SECOND // 2)
+    assert stamp(arm.actual.messages[-1]) <= now[0]
+    arm.send(rest_to_rest(GOAL, 0.2))
+    arm.actual.wait_for(at(GOAL))
+
+
+def test_standing_clock_is_published_once(ros):
+    publisher = ros.node.create_publisher(Clock, '/clock', 10)
+    arm = Arm(ros, use_sim_time=True)
+    times = iter([100 * SECOND] * 20 + [100 * SECOND + SECOND // 10] * 20)
+
+    def tell():
+        now = next(times, None)
+        if now is not None:
+            publisher.publish(Clock(clock=Time(sec=now // SECOND, nanosec=now % SECOND)))
+
+    ros.node.create_timer(0.01, tell)
+    arm.actual.wait_for(lambda m: stamp(m) == 100 * SECOND + SECOND // 10)
+    stamps = [stamp(m) for m in arm.actual.messages]
+    assert len(stamps) == len(set(stamps))
