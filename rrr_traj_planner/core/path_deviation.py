@@ -60,6 +60,31 @@ def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s:
     return np.asarray(largest.reshape(2, k).max(axis=0))
 
 
+def distance_from_polyline(points: Array, at: Array) -> Array:
+    """
+    Return how far positions are from a polyline.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Its corners [m], at least two.
+    at : ndarray, shape (m, 3)
+        Positions [m].
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        Distances [m].
+
+    """
+    legs = np.diff(points, axis=0)
+    from_start = at[:, np.newaxis] - points[:-1]
+    squared = np.maximum((legs * legs).sum(axis=1), np.finfo(float).tiny)
+    share = np.clip((from_start * legs).sum(axis=-1) / squared, 0.0, 1.0)
+    return np.asarray(np.linalg.norm(
+        from_start - share[..., np.newaxis] * legs, axis=-1).min(axis=1))
+
+
 def _leg_distance(points: Array, at: Array, corner: IntArray) -> Array:
     """Return the distance of points, a row for each corner, from the nearer of its legs."""
     nearest = np.full(at.shape[:-1], np.inf)

@@ -36,6 +36,8 @@ class PlannerConfig:
     default_planner_id: str
     sample_period: float
     max_deviation: float
+    max_tip_speed: float  # 0: none
+    steady_zones: bool
     planning_time_limit: float
 
     @classmethod
@@ -67,7 +69,7 @@ class PlannerConfig:
             robot_model(values), joint_limits(values),
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
-                'max_deviation', 'planning_time_limit')})
+                'max_deviation', 'max_tip_speed', 'steady_zones', 'planning_time_limit')})
 
 
 @dataclass(frozen=True, eq=False)

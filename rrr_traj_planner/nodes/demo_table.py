@@ -10,7 +10,9 @@ from rrr_traj_planner.core.interpolation import Interpolant
 from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics, wrap_into_limits
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limit_check import TOLERANCE
+from rrr_traj_planner.core.path_deviation import distance_from_polyline
 from rrr_traj_planner.nodes.demo_client import Run
+from rrr_traj_planner.planners.registry import planner
 
 PLANNED_BOUND = 1e-9  # rad
 REACHED_BOUND = 2e-3  # m
@@ -56,6 +58,11 @@ def figures(run: Run) -> list[Figure]:
         found += [Figure(f'via point {i}: planned error', planned, PLANNED_BOUND, 'rad'),
                   Figure(f'via point {i}: error reached', reached, REACHED_BOUND, 'm')]
     found.append(Figure('final error', final_error(run), FINAL_BOUND, 'm'))
+    if follows_path(run):
+        bound = run.config.max_deviation
+        planned, driven = deviations(run)
+        found += [Figure('planned distance from the polyline', planned, bound, 'm'),
+                  Figure('distance from the polyline', driven, bound + REACHED_BOUND, 'm')]
     for name, peak, limit, unit in _peaks(run):
         for joint, p, m in zip(run.config.model.joint_names, peak, limit):
             found.append(Figure(f'{joint}: planned {name}', p, m * (1.0 + TOLERANCE), unit))
@@ -91,7 +98,12 @@ def table(run: Run, found: list[Figure]) -> str:
             reached_errors(run))):
         where = '(' + ', '.join(f'{x:g}' for x in point) + ') m'
         lines.append(f'{i:<3}{where:<25}{t:>9.3f}{planned:>22.1e}{1e3 * reached:>21.4f}')
-    lines += [f'{"at rest":<28}{"":>9}{"":>22}{1e3 * final_error(run):>21.4f}', '']
+    lines += [f'{"at rest":<28}{"":>9}{"":>22}{1e3 * final_error(run):>21.4f}']
+    if follows_path(run):
+        planned, driven = deviations(run)
+        lines.append(f'distance from the polyline: planned {1e3 * planned:.2f} mm, driven '
+                     f'{1e3 * driven:.2f} mm, allowed {1e3 * run.config.max_deviation:g} mm')
+    lines += [run.response.message, ''] if run.response.message else ['']
     lines.append(f'{"peaks: planned / limit":<24}' + ''.join(
         f'{joint:>24}' for joint in run.config.model.joint_names))
     rows = [*_peaks(run), ('torque driven', driven_torque(run), run.config.limits.max_effort,
@@ -103,6 +115,47 @@ def table(run: Run, found: list[Figure]) -> str:
     kept = sum(f.kept for f in found)
     lines += ['', f'{kept} of {len(found)} figures are inside their bounds']
     return '\n'.join(lines)
+
+
+def follows_path(run: Run) -> bool:
+    """
+    Return whether the tip was planned along a path.
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    bool
+        False where the joints were.
+
+    """
+    return planner(run.task.planner_id or run.config.default_planner_id).plan_path is not None
+
+
+def deviations(run: Run) -> tuple[float, float]:
+    """
+    Return how far the tip was from the polyline through the via points.
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    tuple of float
+        At most [m]: as planned, and as driven.
+
+    """
+    moving = run.recorded.times >= 0.0
+    tips = (forward_kinematics(run.config.model, q) for q in (
+        run.planned.positions, run.recorded.positions[moving]))
+    planned, driven = (float(distance_from_polyline(
+        np.asarray(run.task.via_points), tip).max()) for tip in tips)
+    return planned, driven
 
 
 def planned_errors(run: Run) -> list[float]:

@@ -94,6 +94,10 @@ TABLE: tuple[Row, ...] = (
         1e-4, 10.0, nodes=(PLANNER,)),
     Row('max_deviation', 0.05, 'how far a Cartesian path may leave the polyline where a request '
         'says nothing', 'm', 1e-6, 100.0, nodes=(PLANNER,)),
+    Row('max_tip_speed', 0.0, 'bound on the speed of the tip along a Cartesian path; 0: none',
+        'm/s', 0.0, 100.0, nodes=(PLANNER,)),
+    Row('steady_zones', False, 'whether the tip keeps its speed on the curved zones of a '
+        'Cartesian path', nodes=(PLANNER,)),
     Row('planning_time_limit', 1.0, 'after which a planner that still improves its motion answers '
         'with the best so far', 's', 1e-3, 3600.0, nodes=(PLANNER,)),
     Row('publish_rate', 200.0, 'rate of joint_states and desired_joint_states', 'Hz', 1.0, 1000.0,

@@ -99,6 +99,7 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
         sample_period=_unless_zero(period, config.sample_period),
         elbow=message.elbow or None,
         max_deviation=_unless_zero(deviation, config.max_deviation),
+        max_tip_speed=_unless_zero(config.max_tip_speed, inf), steady_zones=config.steady_zones,
         should_stop=should_stop)
 
 

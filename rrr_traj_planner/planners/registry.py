@@ -20,15 +20,16 @@ class Registered(NamedTuple):
     """A planner, of motions in joint space or along a path of the tip, and what it can do."""
 
     plan: JointPlanner | None
-    plan_path: CartesianPlanner | None
-    some_durations: bool  # whether durations may be prescribed for some segments only
+    some_durations: bool = False  # whether durations may be prescribed for some segments only
+    plan_path: CartesianPlanner | None = None
+    misses_via_points: bool = False  # whether its way is to pass them by at a distance
 
 
 _planners: dict[str, Registered] = {}
 
 
-def register(planner_id: str,
-             some_durations: bool = False) -> Callable[[JointPlanner], JointPlanner]:
+def register(planner_id: str, some_durations: bool = False,
+             misses_via_points: bool = False) -> Callable[[JointPlanner], JointPlanner]:
     """
     Return a decorator that makes a function the planner of an id.
 
@@ -38,6 +39,9 @@ def register(planner_id: str,
         The id, as requests name it.
     some_durations : bool
         Whether it takes durations that are NaN, for segments that are free.
+    misses_via_points : bool
+        Whether it passes via points between the first and the last at a distance, by construction;
+        the plan's note then says at which.
 
     Returns
     -------
@@ -46,7 +50,8 @@ def register(planner_id: str,
 
     """
     def remember(planner: JointPlanner) -> JointPlanner:
-        _planners[planner_id] = Registered(planner, None, some_durations)
+        _planners[planner_id] = Registered(
+            planner, some_durations, misses_via_points=misses_via_points)
         return planner
 
     return remember
@@ -68,7 +73,7 @@ def register_path(planner_id: str) -> Callable[[CartesianPlanner], CartesianPlan
 
     """
     def remember(planner: CartesianPlanner) -> CartesianPlanner:
-        _planners[planner_id] = Registered(None, planner, False)
+        _planners[planner_id] = Registered(None, plan_path=planner)
         return planner
 
     return remember

@@ -37,6 +37,34 @@ def test_demo_runs_its_task_and_shows_it(tmp_path, arguments, name, seconds):
     assert [f.name for f in tmp_path.iterdir()] == [file.name]
 
 
+@pytest.mark.parametrize('planner_id', ['line_arc', 'line_polynomial'])
+@pytest.mark.parametrize('task', ['table_6_1', 'table_6_3'])
+def test_demo_drives_the_tip_along_paths_of_both_tables(tmp_path, task, planner_id):
+    arguments = ('--planner', planner_id, '--plot', '', f'{task}.yaml')
+    with Script(script('demo'), *arguments, cwd=tmp_path) as demo:
+        code, output, errors = demo.ended()
+    assert code == 0, errors  # tip at the via points to 2 mm, within the deviation, in all limits
+    planned, driven, allowed = map(float, re.search(
+        r'distance from the polyline: planned (\S+) mm, driven (\S+) mm, allowed (\S+) mm',
+        output).groups())
+    assert allowed == 50.0
+    assert 10.0 <= planned <= allowed
+    assert driven == pytest.approx(planned, abs=0.1)
+    assert '24 of 24 figures are inside their bounds' in output
+    assert ('joint accelerations step' in output) == (planner_id == 'line_arc')
+
+
+def test_demo_of_a_path_that_the_arm_cannot_hold_says_where(tmp_path):
+    points = (tmp_path / 'heavy.yaml')
+    points.write_text('planner_id: line_arc\narm: thesis_arm.yaml\n'
+                      'via_points: [[0.2, 0.8, 0.5], [0.5, 1.0, 1.0], [0.8, 1.2, 0.6]]\n')
+    with Script(script('demo'), 'heavy.yaml', cwd=tmp_path) as demo:
+        code, _, errors = demo.ended()
+    assert code == 1
+    assert ('demo: the planner refuses (-14): via point 2: joint_2 needs 218.9 N m to hold, limit '
+            '200 N m\n') in errors
+
+
 def test_demo_with_points_out_of_reach_shows_the_refusal(tmp_path):
     (tmp_path / 'far.yaml').write_text(UNREACHABLE)
     with Script(script('demo'), 'far.yaml', cwd=tmp_path) as demo:
