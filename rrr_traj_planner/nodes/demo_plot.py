@@ -18,6 +18,7 @@ from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.nodes.demo_client import Run
 
 COLOURS = ('#0072b2', '#d55e00', '#009e73')  # told apart by colour-blind eyes, and in print
+CUT_OFF = 2.0  # limits, beyond which a curve is cut off
 STEPS = 2000
 SAME_PLACE = 1e-6  # of the picture
 STYLE = {
@@ -72,6 +73,7 @@ def _profiles(figure: Any, run: Run) -> list[Any]:
             axes.plot(t, values[:, joint], color=colour, label=names[joint])
         if limit is not None:
             _limit_lines(axes, limit)
+            _keep_readable(axes, values, limit)
         _via_lines(axes, run)
         axes.set_ylabel(label)
     for joint in range(len(COLOURS)):
@@ -99,6 +101,13 @@ def _limit_lines(axes: Any, limit: Array) -> None:
             for sign in (-1.0, 1.0):
                 axes.axhline(sign * limit[joint], **{**LIMIT, **({} if same else {
                     'color': colour})})
+
+
+def _keep_readable(axes: Any, values: Array, limit: Array) -> None:
+    """Cut off what goes far beyond the limits: jerk between points where acceleration steps."""
+    most = CUT_OFF * limit.max()
+    if np.isfinite(most) and np.abs(values).max() > most:
+        axes.set_ylim(-most, most)
 
 
 def _space(axes: Any, run: Run) -> None:
