@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 from rrr_traj_planner.core import equations
+from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners.request import JointTask
 import ruckig
 import toppra
@@ -26,12 +27,12 @@ def toppra_duration(task: JointTask) -> float:
     points, limits = task.points, task.limits
     way = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
     path = toppra.SplineInterpolator(way / way[-1], points, 'natural')
-    wanted = [constraint.JointVelocityConstraint(_both(limits.max_velocity))]
+    wanted = [constraint.JointVelocityConstraint(both(limits.max_velocity))]
     if np.isfinite(limits.max_acceleration).all():
-        wanted.append(constraint.JointAccelerationConstraint(_both(limits.max_acceleration)))
+        wanted.append(constraint.JointAccelerationConstraint(both(limits.max_acceleration)))
     if np.isfinite(limits.max_effort).all():
         wanted.append(constraint.JointTorqueConstraint(
-            _inverse_dynamics(task), _both(limits.max_effort), np.zeros(3)))
+            torque_of(task.model), both(limits.max_effort), np.zeros(3)))
     solver = algorithm.TOPPRA(wanted, path, gridpoints=np.linspace(0.0, 1.0, GRID_POINTS + 1),
                               solver_wrapper='seidel')
     trajectory = solver.compute_trajectory(0.0, 0.0)
@@ -51,13 +52,14 @@ def ruckig_duration(task: JointTask) -> float:
     return float(trajectory.duration)
 
 
-def _both(bound: np.ndarray) -> np.ndarray:
+def both(bound: np.ndarray) -> np.ndarray:
+    """Return a bound on a magnitude as TOPP-RA takes it, shape (3, 2)."""
     return np.stack((-bound, bound), axis=1)
 
 
-def _inverse_dynamics(task: JointTask):
-    """Return the arm's inverse dynamics of one state, in floats: the fastest there is here."""
-    k = equations.constants(task.model)
+def torque_of(model: RobotModel):
+    """Return an arm's inverse dynamics of one state, in floats: the fastest there is here."""
+    k = equations.constants(model)
 
     def torque(q, qd, qdd):
         terms = equations.terms(k, float(q[1]), float(q[2]), math.sin, math.cos)

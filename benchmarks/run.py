@@ -10,10 +10,12 @@ from pathlib import Path
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')  # before numpy: for ours and theirs alike
 
 import bench_motion_time  # noqa: E402
+import bench_paths  # noqa: E402
 import bench_planning_time  # noqa: E402
 from measuring import Row, setting, table  # noqa: E402
 
 QUICK_TASKS = 14
+QUICK_PATHS = 4
 RESULT = Path(__file__).parents[1] / 'build' / 'bench.json'
 
 
@@ -21,7 +23,7 @@ def rows(tasks: int) -> list[Row]:
     """Return every row, in the order of the table."""
     return [*bench_planning_time.beside_toppra(), *bench_planning_time.growth(),
             *bench_motion_time.tables(), *bench_motion_time.random(tasks),
-            *bench_motion_time.peers()]
+            *bench_motion_time.peers(), *bench_paths.tables(), *bench_paths.random(QUICK_PATHS)]
 
 
 def main() -> None:

@@ -27,13 +27,13 @@ def soak_task(seed: int) -> Task:
     """Return the task of a seed; the seed's last digit is its kind."""
     rng = np.random.default_rng(seed)
     kind = KINDS[seed % len(KINDS)]
-    model = ARM if rng.random() < 0.6 else _random_arm(rng)
+    model = ARM if rng.random() < 0.6 else random_arm(rng)
     elbow = 'up' if rng.random() < 0.5 else 'down'
     n = {'two points': 2, 'long chain': int(rng.integers(*LONG))}.get(
         kind, int(rng.integers(3, 9)))
     period = float(rng.choice([0.005, 0.01, 0.01, 0.01, 0.02]))
     while True:
-        limits = _random_limits(rng, model, elbow)
+        limits = random_limits(rng, model, elbow)
         q = np.array([random_pose(rng, model, limits, elbow, limits.max_effort)
                       for _ in range(n)])
         _make_special(rng, kind, q, limits)
@@ -74,14 +74,15 @@ def _part_near(parts: np.ndarray, i: int, j: int) -> int:
     return int(parts[max(i - 1, 0):i + 2, max(j - 1, 0):j + 2].max())
 
 
-def _random_arm(rng: np.random.Generator) -> RobotModel:
+def random_arm(rng: np.random.Generator) -> RobotModel:
+    """Return an arm with a geometry, masses and inertias of its own."""
     a2, d4 = rng.uniform(0.3, 1.2, 2)
     return RobotModel(
         a2=a2, d4=d4, l2=rng.uniform(0.2, 0.8) * a2, l3=rng.uniform(0.2, 0.8) * d4,
         mass=rng.uniform(2.0, 40.0, 3), inertia=rng.uniform(0.02, 1.5, (3, 3)))
 
 
-def _random_limits(rng: np.random.Generator, model: RobotModel, elbow: str) -> JointLimits:
+def random_limits(rng: np.random.Generator, model: RobotModel, elbow: str) -> JointLimits:
     """Return limits of which some are missing, but never acceleration and effort of one joint."""
     middle = rng.uniform([-1.0, 0.6, -0.3], [1.0, 1.6, 0.3])
     if elbow == 'down':

@@ -108,7 +108,7 @@ class PathTrajectory(Trajectory):
     def __init__(self, arm_path: ArmPath, progress: JointProfile, via_times: Array,
                  join_times: Array, note: str = '') -> None:
         self.arm_path, self.progress, self.note = arm_path, progress, note
-        self.via_times, self.join_times = via_times, join_times
+        self.via_times, self.join_times = via_times, _at_knots(progress, join_times)
         self.duration = progress.duration
 
     def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
@@ -181,3 +181,9 @@ class PathTrajectory(Trajectory):
         joins, speed = self.arm_path.path.joins, self.progress(self.join_times)[1]
         change = self.arm_path(joins).ddq - self.arm_path(joins, left=True).ddq
         return np.asarray(np.abs(change) * speed[:, np.newaxis] ** 2)
+
+
+def _at_knots(progress: JointProfile, times: Array) -> Array:
+    """Return the knots nearest to times: to rounding, a join's time might be before its knot."""
+    nearest = np.abs(progress.knots - times[:, np.newaxis]).argmin(axis=1)
+    return np.asarray(progress.knots[nearest])

@@ -75,7 +75,7 @@ def acceleration_scale(model: RobotModel, limits: JointLimits, q: Array) -> Arra
     lacking = np.isinf(limits.max_acceleration) & np.isinf(limits.max_effort)
     if lacking.any():
         raise InvalidInputError(
-            'planner time_optimal needs an acceleration or an effort limit on every joint, '
+            'the fastest motion needs an acceleration or an effort limit on every joint, '
             f'{model.joint_names[int(lacking.argmax())]} has neither')
     inertia = np.diagonal(inertia_matrix(model, q), axis1=1, axis2=2)
     torque = limits.max_effort + np.abs(gravity_torque(model, q))

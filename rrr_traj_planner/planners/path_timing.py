@@ -29,6 +29,7 @@ from rrr_traj_planner.planners.path_constraints import (
     QUANTITIES,
     SPEED,
 )
+from rrr_traj_planner.planners.path_start import cycloid_along, uniform_along
 from rrr_traj_planner.planners.path_table import Demand, PathTable
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_newton import Freedom
@@ -40,7 +41,8 @@ ROOM = 1.02        # durations of the start over the least that fit
 HOLDING_ROOM = 1e-6
 REPAIRS = 8
 LARGER = 1.2       # room than what was exceeded
-ROUNDING = 1e-7
+WORTH_IT = 1e-3    # a longer stretch than this is better mended by planning again
+BACKWARD = 1e-12    # of the largest speed, that is rounding
 
 
 class PathTask(NamedTuple):
@@ -93,14 +95,15 @@ def fastest_along(task: PathTask) -> Timed:
                                       steady)
         start = next((c for c in reversed(centres) if _within(constraints, c.motion)), None)
         if start is None:
-            start = Centre(_slow_start(task, table, constraints), None)
+            start = Centre(_slow_start(task, table, constraints, steady), None)
             if not _within(constraints, start.motion):
                 break
-        outcome = minimise(constraints, start, freedom, task.should_stop)
+        outcome = _onward(minimise(constraints, start, freedom, task.should_stop), start, table,
+                          grid)
         centres += outcome.centres
         excess, stretch = _excess(task, table, grid, outcome.motion)
         best = min(filter(None, (best, _slowed(outcome, stretch))), key=lambda b: b[0])
-        if stretch <= 1.0 + ROUNDING or task.should_stop():
+        if stretch <= 1.0 + WORTH_IT or task.should_stop():
             break
         margins = margins + LARGER * excess
     assert best is not None
@@ -118,6 +121,19 @@ def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
     inside = ((middle > begin) & (middle < end)).any(axis=1)
     inside[[0, -1]] = False
     return np.asarray(inside)
+
+
+def _onward(outcome: Outcome, start: Centre, table: PathTable, grid: Grid) -> Outcome:
+    """Return the last motion on which the tip never goes back: one cut short may."""
+    passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)))
+    motion = next((m for m in passed if _goes_on(table, grid, m)), start.motion)
+    lost = float(motion.T.sum() - outcome.motion.T.sum())
+    return outcome._replace(motion=motion, gap=outcome.gap + lost)
+
+
+def _goes_on(table: PathTable, grid: Grid, m: Motion) -> bool:
+    speed = _between(table, grid, m).sd
+    return bool(speed.min() >= -BACKWARD * speed.max())
 
 
 def _slowed(outcome: Outcome, stretch: float) -> tuple[float, Motion, float]:
@@ -146,19 +162,11 @@ def _refuse_heavy(task: PathTask, table: PathTable) -> None:
                               'N m', name, needed, limit, via_point=nearest)
 
 
-def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints) -> Motion:
-    """Return a motion of constant speed, but for the first piece and the last, within limits."""
-    grid, L = constraints.grid, np.diff(table.ends)[:, np.newaxis]
-    N = len(L)
-    if N == 1:
-        inner = grid.rest_to_rest(constraints.points)[:, 1:-1]
-        none = np.zeros((0, 1))
-        m = Motion(inner, none, none, np.ones(1))
-    else:
-        T = L[:, 0].copy()
-        T[[0, -1]] *= 2.0
-        m = grid.restored(constraints.points, Motion(
-            np.zeros((N, grid.n - 1, 1)), np.ones((N - 1, 1)), np.zeros((N - 1, 1)), T))
+def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
+                steady: BoolArray) -> Motion:
+    """Return a motion as slow as the limits ask for, of constant speed where pieces ask for it."""
+    grid = constraints.grid
+    m = (uniform_along if steady.any() else cycloid_along)(grid, table.ends)
     at = progress_at(grid, constraints.points, m)
     return grid.stretched(m, ROOM * _stretch(
         task, constraints.demands(at.s)[0], at, constraints.margins))

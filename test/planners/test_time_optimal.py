@@ -517,7 +517,7 @@ def test_a_joint_with_neither_acceleration_nor_effort_limit_is_refused_by_name()
     limits = replace(LIMITS, max_acceleration=[1.0, np.inf, 1.0],
                      max_effort=[150.0, np.inf, 200.0])
     with pytest.raises(InvalidInputError, match=(
-            'time_optimal needs an acceleration or an effort limit on every joint, '
+            'fastest motion needs an acceleration or an effort limit on every joint, '
             'joint_2 has neither')):
         plan(ARM, limits, table('6.1'))
     plan(ARM, replace(limits, max_effort=STRONG.max_effort), table('6.1'))

@@ -1,0 +1,151 @@
+"""How fast the tip is led along a path, and how long that takes to plan, beside TOPP-RA."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import count, islice
+import math
+
+from measuring import compared, REPETITIONS, Row, seconds, setting, side_by_side, table
+import numpy as np
+from path_tasks import path_task, PLANNERS, task_path
+from peers import both, GRID_POINTS, torque_of
+from rrr_traj_planner.core.errors import RrrPlannerError
+from rrr_traj_planner.core.path_trajectory import ArmPath
+from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.planners.planning import plan
+from tasks import gentle, NONE, STRONG, Task, WEAK
+from tasks import table as thesis_table
+from toppra import algorithm, constraint
+from toppra.interpolator import AbstractGeometricPath
+
+PATHS = 24                    # random ones for each planner
+RANDOM_REPETITIONS = 3        # of planning each of them
+MOTION, PLANNING = 1.08, 2.0  # the most that is asked for
+PLAIN = 20                    # from the seed of one plain task to the next
+
+
+class PathInJointSpace(AbstractGeometricPath):
+    """An arm's path as TOPP-RA takes it, by arc length."""
+
+    def __init__(self, arm_path: ArmPath) -> None:
+        self._arm_path, self._ends = arm_path, np.array([0.0, arm_path.path.length])
+
+    def __call__(self, s: float | np.ndarray, order: int = 0) -> np.ndarray:
+        """Return joint positions or a derivative of them."""
+        found = self._arm_path(np.clip(np.atleast_1d(s), *self._ends))[order]
+        return found if np.ndim(s) else found[0]
+
+    @property
+    def dof(self) -> int:
+        """Number of joints."""
+        return 3
+
+    @property
+    def path_interval(self) -> np.ndarray:
+        """Where the path begins and ends [m]."""
+        return self._ends
+
+    @property
+    def waypoints(self) -> None:
+        """None: it is no spline."""
+        return None
+
+
+def toppra_duration(task: Task, arm_path: ArmPath) -> float:
+    """Return how long TOPP-RA's motion along a path takes [s]; its jerk has no limit."""
+    limits = task.limits
+    wanted = [constraint.JointVelocityConstraint(both(limits.max_velocity)),
+              constraint.JointAccelerationConstraint(both(limits.max_acceleration)),
+              constraint.JointTorqueConstraint(
+                  torque_of(task.model), both(limits.max_effort), np.zeros(3))]
+    grid = np.union1d(np.linspace(0.0, arm_path.path.length, GRID_POINTS + 1),
+                      arm_path.path.joins)
+    solver = algorithm.TOPPRA(wanted, PathInJointSpace(arm_path), gridpoints=grid,
+                              solver_wrapper='seidel')
+    trajectory = solver.compute_trajectory(0.0, 0.0)
+    return math.nan if trajectory is None else float(trajectory.duration)
+
+
+def tables(repetitions: int = REPETITIONS) -> list[Row]:
+    """Return times of motions and of planning for the thesis's tables."""
+    rows = []
+    for planner_id in PLANNERS:
+        for name, effort in (('6.1', WEAK), ('6.3', STRONG)):
+            task = thesis_table(name, replace(gentle(effort), max_jerk=NONE), 'v 1, a 1, torque')
+            task = replace(task, request=replace(
+                task.request, planner_id=planner_id, elbow='up'))
+            arm_path = _arm_path(task)
+            label = f'{task.name}: {planner_id} / TOPP-RA'
+            rows.append(compared(label, MOTION, _own(task), toppra_duration(task, arm_path)))
+            rows.append(compared(f'planning, {label}', PLANNING, *(1e3 * x for x in side_by_side(
+                lambda task=task: _own(task),
+                lambda task=task, arm_path=arm_path: toppra_duration(task, arm_path),
+                repetitions)), 'ms'))
+    return rows
+
+
+def random(paths: int = PATHS, say: bool = False) -> list[Row]:
+    """Return the median and the worst ratio over random paths of random arms and limits."""
+    rows = []
+    for first, planner_id in enumerate(PLANNERS):
+        motion, planning = [], []
+        for task in islice(_random_tasks(first), paths):
+            arm_path = _arm_path(task)
+            motion.append((_own(task), toppra_duration(task, arm_path)))
+            planning.append(np.median([(
+                seconds(lambda task=task: _own(task)),
+                seconds(lambda task=task, arm_path=arm_path: toppra_duration(task, arm_path)))
+                for _ in range(RANDOM_REPETITIONS)], axis=0))
+            if say:
+                print(f'{planner_id}, {task.name}: {len(task.request.via_points)} points, '
+                      f'{motion[-1][0]:.4f} s / {motion[-1][1]:.4f} s = '
+                      f'{motion[-1][0] / motion[-1][1]:.4f}; planning {planning[-1][0]:.3f} s / '
+                      f'{planning[-1][1]:.3f} s', flush=True)
+        for what, pairs, target, scale, unit in (
+                ('', motion, MOTION, 1.0, 's'), ('planning, ', planning, PLANNING, 1e3, 'ms')):
+            pairs = sorted(pairs, key=lambda pair: pair[0] / pair[1])
+            for label, pair in (('median', pairs[len(pairs) // 2]), ('worst', pairs[-1])):
+                rows.append(compared(
+                    f'{what}{paths} random paths, v, a, torque: {planner_id} / TOPP-RA, {label}',
+                    target, *(scale * x for x in pair), unit))
+    return rows
+
+
+def _random_tasks(first: int) -> Iterator[Task]:
+    """Give plain tasks of a planner with acceleration and torque limits, without jerk's."""
+    for seed in count(first, PLAIN):
+        task = path_task(seed)
+        if np.isfinite([task.limits.max_acceleration, task.limits.max_effort]).all():
+            yield replace(task, limits=replace(task.limits, max_jerk=NONE))
+
+
+def _arm_path(task: Task) -> ArmPath:
+    path = task_path(task, task.request.via_points)
+    joints = check_workspace(task.model, task.limits, path, task.request.elbow)
+    return ArmPath(task.model, task.limits, path, task.request.elbow, joints.start)
+
+
+def _own(task: Task) -> float:
+    """Return how long our motion takes [s]; infinite where planning fails."""
+    try:
+        return plan(task.model, task.limits, task.request).trajectory.duration
+    except RrrPlannerError as error:
+        print(f'{task.name}: {error}', flush=True)
+        return math.inf
+
+
+def main() -> None:
+    """Print every ratio."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--paths', type=int, default=PATHS, help='random ones for each planner')
+    parser.add_argument('--repetitions', type=int, default=REPETITIONS)
+    options = parser.parse_args()
+    print(setting())
+    print(table(tables(options.repetitions) + random(options.paths, say=True)))
+
+
+if __name__ == '__main__':
+    main()

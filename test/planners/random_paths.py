@@ -1,0 +1,122 @@
+"""Seeded random paths that an arm can follow, with limits made to fit them, and their plans."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+
+import numpy as np
+from random_cases import random_model
+from rrr_traj_planner.core import path_design
+from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.inverse_kinematics import ELBOWS
+from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.largest_radii import largest_radii
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.path_trajectory import ArmPath
+from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.planners.path_timing import fastest_along, PathTask
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.request import never, PlanningRequest
+
+PLANNERS = ('line_arc', 'line_polynomial')
+NONE = np.full(3, np.inf)
+FREE = JointLimits(min_position=-NONE, max_position=NONE)
+PER_SAMPLE = 20     # evaluated points between two samples
+BESIDE = 1e-9       # s before a knot
+
+
+@dataclass(frozen=True, eq=False)
+class PathCase:
+    """A request for a path, the arm and limits that suit it."""
+
+    model: RobotModel
+    limits: JointLimits
+    request: PlanningRequest
+
+    @cached_property
+    def arm_path(self):
+        """The path as the planner is to find it."""
+        r = self.request
+        path = largest_radii(getattr(path_design, r.planner_id), r.via_points, r.max_deviation)
+        start = check_workspace(self.model, self.limits, path, r.elbow).start
+        return ArmPath(self.model, self.limits, path, r.elbow, start)
+
+    def timed(self, max_tip_speed=np.inf, **limits):
+        """Return the fastest motion along the path, with limits changed."""
+        return fastest_along(PathTask(
+            self.arm_path, replace(self.limits, **limits), max_tip_speed, False,
+            never)).trajectory
+
+    def planned(self, **changes):
+        """Return the plan of the request, changed."""
+        return plan(self.model, self.limits, replace(self.request, **changes))
+
+
+def random_case(seed, points=None):
+    """Return a path of 2 to 6 points; planner and elbow follow from the seed."""
+    rng = np.random.default_rng(90_000 + seed)
+    model = RobotModel() if rng.random() < 0.5 else random_model(rng)
+    request = PlanningRequest(
+        _tips(rng, model, points or int(rng.integers(2, 7))), planner_id=PLANNERS[seed % 2],
+        elbow=ELBOWS[seed // 2 % 2],
+        max_deviation=float(np.exp(rng.uniform(np.log(5e-3), np.log(0.1)))),
+        sample_period=float(rng.choice([0.005, 0.01, 0.02])))
+    q = _positions(PathCase(model, FREE, request))
+    holding = np.abs(gravity_torque(model, q)).max(axis=0)
+
+    def drawn(least, most):
+        return np.exp(rng.uniform(np.log(least), np.log(most), 3))
+
+    limits = JointLimits(
+        min_position=q.min(axis=0) - drawn(0.01, 0.5),
+        max_position=q.max(axis=0) + drawn(0.01, 0.5),
+        max_velocity=drawn(0.4, 3.0), max_acceleration=drawn(0.5, 6.0),
+        max_jerk=drawn(5.0, 200.0) if rng.random() < 0.7 else NONE,
+        max_effort=drawn(1.1, 4.0) * np.maximum(holding, 5.0) if rng.random() < 0.8 else NONE)
+    return PathCase(model, limits, request)
+
+
+def _tips(rng, model, n):
+    """Return points in front of an arm, well inside its workspace."""
+    least, most = model.reach
+    tips = []
+    while len(tips) < n:
+        d = rng.normal(size=3)
+        d[0] = abs(d[0]) + 1.5
+        away = rng.uniform(0.6 * most + 0.4 * least, 0.9 * most)
+        tips.append(d / np.linalg.norm(d) * away + (0.0, 0.0, model.d1))
+    return np.array(tips)
+
+
+def _positions(case):
+    return case.arm_path(np.linspace(0.0, case.arm_path.path.length, 400)).q
+
+
+class Measured:
+    """A motion at given times, or on a fine grid that meets every knot."""
+
+    def __init__(self, case, plan, motion=None, t=None):
+        self.case, self.plan, self.motion = case, plan, motion or plan.trajectory
+        T, knots = self.motion.duration, self.motion.knots
+        n = int(np.ceil(T * PER_SAMPLE / case.request.sample_period))
+        self.t = t if t is not None else np.unique(np.concatenate((
+            np.linspace(0.0, T, n + 1), knots, knots[1:-1] - BESIDE)))
+        self.q, self.qd, self.qdd, self.qddd = self.motion(self.t)
+        self.tip = forward_kinematics(case.model, self.q)
+        self.torque = inverse_dynamics(case.model, self.q, self.qd, self.qdd)
+
+    def use(self):
+        """Return the largest part of any limit of any joint that is used, at each time."""
+        limits = self.case.limits
+        return np.max([np.abs(x) / bound for x, bound in (
+            (self.qd, limits.max_velocity), (self.qdd, limits.max_acceleration),
+            (self.qddd, limits.max_jerk), (self.torque, limits.max_effort))], axis=(0, 2))
+
+
+@cache
+def measured(seed):
+    """Return the measured plan of a random path."""
+    case = random_case(seed)
+    return Measured(case, case.planned())

@@ -1,0 +1,67 @@
+"""Limits on jerk where nothing else bounds it: from the samples that are to follow."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from random_cases import random_model
+from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.followable import acceleration_scale, followable
+
+NONE = np.full(3, np.inf)
+PERIOD = 0.01
+
+
+def random_poses(seed):
+    rng = np.random.default_rng(seed)
+    return random_model(rng), rng.uniform(-1.0, 1.0, (5, 3))
+
+
+def test_a_limit_that_is_low_enough_is_kept():
+    model, q = random_poses(0)
+    limits = JointLimits(max_jerk=[10.0, 20.0, 30.0])
+    assert followable(model, limits, q, PERIOD).max_jerk.tolist() == [10.0, 20.0, 30.0]
+
+
+def test_a_ramp_from_one_limit_to_the_other_lasts_four_samples():
+    # Half a cosine of 2 A in four periods: jerk pi A / (4 periods).
+    model, q = random_poses(1)
+    limits = JointLimits(max_acceleration=[1.0, 2.0, 3.0], max_jerk=NONE)
+    found = followable(model, replace(limits, max_effort=NONE), q, PERIOD).max_jerk
+    assert found == pytest.approx(np.pi * np.array((1.0, 2.0, 3.0)) / (4.0 * PERIOD))
+
+
+@pytest.mark.parametrize('seed', range(10))
+def test_without_an_acceleration_limit_torque_decides_and_two_samples_are_enough(seed):
+    model, q = random_poses(seed)
+    limits = JointLimits(max_acceleration=NONE, max_jerk=NONE, max_effort=[90.0, 150.0, 70.0])
+    scale = acceleration_scale(model, limits, q)
+    assert followable(model, limits, q, PERIOD).max_jerk == pytest.approx(
+        np.pi * scale / (2.0 * PERIOD))
+    # No joint that moves alone can be accelerated more, at any of the poses.
+    for p in q:
+        for j, a in enumerate(np.diag(scale)):
+            for sign in (1.0, -1.0):
+                torque = inverse_dynamics(model, p, np.zeros(3), sign * 1.001 * a)[j]
+                gravity = inverse_dynamics(model, p, np.zeros(3), np.zeros(3))[j]
+                against = np.sign(torque - gravity) * np.sign(gravity) >= 0.0
+                assert abs(torque) > limits.max_effort[j] or not against
+
+
+def test_everything_but_jerk_is_kept():
+    model, q = random_poses(2)
+    limits = JointLimits(max_jerk=NONE)
+    found = followable(model, limits, q, PERIOD)
+    for name in ('min_position', 'max_position', 'max_velocity', 'max_acceleration', 'max_effort'):
+        assert getattr(found, name).tolist() == getattr(limits, name).tolist()
+    assert np.isfinite(found.max_jerk).all()
+
+
+def test_a_joint_without_acceleration_and_effort_limit_is_refused_by_name():
+    limits = JointLimits(max_acceleration=[1.0, np.inf, 1.0], max_effort=[9.0, np.inf, 9.0])
+    with pytest.raises(InvalidInputError, match='needs an acceleration or an effort limit on '
+                                                'every joint, joint_2 has neither$'):
+        followable(RobotModel(), limits, np.zeros((1, 3)), PERIOD)

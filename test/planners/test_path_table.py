@@ -1,0 +1,107 @@
+"""What the table of a path gives, against the path itself, differences and the dynamics."""
+
+import numpy as np
+import pytest
+from random_cases import central_difference
+from random_paths import random_case
+from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.planners.path_table import PathTable
+
+SEEDS = range(16)
+# Of each quantity's largest value on the path: dq, ddq, dddq, m, c, g. Cubics through 49 places
+# of a piece follow third derivatives least well.
+ACCURACY = (1e-5, 1e-4, 3e-4, 1e-5, 1e-4, 1e-6)
+TORQUE = 1e-4      # likewise, of the sum
+AT_PLACES = 1e-12
+
+
+def random_table(seed):
+    case = random_case(seed)
+    return case.arm_path, PathTable(case.arm_path)
+
+
+def inner_places(table, seed, n=30):
+    """Return random places within every piece, shape (N, n)."""
+    share = np.random.default_rng(seed).uniform(0.01, 0.99, (len(table.ends) - 1, n))
+    return table.ends[:-1, np.newaxis] + np.diff(table.ends)[:, np.newaxis] * share
+
+
+def exact(arm_path, s):
+    """Return what is demanded at places by the path itself, in the order of the table."""
+    model, (q, dq, ddq, dddq) = arm_path.model, arm_path(s.ravel())
+    g, still = gravity_torque(model, q), np.zeros_like(q)
+    m = inverse_dynamics(model, q, still, dq) - g
+    c = inverse_dynamics(model, q, dq, ddq) - g
+    return [x.reshape(*s.shape, 3) for x in (dq, ddq, dddq, m, c, g)]
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_table_is_the_exact_demand_to_its_accuracy(seed):
+    arm_path, table = random_table(seed)
+    s = inner_places(table, seed)
+    for ours, wanted, accuracy in zip(table(s)[0], exact(arm_path, s), ACCURACY):
+        assert np.abs(ours - wanted).max() <= accuracy * np.abs(wanted).max()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_table_is_exact_at_its_own_places(seed):
+    arm_path, table = random_table(seed)
+    s = table.places[:, 1:-1]
+    for ours, wanted in zip(table(s)[0], exact(arm_path, s)):
+        assert ours == pytest.approx(wanted, abs=AT_PLACES * (1.0 + np.abs(wanted).max()))
+    assert table.holding[:, 1:-1] == pytest.approx(table(s)[0].g, abs=1e-9)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+@pytest.mark.parametrize('order', [1, 2])
+def test_each_derivative_is_that_of_the_one_before(seed, order):
+    _, table = random_table(seed)
+    L = np.diff(table.ends)[:, np.newaxis]
+    # Not across a place of the table, where the third derivative steps.
+    s = 0.5 * (table.places[:, 1:] + table.places[:, :-1])
+    found = table(s, order)[order]
+    for k, ours in enumerate(found):
+        difference = central_difference(
+            lambda x, k=k: table(s + x * L, order - 1)[order - 1][k], 0.0, 1e-3)
+        difference /= L[..., np.newaxis]
+        assert ours == pytest.approx(difference, abs=1e-8 * (1.0 + np.abs(ours).max()), rel=1e-7)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_ends_of_pieces_have_the_values_of_their_own_side(seed):
+    arm_path, table = random_table(seed)
+    first, last = (table(table.ends[k:len(table.ends) - 1 + k, np.newaxis])[0] for k in (0, 1))
+    from_right = arm_path(table.ends[:-1])
+    from_left = arm_path(table.ends[1:], left=True)
+    for ours, theirs in ((first, from_right), (last, from_left)):
+        for name in ('dq', 'ddq', 'dddq'):
+            wanted = getattr(theirs, name)
+            assert getattr(ours, name)[:, 0] == pytest.approx(
+                wanted, abs=1e-10 * (1.0 + np.abs(wanted).max()))
+    steps = from_right.ddq[1:] - from_left.ddq[:-1]
+    size = np.abs(from_left.ddq).max()
+    assert table.steps[:-1] == pytest.approx(steps, abs=1e-10 * (1.0 + size))
+    assert table.steps[-1].tolist() == [0.0] * 3
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_torque_of_a_motion_is_what_the_table_says(seed):
+    arm_path, table = random_table(seed)
+    s = inner_places(table, seed)
+    v, a = np.random.default_rng(seed).normal(size=(2, *s.shape, 1))
+    d = table(s)[0]
+    q, dq, ddq, _ = (x.reshape(*s.shape, 3) for x in arm_path(s.ravel()))
+    tau = inverse_dynamics(arm_path.model, *(x.reshape(-1, 3) for x in (
+        q, dq * v, ddq * v ** 2 + dq * a))).reshape(*s.shape, 3)
+    size = np.abs(tau).max()
+    assert d.m * a + d.c * v ** 2 + d.g == pytest.approx(tau, abs=TORQUE * size)
+
+
+def test_pieces_meet_at_via_points_and_joins():
+    for seed in SEEDS:
+        arm_path, table = random_table(seed)
+        wanted = {*arm_path.path.via_s.tolist(), *arm_path.path.joins.tolist()}
+        assert set(table.ends.tolist()) == wanted
+        assert table.ends[table.vias].tolist() == arm_path.path.via_s.tolist()
+        assert table.places[:, 0].tolist() == table.ends[:-1].tolist()
+        assert table.places[:, -1].tolist() == table.ends[1:].tolist()
