@@ -15,19 +15,20 @@ setup(
     maintainer_email='rrr-traj-planner@users.noreply.github.com',
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
+    package_data={f'{NAME}.report': ['*.css', '*.js']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
         (f'share/{NAME}/config', sorted(glob('config/*.yaml'))),
     ],
     python_requires='>=3.10',
-    install_requires=['matplotlib', 'numpy', 'PyYAML', 'scipy', 'setuptools'],
-    extras_require={'test': ['pytest']},
+    install_requires=['numpy', 'PyYAML', 'scipy', 'setuptools'],
+    extras_require={'figures': ['matplotlib'], 'record': ['mcap'], 'test': ['pytest']},
     zip_safe=True,
     entry_points={
         'console_scripts': [
             f'{script} = {NAME}.nodes.{script}:main'
-            for script in ('bringup', 'demo', 'planner', 'simulated_arm')
+            for script in ('bringup', 'demo', 'planner', 'report', 'simulated_arm')
         ],
     },
 )

@@ -85,7 +85,7 @@ make_venv() {  # KEY
         "$python" -m venv --system-site-packages .venv
         step "installing what Python packages are missing in .venv (up to 2 minutes)" \
             .venv/bin/python -m pip install "numpy==$numpy" colcon-common-extensions \
-            -r requirements/runtime.in -r requirements/test.in
+            -r requirements/runtime.in -r requirements/record.in -r requirements/test.in
         # Pinocchio's wheels ask for a newer NumPy than ROS's, but run with that too.
         .venv/bin/python -c 'import pinocchio' 2> /dev/null ||
             step "installing Pinocchio, for the tests, in .venv (up to 1 minute, 500 MB)" \

@@ -13,7 +13,7 @@ MODULES = {
     for path in sorted((ROOT / PACKAGE).rglob('*.py'))}
 
 # Arrows point only this way: a layer sees itself and those after it.
-LAYERS = ('nodes', 'planners', 'core')
+LAYERS = ('nodes', 'report', 'planners', 'core')
 NUMERICS = {'numpy', 'scipy'}
 
 
@@ -52,7 +52,7 @@ def test_the_layers_are_there():
 
 
 @pytest.mark.parametrize('module', MODULES)
-def test_imports_point_from_nodes_to_planners_to_core(module):
+def test_imports_point_from_nodes_to_report_to_planners_to_core(module):
     if not layer_of(module):
         return
     below = LAYERS[LAYERS.index(layer_of(module)):]
@@ -63,6 +63,12 @@ def test_imports_point_from_nodes_to_planners_to_core(module):
 @pytest.mark.parametrize('module', modules_of('core', 'planners'))
 def test_core_and_planners_need_numpy_scipy_and_the_standard_library_alone(module):
     allowed = {PACKAGE, *NUMERICS, *sys.stdlib_module_names}
+    assert [name for name in imports_of(module) if name.split('.')[0] not in allowed] == []
+
+
+@pytest.mark.parametrize('module', modules_of('report'))
+def test_report_needs_matplotlib_besides(module):
+    allowed = {PACKAGE, *NUMERICS, 'matplotlib', 'mpl_toolkits', *sys.stdlib_module_names}
     assert [name for name in imports_of(module) if name.split('.')[0] not in allowed] == []
 
 
@@ -131,13 +137,13 @@ def test_every_module_says_what_it_is(module):
     assert ast.get_docstring(MODULES[module]), module
 
 
-@pytest.mark.parametrize('module', modules_of('core', 'planners'))
+@pytest.mark.parametrize('module', modules_of('core', 'planners', 'report'))
 def test_every_public_function_class_and_method_is_documented(module):
     bare = [name for name, node, _ in public_definitions(module) if not ast.get_docstring(node)]
     assert bare == []
 
 
-@pytest.mark.parametrize('module', modules_of('core', 'planners'))
+@pytest.mark.parametrize('module', modules_of('core', 'planners', 'report'))
 def test_every_public_function_with_parameters_describes_them(module):
     bare = [name for name, node, owner in public_definitions(module)
             if isinstance(node, ast.FunctionDef) and parameters_of(node, owner)
@@ -146,7 +152,7 @@ def test_every_public_function_with_parameters_describes_them(module):
     assert bare == []
 
 
-@pytest.mark.parametrize('module', modules_of('core', 'planners'))
+@pytest.mark.parametrize('module', modules_of('core', 'planners', 'report'))
 def test_parameters_sections_name_every_parameter(module):
     missing = []
     for name, node, owner in public_definitions(module):

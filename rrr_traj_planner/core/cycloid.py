@@ -7,6 +7,7 @@ cruises are all such pieces. Fields of a piece may be floats or arrays of one sh
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import acos, pi
 from typing import Any, NamedTuple
 
@@ -53,6 +54,61 @@ class CycloidPiece(NamedTuple):
             self.velocity * s + T * (0.5 * self.c * s * s - self.b / w ** 2 * versine))
         acceleration = (self.c - self.b) + self.b * versine
         return position, velocity, acceleration, self.b * w / T * sine
+
+    def arrays(self) -> dict[str, Any]:
+        """Return every value by its name; see `Pieces`."""
+        return self._asdict()
+
+    def made_of(self, arrays: Iterable[Any]) -> CycloidPiece:
+        """
+        Return pieces made of other values; see `Pieces`.
+
+        Parameters
+        ----------
+        arrays : iterable
+            The values, in the order of the fields.
+
+        Returns
+        -------
+        CycloidPiece
+            The pieces.
+
+        """
+        return CycloidPiece(*arrays)
+
+    def stretched(self, factor: float) -> CycloidPiece:
+        """
+        Return the same positions run through at another rate; see `Pieces`.
+
+        Parameters
+        ----------
+        factor : float
+            What every time is multiplied by, positive.
+
+        Returns
+        -------
+        CycloidPiece
+            The pieces.
+
+        """
+        return CycloidPiece(self.duration * factor, self.position, self.velocity / factor,
+                            self.c / factor ** 2, self.b / factor ** 2, self.w)
+
+    def turning_points(self) -> Array:
+        """Return the ends and the zeros of the acceleration, shape (n, 4); see `Pieces`."""
+        ratio = np.divide(self.c, self.b, out=np.full(np.shape(self.b), 2.0),
+                          where=self.b != 0.0)
+        phase = np.arccos(np.clip(ratio, -1.0, 1.0))
+        first = np.minimum(phase / self.w, 1.0)
+        second = np.minimum((2.0 * pi - phase) / self.w, 1.0)
+        return np.stack((np.zeros_like(first), first, second, np.ones_like(first)), axis=-1)
+
+    def peaks(self) -> tuple[Array, Array]:
+        """Return the largest magnitudes of acceleration and of jerk; see `Pieces`."""
+        turning = np.minimum(pi / self.w, 1.0)
+        return (_largest(self.at(s)[2] for s in (0.0, turning, 1.0)),
+                _largest(self.at(np.minimum(phase / self.w, 1.0))[3]
+                         for phase in (0.5 * pi, 1.5 * pi)))
 
 
 def transition(duration: Any, position: Any, velocity: Any, end_velocity: Any) -> CycloidPiece:
@@ -166,67 +222,6 @@ def general_transition(position: float, velocity: float, end_velocity: float,
             f'a change of velocity of {change} rad/s has no transition of mean acceleration '
             f'{mean} rad/s^2')
     return CycloidPiece(change / mean, position, velocity, c, b, w)
-
-
-def peak_acceleration(piece: CycloidPiece) -> Array:
-    """
-    Return the largest magnitude of acceleration of each piece, in closed form.
-
-    Parameters
-    ----------
-    piece : CycloidPiece
-        Fields of shape (n,).
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [rad/s^2].
-
-    """
-    turning = np.minimum(pi / piece.w, 1.0)
-    return _largest(piece.at(s)[2] for s in (0.0, turning, 1.0))
-
-
-def peak_jerk(piece: CycloidPiece) -> Array:
-    """
-    Return the largest magnitude of jerk of each piece, in closed form.
-
-    Parameters
-    ----------
-    piece : CycloidPiece
-        Fields of shape (n,).
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [rad/s^3].
-
-    """
-    return _largest(piece.at(np.minimum(phase / piece.w, 1.0))[3]
-                    for phase in (0.5 * pi, 1.5 * pi))
-
-
-def turning_points_of_velocity(piece: CycloidPiece) -> Array:
-    """
-    Return the normalised times at which velocity may turn: zeros of the acceleration.
-
-    Parameters
-    ----------
-    piece : CycloidPiece
-        Fields of shape (n,).
-
-    Returns
-    -------
-    ndarray, shape (n, 4)
-        Increasing, from 0 to 1; between neighbours the velocity is monotone.
-
-    """
-    ratio = np.divide(piece.c, piece.b, out=np.full(np.shape(piece.b), 2.0),
-                      where=piece.b != 0.0)
-    phase = np.arccos(np.clip(ratio, -1.0, 1.0))
-    first = np.minimum(phase / piece.w, 1.0)
-    second = np.minimum((2.0 * pi - phase) / piece.w, 1.0)
-    return np.stack((np.zeros_like(first), first, second, np.ones_like(first)), axis=-1)
 
 
 def _largest(values: Any) -> Array:

@@ -1,5 +1,10 @@
 """Errors of the package: each names what was wrong, with values and units."""
 
+from reprlib import Repr
+
+_shortened = Repr()
+_shortened.maxstring = 60
+
 
 class RrrPlannerError(Exception):
     """
@@ -95,3 +100,21 @@ class TimingError(RrrPlannerError):
 
 class ConvergenceError(RrrPlannerError):
     """An iteration that ended at its limit without a result."""
+
+
+def quoted(text: str) -> str:
+    """
+    Return a text from outside for an error's message: in quotes, on one line, not too long.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+
+    Returns
+    -------
+    str
+        With escapes for what cannot be printed; its middle left out where it is long.
+
+    """
+    return _shortened.repr(str(text))

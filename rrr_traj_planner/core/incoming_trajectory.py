@@ -3,7 +3,7 @@ Which trajectories the arm accepts: joint_trajectory_controller's rules, in its 
 
 The checks, their order and their texts are those of the Jazzy controller, for an arm that is not
 commanded by effort. Beyond them, names that repeat, a negative first time and values that are not
-finite are refused.
+finite, or beyond what any arm does, are refused.
 """
 
 from __future__ import annotations
@@ -21,6 +21,9 @@ NANOSECOND = 1e-9
 
 # std::numeric_limits<float>::epsilon(), below which the controller takes a velocity for zero.
 FLOAT_EPSILON = float(np.finfo(np.float32).eps)
+
+# Larger values only serve to make numbers overflow [rad], [rad/s], [rad/s^2].
+LARGEST = 1e6
 
 FIELDS = ('positions', 'velocities', 'accelerations')
 
@@ -185,3 +188,7 @@ def _check_point(i: int, point: IncomingPoint, names: Sequence[str]) -> None:
             if not isfinite(value):
                 raise InvalidInputError(
                     f'Value of {field} of joint {name} at point #{i} is not finite: {value:f}')
+            if abs(value) > LARGEST:
+                raise InvalidInputError(
+                    f'Value of {field} of joint {name} at point #{i} is {value:g}, must be within '
+                    f'{LARGEST:g}')

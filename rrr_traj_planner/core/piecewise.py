@@ -1,16 +1,16 @@
-"""Trajectories made of cycloid pieces, each joint with pieces of its own."""
+"""Trajectories made of pieces, each joint with pieces of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
-from rrr_traj_planner.core.cycloid import CycloidPiece
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.pieces import Pieces
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
 
 # Newton steps towards a zero of velocity, halvings of its bracket where they leave it. An error e
@@ -21,29 +21,29 @@ PLACE_TOLERANCE = 1e-9
 
 class JointProfile:
     """
-    One joint's motion: consecutive cycloid pieces.
+    One joint's motion: consecutive pieces, all of one function.
 
     Parameters
     ----------
-    pieces : CycloidPiece
-        Fields of shape (n,), in order of time; pieces of no duration are dropped.
+    pieces : Pieces
+        Values of shape (n,), in order of time; pieces of no duration are dropped.
 
     Raises
     ------
     InvalidInputError
-        If a field is not finite, a duration is negative or there is no piece.
+        If a value is not finite, a duration is negative or there is no piece.
 
     """
 
-    def __init__(self, pieces: CycloidPiece) -> None:
-        fields = np.broadcast_arrays(*(finite_array(n, v) for n, v in pieces._asdict().items()))
+    def __init__(self, pieces: Pieces) -> None:
+        fields = np.broadcast_arrays(*(finite_array(n, v) for n, v in pieces.arrays().items()))
         if fields[0].ndim != 1 or (fields[0] < 0.0).any() or not (fields[0] > 0.0).any():
             raise InvalidInputError(
                 f'piece durations are {fields[0]} s, must not be negative, nor all zero')
         lasting = fields[0] > 0.0
-        self.pieces = CycloidPiece(*(f[lasting] for f in fields))
+        self.pieces = pieces.made_of(f[lasting] for f in fields)
         self.knots = np.concatenate(([0.0], np.cumsum(self.pieces.duration)))
-        for array in (*self.pieces, self.knots):
+        for array in (*self.pieces.arrays().values(), self.knots):
             array.setflags(write=False)
 
     @property
@@ -54,14 +54,14 @@ class JointProfile:
     def __call__(self, t: Array) -> tuple[Array, Array, Array, Array]:
         """Return position, velocity, acceleration and jerk at times of shape (n,)."""
         index = np.searchsorted(self.knots[1:-1], t, side='right')
-        piece = CycloidPiece(*(f[index] for f in self.pieces))
+        piece = self._at(index)
         s = np.clip((t - self.knots[index]) / piece.duration, 0.0, 1.0)
         return piece.at(s)
 
     @cached_property
     def peak_velocity(self) -> float:
         """Largest magnitude of velocity [rad/s]."""
-        s = cycloid.turning_points_of_velocity(self.pieces)
+        s = self.pieces.turning_points()
         return float(np.abs(self._columns().at(s)[1]).max())
 
     def position_range(self) -> tuple[float, float]:
@@ -72,7 +72,7 @@ class JointProfile:
     @cached_property
     def piece_ranges(self) -> tuple[Array, Array]:
         """Least and largest position within each piece, shape (n,) [rad]."""
-        s = cycloid.turning_points_of_velocity(self.pieces)
+        s = self.pieces.turning_points()
         position, velocity = self._columns().at(s)[:2]
         least, most = position.min(axis=1), position.max(axis=1)
         row, col = np.nonzero(velocity[:, :-1] * velocity[:, 1:] < 0.0)
@@ -99,17 +99,17 @@ class JointProfile:
             The slower or faster motion.
 
         """
-        p = self.pieces
-        return JointProfile(CycloidPiece(
-            p.duration * factor, p.position, p.velocity / factor,
-            p.c / factor ** 2, p.b / factor ** 2, p.w))
+        return JointProfile(self.pieces.stretched(factor))
 
-    def _columns(self) -> CycloidPiece:
-        return CycloidPiece(*(f[:, np.newaxis] for f in self.pieces))
+    def _at(self, index: Any) -> Pieces:
+        return self.pieces.made_of(f[index] for f in self.pieces.arrays().values())
+
+    def _columns(self) -> Pieces:
+        return self._at((slice(None), np.newaxis))
 
     def _zero_of_velocity(self, row: IntArray, low: Array, high: Array) -> Array:
         """Return positions where velocity, monotone in each bracket, changes its sign."""
-        piece = CycloidPiece(*(f[row] for f in self.pieces))
+        piece = self._at(row)
         sign_low, s = np.sign(piece.at(low)[1]), 0.5 * (low + high)
         for _ in range(MOST_STEPS):
             _, velocity, acceleration, _ = piece.at(s)
@@ -183,10 +183,11 @@ class PiecewiseTrajectory(Trajectory):
         """Return the exact extremes over the continuous motion."""
         profiles = self.profiles
         ranges = np.array([p.position_range() for p in profiles])
+        acceleration, jerk = np.array([
+            [v.max() for v in p.pieces.peaks()] for p in profiles]).T
         return Peaks(
             velocity=np.array([p.peak_velocity for p in profiles]),
-            acceleration=np.array([cycloid.peak_acceleration(p.pieces).max() for p in profiles]),
-            jerk=np.array([cycloid.peak_jerk(p.pieces).max() for p in profiles]),
+            acceleration=acceleration, jerk=jerk,
             min_position=ranges[:, 0], max_position=ranges[:, 1])
 
     def stretched(self, factor: float) -> PiecewiseTrajectory:

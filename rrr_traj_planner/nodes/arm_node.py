@@ -19,6 +19,7 @@ from rrr_traj_planner.nodes.arm_messages import (
     SECOND,
 )
 from rrr_traj_planner.nodes.arm_time import FollowedClock, OwnClock
+from rrr_traj_planner.nodes.arm_view import ArmView
 from rrr_traj_planner.nodes.configuration import ArmConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
 from rrr_traj_planner.nodes.parameters import ARM
@@ -48,7 +49,8 @@ class SimulatedArm(Node):
     Subscribes `joint_trajectory` and `disturbance` (names and efforts, held until the next one);
     publishes `joint_states` (position and velocity as the encoders tell them, the motors'
     torque), `desired_joint_states` (what the controller follows) and `~/tracking_error` (the
-    second less the first), all three with the same stamp; serves `~/reset`, `~/hold`, `~/pause`
+    second less the first), all three with the same stamp; `robot_description` and `markers` (the
+    arm and where its tip has been), transient local; serves `~/reset`, `~/hold`, `~/pause`
     and `~/step`. Parameters: see `parameters.py`.
 
     """
@@ -60,6 +62,7 @@ class SimulatedArm(Node):
         config = self._parameters_declared.config
         self._joint_names = config.settings.model.joint_names
         self._arm = ControlledArm(config.settings, config.initial_positions)
+        self._view = ArmView(self, config, self._arm.seen)
         self._publishers_of_states = [
             (JointStateMessage(self._joint_names),
              self.create_publisher(JointState, topic, QUEUE_DEPTH).publish)
@@ -83,6 +86,7 @@ class SimulatedArm(Node):
         """Publish how the arm is, and say what has gone wrong."""
         stamp, arm = self._time.reached(), self._arm
         q, w = arm.seen[:3], arm.seen[3:]
+        self._view.moved(q)
         desired = arm.desired
         fields = ((q, w, arm.torque), (desired[:3], desired[3:6]), (
             [a - b for a, b in zip(desired, q)], [a - b for a, b in zip(desired[3:6], w)]))
@@ -125,6 +129,7 @@ class SimulatedArm(Node):
         self._time.catch_up()
         q = self._parameters_declared.config.initial_positions
         self._arm.reset(q)
+        self._view.restart()
         response.success = True
         response.message = f'at rest at {_positions(q)} rad'
         return response
@@ -166,6 +171,7 @@ class SimulatedArm(Node):
     def _configure(self, config: ArmConfig) -> None:
         """Put changed parameters in force."""
         self._arm.configure(config.settings)
+        self._view.configure(config)
         self._timer.timer_period_ns = round(
             SECOND * self._time.period(config.publish_rate, config.real_time_factor))
 

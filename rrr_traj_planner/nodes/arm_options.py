@@ -15,6 +15,7 @@ from rrr_traj_planner.core.incoming_trajectory import Rules
 from rrr_traj_planner.core.payload import Payload
 from rrr_traj_planner.core.soft_stops import SoftStops
 from rrr_traj_planner.core.tolerances import Tolerances
+from rrr_traj_planner.core.urdf import check_frames, FrameNames
 
 Values = Mapping[str, Any]
 
@@ -118,3 +119,29 @@ def trajectory_rules(values: Values) -> Rules:
 
     """
     return Rules(*(values[name] for name in Rules._fields))
+
+
+def frame_names(values: Values) -> FrameNames:
+    """
+    Return the names of the arm's frames.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    FrameNames
+        Of base, links and tip.
+
+    Raises
+    ------
+    InvalidInputError
+        If a name is empty or repeats.
+
+    """
+    frames = FrameNames(
+        values['base_frame'], tuple(values['link_names']), values['tip_frame'])
+    check_frames(frames)
+    return frames

@@ -75,7 +75,7 @@ class FollowedClock:
         if not -JUMP_BACK <= behind <= JUMP_AHEAD:
             self._node.get_logger().warning(
                 f'the clock jumped by {behind * NANOSECOND:+.3f} s; the arm and what it follows '
-                'go on from there')
+                'go on from there', throttle_duration_sec=WARNING_PERIOD)
             self.epoch += behind
             return
         self._arm.advance(max(min(behind, MOST_AT_ONCE) // self._step, 0))

@@ -15,7 +15,13 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.incoming_trajectory import Rules
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.nodes.arm_options import encoder, physical_options, trajectory_rules
+from rrr_traj_planner.core.urdf import FrameNames
+from rrr_traj_planner.nodes.arm_options import (
+    encoder,
+    frame_names,
+    physical_options,
+    trajectory_rules,
+)
 from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]
@@ -39,6 +45,8 @@ class PlannerConfig:
     max_tip_speed: float  # 0: none
     steady_zones: bool
     planning_time_limit: float
+    max_points: int
+    max_via_points: int
 
     @classmethod
     def from_values(cls, values: Values) -> PlannerConfig:
@@ -69,7 +77,8 @@ class PlannerConfig:
             robot_model(values), joint_limits(values),
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
-                'max_deviation', 'max_tip_speed', 'steady_zones', 'planning_time_limit')})
+                'max_deviation', 'max_tip_speed', 'steady_zones', 'planning_time_limit',
+                'max_points', 'max_via_points')})
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +91,8 @@ class ArmConfig:
     rules: Rules
     publish_clock: bool
     real_time_factor: float
+    frames: FrameNames
+    marker_rate: float  # 0: none
 
     @classmethod
     def from_values(cls, values: Values) -> ArmConfig:
@@ -116,7 +127,8 @@ class ArmConfig:
         settings = ArmSettings(robot_model(values), limits, gains, step,
                                encoder=encoder(values, gains), **physical_options(values))
         return cls(settings, values['publish_rate'], _initial_positions(values, limits),
-                   trajectory_rules(values), values['publish_clock'], values['real_time_factor'])
+                   trajectory_rules(values), values['publish_clock'], values['real_time_factor'],
+                   frame_names(values), values['marker_rate'])
 
 
 def robot_model(values: Values) -> RobotModel:

@@ -10,6 +10,7 @@ from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
 import yaml
 
+CHECKOUT = Path(__file__).resolve().parents[2] / 'config'
 FIELDS = ('planner_id', 'via_points', 'segment_durations', 'arm')
 
 
@@ -132,11 +133,15 @@ def shipped_folder() -> Path:
     Returns
     -------
     Path
-        share/rrr_traj_planner/config where the package is installed, config/ in a checkout.
+        share/rrr_traj_planner/config where the package is installed, config/ in a checkout or
+        without ROS.
 
     """
-    from ament_index_python.packages import get_package_share_path, PackageNotFoundError
+    try:
+        from ament_index_python.packages import get_package_share_path, PackageNotFoundError
+    except ImportError:
+        return CHECKOUT
     try:
         return Path(get_package_share_path('rrr_traj_planner')) / 'config'
     except PackageNotFoundError:
-        return Path(__file__).resolve().parents[2] / 'config'
+        return CHECKOUT

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 import sys
@@ -48,9 +49,12 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
                         help="planner id (default: the file's)")
     parser.add_argument('--plot', type=Path, metavar='PNG',
                         help='where the plot goes (default: demo_TASK.png); "" for none')
+    parser.add_argument('--record', type=Path, metavar='MCAP',
+                        help='write what comes by on the topics in this file, a ROS 2 bag')
 
 
 def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+    from rrr_traj_planner.nodes.bag import Bag
     from rrr_traj_planner.nodes.bringup import node_arguments
     from rrr_traj_planner.nodes.configuration_files import read_task
     from rrr_traj_planner.nodes.demo_client import run_on_arm
@@ -59,10 +63,14 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
 
     task = read_task(options.task)
     task = replace(task, planner_id=options.planner or task.planner_id)
-    with NodeProcesses(node_arguments(task.arm, ros_arguments)) as processes:
-        run = run_on_arm(task, ros_arguments, processes.ended)
+    with ExitStack() as stack:
+        bag = None if options.record is None else stack.enter_context(Bag(options.record))
+        processes = stack.enter_context(NodeProcesses(node_arguments(task.arm, ros_arguments)))
+        run = run_on_arm(task, ros_arguments, processes.ended, bag)
     found = figures(run)
     print(table(run, found))
+    if bag is not None:
+        print(f'recording: {bag.file}, {bag.count} messages')
     plot = Path(f'demo_{task.name}.png') if options.plot is None else options.plot
     if str(plot) not in ('', '.'):
         _plot(run, plot)

@@ -8,7 +8,6 @@ from threading import Thread
 from time import monotonic, sleep
 from typing import Any
 
-from geometry_msgs.msg import Pose, PoseArray
 import numpy as np
 from rcl_interfaces.srv import GetParameters
 import rclpy
@@ -21,8 +20,11 @@ from rclpy.time import Time
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics, wrap_into_limits
+from rrr_traj_planner.nodes.bag import Bag
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.configuration_files import Task
+from rrr_traj_planner.nodes.demo_messages import plan_request, trajectory_points
+from rrr_traj_planner.nodes.demo_recording import demo_recorder
 from rrr_traj_planner.nodes.entry import end_ros, made, start_ros, StartError
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
 from rrr_traj_planner.nodes.processes import ending
@@ -50,7 +52,7 @@ class Run:
 
 
 def run_on_arm(task: Task, ros_arguments: list[str],
-               ended: Callable[[], tuple[str, int] | None]) -> Run:
+               ended: Callable[[], tuple[str, int] | None], bag: Bag | None = None) -> Run:
     """
     Plan a task and run it on the arm.
 
@@ -62,6 +64,8 @@ def run_on_arm(task: Task, ros_arguments: list[str],
         For the client's own node.
     ended : callable
         Tells which node's process has ended, if one has.
+    bag : Bag, optional
+        Records what comes by.
 
     Returns
     -------
@@ -84,7 +88,7 @@ def run_on_arm(task: Task, ros_arguments: list[str],
         executor.add_node(client)
         thread = Thread(target=_spin, args=(executor,), daemon=True)
         thread.start()
-        return client.run(task)
+        return client.run(task, bag)
     except rclpy_implementation.RCLError:
         if rclpy.ok():  # else a signal has shut ROS down under the client's feet
             raise
@@ -120,19 +124,21 @@ class _Client(Node):
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
         self._ask = self.create_client(GetParameters, 'trajectory_planner/get_parameters')
 
-    def run(self, task: Task) -> Run:
+    def run(self, task: Task, bag: Bag | None = None) -> Run:
         """Do the whole story."""
         print('waiting for planner and arm ...', flush=True)
         self._wait(self._plan.service_is_ready, 'the planner')
         self._wait(lambda: self._states and self._send.get_subscription_count(), 'the arm')
         self._check_alone()
+        if bag is not None:
+            self._wait(demo_recorder(self, bag).is_connected, 'the topics to record')
         config = self._planner_config()
-        response = self._planned(_request(task))
+        response = self._planned(plan_request(task))
         print(f'planned {len(task.via_points)} via points with '
               f"'{task.planner_id or config.default_planner_id}' in "
               f'{1e3 * response.planning_time:.0f} ms: {response.via_times[-1]:.3f} s, '
               f'{len(response.trajectory.points)} points', flush=True)
-        planned = _points(response.trajectory)
+        planned = trajectory_points(response.trajectory)
         self._go_to(planned.positions[0], task, config)
         start = self._drive(response.trajectory, 'driving')
         recorded, torque = _recorded(list(self._states), config, start)
@@ -157,8 +163,8 @@ class _Client(Node):
         state = self._states[-1]
         if np.abs(_in_order([state], config, 'position')[0] - q).max() <= AT_START:
             return
-        request = _request(replace(task, via_points=task.via_points[:1],
-                                   segment_durations=np.array([])))
+        request = plan_request(replace(
+            task, via_points=task.via_points[:1], segment_durations=np.array([])))
         request.elbow = min(ELBOWS, key=lambda elbow: np.abs(wrap_into_limits(inverse_kinematics(
             config.model, task.via_points[0], elbow, q), config.limits, q) - q).max())
         request.start_state.name = list(state.name)
@@ -212,23 +218,6 @@ class _Client(Node):
             if monotonic() > deadline:
                 raise StartError(f'waited {patience:.0f} s for {what} in vain')
             sleep(0.02)
-
-
-def _request(task: Task) -> PlanTrajectory.Request:
-    request = PlanTrajectory.Request(planner_id=task.planner_id)
-    request.segment_durations = task.segment_durations.tolist()
-    request.via_points = PoseArray(poses=[Pose() for _ in task.via_points])
-    for pose, (x, y, z) in zip(request.via_points.poses, task.via_points.tolist()):
-        pose.position.x, pose.position.y, pose.position.z = x, y, z
-    return request
-
-
-def _points(trajectory: JointTrajectory) -> TrajectoryPoints:
-    points = trajectory.points
-    times = [p.time_from_start.sec + 1e-9 * p.time_from_start.nanosec for p in points]
-    return TrajectoryPoints(np.array(times), *(
-        np.array([getattr(p, f) for p in points])
-        for f in ('positions', 'velocities', 'accelerations')))
 
 
 def _recorded(states: list[JointState], config: PlannerConfig,

@@ -136,7 +136,7 @@ def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
         Exit code: 0 after SIGINT or SIGTERM, 1 after a start that failed.
 
     """
-    return guarded(name, lambda: _spin(load, parse(name, description, arguments)[1]))
+    return guarded(name, lambda: spin(load, parse(name, description, arguments)[1]))
 
 
 def guarded(name: str, work: Callable[[], int]) -> int:
@@ -183,8 +183,23 @@ def guarded(name: str, work: Callable[[], int]) -> int:
     return 1
 
 
-def _spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int:
-    """Start ROS and the node, spin until the context is shut down, and clean up."""
+def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int:
+    """
+    Start ROS and a node, spin until the context is shut down, and clean up.
+
+    Parameters
+    ----------
+    load : callable
+        Imports the node's module and returns its class.
+    ros_arguments : list of str
+        As from `parse`.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    """
     import rclpy
     from rclpy.clock import Clock, ClockType
     from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
 from rrr_traj_planner.core.model import JOINT_NAMES, RobotModel
+from rrr_traj_planner.core.sampling import MOST_POINTS
 
 PLANNER, ARM = 'planner', 'arm'
 
@@ -67,8 +68,10 @@ def _joint_limit(name: str, kind: str, values: tuple[Any, ...], unit: str, low: 
 
 TABLE: tuple[Row, ...] = (
     Row('joint_names', list(JOINT_NAMES), "the joints' names, from the base", read_only=True),
-    Row('base_frame', 'base_link', 'frame of positions', read_only=True, nodes=(PLANNER,)),
-    Row('tip_frame', 'tip', "frame at the arm's tip", read_only=True, nodes=(PLANNER,)),
+    Row('base_frame', 'base_link', 'frame of positions', read_only=True),
+    Row('tip_frame', 'tip', "frame at the arm's tip", read_only=True),
+    Row('link_names', ['link_1', 'link_2', 'link_3'], "the links' frames, in robot_description",
+        read_only=True, nodes=(ARM,)),
     Row('arm.d1', 0.5, 'height of joint axis 2 above the base', 'm', -100.0, 100.0, True),
     Row('arm.a2', 0.9, 'length of the upper arm', 'm', 1e-3, 100.0, True),
     Row('arm.d4', 0.7, 'length of the forearm', 'm', 1e-3, 100.0, True),
@@ -100,7 +103,13 @@ TABLE: tuple[Row, ...] = (
         'Cartesian path', nodes=(PLANNER,)),
     Row('planning_time_limit', 1.0, 'after which a planner that still improves its motion answers '
         'with the best so far', 's', 1e-3, 3600.0, nodes=(PLANNER,)),
+    Row('max_points', MOST_POINTS, 'points that an answer may have; a request for more is refused '
+        'before they are computed', 'points', 2, 10_000_000, nodes=(PLANNER,)),
+    Row('max_via_points', 1000, 'via points that a request may have; one with more is refused '
+        'before it is looked at', 'points', 2, 100_000, nodes=(PLANNER,)),
     Row('publish_rate', 200.0, 'rate of joint_states and desired_joint_states', 'Hz', 1.0, 1000.0,
+        nodes=(ARM,)),
+    Row('marker_rate', 10.0, 'rate of markers, in wall time; 0: none', 'Hz', 0.0, 100.0,
         nodes=(ARM,)),
     Row('physics_step', 0.001, 'time step of physics and control', 's', 1e-5, 0.01, True, (ARM,)),
     Row('initial_positions', inverse_kinematics(RobotModel(), START_POINT).tolist(),

@@ -15,6 +15,7 @@ Plan motions of the arm through via points, exactly and without stopping.
 
   serves      plan_trajectory (rrr_traj_planner_interfaces/srv/PlanTrajectory)
   publishes   planned_trajectory (trajectory_msgs/JointTrajectory), planned_path (nav_msgs/Path)
+              markers (visualization_msgs/MarkerArray)
   parameters  config/thesis_arm.yaml shows them all"""
 
 

@@ -9,14 +9,17 @@ import traceback
 from typing import Any, NamedTuple
 
 from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Path
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
-from rrr_traj_planner.core.errors import ConvergenceError, RrrPlannerError
+from rrr_traj_planner.core.errors import ConvergenceError, quoted, RrrPlannerError
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
+from rrr_traj_planner.nodes.marker_messages import no_plan_markers, plan_markers
 from rrr_traj_planner.nodes.parameters import PLANNER
 from rrr_traj_planner.nodes.planning_messages import (
     failure,
@@ -25,11 +28,18 @@ from rrr_traj_planner.nodes.planning_messages import (
     success,
     tip_path,
 )
+from rrr_traj_planner.nodes.request_statistics import RequestStatistics
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory
+from visualization_msgs.msg import MarkerArray
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+# So many requests may wait; of more the oldest are lost, and their clients wait in vain.
+WAITING = QoSProfile(depth=1000)
+
+DIAGNOSTICS_PERIOD = 1.0  # s
 
 
 class _Answer(NamedTuple):
@@ -37,6 +47,7 @@ class _Answer(NamedTuple):
 
     response: PlanTrajectory.Response
     path: Path | None = None  # the tip's, where there is a plan
+    markers: MarkerArray | None = None  # likewise
     trace: str = ''           # of a bug, for the log
 
 
@@ -52,8 +63,9 @@ class TrajectoryPlanner(Node):
     Notes
     -----
     Serves `plan_trajectory` (rrr_traj_planner_interfaces/srv/PlanTrajectory); publishes
-    `planned_trajectory` and `planned_path`, the last success, transient local. Parameters: see
-    `parameters.py`.
+    `planned_trajectory`, `planned_path` and `markers` (via points, planned path) of the last
+    success, transient local, and `diagnostics`
+    (diagnostic_msgs/DiagnosticArray) once a second. Parameters: see `parameters.py`.
 
     """
 
@@ -63,25 +75,36 @@ class TrajectoryPlanner(Node):
             self, PLANNER, PlannerConfig.from_values, lambda config: None)
         self._trajectory = self.create_publisher(JointTrajectory, 'planned_trajectory', LATCHED)
         self._path = self.create_publisher(Path, 'planned_path', LATCHED)
+        self._markers = self.create_publisher(MarkerArray, 'markers', LATCHED)
+        self._markers.publish(no_plan_markers(self._parameters_declared.config.base_frame))
+        self._statistics = RequestStatistics()
+        self._begun: float | None = None  # when what is planned was taken up
+        self._diagnostics = self.create_publisher(DiagnosticArray, 'diagnostics', 10)
         self._work: SimpleQueue[Any] = SimpleQueue()
         self._answered = self.create_guard_condition(lambda: None)  # wakes the executor
         self._ending, self._ended = Lock(), False
         Thread(target=self._run_worker, name='planning', daemon=True).start()
         # A group of its own, held while a request is planned: the next one waits its turn.
-        self.create_service(PlanTrajectory, 'plan_trajectory', self._plan,
+        self.create_service(PlanTrajectory, 'plan_trajectory', self._plan, qos_profile=WAITING,
                             callback_group=MutuallyExclusiveCallbackGroup())
+        self.create_timer(DIAGNOSTICS_PERIOD, self._diagnose,  # whatever the clock does
+                          clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     async def _plan(self, request: PlanTrajectory.Request,
                     _: PlanTrajectory.Response) -> PlanTrajectory.Response:
         """Answer a request; the executor goes on with other work until the plan is there."""
-        done = Future()
-        self._work.put((request, self._parameters_declared.config,
-                        self.get_clock().now().to_msg(), done))
+        done, config = Future(), self._parameters_declared.config
+        self._begun = perf_counter()
+        self._work.put((request, config, self.get_clock().now().to_msg(), done))
         answer = await done
-        self._report(answer)
+        self._begun = None
+        name = quoted(request.planner_id or config.default_planner_id)[1:-1]
+        self._statistics.add(answer.response, self.get_clock().now().to_msg())
+        self._report(name, answer)
         if answer.path is not None:
             self._trajectory.publish(answer.response.trajectory)
             self._path.publish(answer.path)
+            self._markers.publish(answer.markers)
         return answer.response
 
     def _run_worker(self) -> None:
@@ -94,20 +117,26 @@ class TrajectoryPlanner(Node):
                 done.set_result(answer)
                 self._answered.trigger()
 
-    def _report(self, answer: _Answer) -> None:
+    def _diagnose(self) -> None:
+        """Publish what requests have come to."""
+        busy = 0.0 if self._begun is None else perf_counter() - self._begun
+        self._diagnostics.publish(self._statistics.message(
+            self.get_name(), self.get_clock().now().to_msg(), busy))
+
+    def _report(self, name: str, answer: _Answer) -> None:
         """Log one line for each request, and the trace of a bug."""
         log, response = self.get_logger(), answer.response
-        ms = 1e3 * response.planning_time
+        took = f'in {1e3 * response.planning_time:.0f} ms'
         if response.error_code == response.SUCCESS:
             points = response.trajectory.points
             last = points[-1].time_from_start
-            log.info(f'planned {len(response.via_times)} via points in {ms:.0f} ms: '
+            log.info(f'{name} planned {len(response.via_times)} via points {took}: '
                      f'{last.sec + 1e-9 * last.nanosec:.3f} s, {len(points)} points'
                      + (f'; {response.message}' if response.message else ''))
         elif answer.trace:
-            log.error(f'{response.message}\n{answer.trace}')
+            log.error(f'{name} failed {took}: {response.message}\n{answer.trace}')
         else:
-            log.warning(f'refused in {ms:.0f} ms ({response.error_code}): {response.message}')
+            log.warning(f'{name} refused {took} ({response.error_code}): {response.message}')
 
     def destroy_node(self) -> None:
         """End the planning thread with the node; what it is at is not waited for."""
@@ -120,13 +149,14 @@ class TrajectoryPlanner(Node):
 def _answer(request: PlanTrajectory.Request, config: PlannerConfig, stamp: Time) -> _Answer:
     """Plan, in the planning thread; whatever goes wrong is an answer too."""
     started = perf_counter()
-    path, trace = None, ''
+    path, markers, trace = None, None, ''
     try:
         deadline = started + config.planning_time_limit
         found = plan(config.model, config.limits, planning_request(
             request, config, lambda: perf_counter() > deadline))
         seconds = perf_counter() - started
         response, path = success(found, config), tip_path(found.points, config, stamp)
+        markers = plan_markers(found.points, found.via_times, config.model, config.base_frame)
     except Exception as error:
         seconds = perf_counter() - started
         if isinstance(error, RrrPlannerError) and not isinstance(error, ConvergenceError):
@@ -134,4 +164,4 @@ def _answer(request: PlanTrajectory.Request, config: PlannerConfig, stamp: Time)
         else:  # a bug: the caller is told, the log has the trace
             response, trace = failure(error), traceback.format_exc()
     response.planning_time = seconds
-    return _Answer(response, path, trace)
+    return _Answer(response, path, markers, trace)

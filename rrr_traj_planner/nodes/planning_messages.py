@@ -14,6 +14,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import (
     InvalidInputError,
     LimitViolationError,
+    quoted,
     RrrPlannerError,
     StartStateError,
     UnreachableError,
@@ -29,8 +30,8 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 SECOND = 1_000_000_000  # ns
 
-# A shorter period would ask for answers of no use to any controller [s].
-LEAST_SAMPLE_PERIOD = 1e-4
+# Other periods would ask for answers of no use to any controller [s].
+LEAST_SAMPLE_PERIOD, LARGEST_SAMPLE_PERIOD = 1e-4, 10.0
 
 # A start state that moves faster is not at rest [rad/s]; encoders' noise stays below it.
 AT_REST = 0.01
@@ -78,12 +79,16 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
     """
     frame = message.via_points.header.frame_id
     if frame not in ('', config.base_frame):
-        raise FrameError(f"via_points are in frame '{frame}', must be in '{config.base_frame}' "
-                         '(an empty frame_id means the same)')
+        raise FrameError(f'via_points are in frame {quoted(frame)}, must be in '
+                         f"'{config.base_frame}' (an empty frame_id means the same)")
+    count = len(message.via_points.poses)
+    if count > config.max_via_points:
+        raise InvalidInputError(f'{count} via points given, at most {config.max_via_points} '
+                                'allowed (max_via_points)')
     period = message.sample_period
-    if period != 0.0 and not LEAST_SAMPLE_PERIOD <= period < inf:
-        raise InvalidInputError(f'sample_period is {period:g} s, must be 0 or at least '
-                                f'{LEAST_SAMPLE_PERIOD:g} s, and finite')
+    if period != 0.0 and not LEAST_SAMPLE_PERIOD <= period <= LARGEST_SAMPLE_PERIOD:
+        raise InvalidInputError(f'sample_period is {period:g} s, must be 0 or in '
+                                f'[{LEAST_SAMPLE_PERIOD:g}, {LARGEST_SAMPLE_PERIOD:g}] s')
     deviation = message.max_deviation
     if not 0.0 <= deviation < inf:
         raise InvalidInputError(f'max_deviation is {deviation:g} m, must be 0 or positive, and '
@@ -100,7 +105,7 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
         elbow=message.elbow or None,
         max_deviation=_unless_zero(deviation, config.max_deviation),
         max_tip_speed=_unless_zero(config.max_tip_speed, inf), steady_zones=config.steady_zones,
-        should_stop=should_stop)
+        should_stop=should_stop, max_points=config.max_points)
 
 
 def success(plan: Plan, config: PlannerConfig) -> PlanTrajectory.Response:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rrr_traj_planner.nodes.entry import run_node
+from rrr_traj_planner.nodes.entry import end_ros, guarded, made, parse, spin, start_ros
 
 if TYPE_CHECKING:
     from rrr_traj_planner.nodes.arm_node import SimulatedArm
@@ -17,6 +18,7 @@ would have it, and holds its position otherwise.
   subscribes  joint_trajectory (trajectory_msgs/JointTrajectory)
               disturbance (sensor_msgs/JointState: names and efforts)
   publishes   joint_states, desired_joint_states, ~/tracking_error (sensor_msgs/JointState)
+              robot_description (std_msgs/String), markers (visualization_msgs/MarkerArray)
               /clock (rosgraph_msgs/Clock), with publish_clock
   services    ~/reset, ~/hold, ~/step (std_srvs/Trigger), ~/pause (std_srvs/SetBool)
   parameters  config/thesis_arm.yaml shows them all"""
@@ -37,7 +39,38 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code.
 
     """
-    return run_node('simulated_arm', DESCRIPTION, _load, arguments)
+    def work() -> int:
+        options, ros_arguments = parse('simulated_arm', DESCRIPTION, arguments, _add_options)
+        return _print_urdf(ros_arguments) if options.urdf else spin(_load, ros_arguments)
+
+    return guarded('simulated_arm', work)
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--urdf', action='store_true',
+                        help='print the URDF of the arm that the parameters describe, and end')
+
+
+def _print_urdf(ros_arguments: list[str]) -> int:
+    """Read the parameters as the node would, but run none."""
+    from rclpy.node import Node
+    from rrr_traj_planner.nodes.arm_view import description
+    from rrr_traj_planner.nodes.configuration import ArmConfig
+    from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
+    from rrr_traj_planner.nodes.parameters import ARM
+
+    node = None
+    try:
+        start_ros(ros_arguments)
+        node = made(lambda: Node('simulated_arm', enable_rosout=False,
+                                 start_parameter_services=False))
+        print(description(DeclaredParameters(
+            node, ARM, ArmConfig.from_values, lambda config: None).config), end='')
+    finally:
+        if node is not None:
+            node.destroy_node()
+        end_ros()
+    return 0
 
 
 def _load() -> type[SimulatedArm]:

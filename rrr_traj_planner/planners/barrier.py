@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.pieces import TransitionFunction
 from rrr_traj_planner.planners.segment import Reach, reach, TransitionLaw
 
 # The Hessian comes from differences of exact gradients, over this part of each variable's scale.
@@ -35,6 +37,8 @@ class Chain:
         [rad/s], finite.
     lowest, highest : ndarray, shape (n - 1, 3)
         Bounds of the velocities at the via points [rad/s], around 0.
+    function : TransitionFunction
+        What transitions are made of.
 
     """
 
@@ -43,6 +47,7 @@ class Chain:
     max_velocity: Array
     lowest: Array
     highest: Array
+    function: TransitionFunction = CYCLOID
 
     def rest_to_rest_times(self) -> Array:
         """Return the least durations with a stop at every via point, shape (n,) [s]."""

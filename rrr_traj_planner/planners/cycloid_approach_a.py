@@ -15,7 +15,8 @@ from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.barrier import Chain
-from rrr_traj_planner.planners.motion_law import cannot_hold, chain_of, torque_stretch
+from rrr_traj_planner.planners.motion_law import chain_of, slowed_for_torque
+from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused, within_torque
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.segment import TransitionLaw
@@ -30,8 +31,6 @@ REFINING_PASSES = 16
 REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])
 FIRST_STEP = 0.08          # relative
 STEP_REDUCTION = 0.5
-TORQUE_TOLERANCE = 5e-7
-PRESCRIBED_ROUNDS = 12
 STRETCHES = np.geomspace(1.0, 30.0, 40)  # of what the search finds, tried in turn
 
 
@@ -62,14 +61,12 @@ def plan(task: JointTask) -> Trajectory:
     """
     chain = chain_of(task)
     if task.durations is not None:
-        return _prescribed(task, chain, task.durations)
+        return kept_or_refused(lambda durations: within_torque(
+            task, chain.law, lambda law: _motion(task, chain, law, durations)), task.durations)
     motion = _motion(task, chain, chain.law, _fastest(task, chain))
     if motion is None:
         raise ConvergenceError('approach (a): the durations that were found are not feasible')
-    stretch = torque_stretch(task, motion)
-    if np.isinf(stretch):
-        raise cannot_hold(task, motion)
-    return motion.stretched(stretch) if stretch > 1.0 else motion
+    return slowed_for_torque(task, motion)
 
 
 def _fastest(task: JointTask, chain: Chain) -> Array:
@@ -157,50 +154,3 @@ def _motion(task: JointTask, chain: Chain, law: TransitionLaw,
     kept = (peaks.min_position >= limits.min_position - POSITION_TOLERANCE).all() and (
         peaks.max_position <= limits.max_position + POSITION_TOLERANCE).all()
     return motion if kept else None
-
-
-def _prescribed(task: JointTask, chain: Chain, durations: Array) -> PiecewiseTrajectory:
-    """Return the motion of given durations; transitions gentler where torque asks for it."""
-    motion = _within_torque(task, chain, durations)
-    if motion is not None:
-        return motion
-    low, high = 1.0, 1.0
-    while _within_torque(task, chain, high * durations) is None:
-        low, high = high, 1.3 * high
-        if high > 1e4:
-            raise TimingError(
-                f'segment_durations {durations.tolist()} s are too short, and no stretch of '
-                'them is feasible')
-    for _ in range(20):
-        middle = np.sqrt(low * high)
-        if _within_torque(task, chain, middle * durations) is None:
-            low = middle
-        else:
-            high = middle
-    asked = [round(float(d), 9) for d in durations]
-    feasible = np.ceil(high * durations * (1.0 + 1e-6) * 1e6) / 1e6
-    offered = [round(float(d), 9) for d in feasible]
-    raise TimingError(f'segment_durations {asked} s are too short: the least feasible in their '
-                      f'proportion are {offered} s', tuple(offered))
-
-
-def _within_torque(task: JointTask, chain: Chain, durations: Array) -> PiecewiseTrajectory | None:
-    """Return a motion within all limits, with the fullest acceleration that torque allows."""
-    scale, too_full, too_gentle = 1.0, None, None  # of the acceleration
-    for _ in range(PRESCRIBED_ROUNDS):
-        law = TransitionLaw(chain.law.slope / scale, chain.law.root / scale ** 0.75)
-        motion = _motion(task, chain, law, durations)
-        if motion is None:
-            if too_full is None:
-                return None
-            too_gentle = scale
-        else:
-            stretch = torque_stretch(task, motion)
-            if np.isinf(stretch):
-                raise cannot_hold(task, motion)
-            if stretch <= 1.0 + TORQUE_TOLERANCE:
-                return motion
-            too_full, scale = scale, scale / stretch ** 2
-        if too_gentle is not None and too_full is not None:
-            scale = max(float(np.sqrt(too_full * too_gentle)), scale if motion else 0.0)
-    return None

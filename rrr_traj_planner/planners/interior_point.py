@@ -49,13 +49,54 @@ class Constraints(Protocol):
     points: Array
 
     def slacks(self, m: Motion) -> list[Array]:
-        """Return the room to the limits, each of shape (2, N, p, K)."""
+        """
+        Return the room to the limits.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        list of ndarray, shape (2, N, p, K)
+            Above and below, for each kind of limited quantity.
+
+        """
 
     def linear(self, m: Motion) -> tuple[list[Array], list[Change], Any]:
-        """Return room, how the limited quantities change, and what `hessian` needs, or None."""
+        """
+        Return the room to the limits, and how the limited quantities change.
+
+        Parameters
+        ----------
+        m : Motion
+            Its unknowns.
+
+        Returns
+        -------
+        tuple
+            Room as of `slacks`, a `Change` for each, and what `hessian` needs, or None.
+
+        """
 
     def hessian(self, bent: Any, duals: Array) -> tuple[Array, Array, Array]:
-        """Return the second derivatives of the last quantity's weighted sum."""
+        """
+        Return the second derivatives of the last quantity's weighted sum.
+
+        Parameters
+        ----------
+        bent : object
+            As given by `linear`.
+        duals : ndarray, shape (2, N, p, K)
+            Multipliers of the upper and lower limits.
+
+        Returns
+        -------
+        tuple of ndarray
+            By y twice, by y and T, by T twice.
+
+        """
 
 
 class Centre(NamedTuple):

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from math import pi
-
 import numpy as np
+from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
 from rrr_traj_planner.core.motion_torque import peak_holding_torque, stretch_for_torque
+from rrr_traj_planner.core.pieces import TransitionFunction
 from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.barrier import Chain
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.segment import TransitionLaw
 
-PEAK_ACCELERATION = 2.0  # of a full-period cycloid, times change of velocity / duration (4.10)
-PEAK_JERK = 2.0 * pi     # times change of velocity / duration squared
-
 # A transition at full acceleration lasts at least so many samples, so that the quintic through
-# them keeps the limits; it is a jerk limit of pi / SAMPLES_PER_TRANSITION of acceleration/period.
+# them keeps the limits: it is a limit on jerk, of a cycloid's pi / 5 of acceleration / period.
 SAMPLES_PER_TRANSITION = 5.0
 
 LEAST_VELOCITY = 1e-9  # rad/s: bounds of a via velocity that must be zero
 
 
-def chain_of(task: JointTask) -> Chain:
+def chain_of(task: JointTask, function: TransitionFunction = CYCLOID) -> Chain:
     """
     Return the optimisation problem of a task; via velocities bounded by the room to the limits.
 
@@ -30,6 +27,8 @@ def chain_of(task: JointTask) -> Chain:
     ----------
     task : JointTask
         What is asked.
+    function : TransitionFunction
+        What transitions are made of.
 
     Returns
     -------
@@ -46,17 +45,20 @@ def chain_of(task: JointTask) -> Chain:
     if np.isinf(limits.max_acceleration).any():
         joint = task.model.joint_names[int(np.isinf(limits.max_acceleration).argmax())]
         raise InvalidInputError(
-            f'a planner of cycloid transitions needs acceleration limits, {joint} has none')
-    jerk = np.minimum(limits.max_jerk, pi * limits.max_acceleration / (
+            f'a planner of {function.name} transitions needs acceleration limits, {joint} has '
+            'none')
+    sharpness = function.peak_jerk / function.peak_acceleration
+    jerk = np.minimum(limits.max_jerk, sharpness * limits.max_acceleration / (
         SAMPLES_PER_TRANSITION * task.sample_period))
-    law = TransitionLaw(PEAK_ACCELERATION / limits.max_acceleration, np.sqrt(PEAK_JERK / jerk))
+    law = TransitionLaw(function.peak_acceleration / limits.max_acceleration,
+                        np.sqrt(function.peak_jerk / jerk))
     D = np.diff(task.points, axis=0)
     fastest = np.sqrt(2.0 * np.abs(D).sum(axis=0) / law.slope) + 1.0  # no motion is faster
     velocity = np.minimum(limits.max_velocity, fastest)
     inner = task.points[1:-1]
     room = np.minimum(inner - limits.min_position, limits.max_position - inner)
     highest = np.clip(np.sqrt(2.0 * np.maximum(room, 0.0) / law.slope), LEAST_VELOCITY, velocity)
-    return Chain(D, law, velocity, -highest, highest)
+    return Chain(D, law, velocity, -highest, highest, function)
 
 
 def torque_stretch(task: JointTask, trajectory: Trajectory) -> float:
@@ -77,6 +79,34 @@ def torque_stretch(task: JointTask, trajectory: Trajectory) -> float:
 
     """
     return float(stretch_for_torque(task.model, task.limits, trajectory).value.max())
+
+
+def slowed_for_torque(task: JointTask, trajectory: Trajectory) -> Trajectory:
+    """
+    Return the motion run through as a whole just as slowly as its torques ask for.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    Trajectory
+        The same where there is torque enough.
+
+    Raises
+    ------
+    LimitViolationError
+        If gravity alone exceeds an effort limit on the way.
+
+    """
+    stretch = torque_stretch(task, trajectory)
+    if np.isinf(stretch):
+        raise cannot_hold(task, trajectory)
+    return trajectory.stretched(stretch) if stretch > 1.0 else trajectory
 
 
 def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array, BoolArray
@@ -23,6 +25,8 @@ from rrr_traj_planner.core.motion_torque import peak_torque
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.sampling import sample
 from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.least_time import check_answer_size
+from rrr_traj_planner.planners.missed_via_points import miss_note, misses
 from rrr_traj_planner.planners.registry import CartesianPlanner, planner
 from rrr_traj_planner.planners.request import CartesianTask, JointTask, Plan, PlanningRequest
 from rrr_traj_planner.planners.via_points import check_start, joint_via_points
@@ -30,6 +34,10 @@ from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 # Via points nearer than this in every joint are one point.
 SAME_POINT = 1e-9  # rad
 SAME_TIP = 1e-9    # m, of a path
+
+# A joint that moves no further from one point to the next stands still: with ways of 1e-310 rad
+# beside ways of 1 rad, numbers overflow.
+STANDING = 1e-14  # rad
 
 # The quintic through the sampled points keeps velocity and acceleration limits to this part.
 INTERPOLATION_TOLERANCE = 8e-4
@@ -74,6 +82,8 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
             f'segment_durations[{int(np.isnan(durations).argmax())}] is nan: planner '
             f'{request.planner_id} takes every duration or none')
     q = _joint_points(model, limits, request, start, request.elbow)
+    check_answer_size(limits, request, q)
+    q = _without_noise(q)
     same = _repeated(q)
     if durations is not None:  # where a stay is prescribed, a point counts twice
         same &= np.isnan(durations)
@@ -85,7 +95,15 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
     trajectory = method.plan(JointTask(
         model, limits, distinct, durations, request.sample_period, np.flatnonzero(~same),
         request.should_stop))
-    return _checked(model, limits, request, trajectory, _via_times(request, trajectory, same))
+    answer = _checked(model, limits, request, trajectory, _via_times(request, trajectory, same))
+    return _with_misses(model, answer, q) if method.misses_via_points else answer
+
+
+def _with_misses(model: RobotModel, answer: Plan, q: Array) -> Plan:
+    """Return a plan whose note also says by how much it misses its via points."""
+    found = misses(
+        model, answer.trajectory, answer.via_times, q[len(q) - len(answer.via_times):])
+    return replace(answer, note='; '.join(filter(None, (answer.note, miss_note(found)))))
 
 
 def _planned_path(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
@@ -111,6 +129,7 @@ def _path_on(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
             f'the start state is on elbow branch {elbow_of(start)}: along a path of the tip the '
             f'arm cannot come to {elbow}', model.joint_names[2], float(start[2]), 0.0)
     q = _joint_points(model, limits, request, start, elbow)
+    check_answer_size(limits, request, q)
     tips = request.via_points
     if start is not None:
         tips = np.vstack((forward_kinematics(model, start), tips))
@@ -151,6 +170,15 @@ def _via_times(request: PlanningRequest, trajectory: Trajectory, same: BoolArray
     return np.asarray(trajectory.via_times[index][len(index) - len(request.via_points):])
 
 
+def _without_noise(q: Array) -> Array:
+    """Return points at which a joint is exactly where it was, if it all but is."""
+    q = q.copy()
+    for before, point in zip(q, q[1:]):
+        still = np.abs(point - before) <= STANDING
+        point[still] = before[still]
+    return q
+
+
 def _repeated(q: Array) -> BoolArray:
     """Return which points are the one before, shape (n - 1,)."""
     return np.asarray((np.abs(np.diff(q, axis=0)) <= SAME_POINT).all(axis=1))
@@ -169,7 +197,7 @@ def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, via_times: Array) -> Plan:
     """Return the plan of a trajectory, after the checks that no planner is trusted with."""
     for _ in range(RESAMPLING_ROUNDS):
-        points = sample(trajectory, request.sample_period)
+        points = sample(trajectory, request.sample_period, request.max_points)
         factor = _stretch_for_interpolation(limits, points)
         if factor <= 1.0:
             break

@@ -7,7 +7,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 from typing import NamedTuple
 
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, quoted
 from rrr_traj_planner.core.trajectory import Trajectory
 import rrr_traj_planner.planners
 from rrr_traj_planner.planners.request import CartesianTask, JointTask
@@ -109,5 +109,5 @@ def planner(planner_id: str) -> Registered:
     known = planner_ids()
     if planner_id not in _planners:
         raise InvalidInputError(
-            f"planner_id '{planner_id}' is unknown, known are {', '.join(known)}")
+            f"planner_id {quoted(planner_id)} is unknown, known are {', '.join(known)}")
     return _planners[planner_id]

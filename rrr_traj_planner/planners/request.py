@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, number_array
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, quoted
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.inverse_kinematics import Elbow, ELBOWS
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.sampling import check_size, MOST_POINTS
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
 
 
@@ -50,6 +51,8 @@ class PlanningRequest:
         Whether the tip keeps its speed on the curved zones of a Cartesian path.
     should_stop : callable
         Asked now and then; once it answers True, the best motion so far is the answer.
+    max_points : int
+        How many points the answer may have; one that must have more is not planned.
 
     Raises
     ------
@@ -70,6 +73,7 @@ class PlanningRequest:
     max_tip_speed: float = np.inf
     steady_zones: bool = False
     should_stop: Callable[[], bool] = never
+    max_points: int = MOST_POINTS
 
     def __post_init__(self) -> None:
         """Check every value and make the arrays read-only."""
@@ -83,7 +87,7 @@ class PlanningRequest:
                 f'{len(points)} via points given, at least {needed} needed')
         if self.elbow is not None and self.elbow not in ELBOWS:
             raise InvalidInputError(
-                f"elbow is '{self.elbow}', must be 'up', 'down' or empty")
+                f"elbow is {quoted(self.elbow)}, must be 'up', 'down' or empty")
         for name, unit in (('sample_period', 's'), ('max_deviation', 'm')):
             value = float(getattr(self, name))
             if not (np.isfinite(value) and value > 0.0):
@@ -106,6 +110,8 @@ class PlanningRequest:
             k = int(wrong.argmax())
             raise InvalidInputError(
                 f'segment_durations[{k}] is {durations[k]} s, must be positive and finite')
+        with np.errstate(over='ignore'):  # infinite is long enough
+            check_size(float(np.nansum(durations)), self.sample_period, self.max_points)
 
     @property
     def segments(self) -> int:
@@ -217,7 +223,8 @@ class Plan:
     points : TrajectoryPoints
         The same, sampled.
     via_times : ndarray
-        When each via point is passed [s].
+        When each via point is passed [s]; where a planner misses one, the middle of the
+        transition that straddles it.
     peaks : Peaks
         Exact extremes over the continuous motion.
     effort : ndarray, shape (3,)

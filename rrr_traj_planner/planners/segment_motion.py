@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.cycloid import CycloidPiece
+from rrr_traj_planner.core.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.pieces import Pieces, TransitionFunction
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners.segment import reach, TransitionLaw
 
@@ -79,7 +79,8 @@ def quick_parts(law: TransitionLaw, v0: Array, v1: Array, T: Array, D: Array) ->
     return _mirrored(lambda a, b, D: _limited(law, unlimited, a, b, T, D), v0, v1, T, D)
 
 
-def trajectory(points: Array, v0: Array, v1: Array, T: Array, parts: Parts) -> PiecewiseTrajectory:
+def trajectory(points: Array, v0: Array, v1: Array, T: Array, parts: Parts,
+               function: TransitionFunction = CYCLOID) -> PiecewiseTrajectory:
     """
     Return the motion that the parts of all segments make.
 
@@ -93,6 +94,8 @@ def trajectory(points: Array, v0: Array, v1: Array, T: Array, parts: Parts) -> P
         Durations [s].
     parts : Parts
         Of each segment.
+    function : TransitionFunction
+        What transitions are made of.
 
     Returns
     -------
@@ -104,15 +107,32 @@ def trajectory(points: Array, v0: Array, v1: Array, T: Array, parts: Parts) -> P
     q1 = points[:-1] + 0.5 * (v0 + parts.cruise) * parts.first
     q2 = q1 + parts.cruise * middle
     with np.errstate(divide='ignore', invalid='ignore'):
-        pieces = (cycloid.transition(parts.first, points[:-1], v0, parts.cruise),
-                  cycloid.cruise(middle, q1, parts.cruise),
-                  cycloid.transition(parts.last, q2, parts.cruise, v1))
+        pieces = (function.transition(parts.first, points[:-1], v0, parts.cruise),
+                  function.cruise(middle, q1, parts.cruise),
+                  function.transition(parts.last, q2, parts.cruise, v1))
+    return PiecewiseTrajectory(joint_profiles(pieces), np.concatenate(([0.0], np.cumsum(T))))
+
+
+def joint_profiles(pieces: Sequence[Pieces]) -> list[JointProfile]:
+    """
+    Return the profiles of joints whose every segment consists of the same kinds of pieces.
+
+    Parameters
+    ----------
+    pieces : sequence of Pieces
+        In order of time; values of shape (n, 3), for each segment and joint. Those of no duration
+        are left out, whatever their values are.
+
+    Returns
+    -------
+    list of JointProfile
+        One for each joint.
+
+    """
     lasting = np.stack([p.duration > 0.0 for p in pieces], axis=1)
-    fields = (np.where(lasting, np.stack(f, axis=1), 1.0 * (i == 5))
-              for i, f in enumerate(zip(*(np.broadcast_arrays(*p) for p in pieces))))
-    joined = CycloidPiece(*(f.reshape(-1, 3) for f in fields))
-    profiles = [JointProfile(CycloidPiece(*(f[:, j] for f in joined))) for j in range(3)]
-    return PiecewiseTrajectory(profiles, np.concatenate(([0.0], np.cumsum(T))))
+    fields = [np.where(lasting, np.stack(f, axis=1), 0.0).reshape(-1, 3)
+              for f in zip(*(np.broadcast_arrays(*p.arrays().values()) for p in pieces))]
+    return [JointProfile(pieces[0].made_of(f[:, j] for f in fields)) for j in range(3)]
 
 
 def _mirrored(parts: Callable[[Array, Array, Array], Parts], v0: Array, v1: Array, T: Array,

@@ -7,11 +7,8 @@ from rrr_traj_planner.core.cycloid import (
     cruise,
     CycloidPiece,
     general_transition,
-    peak_acceleration,
-    peak_jerk,
     ramp,
     transition,
-    turning_points_of_velocity,
 )
 from rrr_traj_planner.core.errors import InvalidInputError
 from scipy.integrate import quad
@@ -244,7 +241,7 @@ def test_consecutive_pieces_join_without_a_step():
 
 def test_closed_form_peaks_are_those_of_dense_sampling():
     pieces = random_pieces(71, 200)
-    acceleration, jerk = peak_acceleration(joined(pieces)), peak_jerk(joined(pieces))
+    acceleration, jerk = joined(pieces).peaks()
     for i, piece in enumerate(pieces):
         sampled = piece.at(DENSE)
         for exact, dense in ((acceleration[i], np.abs(sampled[2]).max()),
@@ -257,13 +254,13 @@ def test_closed_form_peaks_are_those_of_dense_sampling():
 def test_closed_form_peaks_hold_for_any_part_of_a_period(w):
     piece = CycloidPiece(*(np.array([x]) for x in (1.3, 0.2, 0.4, -0.7, 1.9, w)))
     sampled = piece.at(DENSE)
-    assert peak_acceleration(piece)[0] == pytest.approx(np.abs(sampled[2]).max(), rel=1e-6)
-    assert peak_jerk(piece)[0] == pytest.approx(np.abs(sampled[3]).max(), rel=1e-6)
+    assert piece.peaks()[0][0] == pytest.approx(np.abs(sampled[2]).max(), rel=1e-6)
+    assert piece.peaks()[1][0] == pytest.approx(np.abs(sampled[3]).max(), rel=1e-6)
 
 
 def test_velocity_is_monotone_between_its_turning_points():
     pieces = random_pieces(72, 200)
-    turning = turning_points_of_velocity(joined(pieces))
+    turning = joined(pieces).turning_points()
     assert turning.shape == (200, 4)
     assert (turning[:, 0] == 0.0).all()
     assert (turning[:, -1] == 1.0).all()

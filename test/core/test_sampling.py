@@ -178,6 +178,15 @@ def test_impossible_period_is_refused(period):
         sample(cruising(1.5), period)
 
 
+@pytest.mark.parametrize('period', [0.05, 0.1, 0.25, 0.3, 1.0, 7.0])
+def test_bound_on_points_is_met_exactly(period):
+    trajectory = cruising(1.23, duration=3.04)
+    size = len(sample(trajectory, period).times)
+    assert len(sample(trajectory, period, size).times) == size
+    with pytest.raises(InvalidInputError, match=f'has more than {size - 1} points'):
+        sample(trajectory, period, size - 1)
+
+
 def test_more_points_than_memory_holds_are_refused_before_they_are_made():
     trajectory = cruising(1.0, duration=1e9)
     with pytest.raises(InvalidInputError, match='has more than 200000 points'):

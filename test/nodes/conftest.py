@@ -63,6 +63,12 @@ class Ros:
         self._executor.add_node(node)
         return node
 
+    def remove(self, node):
+        """End a node before the test does."""
+        self._nodes.remove(node)
+        self._executor.remove_node(node)
+        node.destroy_node()
+
     def listen(self, message_type, topic, qos=10):
         """Return a listener to a topic."""
         return Listener(self.node, message_type, topic, qos)

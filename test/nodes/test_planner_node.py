@@ -207,10 +207,10 @@ def test_each_request_is_one_line_in_the_log(ros):
     log = ros.listen(Log, '/rosout', 100)
     made(ros)
     plan(ros)
-    log.wait_for(lambda m: m.msg.startswith('planned 3 via points in ')
+    log.wait_for(lambda m: m.msg.startswith('cycloid planned 3 via points in ')
                  and m.msg.endswith(' ms: 2.850 s, 286 points'))
     plan(ros, TABLE_6_3)
-    refused = log.wait_for(lambda m: m.msg.startswith('refused in '))
+    refused = log.wait_for(lambda m: m.msg.startswith('cycloid refused in '))
     assert refused.msg.endswith(
         ' ms (-14): via point 2: joint_2 needs 218.9 N m to hold, limit 200 N m')
     assert refused.level == Log.WARN

@@ -1,0 +1,30 @@
+"""The full-period cycloid as one of the functions that transitions can be made of."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+from rrr_traj_planner.core import cycloid
+from rrr_traj_planner.core.cycloid import CycloidPiece
+from rrr_traj_planner.core.pieces import TransitionFunction
+
+
+class CycloidTransitions(TransitionFunction):
+    """Full-period transitions and cruises as cycloid pieces; see `TransitionFunction`."""
+
+    name = 'cycloid'
+    peak_acceleration = 2.0  # (4.10)
+    peak_jerk = 2.0 * pi
+
+    def transition(self, duration: Any, position: Any, velocity: Any,
+                   end_velocity: Any) -> CycloidPiece:
+        """Return a transition; see `TransitionFunction`."""
+        return cycloid.transition(duration, position, velocity, end_velocity)
+
+    def cruise(self, duration: Any, position: Any, velocity: Any) -> CycloidPiece:
+        """Return a piece at constant velocity; see `TransitionFunction`."""
+        return cycloid.cruise(duration, position, velocity)
+
+
+CYCLOID = CycloidTransitions()

@@ -1,0 +1,173 @@
+"""
+Gauss's function as the acceleration of a transition (3.1-3.3, appendix A), with mu = 1/2.
+
+A Gauss function is nowhere 0: it is lowered by its value at the transition's ends, k sigma from
+the middle, as the thesis's constant C0 does (A.5), and scaled to the change of velocity. So
+acceleration is continuous; jerk steps at the ends, the less the larger k, but the transition then
+lasts longer.
+"""
+
+from __future__ import annotations
+
+from math import exp, pi, sqrt
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.transition_shape import Curve, TransitionShape
+from scipy.special import erf
+
+# k. Over so many sigma a Maclaurin series of order 9, and none below, is right to a thousandth of
+# the peak: what appendix A says is needed.
+HALF_WIDTH = 2.0
+NEEDED_ORDER = 9
+
+
+def maclaurin(u: Any, order: int) -> Array:
+    """
+    Return the Maclaurin series of exp(-u^2 / 2) (3.3, whose sum starts at n = 0).
+
+    Parameters
+    ----------
+    u : array_like
+        (t - mu) / sigma.
+    order : int
+        N of the last term, of degree 2 N in u.
+
+    Returns
+    -------
+    ndarray
+        The sum.
+
+    Raises
+    ------
+    InvalidInputError
+        If the order is negative.
+
+    """
+    u = np.asarray(u, dtype=float)
+    return np.asarray(_series(order)(u))
+
+
+def maclaurin_error(order: int, half_width: float = HALF_WIDTH) -> float:
+    """
+    Return the largest error of the series against Gauss's function, of a peak of 1.
+
+    Parameters
+    ----------
+    order : int
+        N of the last term.
+    half_width : float
+        Largest |u|, where the error is largest: the rest of the series of exp(-x) grows with x.
+
+    Returns
+    -------
+    float
+        The error.
+
+    Raises
+    ------
+    InvalidInputError
+        If the order is negative.
+
+    """
+    return float(abs(maclaurin(half_width, order) - exp(-0.5 * half_width ** 2)))
+
+
+def gauss(half_width: float = HALF_WIDTH, order: int | None = None) -> TransitionShape:
+    """
+    Return the transition whose acceleration is a Gauss function, lowered to 0 at its ends.
+
+    Parameters
+    ----------
+    half_width : float
+        k: its ends are so many sigma from its middle.
+    order : int, optional
+        N of the thesis's series (A.2-A.4) that takes the function's place; None: closed form,
+        with erf.
+
+    Returns
+    -------
+    TransitionShape
+        With its peak jerk in closed form: at one sigma from the middle.
+
+    Raises
+    ------
+    InvalidInputError
+        If the half width is not positive and finite, or the series of this order does not fall
+        from its middle to its ends.
+
+    """
+    if not (np.isfinite(half_width) and half_width > 0.0):
+        raise InvalidInputError(f'half_width is {half_width} sigma, must be positive and finite')
+    if order is None:
+        steepest = min(1.0, half_width)
+        return _lowered('gauss', half_width, steepest, (
+            _gauss, _first_integral, _second_integral, lambda u: -u * _gauss(u)))
+    series = _series(order)
+    slope = series.deriv()
+    turns = np.concatenate((_inner_zeros(slope.deriv(), half_width), [half_width]))
+    steepest = float(turns[np.abs(slope(turns)).argmax()])
+    if order < 1 or slope(half_width) >= 0.0 or len(_inner_zeros(slope, half_width)):
+        raise InvalidInputError(
+            f'order {order} of the series does not fall up to {half_width} sigma')
+    first = series.integ()
+    return _lowered(f'gauss of order {order}', half_width, steepest,
+                    (series, first, first.integ(), slope))
+
+
+def _lowered(name: str, k: float, steepest: float,
+             curves: tuple[Curve, Curve, Curve, Curve]) -> TransitionShape:
+    """Return the shape of an even function of u, its odd and even integrals and its slope."""
+    value, first, second, slope = curves
+    end, first_end, second_end = float(value(k)), float(first(k)), float(second(k))
+
+    def gained(u: Any) -> Any:
+        return first(u) + first_end - end * (u + k)
+
+    area = float(gained(k))
+    width = 2.0 * k  # in sigma: u = width (s - 1/2)
+    return TransitionShape(
+        name,
+        acceleration=lambda s: width / area * (value(k * (2.0 * s - 1.0)) - end),
+        velocity=lambda s: gained(k * (2.0 * s - 1.0)) / area,
+        position=lambda s: (second(k * (2.0 * s - 1.0)) - second_end + first_end * width * s
+                            - 0.5 * end * (width * s) ** 2) / (width * area),
+        jerk=lambda s: width ** 2 / area * slope(k * (2.0 * s - 1.0)),
+        peak_acceleration=width / area * (float(value(0.0)) - end),
+        peak_jerk=width ** 2 / area * abs(float(slope(steepest))))
+
+
+def _gauss(u: Any) -> Array:
+    return np.asarray(np.exp(-0.5 * u * u))
+
+
+def _first_integral(u: Any) -> Array:
+    return np.asarray(sqrt(0.5 * pi) * erf(u * sqrt(0.5)))
+
+
+def _second_integral(u: Any) -> Array:
+    return np.asarray(u * _first_integral(u) + _gauss(u))
+
+
+def _series(order: int) -> Polynomial:
+    """Return sum (-1/2)^n u^2n / n! up to n = order."""
+    if order < 0:
+        raise InvalidInputError(f'order is {order}, must not be negative')
+    coefficients, term = np.zeros(2 * order + 1), 1.0
+    for n in range(order + 1):
+        coefficients[2 * n] = term
+        term *= -0.5 / (n + 1)
+    return Polynomial(coefficients)
+
+
+def _inner_zeros(polynomial: Polynomial, end: float) -> Array:
+    """Return the zeros of a polynomial strictly between 0 and an end."""
+    zeros = polynomial.roots()
+    real = zeros.real[np.abs(zeros.imag) < 1e-9]
+    return np.asarray(real[(real > 1e-6) & (real < end)])
+
+
+GAUSS = gauss()

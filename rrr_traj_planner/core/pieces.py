@@ -1,0 +1,137 @@
+"""What motions are made of: pieces of one joint's motion, and functions that make them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Protocol
+
+from rrr_traj_planner.core.arrays import Array
+
+
+class Pieces(Protocol):
+    """
+    One piece of a joint's motion, or several at once, over a normalised time s in [0, 1].
+
+    Values are floats or arrays of one shape.
+    """
+
+    @property
+    def duration(self) -> Any:
+        """Length of time [s]."""
+
+    def at(self, s: Any) -> tuple[Array, Array, Array, Array]:
+        """
+        Return position, velocity, acceleration and jerk at normalised times.
+
+        Parameters
+        ----------
+        s : array_like
+            In [0, 1], of a shape that broadcasts with the values.
+
+        Returns
+        -------
+        tuple of ndarray
+            [rad], [rad/s], [rad/s^2], [rad/s^3].
+
+        """
+
+    def arrays(self) -> dict[str, Any]:
+        """Return every value that the pieces are made of, by its name."""
+
+    def made_of(self, arrays: Iterable[Any]) -> Pieces:
+        """
+        Return pieces of the same function made of other values.
+
+        Parameters
+        ----------
+        arrays : iterable
+            The values, in the order of `arrays`.
+
+        Returns
+        -------
+        Pieces
+            The pieces.
+
+        """
+
+    def stretched(self, factor: float) -> Pieces:
+        """
+        Return the same positions run through at another rate.
+
+        Parameters
+        ----------
+        factor : float
+            What every time is multiplied by, positive.
+
+        Returns
+        -------
+        Pieces
+            The pieces.
+
+        """
+
+    def turning_points(self) -> Array:
+        """Return the normalised times, shape (n, m), between which velocity is monotone."""
+
+    def peaks(self) -> tuple[Array, Array]:
+        """Return the largest magnitudes of acceleration and of jerk, exactly, shape (n,)."""
+
+
+class TransitionFunction(Protocol):
+    """
+    A function that leads from one velocity to another, its acceleration 0 at both ends.
+
+    Acceleration is symmetric in time, so that a transition covers duration * (velocity +
+    end_velocity) / 2, and never changes its sign, so that velocity is monotone.
+    """
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+
+    @property
+    def peak_acceleration(self) -> float:
+        """Its peak, times change of velocity / duration."""
+
+    @property
+    def peak_jerk(self) -> float:
+        """Its largest jerk, times change of velocity / duration squared."""
+
+    def transition(self, duration: Any, position: Any, velocity: Any,
+                   end_velocity: Any) -> Pieces:
+        """
+        Return a transition.
+
+        Parameters
+        ----------
+        duration : float or ndarray
+            [s].
+        position, velocity : float or ndarray
+            At the start [rad, rad/s].
+        end_velocity : float or ndarray
+            [rad/s].
+
+        Returns
+        -------
+        Pieces
+            Displacement duration * (velocity + end_velocity) / 2.
+
+        """
+
+    def cruise(self, duration: Any, position: Any, velocity: Any) -> Pieces:
+        """
+        Return a piece at constant velocity, of the same kind as transitions.
+
+        Parameters
+        ----------
+        duration : float or ndarray
+            [s].
+        position, velocity : float or ndarray
+            At the start [rad, rad/s].
+
+        Returns
+        -------
+        Pieces
+            The piece.
+
+        """

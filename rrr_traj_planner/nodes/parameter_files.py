@@ -1,0 +1,73 @@
+"""A parameter file read without ROS, as the planner node would read it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.model import JOINT_NAMES
+from rrr_traj_planner.nodes.configuration import PlannerConfig
+from rrr_traj_planner.nodes.parameters import check_value, PLANNER, rows_of
+import yaml
+
+NODES = ('/**', 'trajectory_planner', '/trajectory_planner')  # later ones say more
+
+
+def planner_config(file: Path) -> PlannerConfig:
+    """
+    Return the planner node's configuration by a parameter file.
+
+    Parameters
+    ----------
+    file : Path
+        As ROS takes it: `/**:` or the node's name, `ros__parameters:`, values.
+
+    Returns
+    -------
+    PlannerConfig
+        Checked; what the file leaves out has its default.
+
+    Raises
+    ------
+    InvalidInputError
+        If the file is missing, no YAML or malformed, or a value is wrong; it names the file.
+
+    """
+    try:
+        return _config(_values(file))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError, InvalidInputError) as error:
+        raise InvalidInputError(f'{file}: {" ".join(str(error).split())}') from None
+
+
+def _config(given: dict[str, Any]) -> PlannerConfig:
+    rows = rows_of(PLANNER, JOINT_NAMES)
+    names = given.get('joint_names', rows['joint_names'].default)
+    check_value(rows['joint_names'], names)
+    rows = rows_of(PLANNER, names)
+    values = {name: given.get(name, row.default) for name, row in rows.items()}
+    for name, value in values.items():
+        check_value(rows[name], value)
+    return PlannerConfig.from_values(values)
+
+
+def _values(file: Path) -> dict[str, Any]:
+    """Return a file's parameters by their dotted names."""
+    content = yaml.safe_load(file.read_text())
+    if not isinstance(content, dict):
+        raise InvalidInputError('no parameters')
+    found: dict[str, Any] = {}
+    for node in NODES:
+        part = content.get(node) or {}
+        parameters = part.get('ros__parameters') if isinstance(part, dict) else None
+        if isinstance(parameters, dict):
+            found.update(_flat(parameters))
+    return found
+
+
+def _flat(values: dict[str, Any], prefix: str = '') -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        full = f'{prefix}{name}'
+        found.update(_flat(value, f'{full}.') if isinstance(value, dict) else {full: value})
+    return found

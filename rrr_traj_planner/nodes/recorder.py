@@ -1,0 +1,118 @@
+"""Records topics in a bag: what comes by, byte for byte."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from time import time_ns
+from typing import Any
+
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rrr_traj_planner.nodes.bag import Bag
+from rrr_traj_planner.nodes.message_definitions import definition
+
+SECOND = 1_000_000_000  # ns
+QUEUE_DEPTH = 1000
+
+PASSING = QoSProfile(depth=QUEUE_DEPTH)
+LATCHED = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Recorder:
+    """
+    Subscribes topics on a node and writes what arrives.
+
+    Parameters
+    ----------
+    node : Node
+        Spun by an executor.
+    bag : Bag
+        Where the messages go.
+    topics : iterable of (type, str)
+        Message types and names, relative ones to the node's namespace.
+    latched : iterable of (type, str)
+        The same, of topics whose publishers are transient local.
+
+    """
+
+    def __init__(self, node: Node, bag: Bag, topics: Iterable[tuple[Any, str]],
+                 latched: Iterable[tuple[Any, str]] = ()) -> None:
+        self._node, self._bag = node, bag
+        self._subscriptions = [
+            node.create_subscription(kind, topic, self._writer_of(kind, topic), qos, raw=True)
+            for some, qos in ((topics, PASSING), (latched, LATCHED)) for kind, topic in some]
+
+    def is_connected(self) -> bool:
+        """Return whether it receives from every publisher that the node knows of."""
+        return all(s.get_publisher_count() >= self._node.count_publishers(s.topic_name)
+                   for s in self._subscriptions)
+
+    def _writer_of(self, kind: Any, topic: str) -> Callable[[bytes, Any], None]:
+        """Return a subscription's callback."""
+        name = self._node.resolve_topic_name(topic)
+
+        def write(message: bytes, info: Any) -> None:
+            if not self._bag.has(name):
+                text = type_name(kind)
+                self._bag.add_topic(name, text, definition(text), offered_qos(self._node, name))
+            now = time_ns()
+            self._bag.write(name, message, info['received_timestamp'] or now,
+                            info['source_timestamp'] or now)
+
+        return write
+
+
+def type_name(kind: Any) -> str:
+    """
+    Return a message type's full name.
+
+    Parameters
+    ----------
+    kind : type
+        A message class.
+
+    Returns
+    -------
+    str
+        As `sensor_msgs/msg/JointState`.
+
+    """
+    package, folder, *_ = kind.__module__.split('.')
+    return f'{package}/{folder}/{kind.__name__}'
+
+
+def offered_qos(node: Node, topic: str) -> str:
+    """
+    Return what a topic's publishers offer, for the player of a bag.
+
+    Parameters
+    ----------
+    node : Node
+        Which knows of them.
+    topic : str
+        Full name.
+
+    Returns
+    -------
+    str
+        YAML, as rosbag2 writes it.
+
+    """
+    return '\n'.join(_qos_text(info.qos_profile)
+                     for info in node.get_publishers_info_by_topic(topic))
+
+
+def _qos_text(qos: QoSProfile) -> str:
+    def duration(name: str, value: Duration) -> str:
+        sec, nanosec = divmod(value.nanoseconds, SECOND)
+        return f'  {name}:\n    sec: {sec}\n    nsec: {nanosec}'
+
+    return '\n'.join((
+        f'- history: {qos.history.short_key}', f'  depth: {qos.depth}',
+        f'  reliability: {qos.reliability.short_key}',
+        f'  durability: {qos.durability.short_key}',
+        duration('deadline', qos.deadline), duration('lifespan', qos.lifespan),
+        f'  liveliness: {qos.liveliness.short_key}',
+        duration('liveliness_lease_duration', qos.liveliness_lease_duration),
+        f'  avoid_ros_namespace_conventions: {str(qos.avoid_ros_namespace_conventions).lower()}'))

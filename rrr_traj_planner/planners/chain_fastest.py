@@ -1,0 +1,134 @@
+"""
+The fastest motion through a chain of segments.
+
+Durations and via velocities are optimised together under the velocity, acceleration and jerk
+limits; where the torque of the motion is too much, the segments that ask for it are given more
+time.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import ConvergenceError
+from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain_motion import (
+    at_rest,
+    ChainMotion,
+    segment_stretch,
+    slower_at,
+    stretched_for_torque,
+    timed_motion,
+)
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.via_velocities import least_time
+
+# Durations are longer than the least by this part, so that they can be prescribed again.
+DURATION_ROOM = 1e-6
+
+STRAIGHTENING_ROUNDS = 5   # of lowering via velocities of a path that gravity blocks
+SLOWING_ROUNDS = 8         # of giving more time to the segments that lack torque
+OVERSHOOT_ROUNDS = 8       # of lowering via velocities that overshoot a joint's range
+
+
+def fastest(task: JointTask, chain: Chain, floor: Array | None) -> ChainMotion:
+    """
+    Return the motion of least total time, slowed where torque asks for it.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    chain : Chain
+        The via points.
+    floor : ndarray, shape (n,), optional
+        Durations [s] that no segment may fall below.
+
+    Returns
+    -------
+    ChainMotion
+        Within all limits.
+
+    Raises
+    ------
+    LimitViolationError
+        If gravity alone exceeds an effort limit between the via points.
+
+    """
+    chain, motion, stretch = _holdable_motion(task, chain, floor)
+    best, least = motion, motion.durations.sum() * max(1.0, stretch.max())
+    lacking = np.zeros(len(stretch), dtype=bool)
+    for _ in range(SLOWING_ROUNDS):
+        lacking |= stretch > 1.0
+        if not lacking.any() or np.isinf(stretch).any():
+            break
+        # as long as torque asks for, neither more nor less
+        slow = np.where(lacking, motion.durations * stretch, 0.0)
+        slow = slow if floor is None else np.maximum(slow, floor)
+        motion = _least_time_motion(task, chain, slow)
+        stretch = segment_stretch(task, motion)
+        total = motion.durations.sum() * max(1.0, stretch.max())
+        if total < least:
+            best, least = motion, total
+    return stretched_for_torque(task, best)
+
+
+def fastest_with_stops(task: JointTask, chain: Chain, floor: Array) -> ChainMotion:
+    """
+    Return the motion of least total time with a stop at every via point.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    chain : Chain
+        The via points.
+    floor : ndarray, shape (n,)
+        Durations [s] that no segment may fall below.
+
+    Returns
+    -------
+    ChainMotion
+        Within all limits.
+
+    Raises
+    ------
+    LimitViolationError
+        If gravity alone exceeds an effort limit between the via points.
+
+    """
+    stops = at_rest(chain)
+    return stretched_for_torque(task, _least_time_motion(task, stops, floor))
+
+
+def _holdable_motion(task: JointTask, chain: Chain,
+                     floor: Array | None) -> tuple[Chain, ChainMotion, Array]:
+    """
+    Return the motion of least time whose path can be held against gravity, and torque's stretch.
+
+    Lower via velocities straighten the path; if gravity is too much even from rest to rest, the
+    stretch says so by being infinite.
+    """
+    for _ in range(STRAIGHTENING_ROUNDS):
+        motion = _least_time_motion(task, chain, floor)
+        stretch = segment_stretch(task, motion)
+        blocked = np.isinf(stretch)
+        if not blocked.any():
+            return chain, motion, stretch
+        chain = slower_at(chain, np.tile(blocked[:, np.newaxis], 3))
+    motion = _least_time_motion(task, at_rest(chain), floor)
+    return at_rest(chain), motion, segment_stretch(task, motion)
+
+
+def _least_time_motion(task: JointTask, chain: Chain, floor: Array | None) -> ChainMotion:
+    """Return the motion of least total time within the kinematic limits."""
+    for round_ in range(OVERSHOOT_ROUNDS + 1):
+        if round_ == OVERSHOOT_ROUNDS:
+            chain = at_rest(chain)
+        durations = least_time(chain, floor).durations * (1.0 + DURATION_ROOM)
+        motion, overshoot = timed_motion(task, chain, durations)
+        if motion is not None and not overshoot.any():
+            return motion
+        chain = slower_at(chain, overshoot)
+    raise ConvergenceError(
+        f'{chain.function.name}: even stops at the via points overshoot a range')

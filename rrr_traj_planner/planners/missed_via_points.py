@@ -1,0 +1,68 @@
+"""By how much a motion misses its via points, where missing them is its method's way."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.trajectory import Trajectory
+
+HIT = 1e-9  # rad: a joint that is so near is there
+
+
+class Misses(NamedTuple):
+    """Distances from the via points at their times, shape (n,)."""
+
+    tip: Array    # [m]
+    joint: Array  # of the joint that is furthest [rad]
+
+
+def misses(model: RobotModel, trajectory: Trajectory, via_times: Array, q: Array) -> Misses:
+    """
+    Return how far a motion is from its via points at their times.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    trajectory : Trajectory
+        The motion.
+    via_times : ndarray, shape (n,)
+        The via points' times [s]: of one that is straddled, the middle of its transition.
+    q : ndarray, shape (n, 3)
+        Joint positions at the via points [rad].
+
+    Returns
+    -------
+    Misses
+        For each via point.
+
+    """
+    passed = trajectory(via_times)[0]
+    apart = forward_kinematics(model, passed) - forward_kinematics(model, q)
+    return Misses(np.linalg.norm(apart, axis=1), np.abs(passed - q).max(axis=1))
+
+
+def miss_note(found: Misses) -> str:
+    """
+    Return what the caller should know.
+
+    Parameters
+    ----------
+    found : Misses
+        For each via point.
+
+    Returns
+    -------
+    str
+        Empty where every via point is hit.
+
+    """
+    missed = [f'{i} by {tip:.3g} m ({joint:.3g} rad)' for i, (tip, joint) in enumerate(
+        zip(*found)) if joint > HIT]
+    if not missed:
+        return ''
+    return f'via point{"s" * (len(missed) > 1)} missed by construction: {", ".join(missed)}'

@@ -1,0 +1,135 @@
+"""
+`poly_414`: lines in joint space, quartics around the via points (6.1-6.8, after Paul).
+
+Every transition lasts 2 t_acc, half of it before and half of it after the time at which two lines
+meet in their via point, which is missed. Lines take the least times that the limits and the
+transitions allow, none less than 2 t_acc. Where that asks for more torque than there is, the whole
+motion is slowed, t_acc with it. Jerk steps where a quartic begins or ends.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.quartic import QUARTIC
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.motion_law import (
+    cannot_hold,
+    chain_of,
+    slowed_for_torque,
+    torque_stretch,
+)
+from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused, TORQUE_TOLERANCE
+from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.straddled_motion import is_kept, Straddling, trajectory
+from rrr_traj_planner.planners.straddled_timing import fastest, total_time
+
+T_ACC = 0.5  # s, half the length of a transition (table 6.2)
+
+
+@register('poly_414', misses_via_points=True)
+def plan(task: JointTask) -> Trajectory:
+    """
+    Return the fastest 4-1-4 motion, or one of prescribed durations.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked.
+
+    Returns
+    -------
+    Trajectory
+        Within the limits; via times are the middles of the transitions.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has no acceleration limit.
+    TimingError
+        If prescribed durations are too short; with feasible ones.
+    LimitViolationError
+        If gravity alone exceeds an effort limit on the way.
+
+    """
+    return planned(task, T_ACC)
+
+
+def planned(task: JointTask, t_acc: float) -> Trajectory:
+    """
+    Return the motion for a given t_acc.
+
+    It is shorter at a via point beside a segment that could be gone from rest to rest within
+    2 t_acc: half that time, if the motion is then faster. With prescribed durations it is shorter
+    where they leave no room for it.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked.
+    t_acc : float
+        Half the length of a transition [s].
+
+    Returns
+    -------
+    Trajectory
+        Within the limits.
+
+    Raises
+    ------
+    InvalidInputError, TimingError, LimitViolationError
+        As in `plan`.
+
+    """
+    chain = chain_of(task, QUARTIC)
+    if task.durations is not None:
+        return kept_or_refused(
+            lambda durations: _motion_in(task, chain, t_acc, durations), task.durations,
+            lambda: np.diff(_fastest(task, chain, t_acc).via_times))
+    return _fastest(task, chain, t_acc)
+
+
+def _fastest(task: JointTask, chain: Chain, t_acc: float) -> Trajectory:
+    """Return the fastest motion."""
+    full = np.full(len(task.points), 2.0 * t_acc)
+    short = _beside(full, chain.rest_to_rest_times())
+    timings = [fastest(chain, transitions, task.should_stop)
+               for transitions in ([full] if (short == full).all() else [full, short])]
+    return slowed_for_torque(
+        task, trajectory(task.points, min(timings, key=total_time), QUARTIC))
+
+
+def _beside(transitions: Array, bounds: Array) -> Array:
+    """Return transitions that are no longer than the bound of either segment beside them."""
+    inner = np.minimum(np.append(bounds, np.inf), np.append(np.inf, bounds))
+    return np.asarray(np.minimum(transitions, inner))
+
+
+def _motion_in(task: JointTask, chain: Chain, t_acc: float,
+               durations: Array) -> PiecewiseTrajectory | None:
+    """
+    Return the motion of given durations, None if it breaks a limit.
+
+    A segment holds half of both its transitions, the first and the last segment all of the
+    motion's first and last transition.
+    """
+    room = durations.copy()
+    if len(room) == 1:
+        room *= 0.5
+    else:
+        room[[0, -1]] /= 1.5
+    transitions = _beside(np.full(len(room) + 1, 2.0 * t_acc), room)
+    lines = durations.copy()
+    lines[0] -= 0.5 * transitions[0]
+    lines[-1] -= 0.5 * transitions[-1]
+    timing = Straddling(lines, transitions)
+    if not is_kept(chain, timing):
+        return None
+    motion = trajectory(task.points, timing, QUARTIC)
+    stretch = torque_stretch(task, motion)
+    if np.isinf(stretch):
+        raise cannot_hold(task, motion)
+    return motion if stretch <= 1.0 + TORQUE_TOLERANCE else None

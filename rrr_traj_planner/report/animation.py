@@ -1,0 +1,102 @@
+"""The arm along its motions, all at one time that can be run, paused and set."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.report.attempts import Planned
+from rrr_traj_planner.report.motion_samples import arm_points, limit_shares, sampled, tightest
+from rrr_traj_planner.report.page import resource
+
+FRAMES_PER_SECOND = 60.0
+MOST_FRAMES = 1500
+DIGITS = 4  # 0.1 mm
+
+CONTROLS = """<div class="controls"><button type="button" class="play">Play</button>
+<input type="range" class="time" min="0" max="1000" value="0" aria-label="time">
+<output>0.00 s</output>
+<select class="rate" aria-label="speed"><option value="0.25">× ¼</option>
+<option value="0.5">× ½</option><option value="1" selected>× 1</option></select></div>"""
+
+
+@dataclass(frozen=True, eq=False)
+class Animation:
+    """
+    The arm of several motions, in step.
+
+    Parameters
+    ----------
+    name, title, caption : str
+        As of a `Picture`.
+    plans : sequence of Planned
+        The motions, of one task.
+
+    """
+
+    name: str
+    title: str
+    caption: str
+    plans: Sequence[Planned]
+
+    def written(self, folder: Path) -> str:
+        """
+        Return the animation; nothing is written beside the page.
+
+        Parameters
+        ----------
+        folder : Path
+            Not used.
+
+        Returns
+        -------
+        str
+            Controls, a canvas for each motion, their data and the script.
+
+        """
+        arms = ''.join(
+            f'<div><h4>{escape(p.planner_id)}</h4><canvas role="img" aria-label="the arm moved by '
+            f'{escape(p.planner_id)}"></canvas><p></p></div>' for p in self.plans)
+        # JSON inside a script ends at the first "</"
+        data = json.dumps(frames(self.plans), separators=(',', ':')).replace('<', '\\u003c')
+        return (f'{CONTROLS}<div class="arms">{arms}</div>'
+                f'<script type="application/json" class="frames">{data}</script>'
+                f'<script>{resource("animation.js")}</script>')
+
+
+def frames(plans: Sequence[Planned]) -> dict[str, Any]:
+    """
+    Return what the script draws.
+
+    Parameters
+    ----------
+    plans : sequence of Planned
+        The motions.
+
+    Returns
+    -------
+    dict
+        Via points, and for each motion its duration and, at equal steps of time, elbow and tip
+        [m] and what is used of the tightest limit.
+
+    """
+    return {'shoulder': float(plans[0].task.model.d1),
+            'via_points': plans[0].task.via_points.tolist(),
+            'motions': [_motion(p) for p in plans]}
+
+
+def _motion(of: Planned) -> dict[str, Any]:
+    trajectory, model = of.plan.trajectory, of.task.model
+    count = int(np.clip(trajectory.duration * FRAMES_PER_SECOND, 30, MOST_FRAMES))
+    t = np.linspace(0.0, trajectory.duration, count + 1)
+    points = arm_points(model, trajectory(t)[0])
+    s = sampled(model, trajectory)
+    share = np.interp(t, s.t, tightest(limit_shares(s, of.task.limits)))
+    return {'duration': float(trajectory.duration), 'via_times': of.plan.via_times.tolist(),
+            'elbow': points[:, 2].round(DIGITS).tolist(),
+            'tip': points[:, 3].round(DIGITS).tolist(), 'share': share.round(3).tolist()}

@@ -1,0 +1,123 @@
+"""The thesis's figures of the approaches to via points: 4.3 and 4.4."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
+from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.report import drawing
+from rrr_traj_planner.report.attempts import Planned
+from rrr_traj_planner.report.function_figures import shade
+from rrr_traj_planner.report.measures import via_errors
+from rrr_traj_planner.report.motion_samples import drawing_times
+from rrr_traj_planner.report.picture import Picture
+from rrr_traj_planner.report.theme import JOINTS, LIGHT
+
+JOINT = 1  # joint 2, whose way is the longest on table 6.1
+
+
+def figure_4_3(of: Planned) -> Picture:
+    """
+    Return the figure of approach (a).
+
+    Parameters
+    ----------
+    of : Planned
+        A motion by `cycloid_approach_a`.
+
+    Returns
+    -------
+    Picture
+        One joint's position and velocity.
+
+    """
+    return _approach(
+        of, 'figure_4_3', 'Figure 4.3: path transition for approach "a"',
+        'Joint 2 on the task of table 6.1: in each subtrajectory a transition, then constant '
+        'velocity, through the via point; a last transition to rest.', corners=False)
+
+
+def figure_4_4(of: Planned) -> Picture:
+    """
+    Return the figure of approach (b).
+
+    Parameters
+    ----------
+    of : Planned
+        A motion by `cycloid_approach_b`.
+
+    Returns
+    -------
+    Picture
+        One joint's position and velocity.
+
+    """
+    errors, distances = via_errors(of)
+    return _approach(
+        of, 'figure_4_4', 'Figure 4.4: path transition for approach "b", after Paul',
+        'Joint 2 on the task of table 6.1: a transition straddles the via point, where the two '
+        f'lines meet. The point is missed: by {errors[1]:.3f} rad, the tip by '
+        f'{1e3 * distances[1]:.0f} mm.', corners=True)
+
+
+def via_positions(of: Planned) -> Array:
+    """
+    Return joint positions at the via points, on the branch of a motion.
+
+    Parameters
+    ----------
+    of : Planned
+        The motion.
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+        [rad].
+
+    """
+    passed = of.plan.trajectory(of.plan.via_times)[0]
+    found = []
+    for point, q in zip(of.task.via_points, passed):
+        both = [inverse_kinematics(of.task.model, point, elbow, q) for elbow in ('up', 'down')]
+        found.append(min(both, key=lambda x: float(np.abs(x - q).max())))
+    return np.array(found)
+
+
+def _approach(of: Planned, name: str, title: str, caption: str, corners: bool) -> Picture:
+    trajectory = of.plan.trajectory
+    assert isinstance(trajectory, PiecewiseTrajectory)
+    t = drawing_times(trajectory)
+    q, qd = (values[:, JOINT] for values in trajectory(t)[:2])
+    wanted = via_positions(of)[:, JOINT]
+    profile: JointProfile = trajectory.profiles[JOINT]
+
+    def draw(figure: Any) -> None:
+        axes = drawing.stacked(figure, [drawing.POSITION, drawing.VELOCITY])
+        for one, values in zip(axes, (q, qd)):
+            shade(one, profile)
+            one.plot(t, values, color=JOINTS[JOINT])
+        if corners:
+            _corner_lines(axes[0], of, profile)
+        axes[0].plot(of.plan.via_times, wanted, 'o', color=LIGHT['via'], clip_on=False,
+                     markeredgecolor=LIGHT['ink'], markersize=5)
+        drawing.via_lines(axes, of.plan.via_times)
+        handle = drawing.joint_handles(of.task.model.joint_names)[JOINT]
+        handle.set_linestyle('-')
+        drawing.legend(figure, [handle, drawing.shade_handle('transition'),
+                                drawing.via_handle()])
+
+    return Picture(name, title, caption, draw, drawing.height_of(2) + 0.6,
+                   {'time [s]': t, drawing.POSITION: q, drawing.VELOCITY: qd})
+
+
+def _corner_lines(axes: Any, of: Planned, profile: JointProfile) -> None:
+    """Draw the lines between the via points to the corners in which they meet."""
+    first, last = np.diff(profile.knots)[[0, -1]]
+    t = of.plan.via_times.copy()
+    t[0] += 0.5 * first
+    t[-1] -= 0.5 * last
+    axes.plot(t, via_positions(of)[:, JOINT], color=LIGHT['limit'], linestyle='--',
+              linewidth=0.9)

@@ -1,0 +1,158 @@
+"""Plans to be shown, and the refusals of those that there are not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from time import perf_counter
+
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import RrrPlannerError
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.registry import planner
+from rrr_traj_planner.planners.request import Plan, PlanningRequest
+
+TIME_LIMIT = 10.0  # s, after which a planner that still improves its motion is to answer
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """
+    What is to be planned, by whichever planners.
+
+    Parameters
+    ----------
+    name : str
+        What it is called.
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits.
+    request : PlanningRequest
+        The via points and all else that is asked; its planner id is replaced.
+
+    """
+
+    name: str
+    model: RobotModel
+    limits: JointLimits
+    request: PlanningRequest
+
+    @property
+    def via_points(self) -> Array:
+        """Tip positions [m], shape (n, 3)."""
+        return self.request.via_points
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """
+    What a planner made of a task.
+
+    Parameters
+    ----------
+    task : Task
+        The task.
+    planner_id : str
+        The planner.
+    plan : Plan, optional
+        Its plan; None where it refused.
+    refusal : str
+        Why it did; else empty.
+    planning_time : float
+        [s].
+
+    """
+
+    task: Task
+    planner_id: str
+    plan: Plan | None
+    refusal: str
+    planning_time: float
+
+
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """
+    A plan that there is, and what it is for.
+
+    Parameters
+    ----------
+    task : Task
+        The task.
+    planner_id : str
+        The planner.
+    plan : Plan
+        Its plan.
+
+    """
+
+    task: Task
+    planner_id: str
+    plan: Plan
+
+    @property
+    def follows_path(self) -> bool:
+        """Whether the tip was planned along a path, not the joints from point to point."""
+        return planner(self.planner_id).plan_path is not None
+
+
+def attempts(task: Task, planner_ids: Sequence[str], repeats: int = 1) -> list[Attempt]:
+    """
+    Return what planners make of a task.
+
+    Parameters
+    ----------
+    task : Task
+        The task.
+    planner_ids : sequence of str
+        The planners, each known.
+    repeats : int
+        How often each plans; the shortest time counts.
+
+    Returns
+    -------
+    list of Attempt
+        In the same order.
+
+    Raises
+    ------
+    InvalidInputError
+        If an id is unknown.
+
+    """
+    for planner_id in planner_ids:
+        planner(planner_id)
+    return [min((_attempt(task, planner_id) for _ in range(repeats)),
+                key=lambda found: found.planning_time) for planner_id in planner_ids]
+
+
+def planned(found: Sequence[Attempt]) -> list[Planned]:
+    """
+    Return the plans among attempts.
+
+    Parameters
+    ----------
+    found : sequence of Attempt
+        Attempts.
+
+    Returns
+    -------
+    list of Planned
+        Those that were not refused.
+
+    """
+    return [Planned(a.task, a.planner_id, a.plan) for a in found if a.plan is not None]
+
+
+def _attempt(task: Task, planner_id: str) -> Attempt:
+    started = perf_counter()
+    request = replace(task.request, planner_id=planner_id,
+                      should_stop=lambda: perf_counter() - started > TIME_LIMIT)
+    try:
+        answer, refusal = plan(task.model, task.limits, request), ''
+    except RrrPlannerError as error:
+        answer, refusal = None, str(error)
+    return Attempt(task, planner_id, answer, refusal, perf_counter() - started)

@@ -1,0 +1,112 @@
+"""
+How many coefficients a motion is made of, as the thesis counts them (6.5 a).
+
+A transition of the thesis's function has a, b, c, d and e (3.4-3.7), one of seventh order eight
+(C.1), one of fourth order five (6.1), Gauss's function mu, sigma and C0 to C2 (appendix A, closed
+form); a piece at constant velocity two (4.11). Of a motion along a path of the tip, the pieces of
+its progress are counted, not the geometry.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import BoolArray
+from rrr_traj_planner.core.cycloid import CycloidPiece
+from rrr_traj_planner.core.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.pieces import Pieces
+from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.transition_shape import ShapedPiece
+
+CRUISE = 2
+PER_TRANSITION = {'cycloid': 5, 'gauss': 5, 'quartic': 5, 'septic': 8}
+
+
+class Coefficients(NamedTuple):
+    """Numbers of pieces and of what they are made of."""
+
+    transitions: int     # over all joints
+    cruises: int
+    per_transition: int
+
+    @property
+    def total(self) -> int:
+        """Number of coefficients of the whole motion."""
+        return self.transitions * self.per_transition + self.cruises * CRUISE
+
+
+def coefficients(trajectory: Trajectory) -> Coefficients:
+    """
+    Return how many coefficients a motion has.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    Coefficients
+        Its pieces' number and theirs.
+
+    """
+    profiles = profiles_of(trajectory)
+    moving = np.concatenate([is_transition(p.pieces) for p in profiles])
+    return Coefficients(int(moving.sum()), int((~moving).sum()),
+                        PER_TRANSITION[_function(profiles[0].pieces)])
+
+
+def profiles_of(trajectory: Trajectory) -> tuple[JointProfile, ...]:
+    """
+    Return what a motion's pieces are pieces of.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    tuple of JointProfile
+        Of each joint, or of the progress along a path alone.
+
+    Raises
+    ------
+    TypeError
+        If the motion is not made of pieces.
+
+    """
+    if isinstance(trajectory, PiecewiseTrajectory):
+        return trajectory.profiles
+    if isinstance(trajectory, PathTrajectory):
+        return (trajectory.progress,)
+    raise TypeError(f'a {type(trajectory).__name__} has no pieces')
+
+
+def is_transition(pieces: Pieces) -> BoolArray:
+    """
+    Return which pieces are no cruises.
+
+    Parameters
+    ----------
+    pieces : Pieces
+        Values of shape (n,).
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Whether velocity changes there.
+
+    """
+    acceleration, _ = pieces.peaks()
+    return np.asarray(acceleration > 0.0)
+
+
+def _function(pieces: Any) -> str:
+    if isinstance(pieces, CycloidPiece):
+        return 'cycloid'
+    if isinstance(pieces, ShapedPiece) and pieces.shape.name in PER_TRANSITION:
+        return pieces.shape.name
+    raise TypeError(f'pieces of an unknown function: {type(pieces).__name__}')

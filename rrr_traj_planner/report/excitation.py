@@ -1,0 +1,115 @@
+"""How much a motion excites a flexible structure: its spectrum, and the swing that is left."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.trajectory import Trajectory
+
+POINTS = 4001  # of the quadrature over a motion: some hundred a period of what is asked
+DAMPING = 0.01  # of the flexible mode, as part of critical damping
+
+
+def amplitude_spectrum(t: Array, acceleration: Array, frequencies: Array) -> Array:
+    """
+    Return the magnitude of an acceleration's Fourier transform.
+
+    Parameters
+    ----------
+    t : ndarray, shape (n,)
+        Equally spaced times [s]; before and after them the acceleration is zero.
+    acceleration : ndarray, shape (n,)
+        [rad/s^2].
+    frequencies : ndarray, shape (m,)
+        [Hz].
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        [rad/s].
+
+    """
+    phase = np.exp(-2j * pi * np.outer(frequencies, t))
+    return np.abs(_integral(phase * acceleration, t))
+
+
+def share_above(t: Array, acceleration: Array, frequency: float) -> float:
+    """
+    Return the part of an acceleration's energy above a frequency.
+
+    Parameters
+    ----------
+    t, acceleration
+        As in `amplitude_spectrum`.
+    frequency : float
+        [Hz].
+
+    Returns
+    -------
+    float
+        From 0 to 1; by Parseval's theorem 1 minus the part below.
+
+    """
+    below = np.linspace(0.0, frequency, 400)
+    power = amplitude_spectrum(t, acceleration, below) ** 2
+    whole = float(_integral(acceleration ** 2, t))
+    return float(1.0 - 2.0 * _integral(power, below) / whole)
+
+
+def residual_vibration(t: Array, acceleration: Array, frequencies: Array,
+                       damping: float = DAMPING) -> Array:
+    """
+    Return how far a flexible mode still swings when the motion has ended.
+
+    The mode y'' + 2 z w y' + w^2 y = -acceleration starts at rest. At the end its swing's
+    amplitude is compared with its deflection under the greatest acceleration, held for ever.
+
+    Parameters
+    ----------
+    t, acceleration
+        As in `amplitude_spectrum`.
+    frequencies : ndarray, shape (m,)
+        The mode's, undamped [Hz].
+    damping : float
+        z.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        1: as much as the deflection under the greatest acceleration.
+
+    """
+    w = 2.0 * pi * frequencies
+    rate = (-damping + 1j * sqrt(1.0 - damping ** 2)) * w
+    response = np.exp(np.outer(rate, t[-1] - t)) * acceleration
+    swing = np.abs(_integral(response, t)) / (w * sqrt(1.0 - damping ** 2))
+    return np.asarray(swing * w ** 2 / np.abs(acceleration).max())
+
+
+def joint_acceleration(trajectory: Trajectory, joint: int) -> tuple[Array, Array]:
+    """
+    Return a joint's acceleration at equally spaced times.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    joint : int
+        The joint's index.
+
+    Returns
+    -------
+    tuple of ndarray
+        Times [s] and accelerations [rad/s^2].
+
+    """
+    t = np.linspace(0.0, trajectory.duration, POINTS)
+    return t, trajectory(t)[2][:, joint]
+
+
+def _integral(values: Array, x: Array) -> Array:
+    """Return the integral over the last axis, by trapezoids of equal width."""
+    inner = values.sum(axis=-1) - 0.5 * (values[..., 0] + values[..., -1])
+    return np.asarray(inner * (x[1] - x[0]))

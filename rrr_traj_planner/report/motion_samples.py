@@ -1,0 +1,163 @@
+"""A motion sampled for drawing: both sides of every knot, torque, and what is used of limits."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.trajectory import times_within, Trajectory
+
+STEPS_PER_MOTION = 500
+STEPS_PER_PIECE = 4
+SHORTEST = 1e-5  # of the motion: a shorter piece would show as a spike that is none
+BEFORE = 1e-9  # s before a knot, where what steps there still has its old value
+
+
+class Samples(NamedTuple):
+    """A motion at increasing times, shape (n, 3) each."""
+
+    t: Array         # [s], shape (n,)
+    q: Array         # [rad]
+    qd: Array        # [rad/s]
+    qdd: Array       # [rad/s^2]
+    qddd: Array      # [rad/s^3]
+    torque: Array    # [N m]
+    tip: Array       # [m]
+
+
+def sampled(model: RobotModel, trajectory: Trajectory) -> Samples:
+    """
+    Return a motion as it is drawn.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    Samples
+        With two times at every knot, so that steps show as steps; the last one is before rest.
+
+    """
+    t = drawing_times(trajectory)
+    q, qd, qdd, qddd = trajectory(t)
+    return Samples(t, q, qd, qdd, qddd, inverse_dynamics(model, q, qd, qdd),
+                   forward_kinematics(model, q))
+
+
+def drawing_times(trajectory: Trajectory) -> Array:
+    """
+    Return times that show all of a motion, steps included.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+
+    Returns
+    -------
+    ndarray
+        Increasing [s]; none in pieces that are too short to be seen.
+
+    """
+    knots = trajectory.knots
+    grid = times_within(trajectory, STEPS_PER_PIECE, trajectory.duration / STEPS_PER_MOTION)
+    t = np.unique(np.concatenate((grid[:-1], knots[1:] - BEFORE)))
+    lasting = np.diff(knots) > SHORTEST * trajectory.duration
+    return np.asarray(t[lasting[np.searchsorted(knots[1:-1], t, side='right')]])
+
+
+def limit_shares(samples: Samples, limits: JointLimits) -> dict[str, Array]:
+    """
+    Return what a motion uses of every limit.
+
+    Parameters
+    ----------
+    samples : Samples
+        The motion.
+    limits : JointLimits
+        Its limits.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (n, 3)
+        By the quantity's name, 1 where a limit is used to the full; 0 where there is none.
+
+    """
+    return {
+        'velocity': np.abs(samples.qd) / limits.max_velocity,
+        'acceleration': np.abs(samples.qdd) / limits.max_acceleration,
+        'jerk': np.abs(samples.qddd) / limits.max_jerk,
+        'torque': np.abs(samples.torque) / limits.max_effort}
+
+
+def tightest(shares: dict[str, Array]) -> Array:
+    """
+    Return the share of whichever limit is used most, of any joint.
+
+    Parameters
+    ----------
+    shares : dict
+        As from `limit_shares`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        At each time.
+
+    """
+    return np.asarray(np.stack(list(shares.values())).max(axis=(0, 2)))
+
+
+def path_lengths(trajectory: PathTrajectory, t: Array) -> Array:
+    """
+    Return the length of path behind the tip.
+
+    Parameters
+    ----------
+    trajectory : PathTrajectory
+        A motion along a path of the tip.
+    t : ndarray, shape (n,)
+        Times [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [m].
+
+    """
+    return np.asarray(trajectory.progress(t)[0])
+
+
+def arm_points(model: RobotModel, q: Array) -> Array:
+    """
+    Return where the arm's joints and its tip are.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q : ndarray, shape (n, 3)
+        Joint positions [rad].
+
+    Returns
+    -------
+    ndarray, shape (n, 4, 3)
+        Base, shoulder, elbow and tip [m].
+
+    """
+    reach = model.a2 * np.cos(q[:, 1])
+    elbow = np.stack((reach * np.cos(q[:, 0]), reach * np.sin(q[:, 0]),
+                      model.d1 + model.a2 * np.sin(q[:, 1])), axis=1)
+    base = np.zeros_like(elbow)
+    shoulder = base + (0.0, 0.0, model.d1)
+    return np.stack((base, shoulder, elbow, forward_kinematics(model, q)), axis=1)

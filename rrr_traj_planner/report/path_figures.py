@@ -1,0 +1,205 @@
+"""Figures in space: the tip's path with the arm, and the curved part magnified (6.12, 6.13)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.mplot3d import proj3d
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.path_trajectory import PathTrajectory
+from rrr_traj_planner.report import drawing
+from rrr_traj_planner.report.attempts import Planned
+from rrr_traj_planner.report.motion_samples import arm_points, sampled
+from rrr_traj_planner.report.picture import Picture
+from rrr_traj_planner.report.theme import DASHES, LIGHT, SERIES
+
+POSES = 9            # of the arm, along a motion
+MAGNIFIED = 2.0      # of half the curve's length, to either side of the via point
+POINTS = 600
+LEAST_EXTENT = 0.02  # m
+LABEL_DISTANCE = 10.0  # points
+ZOOM = 0.88          # leaves room for labels around the axes
+
+
+def path_in_space(of: Planned, name: str, title: str, caption: str) -> Picture:
+    """
+    Return the figure of a tip's path with via points and poses of the arm.
+
+    Parameters
+    ----------
+    of : Planned
+        The motion.
+    name, title, caption : str
+        See `Picture`.
+
+    Returns
+    -------
+    Picture
+        In three dimensions, with equal scales.
+
+    """
+    s = sampled(of.task.model, of.plan.trajectory)
+    q = of.plan.trajectory(np.linspace(0.0, of.plan.trajectory.duration, POSES))[0]
+    poses = arm_points(of.task.model, q)
+
+    def draw(figure: Any) -> None:
+        axes = _space(figure)
+        arms = [axes.plot(*pose.T, color=LIGHT['arm'], linewidth=1.2, marker='o', markersize=2.0,
+                          label='arm') for pose in poses]
+        path = axes.plot(*s.tip.T, color=LIGHT['tip'], linewidth=2.2, label='tip')
+        _equal_scales(axes)
+        via = _via_points(axes, of.task.via_points)
+        drawing.legend(figure, [path[0], arms[0][0], via], 3)
+
+    return Picture(name, title, caption, draw, 4.3, {
+        'time [s]': s.t, **{f'tip {a} [m]': s.tip[:, i] for i, a in enumerate('xyz')}})
+
+
+def paths_in_space(plans: Sequence[Planned], name: str, title: str, caption: str) -> Picture:
+    """
+    Return the figure of the tip's paths of several planners.
+
+    Parameters
+    ----------
+    plans : sequence of Planned
+        At least one, all of the same via points.
+    name, title, caption : str
+        See `Picture`.
+
+    Returns
+    -------
+    Picture
+        In three dimensions.
+
+    """
+    tips = [sampled(p.task.model, p.plan.trajectory).tip for p in plans]
+
+    def draw(figure: Any) -> None:
+        axes = _space(figure)
+        lines = [axes.plot(*tip.T, color=SERIES[i % len(SERIES)], linewidth=1.5,
+                           linestyle=DASHES[i % len(DASHES)], label=p.planner_id)[0]
+                 for i, (p, tip) in enumerate(zip(plans, tips))]
+        _equal_scales(axes)
+        via = _via_points(axes, plans[0].task.via_points)
+        drawing.legend(figure, [*lines, via], 2)
+
+    return Picture(name, title, caption, draw, 4.0 + 0.17 * ((len(plans) + 2) // 2))
+
+
+def magnified_zone(of: Planned, zone: int, name: str, title: str, caption: str) -> Picture:
+    """
+    Return the figure of a path near a via point, in the plane of its curve (figure 6.13).
+
+    Parameters
+    ----------
+    of : Planned
+        A motion along a path of the tip.
+    zone : int
+        Index of the curved zone; its via point's is one more.
+    name, title, caption : str
+        See `Picture`; the caption is added to.
+
+    Returns
+    -------
+    Picture
+        Path, polyline and the ends of the zone, relative to the via point.
+
+    """
+    trajectory = of.plan.trajectory
+    assert isinstance(trajectory, PathTrajectory)
+    path = trajectory.arm_path.path
+    ends, radius = path.zone_ends[zone], float(path.radii[zone])
+    half = MAGNIFIED * max(float(np.ptp(ends)) / 2.0, LEAST_EXTENT)
+    near = path.via_s[zone + 1]
+    places = np.linspace(max(near - half, 0.0), min(near + half, path.length), POINTS)
+
+    def in_plane(points: Array) -> Array:
+        away = points - path.points[zone + 1]
+        return np.stack((away @ path.tangent[zone], away @ path.normal[zone]), axis=1)
+
+    line, at_ends = in_plane(path(places)[0]), in_plane(path(ends)[0])
+    polyline = in_plane(path.points[zone:zone + 3])
+
+    def draw(figure: Any) -> None:
+        axes = figure.subplots()
+        axes.plot(*polyline.T * 1e3, color=LIGHT['limit'], linestyle='--', linewidth=1.0,
+                  label='polyline')
+        curved = (places >= ends[0]) & (places <= ends[1])
+        axes.plot(*line.T * 1e3, color=LIGHT['tip'], linewidth=1.6, label='line')
+        axes.plot(*line[curved].T * 1e3, color=LIGHT['joint-1'], linewidth=2.4, label='curve')
+        axes.plot(*at_ends.T * 1e3, 'o', color=LIGHT['joint-1'], markersize=4)
+        axes.plot(0.0, 0.0, 'o', color=LIGHT['via'], markeredgecolor=LIGHT['ink'], markersize=6,
+                  label='via point')
+        axes.set(xlabel='along the tangent [mm]', ylabel='along the normal [mm]',
+                 xlim=_padded(1e3 * line[:, 0]), ylim=_padded(1e3 * line[:, 1]))
+        axes.set_aspect('equal', adjustable='box')
+        drawing.legend(figure, axes.get_legend_handles_labels()[0], 4)
+
+    told = (f'{caption} Least radius {radius:.3f} m; the path leaves the polyline by at most '
+            f'{1e3 * float(np.max(path.deviation)):.1f} mm.')
+    return Picture(name, title, told, draw, 3.0, {
+        'length along the path [m]': places, 'tangent [m]': line[:, 0], 'normal [m]': line[:, 1]})
+
+
+def _padded(values: Array) -> tuple[float, float]:
+    room = 0.06 * float(np.ptp(values))
+    return float(values.min()) - room, float(values.max()) + room
+
+
+def _via_points(axes: Any, points: Array) -> Any:
+    """Draw via points, numbered from 0 as requests count them, once the view is settled."""
+    x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
+    seen = np.column_stack((x, y))
+    for i, direction in enumerate(label_directions(seen)):
+        axes.annotate(str(i), seen[i], LABEL_DISTANCE * direction, textcoords='offset points',
+                      ha='center', va='center', zorder=10)
+    return axes.plot(*points.T, 'o', color=LIGHT['via'], markeredgecolor=LIGHT['ink'],
+                     markersize=5, label='via point', zorder=9)[0]
+
+
+def label_directions(seen: Array) -> Array:
+    """
+    Return where labels go: away from the nearest other point.
+
+    Parameters
+    ----------
+    seen : ndarray, shape (n, 2)
+        Points as they are seen.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        Unit vectors; to the upper right where another point is at the same place.
+
+    """
+    found = np.full(seen.shape, np.sqrt(0.5))
+    for i, point in enumerate(seen):
+        away = np.delete(point - seen, i, axis=0)
+        distance = np.linalg.norm(away, axis=1)
+        if len(away) and distance.min() > 0.0:
+            found[i] = away[distance.argmin()] / distance.min()
+    return found
+
+
+def _equal_scales(axes: Any) -> None:
+    """Settle the view: equal scales, and room for the labels."""
+    limits = (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())
+    axes.set_box_aspect([np.ptp(ends) for ends in limits], zoom=ZOOM)
+
+
+def _space(figure: Any) -> Any:
+    """Return axes in three dimensions that fill a figure up to its legend."""
+    figure.set_layout_engine('none')
+    axes = figure.add_axes((0.02, 0.03, 0.93, 0.88), projection='3d')
+    axes.set(xlabel='x [m]', ylabel='y [m]', zlabel='z [m]')
+    axes.view_init(elev=24.0, azim=-62.0)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MaxNLocator(4))
+        axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
+        axis.line.set_color(LIGHT['muted'])
+        axis._axinfo['grid'].update(color=LIGHT['grid'], linewidth=0.6)
+    axes.tick_params(pad=0, labelsize=8)
+    return axes

@@ -1,0 +1,121 @@
+"""A figure with its title and caption: as SVG for a page, as PNG and CSV beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+import csv
+from dataclasses import dataclass, field
+from io import StringIO
+from pathlib import Path
+import re
+from typing import Any
+
+import matplotlib
+from matplotlib.figure import Figure
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.report.theme import STYLE, themed, WIDTH
+
+PNG_RESOLUTION = 200  # dots an inch
+REFERENCES = re.compile(r'(\bid="|url\(#|href="#)')
+LEADING = re.compile(r'^.*?(?=<svg)', re.DOTALL)
+METADATA = re.compile(r'<metadata>.*?</metadata>', re.DOTALL)
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """
+    A figure, not drawn yet.
+
+    Parameters
+    ----------
+    name : str
+        Of its files and its place in the page: letters, digits, underscores.
+    title, caption : str
+        What it shows, and what there is to see.
+    draw : callable
+        Fills a figure of matplotlib.
+    height : float
+        In inches, for a width of `theme.WIDTH`.
+    data : dict
+        What is drawn: columns of the CSV by their heads, each with its unit; of equal lengths.
+
+    """
+
+    name: str
+    title: str
+    caption: str
+    draw: Callable[[Any], None]
+    height: float = 3.2
+    data: dict[str, Array] = field(default_factory=dict)
+
+    def written(self, folder: Path) -> str:
+        """
+        Draw the figure.
+
+        Parameters
+        ----------
+        folder : Path
+            Where PNG and CSV go.
+
+        Returns
+        -------
+        str
+            The figure as SVG, its colours a style sheet's variables.
+
+        """
+        with matplotlib.rc_context(STYLE):
+            figure = Figure(figsize=(WIDTH, self.height))
+            self.draw(figure)
+            figure.savefig(folder / f'{self.name}.png', dpi=PNG_RESOLUTION)
+            text = StringIO()
+            figure.savefig(text, format='svg', transparent=True, metadata={'Date': None})
+        if self.data:
+            write_columns(folder / f'{self.name}.csv', self.data)
+        return embedded(text.getvalue(), self.name, self.title)
+
+
+def embedded(svg: str, name: str, title: str) -> str:
+    """
+    Return an SVG file's text as it stands in a page.
+
+    Parameters
+    ----------
+    svg : str
+        As matplotlib writes it.
+    name : str
+        Put before every id, so that those of several pictures differ.
+    title : str
+        For readers who do not see it.
+
+    Returns
+    -------
+    str
+        An element that takes the width of what is around it.
+
+    """
+    svg = METADATA.sub('', LEADING.sub('', svg, count=1))
+    svg = REFERENCES.sub(rf'\g<1>{name}-', svg)
+    svg = re.sub(r'<svg ([^>]*?)width="[^"]*"', r'<svg \1', svg, count=1)
+    svg = re.sub(r'<svg ([^>]*?)height="[^"]*"', r'<svg \1', svg, count=1)
+    label = title.replace('&', '&amp;').replace('"', '&quot;').replace('<', '&lt;')
+    return themed(svg.replace('<svg ', f'<svg role="img" aria-label="{label}" ', 1))
+
+
+def write_columns(file: Path, columns: dict[str, Array]) -> None:
+    """
+    Write a CSV file.
+
+    Parameters
+    ----------
+    file : Path
+        Where it goes.
+    columns : dict
+        Columns by their heads, of equal lengths.
+
+    """
+    with file.open('w', newline='', encoding='utf-8') as stream:
+        rows = csv.writer(stream)
+        rows.writerow(columns)
+        rows.writerows([f'{x:.9g}' for x in row] for row in np.column_stack(
+            [np.asarray(c, dtype=float) for c in columns.values()]))

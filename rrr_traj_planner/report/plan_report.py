@@ -1,0 +1,117 @@
+"""Any plan drawn: limits, torque, path, animation, peaks, several planners side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from rrr_traj_planner.report.animation import Animation
+from rrr_traj_planner.report.attempts import Attempt, Planned, planned
+from rrr_traj_planner.report.page import Content, Section, write_page
+from rrr_traj_planner.report.path_figures import path_in_space, paths_in_space
+from rrr_traj_planner.report.profile_figures import compared, profiles, torque_use
+from rrr_traj_planner.report.tables import methods_table, peaks_table
+
+
+def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
+    """
+    Write the page, its figures and its tables.
+
+    Parameters
+    ----------
+    folder : Path
+        Where they go.
+    found : sequence of Attempt
+        What planners made of one task, at least one.
+
+    Returns
+    -------
+    Path
+        The page; a refusal is shown with its reason.
+
+    """
+    task = found[0].task
+    points = '; '.join('(' + ', '.join(f'{x:g}' for x in p) + ')' for p in task.via_points)
+    return write_page(folder, f'Plan of {task.name}',
+                      f'{len(task.via_points)} via points [m]: {points}.', sections(found))
+
+
+def sections(found: Sequence[Attempt]) -> list[Section]:
+    """
+    Return the parts of the page.
+
+    Parameters
+    ----------
+    found : sequence of Attempt
+        What planners made of one task.
+
+    Returns
+    -------
+    list of Section
+        Without plans, the table of refusals alone.
+
+    """
+    plans = planned(found)
+    notes = '\n\n'.join(f'{p.planner_id}: {p.plan.note}' for p in plans if p.plan.note)
+    parts = [Section('Planners', notes, [methods_table(
+        found, 'planners', 'Planners', "Peaks are the largest of the three joints'.")])]
+    if not plans:
+        return parts
+    parts.append(Section('Motion', '', [Animation(
+        'animation', 'The arm along the path',
+        'Drag a picture to turn the view. The path still to go is grey.', plans)]))
+    if len(plans) > 1:
+        parts.append(Section('Side by side', '', _comparison(plans)))
+    names = unique_names([p.planner_id for p in plans])
+    return parts + [Section(title, text, [draw(p, name) for p, name in zip(plans, names)])
+                    for title, text, draw in _KINDS]
+
+
+def unique_names(planner_ids: Sequence[str]) -> list[str]:
+    """
+    Return a name for each planner's files.
+
+    Parameters
+    ----------
+    planner_ids : sequence of str
+        The planners, which may repeat.
+
+    Returns
+    -------
+    list of str
+        The id, from its second appearance on with a number.
+
+    """
+    return [i if i not in planner_ids[:k] else f'{i}_{planner_ids[:k].count(i) + 1}'
+            for k, i in enumerate(planner_ids)]
+
+
+def _comparison(plans: Sequence[Planned]) -> list[Content]:
+    names = plans[0].task.model.joint_names
+    return [paths_in_space(plans, 'paths', 'Paths of the tip', 'Via points are numbered.'),
+            *(compared(plans, joint, f'compared_{joint + 1}', f'{names[joint]} by every planner',
+                       '') for joint in range(3))]
+
+
+def _profiles(of: Planned, name: str) -> Content:
+    return profiles(of, f'profiles_{name}', f'{of.planner_id}: profiles against limits', '')
+
+
+def _torque(of: Planned, name: str) -> Content:
+    return torque_use(of, f'torque_{name}', f'{of.planner_id}: torque use', '')
+
+
+def _path(of: Planned, name: str) -> Content:
+    return path_in_space(of, f'path_{name}', f'{of.planner_id}: path of the tip',
+                         'With the arm at equal steps of time.')
+
+
+def _peaks(of: Planned, name: str) -> Content:
+    return peaks_table(of, f'peaks_{name}')
+
+
+_KINDS: tuple[tuple[str, str, Callable[[Planned, str], Content]], ...] = (
+    ('Profiles', 'Shaded: within the limits.', _profiles),
+    ('Torque', 'Of a motion along a path of the tip over the length of the path, else over time.',
+     _torque),
+    ('Path', '', _path), ('Peaks', '', _peaks))

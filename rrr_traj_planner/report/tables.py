@@ -1,0 +1,175 @@
+"""Tables: rows of texts with heads, as HTML for a page and as CSV beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+import csv
+from dataclasses import dataclass
+from html import escape
+from math import isinf
+from pathlib import Path
+
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.report.attempts import Attempt, Planned
+from rrr_traj_planner.report.measures import measures
+
+MINUTE = 1e-9  # what is smaller is rounding, and shown as 0
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """
+    A table.
+
+    Parameters
+    ----------
+    name : str
+        Of its file and its place in the page.
+    title, caption : str
+        What it shows.
+    heads : sequence of str
+        Of the columns.
+    rows : sequence of sequence of str
+        Cells; a row that is shorter ends with one cell over all columns that are left.
+
+    """
+
+    name: str
+    title: str
+    caption: str
+    heads: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+    def written(self, folder: Path) -> str:
+        """
+        Write the table.
+
+        Parameters
+        ----------
+        folder : Path
+            Where its CSV goes.
+
+        Returns
+        -------
+        str
+            The table as HTML.
+
+        """
+        with (folder / f'{self.name}.csv').open('w', newline='', encoding='utf-8') as stream:
+            rows = csv.writer(stream)
+            rows.writerow(self.heads)
+            rows.writerows(self.rows)
+        heads = ''.join(f'<th scope="col">{escape(h)}</th>' for h in self.heads)
+        body = ''.join(f'<tr>{self._cells(row)}</tr>\n' for row in self.rows)
+        return ('<div class="scroll" tabindex="0" role="region" '
+                f'aria-label="{escape(self.title)}"><table><thead><tr>{heads}</tr></thead>\n<tbody>{body}</tbody></table></div>')
+
+    def _cells(self, row: Sequence[str]) -> str:
+        left = len(self.heads) - len(row)
+        cells = [f'<th scope="row">{escape(row[0])}</th>',
+                 *(f'<td>{escape(c)}</td>' for c in row[1:])]
+        if left > 0:
+            cells[-1] = f'<td class="told" colspan="{left + 1}">{escape(row[-1])}</td>'
+        return ''.join(cells)
+
+
+def methods_table(found: Sequence[Attempt], name: str, title: str, caption: str) -> Table:
+    """
+    Return the table that compares planners.
+
+    Parameters
+    ----------
+    found : sequence of Attempt
+        What they made of one task.
+    name, title, caption : str
+        See `Table`.
+
+    Returns
+    -------
+    Table
+        A row for each, the refusal where there is one; peaks are the largest of the three joints'.
+
+    """
+    heads = ('planner', 'total time [s]', 'velocity [rad/s]', 'acceleration [rad/s²]',
+             'jerk [rad/s³]', 'torque [N m]', "jerk at transitions' ends [rad/s³]",
+             'via point missed by [mm]', 'coefficients', 'in a transition', 'planned in [ms]')
+    return Table(name, title, caption, heads, [_method(a) for a in found])
+
+
+def _method(attempt: Attempt) -> list[str]:
+    if attempt.plan is None:
+        return [attempt.planner_id, f'refused: {attempt.refusal}']
+    m = measures(Planned(attempt.task, attempt.planner_id, attempt.plan))
+    return [attempt.planner_id, f'{m.total_time:.3f}', *(
+        f'{float(peak.max()):.3f}' for peak in (m.velocity, m.acceleration, m.jerk)),
+        f'{float(m.torque.max()):.1f}', shown(float(m.jerk_at_ends.max()), 3),
+        shown(1e3 * m.via_distance, 1), str(m.coefficients.total),
+        str(m.coefficients.per_transition), f'{1e3 * attempt.planning_time:.0f}']
+
+
+def peaks_table(of: Planned, name: str) -> Table:
+    """
+    Return the table of a motion's peaks against the limits, joint by joint.
+
+    Parameters
+    ----------
+    of : Planned
+        The motion.
+    name : str
+        See `Table`.
+
+    Returns
+    -------
+    Table
+        Peaks over the continuous motion.
+
+    """
+    m, limits, peaks = measures(of), of.task.limits, of.plan.peaks
+    rows = [['range of positions [rad]', *(
+        f'{low:.3f} … {high:.3f} (allowed {least:.3f} … {most:.3f})' for low, high, least, most
+        in zip(peaks.min_position, peaks.max_position, limits.min_position,
+               limits.max_position))]]
+    rows += [[label, *(_against(p, bound) for p, bound in zip(peak, limit))]
+             for label, peak, limit in _limited(m.velocity, m.acceleration, m.jerk, m.torque,
+                                                limits)]
+    rows.append(["jerk at transitions' ends [rad/s³]", *(shown(j, 3) for j in m.jerk_at_ends)])
+    return Table(name, f'Peaks of {of.planner_id}',
+                 f'Over the continuous motion of {m.total_time:.3f} s, with what is used of each '
+                 f'limit. Via points are met to {m.via_error:.1e} rad, '
+                 f'{1e3 * m.via_distance:.2g} mm.',
+                 ('peak', *of.task.model.joint_names), rows)
+
+
+def shown(value: float, digits: int) -> str:
+    """
+    Return a number as it is shown.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    digits : int
+        After the point.
+
+    Returns
+    -------
+    str
+        0 where it is rounding.
+
+    """
+    return '0' if abs(value) < MINUTE else f'{value:.{digits}f}'
+
+
+def _limited(velocity: Array, acceleration: Array, jerk: Array, torque: Array,
+             limits: JointLimits) -> list[tuple[str, Array, Array]]:
+    return [('velocity [rad/s]', velocity, limits.max_velocity),
+            ('acceleration [rad/s²]', acceleration, limits.max_acceleration),
+            ('jerk [rad/s³]', jerk, limits.max_jerk),
+            ('torque [N m]', torque, limits.max_effort)]
+
+
+def _against(peak: float, bound: float) -> str:
+    if isinf(bound):
+        return f'{peak:.4g} (no limit)'
+    return f'{peak:.4g} of {bound:g} ({100.0 * peak / bound:.0f} %)'

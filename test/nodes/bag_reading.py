@@ -1,0 +1,40 @@
+"""Bags as MCAP's reference reader for ROS 2 sees them."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip('mcap_ros2', reason='needs mcap-ros2-support, of requirements/test.in')
+
+from mcap.reader import make_reader  # noqa: E402
+from mcap_ros2.decoder import DecoderFactory  # noqa: E402
+
+
+def messages_by_topic(file):
+    """Return the (record, decoded message) pairs of each topic, in order."""
+    found = {}
+    with file.open('rb') as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for _, channel, record, message in reader.iter_decoded_messages():
+            found.setdefault(channel.topic, []).append((record, message))
+    return found
+
+
+def summary(file):
+    """Return header and summary of a bag."""
+    with file.open('rb') as stream:
+        reader = make_reader(stream)
+        return reader.get_header(), reader.get_summary()
+
+
+def plain(message):
+    """Return a message of ROS or of the reader as plain values, to be compared."""
+    if hasattr(message, 'get_fields_and_field_types'):
+        return {f: plain(getattr(message, f)) for f in message.get_fields_and_field_types()}
+    if hasattr(message, '__slots__'):
+        return {f: plain(getattr(message, f)) for f in message.__slots__}
+    if isinstance(message, bytes):  # a single byte in ROS, any number of them in the reader
+        return message[0] if len(message) == 1 else list(message)
+    if isinstance(message, str) or not hasattr(message, '__len__'):
+        return message
+    return [plain(item) for item in message]

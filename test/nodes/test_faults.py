@@ -1,0 +1,255 @@
+"""Processes that are killed and come back, floods, and clocks that jump."""
+
+from __future__ import annotations
+
+from pathlib import Path
+import signal
+from threading import Event
+from time import monotonic, sleep
+
+from arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
+from builtin_interfaces.msg import Duration, Time
+import numpy as np
+from plan_requests import NEAR, plan_request
+import pytest
+from rcl_interfaces.srv import GetParameters
+from rosgraph_msgs.msg import Clock
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from scripts import python, Script, script
+
+CODES = PlanTrajectory.Response
+QUIET = ('--ros-args', '--log-level', 'fatal')
+
+# How long a client waits for a node that is gone [s], and by how much more the call may take.
+TIMEOUT, SLACK = 1.0, 4.0
+DEADLINE = 30.0
+
+FLOOD_SECONDS, FLOOD_RATE = 10.0, 1000.0
+
+# A planner that never ends, and says that it has begun.
+ENDLESS = """
+import sys, threading
+from rrr_traj_planner.planners.registry import register
+@register('endless')
+def endless(task): print('begun', flush=True); threading.Event().wait()
+from rrr_traj_planner.nodes.planner import main
+sys.exit(main())
+"""
+
+
+def killed(running):
+    running.process.kill()
+    assert running.process.wait(20.0) == -signal.SIGKILL
+
+
+def plan(ros, client=None):
+    """Return an answer's code; ask again where the server that was found is one just killed."""
+    client = client or ros.node.create_client(PlanTrajectory, 'plan_trajectory')
+    deadline = monotonic() + DEADLINE
+    while monotonic() < deadline:
+        if client.wait_for_service(DEADLINE):
+            answer = client.call(plan_request(NEAR), timeout_sec=TIMEOUT)
+            if answer is not None:
+                return answer.error_code
+    raise AssertionError('no answer')
+
+
+def long_way():
+    """Return a trajectory that takes long."""
+    return trajectory([(15.0, START + (0.5, 0.3, 0.3))])
+
+
+def trajectory(points):
+    message = JointTrajectory(joint_names=NAMES)
+    for time, q in points:
+        sec, nanosec = divmod(round(time * SECOND), SECOND)
+        message.points.append(JointTrajectoryPoint(
+            positions=[float(x) for x in q], time_from_start=Duration(sec=sec, nanosec=nanosec)))
+    return message
+
+
+def shared_memory():
+    return sorted(Path('/dev/shm').glob('*fastrtps*')) + sorted(Path('/dev/shm').glob('*fastdds*'))
+
+
+# Killed
+
+
+def test_client_of_a_planner_killed_while_planning_times_out_and_the_next_one_serves(ros):
+    client = ros.node.create_client(PlanTrajectory, 'plan_trajectory')
+    with Script(python(ENDLESS), *QUIET) as planner:
+        assert client.wait_for_service(20.0)
+        future = client.call_async(plan_request(planner_id='endless'))
+        planner.read_until('begun')
+        killed(planner)
+    began = monotonic()
+    assert client.call(plan_request(NEAR), timeout_sec=TIMEOUT) is None
+    assert monotonic() - began < TIMEOUT + SLACK
+    assert not future.done()
+    with Script(script('planner'), *QUIET):
+        assert plan(ros, client) == CODES.SUCCESS  # the same client finds the new planner
+
+
+def test_planner_goes_on_where_the_arm_is_killed_while_moving_and_comes_back(ros):
+    states = ros.listen(JointState, 'joint_states')
+    with Script(script('planner'), *QUIET) as planner:
+        with Script(script('simulated_arm'), *QUIET) as arm:
+            states.wait_for()
+            ros.publisher(JointTrajectory, 'joint_trajectory').publish(long_way())
+            states.next(moving)
+            killed(arm)
+        assert plan(ros) == CODES.SUCCESS
+        since = len(states.messages)
+        with Script(script('simulated_arm'), *QUIET):
+            states.wait_for(at(START), since)
+            assert ros.call(Trigger, 'simulated_arm/hold').success
+            assert plan(ros) == CODES.SUCCESS
+        assert planner.process.poll() is None
+
+
+def test_arm_goes_on_where_the_planner_is_killed(ros):
+    states = ros.listen(JointState, 'joint_states')
+    with Script(script('simulated_arm'), *QUIET) as arm:
+        with Script(script('planner'), *QUIET) as planner:
+            assert plan(ros) == CODES.SUCCESS
+            ros.publisher(JointTrajectory, 'joint_trajectory').publish(long_way())
+            states.next(moving)
+            killed(planner)
+        states.next(moving)
+        assert ros.call(Trigger, 'simulated_arm/hold').success
+        assert arm.process.poll() is None
+
+
+def test_what_killed_nodes_leave_in_shared_memory_keeps_none_from_starting(ros):
+    before = set(shared_memory())
+    for _ in range(3):
+        with Script(script('planner'), *QUIET) as planner:
+            assert plan(ros) == CODES.SUCCESS
+            killed(planner)
+    left = set(shared_memory()) - before
+    with Script(script('planner'), *QUIET) as planner:
+        assert plan(ros) == CODES.SUCCESS
+        planner.process.send_signal(signal.SIGINT)
+        assert planner.ended()[0] == 0
+    for file in left & set(shared_memory()):  # what this test has left behind, and only that
+        file.unlink(missing_ok=True)
+
+
+# Floods
+
+
+def test_arm_answers_and_moves_under_a_thousand_trajectories_a_second(ros):
+    states = ros.listen(JointState, 'joint_states', 1000)
+    with Script(script('simulated_arm'), *QUIET) as arm:
+        states.wait_for()
+        publisher = ros.publisher(JointTrajectory, 'joint_trajectory')
+        message = trajectory([(0.5, GOAL), (1.0, START)])
+        began, sent, slowest, since = monotonic(), 0, 0.0, len(states.messages)
+        while (now := monotonic()) < began + FLOOD_SECONDS:
+            while sent < (now - began) * FLOOD_RATE:
+                publisher.publish(message)
+                sent += 1
+            asked = monotonic()
+            answer = ros.call(GetParameters, 'simulated_arm/get_parameters',
+                              GetParameters.Request(names=['publish_rate']))
+            slowest = max(slowest, monotonic() - asked)
+            assert answer.values[0].double_value == 200.0
+        assert sent >= 0.9 * FLOOD_RATE * FLOOD_SECONDS
+        assert slowest < TIMEOUT + SLACK
+        times = [stamp(m) for m in states.messages[since:]]
+        assert len(times) > FLOOD_SECONDS * 10.0
+        assert np.isfinite([m.position for m in states.messages]).all()
+        publisher.publish(trajectory([(0.5, GOAL)]))
+        states.next(at(GOAL, 1e-3))
+        assert arm.process.poll() is None
+
+
+# Clocks
+
+
+def test_arm_stands_a_clock_that_jumps_back_and_forth(ros):
+    publisher = ros.node.create_publisher(Clock, '/clock', 10)
+    arm = Arm(ros, use_sim_time=True)
+    now, ticks, steady = [1000 * SECOND], [0], Event()
+    jumps = iter([3600, -1800, 10 ** 9, -10 ** 9, 50, -1000])
+
+    def advance():
+        ticks[0] += 1
+        now[0] += SECOND // 100
+        if ticks[0] % 20 == 0:
+            jump = next(jumps, None)
+            if jump is None:
+                steady.set()
+            else:
+                now[0] += jump * SECOND
+        publisher.publish(Clock(clock=Time(sec=now[0] // SECOND, nanosec=now[0] % SECOND)))
+
+    ros.node.create_timer(0.005, advance)
+    arm.actual.wait_for(lambda m: stamp(m) >= 1000 * SECOND)
+    arm.send(rest_to_rest(GOAL, 1.0))
+    assert steady.wait(20.0)
+    q = np.array([m.position for m in arm.actual.messages])
+    assert np.isfinite(q).all()
+    assert np.abs(np.diff(q, axis=0)).max() < 0.05  # time may jump, the arm may not
+    arm.actual.wait_for(at(GOAL))
+    after = stamp(arm.actual.next())
+    assert abs(after - now[0]) < SECOND
+
+
+# Hostile trajectories
+
+
+@pytest.mark.parametrize('values', [
+    (1e300,) * 3, (-1e300, 0.5, 1e308), (1e7, 0.0, 0.0), (float('nan'),) * 3,
+    (float('inf'), 0.0, 0.0)])
+def test_values_that_no_arm_reaches_are_refused_and_change_nothing(ros, values):
+    arm = Arm(ros)
+    arm.actual.wait_for(at(START))
+    for field in range(3):
+        given = [GOAL, np.zeros(3), np.zeros(3)]
+        given[field] = values
+        arm.send((0.2, *given), (0.4, GOAL, np.zeros(3), np.zeros(3)))
+    arm.actual.wait_for(at(START), len(arm.actual.messages) + 20)
+    assert arm.trigger('hold').success
+    arm.send(rest_to_rest(GOAL, 0.2))
+    arm.actual.wait_for(at(GOAL))
+
+
+def test_violent_but_possible_values_leave_an_arm_that_resets(ros):
+    arm = Arm(ros)
+    arm.send((1e-9, (1e6, -1e6, 1e6), (1e6,) * 3, (-1e6,) * 3), (2e-9, (-1e6, 1e6, 0.0)),
+             (0.1, GOAL), (1e9, (5e-324,) * 3))
+    sleep(0.2)
+    assert arm.trigger('hold').success
+    assert arm.trigger('reset').success
+    since = len(arm.actual.messages)
+    arm.actual.wait_for(at(START), since)
+    assert np.isfinite([m.position for m in arm.actual.messages]).all()
+    arm.send(rest_to_rest(GOAL, 0.2))
+    arm.actual.wait_for(at(GOAL))
+
+
+def test_hundred_thousand_points_are_followed_or_refused_and_the_arm_answers(ros):
+    arm = Arm(ros)
+    times = 1e-3 * np.arange(1, 100_001)
+    arm.send(*((t, GOAL) for t in times))
+    arm.desired.wait_for(at(GOAL))
+    assert arm.trigger('hold').success
+
+
+def test_bytes_that_are_no_message_are_survived(ros):
+    arm = Arm(ros)
+    arm.actual.wait_for(at(START))
+    header = b'\x00\x01\x00\x00'  # little-endian CDR
+    stamps, empty = b'\0' * 8, (1).to_bytes(4, 'little') + b'\0\0\0\0'
+    for body in (b'', b'\xff' * 64, stamps + b'\xff' * 8, stamps + empty + b'\xff\xff\xff\x7f',
+                 # one joint, whose name is no UTF-8
+                 stamps + empty + (1).to_bytes(4, 'little') + (4).to_bytes(4, 'little')
+                 + b'\xff\xfe\xc0\0' + (0).to_bytes(4, 'little')):
+        arm._publisher.publish(header + body)
+    arm.send(rest_to_rest(GOAL, 0.2))
+    arm.actual.wait_for(at(GOAL))

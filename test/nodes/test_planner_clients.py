@@ -1,0 +1,89 @@
+"""Several clients of the planner at once, and parameters that change under them."""
+
+from __future__ import annotations
+
+from threading import Condition
+
+from plan_requests import NAMES, NEAR, plan_request
+import pytest
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+
+DEADLINE = 60.0
+CLIENTS, REQUESTS = 4, 10
+CODES = PlanTrajectory.Response
+POSITIONS = [f'joint_limits.{name}.{end}_position' for name in NAMES for end in ('min', 'max')]
+
+
+@pytest.fixture
+def planner(ros):
+    return ros.add(TrajectoryPlanner(context=ros.context))
+
+
+def parameter(name, value):
+    return ParameterMessage(name=name, value=Parameter(name, value=value).get_parameter_value())
+
+
+def test_all_requests_of_many_clients_are_answered_in_the_order_of_each(ros, planner):
+    arrived, answers = Condition(), []
+    for k in range(CLIENTS):
+        node = ros.add(Node(f'client_{k}', context=ros.context))
+        client = node.create_client(PlanTrajectory, 'plan_trajectory')
+        assert client.wait_for_service(DEADLINE)
+        for i in range(REQUESTS):
+            def note(future, k=k, i=i):
+                with arrived:
+                    answers.append((k, i, future.result().error_code))
+                    arrived.notify_all()
+
+            client.call_async(plan_request(NEAR)).add_done_callback(note)
+    with arrived:
+        assert arrived.wait_for(lambda: len(answers) == CLIENTS * REQUESTS, DEADLINE), answers
+    assert {code for *_, code in answers} == {CODES.SUCCESS}
+    for k in range(CLIENTS):
+        assert [i for client, i, _ in answers if client == k] == list(range(REQUESTS))
+
+
+def test_parameters_of_a_refused_whole_are_all_as_before(ros, planner):
+    before = values(ros)
+    answer = ros.call(
+        SetParametersAtomically, 'trajectory_planner/set_parameters_atomically',
+        SetParametersAtomically.Request(parameters=[
+            parameter('sample_period', 0.02), parameter('max_points', 50),
+            parameter(POSITIONS[0], 3.0)]))  # above joint_1's max_position
+    assert not answer.result.successful
+    assert 'joint_limits.joint_1.min_position is 3 rad, must be below' in answer.result.reason
+    assert values(ros) == before
+    assert len(plan(ros).trajectory.points) > 50
+
+
+def test_single_sets_are_judged_each_on_what_is_then_in_force(ros, planner):
+    results = ros.call(
+        SetParameters, 'trajectory_planner/set_parameters', SetParameters.Request(parameters=[
+            parameter(POSITIONS[0], 2.0), parameter(POSITIONS[1], 3.0),
+            parameter(POSITIONS[0], 2.0)])).results
+    assert [r.successful for r in results] == [False, True, True]
+    assert planner._parameters_declared.config.limits.min_position[0] == 2.0
+
+
+def test_max_points_is_the_largest_answer(ros, planner):
+    size = len(plan(ros).trajectory.points)
+    for bound, code in ((size, CODES.SUCCESS), (size - 1, CODES.INVALID_GOAL_CONSTRAINTS)):
+        assert ros.call(
+            SetParameters, 'trajectory_planner/set_parameters', SetParameters.Request(
+                parameters=[parameter('max_points', bound)])).results[0].successful
+        assert plan(ros).error_code == code
+
+
+def plan(ros):
+    return ros.call(PlanTrajectory, 'plan_trajectory', plan_request(NEAR))
+
+
+def values(ros):
+    return ros.call(
+        GetParameters, 'trajectory_planner/get_parameters', GetParameters.Request(
+            names=['sample_period', 'max_points', *POSITIONS])).values

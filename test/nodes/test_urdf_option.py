@@ -1,0 +1,40 @@
+"""`simulated_arm --urdf`: what robot_state_publisher is given."""
+
+from __future__ import annotations
+
+from xml.etree import ElementTree
+
+from rclpy.node import Node
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.urdf import FrameNames, urdf
+
+from scripts import CONFIG, Script, script
+
+COMMAND = (*script('simulated_arm'), '--urdf')
+
+
+def test_option_prints_the_urdf_of_the_parameters_and_ends():
+    with Script(COMMAND, '--ros-args', '--params-file', CONFIG / 'thesis_arm_joint_2_250.yaml',
+                '-p', 'tip_frame:=tool', '-r', '__ns:=/left') as arm:
+        code, output, errors = arm.ended()
+    assert (code, errors) == (0, '')
+    assert output == urdf(RobotModel(), JointLimits(max_effort=(150.0, 250.0, 200.0)),
+                          FrameNames(tip='tool'))
+
+
+def test_wrong_parameter_is_told_instead():
+    with Script(COMMAND, '--ros-args', '-p', 'tip_frame:=base_link') as arm:
+        code, output, errors = arm.ended()
+    assert (code, output) == (1, '')
+    assert errors.startswith("simulated_arm: the frames are 'base_link', 'link_1', ")
+    assert errors.count('\n') == 1
+
+
+def test_urdf_can_be_a_parameter_on_a_command_line(ros):
+    text = urdf(RobotModel(), JointLimits())
+    node = ros.add(Node('robot_state_publisher', context=ros.context, cli_args=[
+        '--ros-args', '-p', f'robot_description:={text}']))
+    value = node.declare_parameter('robot_description', '').value
+    read, written = (ElementTree.canonicalize(t, strip_text=True) for t in (value, text))
+    assert read == written

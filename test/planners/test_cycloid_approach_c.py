@@ -1,0 +1,95 @@
+"""Approach (c): lift-off from rest, cruise, set-down to rest, in every segment."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from rrr_traj_planner.core.errors import LimitViolationError, TimingError
+from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.request import PlanningRequest
+from thesis_cases import POINTS
+
+ARM, LIMITS = RobotModel(), JointLimits()
+FREE = replace(LIMITS, max_effort=np.full(3, np.inf))
+LIGHT = replace(FREE, max_jerk=np.full(3, np.inf))
+
+
+def table(name, **request):
+    return PlanningRequest([POINTS[f'{name} point {k}'][0] for k in (1, 2, 3)],
+                           planner_id='cycloid_approach_c', **request)
+
+
+def through(q, **request):
+    return PlanningRequest(forward_kinematics(ARM, np.asarray(q, dtype=float)),
+                           planner_id='cycloid_approach_c', **request)
+
+
+@pytest.mark.parametrize(('name', 'seconds'), [('6.1', 3.380), ('6.3', 4.446)])
+def test_tables_take_the_times_that_are_known_of_a_stop_at_every_via_point(name, seconds):
+    assert plan(ARM, FREE, table(name)).trajectory.duration == pytest.approx(seconds, abs=6e-4)
+
+
+@pytest.mark.parametrize(('most', 'seconds'), [(5.0, np.sqrt(8.0 * 0.6)), (0.4, 2.3)])
+def test_one_joint_alone_takes_the_time_of_a_hand_calculation(most, seconds):
+    # 0.6 rad at 1 rad/s^2: two transitions of 2 u, u 2 u = 0.6, 4 u = sqrt(8 * 0.6); at 0.4 rad/s
+    # at most two of 0.8 s, 0.32 rad, and 0.28 rad in 0.7 s between them.
+    limits = replace(LIGHT, max_velocity=[most] * 3)
+    found = plan(ARM, limits, through([[0.3, 1.5, 0.0], [0.9, 1.5, 0.0]]))
+    assert found.trajectory.duration == pytest.approx(seconds, rel=1e-5)
+
+
+def test_arm_rests_at_every_via_point():
+    answer = plan(ARM, LIMITS, table('6.1'))
+    q, qd, qdd, _ = answer.trajectory(answer.via_times)
+    assert np.abs(qd).max() == 0.0
+    assert np.abs(qdd).max() <= 1e-12
+    assert forward_kinematics(ARM, q) == pytest.approx(table('6.1').via_points, abs=1e-9)
+
+
+def test_only_the_segments_that_lack_torque_are_slowed():
+    q = [[0.3, 1.4, 0.0], [1.2, 1.4, 0.0], [1.2, 1.5, 0.1]]  # joint 1 moves in the first alone
+    free = plan(ARM, FREE, through(q))
+    inertia = free.effort[0] / free.peaks.acceleration[0]  # joint 1's, about, in this pose
+    weak = replace(FREE, max_effort=[0.5 * inertia, np.inf, np.inf])
+    slow = plan(ARM, weak, through(q))
+    T, slowed = np.diff(free.via_times), np.diff(slow.via_times)
+    assert slowed[0] == pytest.approx(np.sqrt(2.0) * T[0], rel=1e-3)
+    assert slowed[1] == pytest.approx(T[1], rel=1e-9)
+    assert slow.effort[0] == pytest.approx(0.5 * inertia, rel=1e-6)
+
+
+def test_prescribed_durations_are_kept_and_free_ones_least():
+    least = np.diff(plan(ARM, LIMITS, table('6.1')).via_times)
+    answer = plan(ARM, LIMITS, table('6.1', segment_durations=[4.0, np.nan]))
+    assert np.diff(answer.via_times) == pytest.approx([4.0, least[1]], abs=1e-9)
+    assert plan(ARM, LIMITS, table('6.1', segment_durations=least)).via_times == pytest.approx(
+        np.concatenate(([0.0], np.cumsum(least))), abs=1e-9)
+
+
+def test_a_stay_at_a_point_may_be_prescribed():
+    q = [[0.3, 1.4, 0.0], [0.3, 1.4, 0.0], [0.8, 1.5, 0.1]]
+    answer = plan(ARM, LIMITS, through(q, segment_durations=[1.5, 4.0]))
+    assert answer.via_times == pytest.approx([0.0, 1.5, 5.5], abs=1e-9)
+    assert np.abs(answer.trajectory(np.linspace(0.0, 1.5, 9))[1]).max() == 0.0
+
+
+def test_durations_too_short_are_refused_by_segment_with_feasible_ones():
+    request = table('6.1', segment_durations=[4.0, 0.5])
+    with pytest.raises(TimingError, match=(
+            r'^segment_durations \[4\.0, 0\.5\] s are too short for segment 1: the least '
+            r'feasible are \[4\.0, 1\.17\d*\] s$')) as no:
+        plan(ARM, LIMITS, request)
+    answer = plan(ARM, LIMITS, replace(request, segment_durations=no.value.least_durations))
+    assert np.diff(answer.via_times) == pytest.approx(no.value.least_durations, abs=1e-9)
+
+
+def test_a_way_that_cannot_be_held_is_refused_by_segment():
+    # Half-way the forearm is level: 12 * 9.81 * 0.5 = 58.9 N m.
+    weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
+    q = [[0.2, 1.5, -1.5], [0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
+    with pytest.raises(LimitViolationError, match=(
+            r'^segment 1: on its way joint_3 needs 58\.9 N m to hold, limit 50 N m$')):
+        plan(ARM, weak, through(q))

@@ -1,0 +1,45 @@
+"""Durations that are prescribed: kept where there is a motion, else others are offered."""
+
+import numpy as np
+import pytest
+from rrr_traj_planner.core.cycloid import transition
+from rrr_traj_planner.core.errors import TimingError
+from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused
+
+PROFILE = JointProfile(transition(*(np.array([x]) for x in (1.0, 0.0, 0.0, 0.0))))
+MOTION = PiecewiseTrajectory([PROFILE] * 3, [0.0, 1.0])
+
+
+def slower_than(least):
+    """Return a planner of motions that have a motion where every duration is long enough."""
+    return lambda durations: MOTION if (durations >= np.array(least)).all() else None
+
+
+def test_durations_that_have_a_motion_are_kept():
+    assert kept_or_refused(slower_than([1.0, 2.0]), np.array([1.0, 2.0])) is MOTION
+
+
+def test_durations_in_the_same_proportion_are_offered():
+    # The second needs twice its time, so both are doubled.
+    with pytest.raises(TimingError, match=(
+            r'^segment_durations \[1\.5, 1\.0\] s are too short: the least feasible in their '
+            r'proportion are \[3\.0\d*, 2\.0\d*\] s$')) as no:
+        kept_or_refused(slower_than([1.0, 2.0]), np.array([1.5, 1.0]))
+    assert no.value.least_durations == pytest.approx((3.0, 2.0), rel=1e-5)
+    assert (np.array(no.value.least_durations) >= [3.0, 2.0]).all()
+
+
+def test_of_those_that_are_long_enough_nothing_more_is_asked_where_the_fastest_are_known():
+    with pytest.raises(TimingError, match=(
+            r'^segment_durations \[1\.5, 1\.0\] s are too short: feasible are \[1\.5, 2')) as no:
+        kept_or_refused(slower_than([1.0, 2.0]), np.array([1.5, 1.0]),
+                        lambda: np.array([1.0, 2.0]))
+    assert no.value.least_durations == pytest.approx((1.5, 2.0), rel=1e-5)
+
+
+def test_where_no_stretch_is_feasible_none_is_offered():
+    with pytest.raises(TimingError, match=(
+            r'^segment_durations \[1\.0\] s are too short, and no stretch of them is feas')) as no:
+        kept_or_refused(lambda durations: None, np.array([1.0]))
+    assert no.value.least_durations == ()

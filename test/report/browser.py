@@ -1,0 +1,127 @@
+"""Chromium without a window, driven over its debugging pipe: no other package is needed."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+from pathlib import Path
+import select
+import shutil
+import subprocess
+import time
+
+NAMES = ('chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable', 'chrome')
+DEADLINE = 60.0  # s; nothing here takes so long
+
+OPTIONS = (
+    '--headless=new', '--remote-debugging-pipe', '--no-sandbox', '--disable-gpu',
+    '--disable-dev-shm-usage', '--no-first-run', '--disable-background-networking',
+    '--disable-component-update', '--disable-default-apps', '--disable-extensions',
+    '--disable-sync', '--hide-scrollbars=false', '--mute-audio')
+
+
+def found():
+    """Return the browser's path, None where there is none; $CHROMIUM says which to use."""
+    asked = os.environ.get('CHROMIUM')
+    return next((path for path in map(shutil.which, [asked] if asked else NAMES) if path), None)
+
+
+class Browser:
+    """A browser with one page; leaving the context ends it."""
+
+    def __init__(self, folder):
+        command_read, self._out = os.pipe()
+        self._in, answer_write = os.pipe()
+        # the browser speaks on its descriptors 3 and 4
+        shell = f'exec "$@" 3<&{command_read} 4>&{answer_write}'
+        self._process = subprocess.Popen(
+            ['bash', '-c', shell, 'bash', found(), *OPTIONS, f'--user-data-dir={folder}',
+             'about:blank'], pass_fds=(command_read, answer_write), stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(command_read)
+        os.close(answer_write)
+        self._number, self._rest, self._session, self.events = 0, b'', None, []
+
+    def __enter__(self):
+        targets = self.ask('Target.getTargets')['targetInfos']
+        target = next(t['targetId'] for t in targets if t['type'] == 'page')
+        self._session = self.ask('Target.attachToTarget', targetId=target,
+                                 flatten=True)['sessionId']
+        for domain in ('Page', 'Runtime', 'Log', 'Network'):
+            self.ask(f'{domain}.enable')
+        return self
+
+    def __exit__(self, *_):
+        self._process.kill()
+        self._process.wait()
+        os.close(self._out)
+        os.close(self._in)
+
+    def ask(self, method, **parameters):
+        """Return the browser's answer to a command."""
+        self._number += 1
+        message = {'id': self._number, 'method': method, 'params': parameters}
+        if self._session:
+            message['sessionId'] = self._session
+        os.write(self._out, json.dumps(message).encode() + b'\0')
+        deadline = time.monotonic() + DEADLINE
+        while True:
+            answer = self._next(deadline)
+            if answer.get('id') == self._number:
+                assert 'error' not in answer, answer
+                return answer['result']
+            self.events.append(answer)
+
+    def _next(self, deadline):
+        while b'\0' not in self._rest:
+            ready, _, _ = select.select([self._in], [], [], max(deadline - time.monotonic(), 0.0))
+            assert ready, 'the browser does not answer'
+            data = os.read(self._in, 1 << 16)
+            assert data, 'the browser has ended'
+            self._rest += data
+        message, self._rest = self._rest.split(b'\0', 1)
+        return json.loads(message)
+
+    def show(self, page, width, height, dark):
+        """Load a page in a window of a size, for a reader who likes it dark or light."""
+        self.events.clear()
+        self.ask('Emulation.setDeviceMetricsOverride', width=width, height=height,
+                 deviceScaleFactor=2 if width < 600 else 1, mobile=width < 600)
+        self.ask('Emulation.setEmulatedMedia', features=[
+            {'name': 'prefers-color-scheme', 'value': 'dark' if dark else 'light'}])
+        self.ask('Page.navigate', url=Path(page).resolve().as_uri())
+        deadline = time.monotonic() + DEADLINE
+        while not any(e.get('method') == 'Page.loadEventFired' for e in self.events):
+            self.events.append(self._next(deadline))
+
+    def value(self, expression):
+        """Return what an expression is in the page."""
+        answer = self.ask('Runtime.evaluate', expression=expression, returnByValue=True,
+                          awaitPromise=True)
+        assert 'exceptionDetails' not in answer, answer['exceptionDetails']
+        return answer['result'].get('value')
+
+    def complaints(self):
+        """Return errors, warnings and exceptions that the page has caused."""
+        self.value('1')  # what has come before it is here now
+        methods = ('Runtime.exceptionThrown', 'Log.entryAdded')
+        told = ('Runtime.consoleAPICalled',)
+        return [e['params'] for e in self.events if e.get('method') in methods
+                or e.get('method') in told and e['params']['type'] in ('error', 'warning')]
+
+    def requests(self):
+        """Return every address that the page has asked for."""
+        return [e['params']['request']['url'] for e in self.events
+                if e.get('method') == 'Network.requestWillBeSent']
+
+    def screenshot(self, file, selector=None):
+        """Save a picture of the whole page, or of an element."""
+        box = self.value(
+            '(() => { const r = document.querySelector(' + json.dumps(selector or 'html')
+            + ').getBoundingClientRect(); return [r.x + scrollX, r.y + scrollY, r.width, '
+            'r.height]; })()')
+        clip = dict(zip(('x', 'y', 'width', 'height'), box), scale=1)
+        data = self.ask('Page.captureScreenshot', format='png', clip=clip,
+                        captureBeyondViewport=True)['data']
+        Path(file).write_bytes(base64.b64decode(data))

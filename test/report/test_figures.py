@@ -1,0 +1,208 @@
+"""The data behind figures, their files, and what is said of them."""
+
+from __future__ import annotations
+
+import csv
+from math import pi, sqrt
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.nodes.configuration_files import read_task
+from rrr_traj_planner.nodes.parameter_files import planner_config
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.report.animation import frames
+from rrr_traj_planner.report.approach_figures import via_positions
+from rrr_traj_planner.report.attempts import planned
+from rrr_traj_planner.report.function_figures import (
+    gauss_function,
+    subtrajectory,
+    transitions_compared,
+)
+from rrr_traj_planner.report.motion_samples import (
+    arm_points,
+    limit_shares,
+    path_lengths,
+    sampled,
+    tightest,
+)
+from rrr_traj_planner.report.page import paragraphs, Section, write_page
+from rrr_traj_planner.report.path_figures import label_directions
+from rrr_traj_planner.report.picture import embedded, Picture
+from rrr_traj_planner.report.plan_report import unique_names
+from rrr_traj_planner.report.tables import Table
+from rrr_traj_planner.report.theme import DARK, LIGHT, themed
+from rrr_traj_planner.report.thesis_tasks import table_6_1, table_6_3
+
+PNG = b'\x89PNG\r\n\x1a\n'
+
+# Joint angles at the via points, elbow up [deg], calculated by hand.
+ANGLES_6_1 = ((30.0464, 54.0815, 14.2147), (50.0921, 88.8437, 4.4472),
+              (40.1792, 96.9387, -2.3015))
+
+
+def a_picture(name='some', data=None):
+    def draw(figure):
+        axes = figure.subplots()
+        axes.plot([0.0, 1.0], [0.0, 1.0], color=LIGHT['joint-1'])
+        axes.set(xlabel='time [s]', ylabel='a & b')
+
+    return Picture(name, 'a "title" & more', 'a caption', draw, data=data or {})
+
+
+def test_gauss_function_is_the_thesis_s():
+    t = np.linspace(-5.0, 6.0, 20001)
+    value, slope = gauss_function(t, 0.5, 0.2)
+    assert value.sum() * (t[1] - t[0]) == pytest.approx(1.0, abs=1e-9)  # (3.1) has unit area
+    assert value.max() == pytest.approx(1.0 / (sqrt(2.0 * pi) * 0.2))
+    assert np.gradient(value, t) == pytest.approx(slope, abs=1e-3)
+
+
+def test_transitions_last_what_the_thesis_says():
+    times = {c.name: c.t[-1] for c in transitions_compared()}
+    # 2 |change| / acceleration (4.10), 1.875 (C.11), 1.5 for h (1 - h)
+    assert times['cycloid'] == pytest.approx(2.0)
+    assert times['septic'] == pytest.approx(1.875)
+    assert times['quartic'] == pytest.approx(1.5)
+    for curve in transitions_compared():
+        assert np.abs(curve.qdd).max() == pytest.approx(1.0, abs=1e-4), curve.name
+        assert curve.qd[[0, -1]] == pytest.approx([0.0, 1.0]), curve.name
+
+
+@pytest.mark.parametrize(('way', 'speed', 'pieces'), [(1.8, 0.6, 3), (2.0, 1.0, 2)])
+def test_subtrajectory_goes_its_way_from_rest_to_rest(way, speed, pieces):
+    profile = subtrajectory(way, speed)
+    q, qd, qdd, _ = profile(np.array([0.0, profile.duration]))
+    assert (q[1], *qd, *qdd) == pytest.approx((way, 0.0, 0.0, 0.0, 0.0), abs=1e-12)
+    assert profile.duration == pytest.approx(way / speed + 2.0 * speed)
+    assert len(profile.knots) == pieces + 1
+
+
+def test_via_positions_are_those_calculated_by_hand(plans):
+    for planner_id in ('cycloid_approach_a', 'cycloid_approach_b'):
+        q = via_positions(plans.on_table_6_1(planner_id))
+        assert np.degrees(q) == pytest.approx(np.array(ANGLES_6_1), abs=1e-3)
+
+
+@pytest.mark.parametrize(('file', 'task'), [
+    ('table_6_1.yaml', table_6_1()), ('table_6_3.yaml', table_6_3())])
+def test_tasks_are_those_of_the_shipped_files(file, task):
+    given = read_task(file)
+    config = planner_config(given.arm)
+    assert given.via_points.tolist() == task.via_points.tolist()
+    for name in ('min_position', 'max_position', 'max_velocity', 'max_acceleration', 'max_jerk',
+                 'max_effort'):
+        assert getattr(config.limits, name).tolist() == getattr(task.limits, name).tolist(), name
+    assert config.model.inertia.tolist() == task.model.inertia.tolist()
+    assert config.model.mass.tolist() == task.model.mass.tolist()
+
+
+def test_samples_show_both_sides_of_a_step(plans):
+    of = plans.on_table_6_1('poly_414')
+    s = sampled(of.task.model, of.plan.trajectory)
+    jump = np.abs(np.diff(s.qddd, axis=0)).max(axis=1)
+    assert (jump > 1.0).sum() == 2  # where the middle quartic begins and ends
+    assert np.diff(s.t)[jump > 1.0].max() < 1e-4
+    assert (np.diff(s.t) > 0.0).all()
+
+
+def test_shares_reach_one_where_limits_are_used_to_the_full(plans):
+    for of in planned(plans.table_6_1):
+        s = sampled(of.task.model, of.plan.trajectory)
+        shares = limit_shares(s, of.task.limits)
+        most = tightest(shares)
+        assert 0.9 < most.max() <= 1.0 + 1e-6, of.planner_id
+        assert most.max() == max(x.max() for x in shares.values())
+
+
+def test_a_limit_that_is_none_is_not_used():
+    limits = JointLimits(max_jerk=np.full(3, np.inf))
+    found = plan(RobotModel(), limits, PlanningRequest(table_6_1().via_points))
+    assert limit_shares(sampled(RobotModel(), found.trajectory), limits)['jerk'].max() == 0.0
+
+
+def test_path_lengths_rise_to_the_whole_path(plans):
+    trajectory = plans.on_table_6_3('line_arc').plan.trajectory
+    t = np.linspace(0.0, trajectory.duration, 200)
+    s = path_lengths(trajectory, t)
+    assert (np.diff(s) >= 0.0).all()
+    assert s[[0, -1]] == pytest.approx([0.0, trajectory.arm_path.path.length], abs=1e-9)
+
+
+def test_arm_points_keep_the_links_lengths():
+    model, q = RobotModel(), np.random.default_rng(3).uniform(-3.0, 3.0, (50, 3))
+    base, shoulder, elbow, tip = np.moveaxis(arm_points(model, q), 1, 0)
+    for one, other, length in ((base, shoulder, model.d1), (shoulder, elbow, model.a2),
+                               (elbow, tip, model.d4)):
+        assert np.linalg.norm(other - one, axis=1) == pytest.approx(length)
+    assert tip == pytest.approx(forward_kinematics(model, q))
+
+
+def test_frames_go_from_the_first_via_point_to_the_last(plans):
+    found = frames([plans.on_table_6_1('cycloid'), plans.on_table_6_1('time_optimal')])
+    assert len(found['motions']) == 2
+    for motion in found['motions']:
+        assert motion['tip'][0] == pytest.approx(found['via_points'][0], abs=1e-4)
+        assert motion['tip'][-1] == pytest.approx(found['via_points'][-1], abs=1e-4)
+        assert len(motion['tip']) == len(motion['elbow']) == len(motion['share'])
+        assert max(motion['share']) <= 1.001
+
+
+def test_picture_writes_png_and_csv_and_an_svg_without_fixed_colours(tmp_path):
+    svg = a_picture(data={'time [s]': np.arange(3.0), 'x': np.ones(3)}).written(tmp_path)
+    assert (tmp_path / 'some.png').read_bytes().startswith(PNG)
+    rows = list(csv.reader((tmp_path / 'some.csv').open()))
+    assert rows == [['time [s]', 'x'], ['0', '1'], ['1', '1'], ['2', '1']]
+    assert ElementTree.fromstring(svg).tag.endswith('svg')
+    assert 'aria-label="a &quot;title&quot; &amp; more"' in svg
+    assert 'var(--joint-1)' in svg and 'var(--ink)' in svg
+    assert not [c for c in LIGHT.values() if f': {c}' in svg]
+    assert sorted(f.name for f in tmp_path.iterdir()) == ['some.csv', 'some.png']
+
+
+def test_pictures_of_one_page_share_no_id(tmp_path):
+    ids = [{e.get('id') for e in ElementTree.fromstring(a_picture(n).written(tmp_path)).iter()}
+           - {None} for n in ('one', 'other')]
+    assert ids[0] and not ids[0] & ids[1]
+
+
+def test_embedded_references_are_kept():
+    svg = embedded('<?xml?>\n<svg width="1pt" height="2pt" viewBox="0 0 1 2"><g id="a"/>'
+                   '<use xlink:href="#a" clip-path="url(#a)"/></svg>', 'n', 't')
+    assert svg.startswith('<svg role="img" aria-label="t"')
+    assert 'width="1pt"' not in svg and 'height="2pt"' not in svg and 'viewBox="0 0 1 2"' in svg
+    assert svg.count('n-a') == 3
+
+
+def test_colours_have_one_role_each_and_a_dark_counterpart():
+    assert len(set(LIGHT.values())) == len(LIGHT)
+    assert LIGHT.keys() == DARK.keys()
+    assert themed(f'stroke: {LIGHT["tip"]}; fill: #123456') == 'stroke: var(--tip); fill: #123456'
+
+
+def test_page_stands_alone_and_shows_what_it_is_told_as_text(tmp_path):
+    table = Table('t', 'Peaks <b>', 'c & d', ('a', 'b', 'c'), [['<i>', '1', '2'], ['x', 'told']])
+    page = write_page(tmp_path / 'new', 'A <title>', 'One.\n\nTwo & three.',
+                      [Section('Some', '', [table, a_picture()])])
+    text = page.read_text()
+    for piece in ('A &lt;title&gt;', '<p>Two &amp; three.</p>', '&lt;i&gt;', 'colspan="2"',
+                  'prefers-color-scheme: dark', 'name="viewport"'):
+        assert piece in text
+    assert 'http://' not in text.replace('http://www.w3.org', '')
+    assert 'https://' not in text
+    assert (tmp_path / 'new' / 't.csv').read_text() == 'a,b,c\n<i>,1,2\nx,told\n'
+    assert paragraphs('  ') == ''
+
+
+def test_names_of_files_do_not_repeat():
+    assert unique_names(['a', 'b', 'a', 'a']) == ['a', 'b', 'a_2', 'a_3']
+
+
+def test_labels_go_away_from_their_neighbours():
+    found = label_directions(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0]]))
+    assert found[0] == pytest.approx([-1.0, 0.0])
+    assert found[1:] == pytest.approx(np.full((2, 2), sqrt(0.5)))

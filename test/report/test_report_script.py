@@ -1,0 +1,161 @@
+"""The script `report` as a process: pages, exit codes, refusals, signals, what it needs."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DEADLINE = 120.0  # s; nothing here takes so long
+PROMPT = 2.0      # s, in which a signal is to end it
+
+RUN = 'import sys; from rrr_traj_planner.nodes.report import main; sys.exit(main())'
+HEAVY = ('arm: thesis_arm.yaml\nplanner_id: line_arc\n'
+         'via_points: [[0.2, 0.8, 0.5], [0.5, 1.0, 1.0], [0.8, 1.2, 0.6]]\n')
+
+
+def report(*arguments, cwd, code=RUN):
+    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get('PYTHONPATH')) if p)
+    return subprocess.Popen(
+        [sys.executable, '-c', code, *map(str, arguments)], text=True, cwd=cwd,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, 'PYTHONPATH': path})
+
+
+def ended(process):
+    try:
+        output, errors = process.communicate(timeout=DEADLINE)
+        return process.returncode, output, errors
+    finally:
+        process.kill()
+
+
+def without(*modules):
+    """Return the script where modules cannot be imported."""
+    return f'import sys; sys.modules.update(dict.fromkeys({modules!r})); ' + RUN
+
+
+def test_plan_is_drawn_without_ros_and_nothing_is_written_elsewhere(tmp_path):
+    code, output, errors = ended(report(
+        '--plan', 'table_6_1.yaml', '--planner', 'cycloid', '--planner', 'septic', '--output',
+        'out', cwd=tmp_path, code=without('rclpy', 'ament_index_python')))
+    assert (code, errors) == (0, '')
+    assert output.endswith('page: out/index.html\n')
+    assert [f.name for f in tmp_path.iterdir()] == ['out']
+    names = {f.name for f in (tmp_path / 'out').iterdir()}
+    assert {'index.html', 'planners.csv', 'profiles_cycloid.png', 'profiles_septic.csv'} <= names
+    assert 'Peaks of septic' in (tmp_path / 'out' / 'index.html').read_text()
+
+
+def test_refused_plan_is_shown_with_its_reason(tmp_path):
+    (tmp_path / 'heavy.yaml').write_text(HEAVY)
+    code, _, errors = ended(report('--plan', 'heavy.yaml', cwd=tmp_path))
+    reason = 'via point 2: joint_2 needs 218.9 N m to hold, limit 200 N m'
+    assert code == 1
+    assert errors == f'report: planner line_arc refuses: {reason}\n'
+    assert f'refused: {reason}' in (tmp_path / 'report_heavy' / 'index.html').read_text()
+
+
+def test_one_refusal_does_not_hide_the_other_plan(tmp_path):
+    points = tmp_path / 'timed.yaml'
+    points.write_text('via_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n'
+                      'segment_durations: [3.0]\n')
+    code, _, errors = ended(report('--plan', points, '--planner', 'cycloid', '--planner',
+                                   'line_arc', '--output', 'o', cwd=tmp_path))
+    page = (tmp_path / 'o' / 'index.html').read_text()
+    assert code == 1
+    assert 'planner line_arc takes no segment_durations' in errors
+    assert 'id="profiles_cycloid"' in page and 'id="profiles_line_arc"' not in page
+    assert '3.000' in page
+
+
+@pytest.mark.parametrize(('arguments', 'code', 'text'), [
+    (('--plan', 'nowhere.yaml'), 1, "report: no file 'nowhere.yaml' in "),
+    (('--plan', 'thesis_arm.yaml'), 1, 'thesis_arm.yaml: no via_points'),
+    (('--plan', 'table_6_1.yaml', '--planner', 'fast'), 1,
+     "report: planner_id 'fast' is unknown, known are cycloid, "),
+    (('--thesis', '/proc/report'), 1, 'report: cannot write the page: '),
+    (('--plan', 'table_6_1.yaml', '--output', '/proc/report'), 1,
+     'report: cannot write the page: '),
+    ((), 2, 'one of the arguments --thesis --plan is required'),
+    (('--thesis', 'a', '--planner', 'cycloid'), 2, '--planner and --output go with --plan'),
+    (('--thesis', 'a', '--plan', 'b'), 2, 'not allowed with argument')])
+def test_wrong_arguments_are_told(tmp_path, arguments, code, text):
+    found, _, errors = ended(report(*arguments, cwd=tmp_path))
+    assert found == code
+    assert text in errors
+    assert 'Traceback' not in errors
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(('yaml', 'text'), [
+    ('arm: {d1: 5}', 'arm.d1 is 5, must be in [-100, 100] m (written with a point'),
+    ('joint_limits: {joint_3: {max_position: -4.0}}', 'joint_limits.joint_3.min_position is'),
+    ('joint_limits: [', 'while parsing')])
+def test_wrong_arm_is_told_with_its_file(tmp_path, yaml, text):
+    (tmp_path / 'arm.yaml').write_text(f'/**:\n  ros__parameters: {{{yaml}}}\n')
+    (tmp_path / 'points.yaml').write_text(
+        'arm: arm.yaml\nvia_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n')
+    code, _, errors = ended(report('--plan', 'points.yaml', cwd=tmp_path))
+    assert code == 1
+    assert errors.startswith(f'report: {tmp_path}/arm.yaml: ')
+    assert text in errors
+    assert errors.count('\n') == 1
+
+
+def test_arm_of_ones_own_is_used(tmp_path):
+    (tmp_path / 'arm.yaml').write_text(
+        '/**:\n  ros__parameters:\n    joint_names: [base, shoulder, elbow]\n'
+        '    joint_limits: {shoulder: {max_velocity: 0.3}}\n'
+        'trajectory_planner:\n  ros__parameters: {default_planner_id: septic}\n')
+    (tmp_path / 'points.yaml').write_text(
+        'arm: arm.yaml\nvia_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n')
+    code, _, errors = ended(report('--plan', 'points.yaml', '--output', 'o', cwd=tmp_path))
+    assert (code, errors) == (0, '')
+    text = (tmp_path / 'o' / 'peaks_septic.csv').read_text()
+    assert text.startswith('peak,base,shoulder,elbow\n')
+    assert '0.3 of 0.3 (100 %)' in text
+
+
+def test_missing_matplotlib_is_said_in_one_line(tmp_path):
+    code, _, errors = ended(report('--thesis', 'out', cwd=tmp_path, code=without('matplotlib')))
+    assert code == 1
+    assert errors.startswith('report: no figures, matplotlib is missing')
+    assert errors.count('\n') == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_help_needs_neither_ros_nor_matplotlib(tmp_path):
+    code, output, errors = ended(report('--help', cwd=tmp_path, code=without(
+        'rclpy', 'ament_index_python', 'matplotlib', 'numpy', 'yaml')))
+    assert (code, errors) == (0, '')
+    for text in ('--thesis OUT_DIR', '--plan FILE', '--planner ID', '--ros-args'):
+        assert text in output
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize('wait', [0.3, 2.5])
+def test_signal_ends_it_at_once(tmp_path, number, wait):
+    process = report('--thesis', 'out', cwd=tmp_path)
+    try:
+        process.stdout.readline()
+        time.sleep(wait)  # into the planning, and further on
+        process.send_signal(number)
+        sent = time.monotonic()
+        code, _, errors = ended(process)
+        assert time.monotonic() - sent < PROMPT
+    finally:
+        process.kill()
+    assert (code, errors) == (0, '')
+    assert not (tmp_path / 'out' / 'index.html').exists()
+
+
+def test_script_is_installed_with_what_it_reads():
+    setup = (ROOT / 'setup.py').read_text()
+    assert "'report'" in setup
+    assert '*.css' in setup and '*.js' in setup
