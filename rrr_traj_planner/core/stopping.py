@@ -16,6 +16,9 @@ from rrr_traj_planner.core.motion_points import MotionPoints
 # No stop is quicker than this, however wide the limits [s].
 LEAST_TIME = 0.01
 
+# Nothing takes longer, not even where numbers have overflowed [s].
+LONGEST_TIME = 1e18
+
 # Slower than this is rest [rad/s], [rad/s^2].
 REST = 1e-12
 
@@ -102,7 +105,7 @@ def stopping_time(velocity: float, acceleration: float, max_acceleration: float,
     long = LEAST_TIME
     if fits(long):
         return long
-    while not fits(long):
+    while not fits(long) and long < LONGEST_TIME:
         long *= 2.0
     short = 0.5 * long
     for _ in range(BISECTIONS):

@@ -44,6 +44,7 @@ class PlannerConfig:
     max_deviation: float
     max_tip_speed: float  # 0: none
     steady_zones: bool
+    half_transition: float
     planning_time_limit: float
     max_points: int
     max_via_points: int
@@ -75,6 +76,7 @@ class PlannerConfig:
             raise InvalidInputError(f'default_planner_id: {error}') from None
         return cls(
             robot_model(values), joint_limits(values),
+            half_transition=values['poly_414.t_acc'],
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
                 'max_deviation', 'max_tip_speed', 'steady_zones', 'planning_time_limit',

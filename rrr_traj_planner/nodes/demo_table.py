@@ -12,7 +12,7 @@ from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limit_check import TOLERANCE
 from rrr_traj_planner.core.path_deviation import distance_from_polyline
 from rrr_traj_planner.nodes.demo_client import Run
-from rrr_traj_planner.planners.registry import planner
+from rrr_traj_planner.planners.registry import planner, Registered
 
 PLANNED_BOUND = 1e-9  # rad
 REACHED_BOUND = 2e-3  # m
@@ -54,7 +54,11 @@ def figures(run: Run) -> list[Figure]:
 
     """
     found = []
+    last = len(run.task.via_points) - 1
+    missed = _planner(run).misses_via_points
     for i, (planned, reached) in enumerate(zip(planned_errors(run), reached_errors(run))):
+        if missed and 0 < i < last:  # passed by at a distance, as the message says
+            continue
         found += [Figure(f'via point {i}: planned error', planned, PLANNED_BOUND, 'rad'),
                   Figure(f'via point {i}: error reached', reached, REACHED_BOUND, 'm')]
     found.append(Figure('final error', final_error(run), FINAL_BOUND, 'm'))
@@ -132,7 +136,11 @@ def follows_path(run: Run) -> bool:
         False where the joints were.
 
     """
-    return planner(run.task.planner_id or run.config.default_planner_id).plan_path is not None
+    return _planner(run).plan_path is not None
+
+
+def _planner(run: Run) -> Registered:
+    return planner(run.task.planner_id or run.config.default_planner_id)
 
 
 def deviations(run: Run) -> tuple[float, float]:

@@ -101,6 +101,8 @@ TABLE: tuple[Row, ...] = (
         'm/s', 0.0, 100.0, nodes=(PLANNER,)),
     Row('steady_zones', False, 'whether the tip keeps its speed on the curved zones of a '
         'Cartesian path', nodes=(PLANNER,)),
+    Row('poly_414.t_acc', 0.5, 'half the length of a transition of planner poly_414', 's', 0.001,
+        100.0, nodes=(PLANNER,)),
     Row('planning_time_limit', 1.0, 'after which a planner that still improves its motion answers '
         'with the best so far', 's', 1e-3, 3600.0, nodes=(PLANNER,)),
     Row('max_points', MOST_POINTS, 'points that an answer may have; a request for more is refused '

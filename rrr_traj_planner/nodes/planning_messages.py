@@ -105,6 +105,7 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
         elbow=message.elbow or None,
         max_deviation=_unless_zero(deviation, config.max_deviation),
         max_tip_speed=_unless_zero(config.max_tip_speed, inf), steady_zones=config.steady_zones,
+        half_transition=config.half_transition,
         should_stop=should_stop, max_points=config.max_points)
 
 

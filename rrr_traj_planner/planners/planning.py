@@ -94,7 +94,7 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
     assert method.plan is not None
     trajectory = method.plan(JointTask(
         model, limits, distinct, durations, request.sample_period, np.flatnonzero(~same),
-        request.should_stop))
+        request.should_stop, request.half_transition))
     answer = _checked(model, limits, request, trajectory, _via_times(request, trajectory, same))
     return _with_misses(model, answer, q) if method.misses_via_points else answer
 

@@ -27,8 +27,6 @@ from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.straddled_motion import is_kept, Straddling, trajectory
 from rrr_traj_planner.planners.straddled_timing import fastest, total_time
 
-T_ACC = 0.5  # s, half the length of a transition (table 6.2)
-
 
 @register('poly_414', misses_via_points=True)
 def plan(task: JointTask) -> Trajectory:
@@ -55,7 +53,7 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit on the way.
 
     """
-    return planned(task, T_ACC)
+    return planned(task, task.half_transition)
 
 
 def planned(task: JointTask, t_acc: float) -> Trajectory:

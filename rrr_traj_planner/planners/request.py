@@ -15,6 +15,8 @@ from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.sampling import check_size, MOST_POINTS
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
 
+T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
+
 
 def never() -> bool:
     """Return that there is no reason to stop."""
@@ -49,6 +51,8 @@ class PlanningRequest:
         Bound on the tip's speed along a Cartesian path [m/s]; infinite: none.
     steady_zones : bool
         Whether the tip keeps its speed on the curved zones of a Cartesian path.
+    half_transition : float
+        Half the length of a transition of `poly_414` [s], its t_acc.
     should_stop : callable
         Asked now and then; once it answers True, the best motion so far is the answer.
     max_points : int
@@ -72,6 +76,7 @@ class PlanningRequest:
     max_deviation: float = 0.05
     max_tip_speed: float = np.inf
     steady_zones: bool = False
+    half_transition: float = T_ACC
     should_stop: Callable[[], bool] = never
     max_points: int = MOST_POINTS
 
@@ -88,7 +93,8 @@ class PlanningRequest:
         if self.elbow is not None and self.elbow not in ELBOWS:
             raise InvalidInputError(
                 f"elbow is {quoted(self.elbow)}, must be 'up', 'down' or empty")
-        for name, unit in (('sample_period', 's'), ('max_deviation', 'm')):
+        for name, unit in (('sample_period', 's'), ('max_deviation', 'm'),
+                           ('half_transition', 's')):
             value = float(getattr(self, name))
             if not (np.isfinite(value) and value > 0.0):
                 raise InvalidInputError(f'{name} is {value} {unit}, must be positive')
@@ -140,6 +146,8 @@ class JointTask:
         What the caller calls the segments, where it has more of them; None: 0, 1, 2, ...
     should_stop : callable
         As in `PlanningRequest`.
+    half_transition : float
+        Likewise [s].
 
     """
 
@@ -150,6 +158,7 @@ class JointTask:
     sample_period: float
     segment_numbers: IntArray | None = None
     should_stop: Callable[[], bool] = never
+    half_transition: float = T_ACC
 
     def segment_number(self, segment: int) -> int:
         """

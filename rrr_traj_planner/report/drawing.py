@@ -209,8 +209,12 @@ def legend(figure: Any, handles: Sequence[Any], columns: int = 3) -> None:
     """
     found = figure.legend(handles=list(handles), loc='upper center',
                           ncols=min(columns, len(handles)), columnspacing=1.2, handlelength=2.2)
+    share = found.get_window_extent().height / figure.bbox.height
+    share += LEGEND_GAP / figure.get_figheight()
     engine = figure.get_layout_engine()
     if isinstance(engine, ConstrainedLayoutEngine):
-        share = found.get_window_extent().height / figure.bbox.height
-        share += LEGEND_GAP / figure.get_figheight()
         engine.set(rect=(0.0, 0.0, 1.0, 1.0 - share))
+    else:
+        for axes in figure.axes:
+            left, bottom, width, height = axes.get_position(original=True).bounds
+            axes.set_position((left, bottom, width, min(height, 1.0 - share - bottom)))

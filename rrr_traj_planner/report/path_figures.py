@@ -193,7 +193,7 @@ def _equal_scales(axes: Any) -> None:
 def _space(figure: Any) -> Any:
     """Return axes in three dimensions that fill a figure up to its legend."""
     figure.set_layout_engine('none')
-    axes = figure.add_axes((0.02, 0.03, 0.93, 0.88), projection='3d')
+    axes = figure.add_axes((0.02, 0.02, 0.93, 0.98), projection='3d')
     axes.set(xlabel='x [m]', ylabel='y [m]', zlabel='z [m]')
     axes.view_init(elev=24.0, azim=-62.0)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):

@@ -11,6 +11,7 @@ import numpy as np
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.report.approach_figures import figure_4_3, figure_4_4
 from rrr_traj_planner.report.attempts import Attempt, attempts, Planned, planned
+from rrr_traj_planner.report.claim_figures import claims_table, spectra, vibrations
 from rrr_traj_planner.report.function_figures import (
     figure_3_1,
     figure_3_2,
@@ -37,6 +38,11 @@ keep the thesis's numbers. Where its print is wrong, the corrected equations are
 Position, velocity and acceleration limits are those of tables 6.2 and B.3 (joint 2's range
 mirrored, as no elbow branch fits the printed one); jerk, which the thesis does not limit, is
 limited to 10 rad/s³."""
+
+CLAIMS = """\
+Less excitation: true of a transition of the same length, not of whole motions whose transitions
+are shorter. Near time optimality: not of approach (a); least times are those of any motion through
+the points under the same limits."""
 
 REPEATS = 2  # the shorter planning time counts: the first one also loads what is needed
 POLYNOMIAL, THESIS = 'poly_414', 'cycloid_approach_a'
@@ -150,7 +156,15 @@ def sections(plans: ThesisPlans) -> list[Section]:
             'by approach (a)', 'Through the via point; jerk is continuous, and zero where a '
             'transition begins or ends.')),
         Section('Section 6.4: path in Cartesian space', '', _path_figures(plans)),
+        Section('Claims of section 6.5', CLAIMS, [
+            claims_table(_on_both_tables(plans)), spectra(), vibrations()]),
         Section("The thesis's data", '', data_tables())]
+
+
+def _on_both_tables(plans: ThesisPlans) -> list[tuple[Planned, Planned]]:
+    others = {p.planner_id: p for p in planned(plans.table_6_3)}
+    return [(p, others[p.planner_id]) for p in planned(plans.table_6_1)
+            if p.planner_id in others]
 
 
 def _refused(plans: ThesisPlans) -> str:

@@ -80,6 +80,12 @@ REFUSED = {
     'an infinite acceleration': (
         trajectory(point(accelerations=(0.0, 0.0, -inf))),
         'Value of accelerations of joint joint_3 at point #0 is not finite: -inf'),
+    'a position that only makes numbers overflow': (
+        trajectory(point(q=(0.0, 1e150, 0.0))),
+        'Value of positions of joint joint_2 at point #0 is 1e+150, must be within 1e+06'),
+    'a velocity, likewise': (
+        trajectory(point(0.5, velocities=(-1.1e6, 0.0, 0.0)), point()),
+        'Value of velocities of joint joint_1 at point #0 is -1.1e+06, must be within 1e+06'),
 }
 
 

@@ -58,6 +58,11 @@ def test_time_from_a_velocity_alone_is_the_cubic_s():
     assert stopping_time(-1.0, 0.0, inf, 6.0) == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.parametrize('command', [(inf, 0.0), (0.0, inf), (np.nan, 0.0), (1e308, 1e308)])
+def test_search_for_a_time_ends_even_without_one(command):
+    assert stopping_time(*command, 1.0, 10.0) > 1e9
+
+
 def test_arm_at_rest_stays():
     q = (0.5, 0.9, 0.2)
     motion = stopping((*q, *(0.0,) * 6), NOW, LIMITS, MODEL)

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.errors import TimingError
+from rrr_traj_planner.core.errors import InvalidInputError, TimingError
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.poly_414 import planned, T_ACC
-from rrr_traj_planner.planners.request import JointTask, PlanningRequest
+from rrr_traj_planner.planners.poly_414 import planned
+from rrr_traj_planner.planners.request import JointTask, PlanningRequest, T_ACC
 from thesis_cases import POINTS
 
 ARM, LIMITS = RobotModel(), JointLimits()
@@ -139,3 +139,19 @@ def test_durations_too_short_are_refused_with_feasible_ones_that_are_then_accept
         plan(ARM, LIMITS, request)
     answer = plan(ARM, LIMITS, replace(request, segment_durations=no.value.least_durations))
     assert np.diff(answer.via_times) == pytest.approx(no.value.least_durations, abs=1e-9)
+
+
+def test_half_a_transition_s_length_is_what_the_request_says():
+    # A longer transition passes the via point by at a greater distance.
+    misses = []
+    for t_acc in (0.2, 0.4):
+        request = table('6.1', half_transition=t_acc)
+        found = plan(ARM, LIMITS, request)
+        tip = forward_kinematics(ARM, found.trajectory(found.via_times)[0])
+        misses.append(float(np.linalg.norm(tip[1] - request.via_points[1])))
+    assert 0.0 < misses[0] < misses[1]
+
+
+def test_a_transition_of_no_length_is_refused():
+    with pytest.raises(InvalidInputError, match=r'half_transition is 0\.0 s, must be positive'):
+        table('6.1', half_transition=0.0)

@@ -1,0 +1,134 @@
+"""The thesis's claims as figures: excitation, and total times against their limits."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.report import drawing
+from rrr_traj_planner.report.attempts import Planned
+from rrr_traj_planner.report.excitation import (
+    amplitude_spectrum,
+    joint_acceleration,
+    residual_vibration,
+    share_above,
+)
+from rrr_traj_planner.report.function_figures import FUNCTIONS
+from rrr_traj_planner.report.picture import Picture
+from rrr_traj_planner.report.tables import Table
+from rrr_traj_planner.report.theme import DASHES, SERIES
+
+FREQUENCIES = np.linspace(0.25, 10.0, 400)  # Hz
+MODES = np.linspace(3.0, 10.0, 281)         # Hz, of a joint's flexible mode
+HIGH = 2.0                                  # Hz: what is above it counts as excitation
+DURATION, CHANGE, POINTS = 2.0, 1.0, 4001   # s, rad/s: a transition to compare functions with
+FLOOR = 1e-6                                # rad/s, lowest in the figure
+
+# Least total times through the points of tables 6.1 and 6.3 [s], by whatever motion; see
+# docs/claims.md. With velocity and acceleration limits; with jerk limits too.
+LIMIT_TIMES = {'velocity, acceleration': (2.015, 2.474), 'and jerk': (2.129, 2.581)}
+
+
+class Excitation(NamedTuple):
+    """How much a motion excites."""
+
+    above: float  # part of the acceleration's energy above HIGH
+    swing: float  # largest that is left of a mode's swing, of all modes in MODES
+
+
+def of_transitions() -> dict[str, Excitation]:
+    """Return each function's excitation, by a transition of the same duration and change."""
+    return {f.name: _excitation(*_transition(f)) for f in FUNCTIONS}
+
+
+def of_plan(of: Planned) -> Excitation:
+    """
+    Return the excitation of a whole motion.
+
+    Parameters
+    ----------
+    of : Planned
+        The motion.
+
+    Returns
+    -------
+    Excitation
+        Of the joint that excites most.
+
+    """
+    each = [_excitation(*joint_acceleration(of.plan.trajectory, j)) for j in range(3)]
+    return Excitation(*(max(values) for values in zip(*each)))
+
+
+def spectra() -> Picture:
+    """Return the figure of the functions' spectra."""
+    curves = {f.name: amplitude_spectrum(*_transition(f), FREQUENCIES) for f in FUNCTIONS}
+    shares = ', '.join(f'{n} {1e6 * e.above:.0f}' for n, e in of_transitions().items())
+    return _by_frequency(
+        'claim_spectra', 'Spectrum of a transition of each function',
+        f'Of {DURATION:g} s, by {CHANGE:g} rad/s. Energy above {HIGH:g} Hz, in millionths: '
+        f'{shares}.', curves, 'frequency [Hz]', 'acceleration [rad/s²/Hz]')
+
+
+def vibrations() -> Picture:
+    """Return the figure of what is left of a flexible mode's swing."""
+    curves = {f.name: residual_vibration(*_transition(f), FREQUENCIES) for f in FUNCTIONS}
+    return _by_frequency(
+        'claim_vibrations', 'Swing that a transition leaves behind',
+        'Of a mode damped by 1 % on the joint, against its deflection under the greatest '
+        'acceleration.', curves, "mode's frequency [Hz]", 'swing / deflection')
+
+
+def claims_table(plans: list[tuple[Planned, Planned]]) -> Table:
+    """
+    Return the table of methods against limits and by excitation.
+
+    Parameters
+    ----------
+    plans : list of pairs of Planned
+        Each method's plans for tables 6.1 and 6.3.
+
+    Returns
+    -------
+    Table
+        A row for each method.
+
+    """
+    heads = ('planner', *(f'time / limit ({name}), table {table}' for name in LIMIT_TIMES
+                          for table in ('6.1', '6.3')),
+             f'energy above {HIGH:g} Hz [%], table 6.1',
+             f'swing left of modes of {MODES[0]:g} to {MODES[-1]:g} Hz, table 6.1')
+    rows = []
+    for pair in plans:
+        times = [p.plan.trajectory.duration for p in pair]
+        found = of_plan(pair[0])
+        rows.append([pair[0].planner_id, *(
+            f'{t / limit:.2f}' for limits in LIMIT_TIMES.values()
+            for t, limit in zip(times, limits)), f'{100.0 * found.above:.2f}',
+            f'{found.swing:.2f}'])
+    return Table('claims', 'Methods against the least times, and their excitation',
+                 'Of whole motions, of the joint that is worst.', heads, rows)
+
+
+def _transition(function: Any) -> tuple[Array, Array]:
+    t = np.linspace(0.0, DURATION, POINTS)
+    piece = function.transition(DURATION, 0.0, 0.0, CHANGE)
+    return t, piece.at(t / DURATION)[2]
+
+
+def _excitation(t: Array, acceleration: Array) -> Excitation:
+    return Excitation(share_above(t, acceleration, HIGH),
+                      float(residual_vibration(t, acceleration, MODES).max()))
+
+
+def _by_frequency(name: str, title: str, caption: str, curves: dict[str, Array], x_label: str,
+                  y_label: str) -> Picture:
+    def draw(figure: Any) -> None:
+        axes = drawing.stacked(figure, [y_label], x_label)[0]
+        for i, (label, values) in enumerate(curves.items()):
+            axes.semilogy(FREQUENCIES, np.maximum(values, FLOOR), color=SERIES[i],
+                          linestyle=DASHES[i % 3], linewidth=1.2, label=label)
+        drawing.legend(figure, axes.get_lines(), 4)
+
+    return Picture(name, title, caption, draw, 3.2, {x_label: FREQUENCIES, **curves})
