@@ -111,7 +111,10 @@ def _finished(kind: str, task: Task, tips: np.ndarray) -> Task | None:
 def _tips(rng: np.random.Generator, kind: str, task: Task, n: int) -> np.ndarray | None:
     """Return points that straight lines within the limits connect, None where none are found."""
     model, limits, request = task.model, task.limits, task.request
-    first = random_pose(rng, model, limits, request.elbow, HELD * limits.max_effort)
+    try:
+        first = random_pose(rng, model, limits, request.elbow, HELD * limits.max_effort)
+    except LookupError:
+        return None
     tips = [forward_kinematics(model, first)]
     special = int(rng.integers(2, n))
     for k in range(1, n):

@@ -34,8 +34,11 @@ def soak_task(seed: int) -> Task:
     period = float(rng.choice([0.005, 0.01, 0.01, 0.01, 0.02]))
     while True:
         limits = random_limits(rng, model, elbow)
-        q = np.array([random_pose(rng, model, limits, elbow, limits.max_effort)
-                      for _ in range(n)])
+        try:
+            q = np.array([random_pose(rng, model, limits, elbow, limits.max_effort)
+                          for _ in range(n)])
+        except LookupError:  # limits that leave the arm nowhere to be
+            continue
         _make_special(rng, kind, q, limits)
         if not all(is_usable(model, limits, p, elbow, limits.max_effort) for p in q):
             continue

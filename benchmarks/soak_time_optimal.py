@@ -27,6 +27,7 @@ POSITION_ROOM = 1e-9     # rad
 PLACE_ROOM = 1e-8        # m, and s for what rests
 KNOT_WIDTH = 1e-9        # s, the distance over which jerk is looked at for jumps
 JUMP = 1e-3              # of the largest jerk, that counts as none
+PROGRESS = 250           # tasks after which it is said how far it has come
 PERCENTILES = (50, 90, 99, 100)
 
 
@@ -128,6 +129,8 @@ def main() -> int:
             results.append(result)
             if result.failure or result.violations:
                 print(f'seed {result.seed}: {result.failure or result.violations}', flush=True)
+            if len(results) % PROGRESS == 0:
+                print(f'{len(results)} of {options.tasks}', flush=True)
     print(report(results))
     return int(any(r.failure or r.violations for r in results))
 

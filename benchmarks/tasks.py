@@ -15,6 +15,7 @@ from rrr_traj_planner.planners.via_points import joint_via_points
 
 ARM = RobotModel()
 HOLDABLE = 0.999     # of an effort limit, at a drawn via point
+MOST_TRIES = 2000    # at drawing a pose
 SAME_POSE = 1e-6     # rad, to which inverse kinematics must give a drawn pose back
 NONE = np.full(3, np.inf)
 
@@ -80,13 +81,18 @@ def random_task(rng: np.random.Generator, limits: JointLimits, points: int, name
 
 def random_pose(rng: np.random.Generator, model: RobotModel, limits: JointLimits, elbow: str,
                 effort: object) -> np.ndarray:
-    """Return a random pose on a branch, within its range, that given torques can hold."""
+    """
+    Return a random pose on a branch, within its range, that given torques can hold.
+
+    Raises LookupError where none is found.
+    """
     low = np.maximum(limits.min_position, (-np.pi, -np.pi, -0.5 * np.pi))
     high = np.minimum(limits.max_position, (np.pi, np.pi, 1.5 * np.pi))
-    while True:
+    for _ in range(MOST_TRIES):
         q = rng.uniform(low, high)
         if is_usable(model, limits, q, elbow, effort):
             return q
+    raise LookupError('no pose can be held')
 
 
 def is_usable(model: RobotModel, limits: JointLimits, q: np.ndarray, elbow: str,
