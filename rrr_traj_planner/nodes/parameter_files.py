@@ -54,14 +54,14 @@ def _config(given: dict[str, Any]) -> PlannerConfig:
 def _values(file: Path) -> dict[str, Any]:
     """Return a file's parameters by their dotted names."""
     content = yaml.safe_load(file.read_text())
-    if not isinstance(content, dict):
-        raise InvalidInputError('no parameters')
     found: dict[str, Any] = {}
     for node in NODES:
-        part = content.get(node) or {}
+        part = content.get(node) if isinstance(content, dict) else None
         parameters = part.get('ros__parameters') if isinstance(part, dict) else None
         if isinstance(parameters, dict):
             found.update(_flat(parameters))
+    if not found:
+        raise InvalidInputError(f'no parameters of a node {", ".join(NODES[:2])}')
     return found
 
 

@@ -33,6 +33,9 @@ SECOND = 1_000_000_000  # ns
 # Other periods would ask for answers of no use to any controller [s].
 LEAST_SAMPLE_PERIOD, LARGEST_SAMPLE_PERIOD = 1e-4, 10.0
 
+# Zones of less cannot be told from corners; more is beyond any arm [m].
+LEAST_DEVIATION, LARGEST_DEVIATION = 1e-6, 100.0
+
 # A start state that moves faster is not at rest [rad/s]; encoders' noise stays below it.
 AT_REST = 0.01
 
@@ -90,9 +93,9 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
         raise InvalidInputError(f'sample_period is {period:g} s, must be 0 or in '
                                 f'[{LEAST_SAMPLE_PERIOD:g}, {LARGEST_SAMPLE_PERIOD:g}] s')
     deviation = message.max_deviation
-    if not 0.0 <= deviation < inf:
-        raise InvalidInputError(f'max_deviation is {deviation:g} m, must be 0 or positive, and '
-                                'finite')
+    if deviation != 0.0 and not LEAST_DEVIATION <= deviation <= LARGEST_DEVIATION:
+        raise InvalidInputError(f'max_deviation is {deviation:g} m, must be 0 or in '
+                                f'[{LEAST_DEVIATION:g}, {LARGEST_DEVIATION:g}] m')
     return PlanningRequest(
         via_points=_tip_positions(message.via_points.poses),
         start=_start(message.start_state, config.model),

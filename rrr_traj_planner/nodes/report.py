@@ -88,7 +88,8 @@ def _plan(options: argparse.Namespace) -> int:
     request = PlanningRequest(
         file.via_points, sample_period=config.sample_period, max_deviation=config.max_deviation,
         segment_durations=file.segment_durations if len(file.segment_durations) else None,
-        max_tip_speed=config.max_tip_speed or float('inf'), steady_zones=config.steady_zones)
+        max_tip_speed=config.max_tip_speed or float('inf'), steady_zones=config.steady_zones,
+        half_transition=config.half_transition)
     ids = options.planner or [file.planner_id or config.default_planner_id]
     print('planning and drawing ...', flush=True)
     found = attempts(Task(file.name, config.model, config.limits, request),

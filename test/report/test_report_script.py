@@ -10,6 +10,8 @@ import sys
 import time
 
 import pytest
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.nodes.parameter_files import planner_config
 
 ROOT = Path(__file__).parents[2]
 DEADLINE = 120.0  # s; nothing here takes so long
@@ -104,8 +106,16 @@ def test_wrong_arm_is_told_with_its_file(tmp_path, yaml, text):
     code, _, errors = ended(report('--plan', 'points.yaml', cwd=tmp_path))
     assert code == 1
     assert errors.startswith(f'report: {tmp_path}/arm.yaml: ')
+    assert 'Traceback' not in errors
     assert text in errors
     assert errors.count('\n') == 1
+
+
+@pytest.mark.parametrize('text', ['', '[1, 2]', '/left/**: {ros__parameters: {arm.d1: 0.6}}'])
+def test_file_without_parameters_of_the_planner_is_refused(tmp_path, text):
+    (tmp_path / 'arm.yaml').write_text(text)
+    with pytest.raises(InvalidInputError, match=r'arm.yaml: no parameters of a node /\*\*, '):
+        planner_config(tmp_path / 'arm.yaml')
 
 
 def test_arm_of_ones_own_is_used(tmp_path):
