@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import pi
 from typing import Any, NamedTuple
 
@@ -16,6 +15,7 @@ from rrr_traj_planner.core.piecewise import JointProfile
 from rrr_traj_planner.core.quartic import QUARTIC
 from rrr_traj_planner.core.septic import SEPTIC
 from rrr_traj_planner.report import drawing
+from rrr_traj_planner.report.coefficients import is_transition
 from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.theme import DASHES, LIGHT, SERIES
 
@@ -77,24 +77,19 @@ def figure_3_1() -> Picture:
     t = np.linspace(0.0, 1.0, POINTS)
     curves = [(f'μ {mu:g}, σ {sigma:g}', *gauss_function(t, mu, sigma))
               for mu, sigma in PARAMETERS_3_1]
-    u = np.linspace(-4.0, 4.0, POINTS)
 
     def draw(figure: Any) -> None:
         axes = list(figure.subplots(3, 1))
         for i, (label, value, slope) in enumerate(curves):
             for one, y in zip(axes, (value, slope)):
                 one.plot(t, y, color=SERIES[i], linestyle=DASHES[i], label=label)
-        axes[2].plot(u, maclaurin(u, 40), color=LIGHT['ink'], label='closed form')
-        for i, order in enumerate(ORDERS_3_1):
-            axes[2].plot(u, maclaurin(u, order), color=SERIES[i + 3], linestyle=DASHES[i],
-                         label=f'series, N = {order}')
+        _series(axes[2])
         for one, y_label, x_label in zip(
                 axes, ('f(t), (3.1)', 'df/dt, (3.2)', 'exp(−u²/2), (3.3)'),
                 ('normalised time t', 'normalised time t', 'u = (t − μ) / σ')):
             one.set(ylabel=y_label, xlabel=x_label)
             one.margins(x=0.0)
-            one.legend(loc='upper right' if one is not axes[2] else 'upper center', ncols=1)
-        axes[2].set_ylim(-0.3, 2.2)
+            one.legend(loc='upper right')
         axes[2].legend(loc='upper center', ncols=2)
         figure.align_ylabels(axes)
 
@@ -105,6 +100,16 @@ def figure_3_1() -> Picture:
         f'place; its error within two σ of the peak is {errors}.', draw, 6.6,
         {'t': t, **{f'{n} {what}': y for n, v, d in curves for what, y in (
             ('f', v), ('df/dt', d))}})
+
+
+def _series(axes: Any) -> None:
+    """Draw exp(-u^2 / 2) and its series."""
+    u = np.linspace(-4.0, 4.0, POINTS)
+    axes.plot(u, np.exp(-0.5 * u * u), color=LIGHT['ink'], label='closed form')
+    for i, order in enumerate(ORDERS_3_1):
+        axes.plot(u, maclaurin(u, order), color=SERIES[i + 3], linestyle=DASHES[i],
+                  label=f'series, N = {order}')
+    axes.set_ylim(-0.3, 2.2)
 
 
 def figure_3_2() -> Picture:
@@ -226,7 +231,7 @@ def subtrajectory(displacement: float, velocity: float) -> JointProfile:
     return JointProfile(CycloidPiece(*(np.array(f, dtype=float) for f in zip(lift, level, down))))
 
 
-def shade(axes: Any, profile: JointProfile, cruising: Sequence[bool] | None = None) -> None:
+def shade(axes: Any, profile: JointProfile) -> None:
     """
     Shade the times of a motion's transitions.
 
@@ -236,11 +241,8 @@ def shade(axes: Any, profile: JointProfile, cruising: Sequence[bool] | None = No
         Where.
     profile : JointProfile
         The motion.
-    cruising : sequence of bool, optional
-        Which pieces are not to be shaded; None: those without acceleration.
 
     """
-    calm = profile.pieces.peaks()[0] == 0.0 if cruising is None else cruising
-    for begin, end, still in zip(profile.knots[:-1], profile.knots[1:], calm):
-        if not still:
-            axes.axvspan(begin, end, color=LIGHT['transition'], linewidth=0.0, zorder=0)
+    moving = is_transition(profile.pieces)
+    for begin, end in zip(profile.knots[:-1][moving], profile.knots[1:][moving]):
+        axes.axvspan(begin, end, color=LIGHT['transition'], linewidth=0.0, zorder=0)

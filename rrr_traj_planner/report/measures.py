@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -125,24 +124,6 @@ def time_at_limit(shares: Array, times: Array, least: float) -> float:
     middle = 0.5 * (shares[:-1] + shares[1:])
     widths = np.diff(times)
     return float(widths[middle >= least].sum() / widths.sum())
-
-
-def joint_of_peak(values: Sequence[float] | Array) -> int:
-    """
-    Return whose value is the largest.
-
-    Parameters
-    ----------
-    values : sequence of float
-        One for each joint.
-
-    Returns
-    -------
-    int
-        The joint's index.
-
-    """
-    return int(np.argmax(values))
 
 
 def _end_jerk(profile: JointProfile) -> float:

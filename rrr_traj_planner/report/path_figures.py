@@ -8,7 +8,7 @@ from typing import Any
 from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import proj3d
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.path_trajectory import PathTrajectory
 from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.attempts import Planned
@@ -123,25 +123,31 @@ def magnified_zone(of: Planned, zone: int, name: str, title: str, caption: str) 
     line, at_ends = in_plane(path(places)[0]), in_plane(path(ends)[0])
     polyline = in_plane(path.points[zone:zone + 3])
 
+    curved = (places >= ends[0]) & (places <= ends[1])
+
     def draw(figure: Any) -> None:
         axes = figure.subplots()
-        axes.plot(*polyline.T * 1e3, color=LIGHT['limit'], linestyle='--', linewidth=1.0,
-                  label='polyline')
-        curved = (places >= ends[0]) & (places <= ends[1])
-        axes.plot(*line.T * 1e3, color=LIGHT['tip'], linewidth=1.6, label='line')
-        axes.plot(*line[curved].T * 1e3, color=LIGHT['joint-1'], linewidth=2.4, label='curve')
-        axes.plot(*at_ends.T * 1e3, 'o', color=LIGHT['joint-1'], markersize=4)
-        axes.plot(0.0, 0.0, 'o', color=LIGHT['via'], markeredgecolor=LIGHT['ink'], markersize=6,
-                  label='via point')
-        axes.set(xlabel='along the tangent [mm]', ylabel='along the normal [mm]',
-                 xlim=_padded(1e3 * line[:, 0]), ylim=_padded(1e3 * line[:, 1]))
-        axes.set_aspect('equal', adjustable='box')
+        _zone(axes, line, curved, at_ends, polyline)
         drawing.legend(figure, axes.get_legend_handles_labels()[0], 4)
 
     told = (f'{caption} Least radius {radius:.3f} m; the path leaves the polyline by at most '
             f'{1e3 * float(np.max(path.deviation)):.1f} mm.')
     return Picture(name, title, told, draw, 3.0, {
         'length along the path [m]': places, 'tangent [m]': line[:, 0], 'normal [m]': line[:, 1]})
+
+
+def _zone(axes: Any, line: Array, curved: BoolArray, ends: Array, polyline: Array) -> None:
+    """Draw a path in the plane of its curve, its via point the origin [m]."""
+    axes.plot(*polyline.T * 1e3, color=LIGHT['limit'], linestyle='--', linewidth=1.0,
+              label='polyline')
+    axes.plot(*line.T * 1e3, color=LIGHT['tip'], linewidth=1.6, label='line')
+    axes.plot(*line[curved].T * 1e3, color=LIGHT['joint-1'], linewidth=2.4, label='curve')
+    axes.plot(*ends.T * 1e3, 'o', color=LIGHT['joint-1'], markersize=4)
+    axes.plot(0.0, 0.0, 'o', color=LIGHT['via'], markeredgecolor=LIGHT['ink'], markersize=6,
+              label='via point')
+    axes.set(xlabel='along the tangent [mm]', ylabel='along the normal [mm]',
+             xlim=_padded(1e3 * line[:, 0]), ylim=_padded(1e3 * line[:, 1]))
+    axes.set_aspect('equal', adjustable='box')
 
 
 def _padded(values: Array) -> tuple[float, float]:
