@@ -14,7 +14,8 @@ DESCRIPTION = """\
 Plan motions of the arm through via points, exactly and without stopping.
 
   serves      plan_trajectory (rrr_traj_planner_interfaces/srv/PlanTrajectory)
-  publishes   planned_trajectory (trajectory_msgs/JointTrajectory), planned_path (nav_msgs/Path)
+  publishes   planned_trajectory (trajectory_msgs/JointTrajectory), planned_path (nav_msgs/Path),
+              diagnostics (diagnostic_msgs/DiagnosticArray)
               markers (visualization_msgs/MarkerArray)
   parameters  config/thesis_arm.yaml shows them all"""
 
