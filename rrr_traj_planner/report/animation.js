@@ -113,7 +113,8 @@
 
   function step(now) {
     if (!running) return;
-    time = Math.min(time + 1e-3 * (now - last) * Number(rate.value), longest);
+    // the first frame's time may be before the click's
+    time = Math.min(time + 1e-3 * Math.max(now - last, 0) * Number(rate.value), longest);
     last = now;
     if (time >= longest) run(false);
     draw();

@@ -18,7 +18,10 @@ OPTIONS = (
     '--headless=new', '--remote-debugging-pipe', '--no-sandbox', '--disable-gpu',
     '--disable-dev-shm-usage', '--no-first-run', '--disable-background-networking',
     '--disable-component-update', '--disable-default-apps', '--disable-extensions',
-    '--disable-sync', '--hide-scrollbars=false', '--mute-audio')
+    '--disable-sync', '--hide-scrollbars=false', '--mute-audio',
+    # a page that nobody sees is drawn all the same, as often as one that is seen
+    '--disable-background-timer-throttling', '--disable-backgrounding-occluded-windows',
+    '--disable-renderer-backgrounding')
 
 
 def found():
@@ -50,6 +53,7 @@ class Browser:
                                  flatten=True)['sessionId']
         for domain in ('Page', 'Runtime', 'Log', 'Network'):
             self.ask(f'{domain}.enable')
+        self.ask('Page.bringToFront')
         return self
 
     def __exit__(self, *_):
@@ -101,6 +105,13 @@ class Browser:
                           awaitPromise=True)
         assert 'exceptionDetails' not in answer, answer['exceptionDetails']
         return answer['result'].get('value')
+
+    def until(self, expression):
+        """Wait until an expression is true in the page."""
+        deadline = time.monotonic() + DEADLINE
+        while not self.value(expression):
+            assert time.monotonic() < deadline, f'never true: {expression}'
+            time.sleep(0.02)
 
     def complaints(self):
         """Return errors, warnings and exceptions that the page has caused."""

@@ -169,9 +169,7 @@ def test_animation_runs_and_is_paused(window, plan_page):
     begin = picture_of(window)
     window.value(press)
     assert window.value(state) == 'Pause'
-    window.value("""new Promise((done) => { const look = () =>
-        parseFloat(document.querySelector('output').textContent) > 0.4 ? done(true)
-        : setTimeout(look, 20); look(); })""")
+    window.until("parseFloat(document.querySelector('output').textContent) > 0.4")
     window.value(press)
     paused = picture_of(window)
     assert paused != begin
@@ -185,9 +183,7 @@ def test_animation_ends_at_rest_and_starts_again(window, plan_page):
     window.show(plan_page, *PHONE, False)
     scrub(window, 990)
     window.value("document.querySelector('.play').click()")
-    window.value("""new Promise((done) => { const look = () =>
-        document.querySelector('.play').textContent === 'Play' ? done(true)
-        : setTimeout(look, 20); look(); })""")
+    window.until("document.querySelector('.play').textContent === 'Play'")
     assert 'at rest' in window.value("document.querySelector('.arms p').textContent")
 
 
