@@ -11,7 +11,7 @@ from rrr_traj_planner.core.largest_radii import largest_radii
 from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.workspace_check import check_workspace
 from rrr_traj_planner.planners.followable import followable
-from rrr_traj_planner.planners.interior_point import CONVERGED
+from rrr_traj_planner.planners.interior_point import unconverged_note
 from rrr_traj_planner.planners.path_timing import fastest_along, PathTask, Timed
 from rrr_traj_planner.planners.request import CartesianTask
 
@@ -55,14 +55,12 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
 
 def _note(task: CartesianTask, timed: Timed) -> str:
     """Return what there is to be said of a motion along a path."""
-    notes, T = [], timed.trajectory.duration
+    notes = []
     step = timed.trajectory.acceleration_steps().max(axis=0, initial=0.0)
     if step.max() > STEP:
         largest = ', '.join(f'{name} {value:.3g}' for name, value in zip(
             task.model.joint_names, step))
         notes.append(f'joint accelerations step where arcs begin and end, at most by {largest} '
                      'rad/s^2')
-    if timed.gap > CONVERGED * T:
-        notes.append(f'planning ended before it converged: at most {100.0 * timed.gap / T:.3g} % '
-                     'of the time could be saved')
-    return '; '.join(notes)
+    notes.append(unconverged_note(timed.gap, timed.trajectory.duration))
+    return '; '.join(filter(None, notes))

@@ -7,36 +7,52 @@ from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.chain_fastest import fastest
 from rrr_traj_planner.planners.chain_prescribed import prescribed
 from rrr_traj_planner.planners.motion_law import chain_of
+from rrr_traj_planner.planners.registry import JointPlanner
 from rrr_traj_planner.planners.request import JointTask
 
 
-def planned(task: JointTask, function: TransitionFunction) -> Trajectory:
+def planner_with(function: TransitionFunction) -> JointPlanner:
     """
-    Return the fastest motion of this structure, or one of prescribed durations.
+    Return the planner of this structure whose transitions are made of a function.
 
     Parameters
     ----------
-    task : JointTask
-        What is asked.
     function : TransitionFunction
         What transitions are made of.
 
     Returns
     -------
-    Trajectory
-        Within the limits.
-
-    Raises
-    ------
-    InvalidInputError
-        If a joint has no acceleration limit.
-    TimingError
-        If prescribed durations are too short; with feasible ones.
-    LimitViolationError
-        If gravity alone exceeds an effort limit between the via points.
+    callable
+        See its own text.
 
     """
-    chain = chain_of(task, function)
-    if task.durations is None:
-        return fastest(task, chain, None).trajectory
-    return prescribed(task, chain, task.durations).trajectory
+    def plan(task: JointTask) -> Trajectory:
+        """
+        Return the fastest motion of this structure, or one of prescribed durations.
+
+        Parameters
+        ----------
+        task : JointTask
+            What is asked.
+
+        Returns
+        -------
+        Trajectory
+            Within the limits.
+
+        Raises
+        ------
+        InvalidInputError
+            If a joint has no acceleration limit.
+        TimingError
+            If prescribed durations are too short; with feasible ones.
+        LimitViolationError
+            If gravity alone exceeds an effort limit between the via points.
+
+        """
+        chain = chain_of(task, function)
+        if task.durations is None:
+            return fastest(task, chain, None).trajectory
+        return prescribed(task, chain, task.durations).trajectory
+
+    return plan

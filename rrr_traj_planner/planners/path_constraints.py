@@ -19,6 +19,7 @@ OVERSHOOT = 0.38
 
 
 QUANTITIES = 14  # three each of velocity, acceleration, jerk and torque, then:
+VELOCITY, ACCELERATION, JERK, TORQUE = (slice(3 * k, 3 * k + 3) for k in range(4))
 SPEED, ALONG = 12, 13  # the tip's speed, and its acceleration along the path
 
 # Along a piece on which the tip is to keep its speed it may accelerate by so much [m/s^2].

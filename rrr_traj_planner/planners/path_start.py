@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_moves import restored
 
 HALVINGS = 60  # of a phase's bracket
 
@@ -35,7 +36,7 @@ def cycloid_along(grid: Grid, ends: Array) -> Motion:
     inner, a = (2.0 * np.pi * length * np.sin(p)[..., np.newaxis] for p in (within, phase[1:-1]))
     v = length * (1.0 - np.cos(phase[1:-1]))[:, np.newaxis]
     T = np.diff(phase) / (2.0 * np.pi)
-    return grid.restored(ends[:, np.newaxis], Motion(inner, v, a, T))
+    return restored(grid, ends[:, np.newaxis], Motion(inner, v, a, T))
 
 
 def uniform_along(grid: Grid, ends: Array) -> Motion:
@@ -58,7 +59,7 @@ def uniform_along(grid: Grid, ends: Array) -> Motion:
     T = np.diff(ends)
     T[[0, -1]] *= 2.0
     N = len(T)
-    return grid.restored(ends[:, np.newaxis], Motion(
+    return restored(grid, ends[:, np.newaxis], Motion(
         np.zeros((N, grid.n - 1, 1)), np.ones((N - 1, 1)), np.zeros((N - 1, 1)), T))
 
 

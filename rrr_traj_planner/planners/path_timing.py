@@ -11,27 +11,30 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.motion_torque import maximum_over_time, stretch_for_torque
 from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
-from rrr_traj_planner.core.piecewise import JointProfile
 from rrr_traj_planner.core.workspace_check import place_on_path
-from rrr_traj_planner.planners.interior_point import Centre, minimise, Outcome
+from rrr_traj_planner.planners.interior_point import Centre, is_within, minimise, Outcome
 from rrr_traj_planner.planners.path_constraints import (
+    ACCELERATION,
     all_bounds,
+    JERK,
     limited,
     PathConstraints,
     Progress,
     progress_at,
     QUANTITIES,
     SPEED,
+    TORQUE,
+    VELOCITY,
 )
 from rrr_traj_planner.planners.path_start import cycloid_along, uniform_along
 from rrr_traj_planner.planners.path_table import Demand, PathTable
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_moves import stretched
 from rrr_traj_planner.planners.ramp_newton import Freedom
 from rrr_traj_planner.planners.ramp_room import near_points
 
@@ -86,28 +89,28 @@ def fastest_along(task: PathTask) -> Timed:
     _refuse_heavy(task, table)
     N = len(table.ends) - 1
     freedom = Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 1), bool))
-    margins = np.zeros((N, 2 * grid.n + 1, QUANTITIES))
+    margins: Array = np.zeros((N, 2 * grid.n + 1, QUANTITIES))
     steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
     centres: list[Centre] = []
-    best: tuple[float, Motion, float] | None = None
+    found: list[tuple[float, Motion, float]] = []  # durations, motions, what could be saved
     for _ in range(REPAIRS):
         constraints = PathConstraints(table, task.limits, task.max_tip_speed, grid, margins,
                                       steady)
-        start = next((c for c in reversed(centres) if _within(constraints, c.motion)), None)
+        start = next((c for c in reversed(centres) if is_within(constraints, c.motion)), None)
         if start is None:
             start = Centre(_slow_start(task, table, constraints, steady), None)
-            if not _within(constraints, start.motion):
-                break
+        if not is_within(constraints, start.motion):
+            found.append((float(start.motion.T.sum()), start.motion, np.inf))
+            break
         outcome = _onward(minimise(constraints, start, freedom, task.should_stop), start, table,
                           grid)
         centres += outcome.centres
         excess, stretch = _excess(task, table, grid, outcome.motion)
-        best = min(filter(None, (best, _slowed(outcome, stretch))), key=lambda b: b[0])
+        found.append(_slowed(outcome, stretch))
         if stretch <= 1.0 + WORTH_IT or task.should_stop():
             break
         margins = margins + LARGER * excess
-    assert best is not None
-    _, motion, gap = best
+    _, motion, gap = min(found, key=lambda f: f[0])
     trajectory = _trajectory(task, table, grid, motion)
     # what the table's interpolation leaves
     factor = _exact_stretch(task, trajectory)
@@ -138,14 +141,8 @@ def _goes_on(table: PathTable, grid: Grid, m: Motion) -> bool:
 
 def _slowed(outcome: Outcome, stretch: float) -> tuple[float, Motion, float]:
     """Return a motion slowed to keep its limits, its duration and what could be saved."""
-    m, f = outcome.motion, max(stretch, 1.0)
-    T = float(m.T.sum())
-    return f * T, Motion(m.inner / f ** 2, m.v / f, m.a / f ** 2, m.T * f), (
-        outcome.gap + (f - 1.0) * T)
-
-
-def _within(constraints: PathConstraints, m: Motion) -> bool:
-    return min(float(s.min()) for s in constraints.slacks(m)) > 0.0
+    T, factor = float(outcome.motion.T.sum()), max(stretch, 1.0)
+    return factor * T, stretched(outcome.motion, factor), outcome.gap + (factor - 1.0) * T
 
 
 def _refuse_heavy(task: PathTask, table: PathTable) -> None:
@@ -168,7 +165,7 @@ def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
     grid = constraints.grid
     m = (uniform_along if steady.any() else cycloid_along)(grid, table.ends)
     at = progress_at(grid, constraints.points, m)
-    return grid.stretched(m, ROOM * _stretch(
+    return stretched(m, ROOM * _stretch(
         task, constraints.demands(at.s)[0], at, constraints.margins))
 
 
@@ -177,13 +174,14 @@ def _stretch(task: PathTask, demand: Demand, at: Progress, room: Array | float =
     x = limited(demand, at)
     bounds = all_bounds(task.limits, task.max_tip_speed) - room
     share = np.abs(x) / bounds
-    moving = x[..., 9:12] - demand.g
-    spare = bounds[..., 9:12] - np.sign(moving) * demand.g
+    moving = x[..., TORQUE] - demand.g
+    spare = bounds[..., TORQUE] - np.sign(moving) * demand.g
     with np.errstate(divide='ignore', invalid='ignore'):
         by_torque = np.where(moving != 0.0, np.abs(moving) / spare, 0.0)
     by_torque = np.where((spare <= 0.0) & (moving != 0.0), np.inf, by_torque)
-    return float(max(share[..., :3].max(), share[..., SPEED].max(), np.sqrt(share[..., 3:6].max()),
-                     np.cbrt(share[..., 6:9].max()), np.sqrt(by_torque.max())))
+    return float(max(share[..., VELOCITY].max(), share[..., SPEED].max(),
+                     np.sqrt(share[..., ACCELERATION].max()),
+                     np.cbrt(share[..., JERK].max()), np.sqrt(by_torque.max())))
 
 
 def _excess(task: PathTask, table: PathTable, grid: Grid, m: Motion) -> tuple[Array, float]:
@@ -208,7 +206,7 @@ def _exact_stretch(task: PathTask, trajectory: PathTrajectory) -> float:
 
 def _between(table: PathTable, grid: Grid, m: Motion) -> Progress:
     """Return a motion's progress at many times of each piece, in order, (N, 2 n LOOKS + 1)."""
-    profile = _profile(table, grid, m)
+    profile = grid.profiles(table.ends[:, np.newaxis], m)[0]
     starts = np.concatenate(([0.0], np.cumsum(m.T)[:-1]))
     share = np.linspace(0.0, 1.0, 2 * grid.n * LOOKS + 1)
     t = starts[:, np.newaxis] + m.T[:, np.newaxis] * share
@@ -217,18 +215,8 @@ def _between(table: PathTable, grid: Grid, m: Motion) -> Progress:
                     sd, sdd, sddd)
 
 
-def _profile(table: PathTable, grid: Grid, m: Motion) -> JointProfile:
-    """Return progress as cycloid pieces."""
-    nodes, _, _ = grid.nodes(m)
-    at = grid.states(table.ends[:, np.newaxis], m)
-    h = np.repeat(m.T / grid.n, grid.n)
-    s, sd, a0, a1 = (f.ravel() for f in (
-        at.q[:, :grid.n], at.qd[:, :grid.n], nodes[:, :-1], nodes[:, 1:]))
-    return JointProfile(cycloid.ramp(h, s, sd, a0, a1))
-
-
 def _trajectory(task: PathTask, table: PathTable, grid: Grid, m: Motion) -> PathTrajectory:
     times = np.concatenate(([0.0], np.cumsum(m.T)))
     joins = np.searchsorted(table.ends, task.arm_path.path.joins)
-    return PathTrajectory(task.arm_path, _profile(table, grid, m), times[table.vias],
-                          times[joins])
+    progress, = grid.profiles(table.ends[:, np.newaxis], m)
+    return PathTrajectory(task.arm_path, progress, times[table.vias], times[joins])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from rrr_traj_planner.core.errors import (
     InvalidInputError,
     LimitViolationError,
     RrrPlannerError,
+    StartStateError,
     TimingError,
     UnreachableError,
 )
@@ -113,7 +115,10 @@ def _planned_path(method: CartesianPlanner, model: RobotModel, limits: JointLimi
         raise InvalidInputError(
             f'planner {request.planner_id} takes no segment_durations: its time is the least')
     failures: list[LimitViolationError | UnreachableError] = []
-    for elbow in (request.elbow,) if request.elbow else ELBOWS:
+    branches: Sequence[Elbow] = (request.elbow,) if request.elbow else ELBOWS
+    if start is not None:
+        branches = (_branch_of(model, start, request.elbow),)
+    for elbow in branches:
         try:
             return _path_on(method, model, limits, request, start, elbow)
         except (LimitViolationError, UnreachableError) as error:
@@ -121,13 +126,19 @@ def _planned_path(method: CartesianPlanner, model: RobotModel, limits: JointLimi
     raise failures[0]
 
 
+def _branch_of(model: RobotModel, start: Array, asked: Elbow | None) -> Elbow:
+    """Return the branch that a start state is on: along a path of the tip there is no other."""
+    elbow = elbow_of(start)
+    if asked not in (None, elbow):
+        raise StartStateError(
+            f'the start state is on elbow branch {elbow} ({model.joint_names[2]} at '
+            f'{start[2]:.6g} rad): along a path of the tip the arm cannot come to {asked}')
+    return elbow
+
+
 def _path_on(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
              request: PlanningRequest, start: Array | None, elbow: Elbow) -> Plan:
     """Return the plan along a path of the tip, on one branch."""
-    if start is not None and elbow_of(start) != elbow:
-        raise LimitViolationError(
-            f'the start state is on elbow branch {elbow_of(start)}: along a path of the tip the '
-            f'arm cannot come to {elbow}', model.joint_names[2], float(start[2]), 0.0)
     q = _joint_points(model, limits, request, start, elbow)
     check_answer_size(limits, request, q)
     tips = request.via_points

@@ -18,8 +18,6 @@ from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 # Displacement of a ramp of length h from rest: h^2 (a0 / 2 + (a1 - a0) RAMP_SHARE).
 RAMP_SHARE = 0.25 - 1.0 / np.pi ** 2
 
-LEAST_RAMPS = 4  # of a motion from rest to rest
-
 
 class Motion(NamedTuple):
     """Unknowns of a chain of N segments of n ramps, of J coordinates (the joints: J = 3)."""
@@ -57,6 +55,8 @@ class Grid:
         To the jerk's peaks times h.
     elapsed : ndarray, shape (2 n + 1,)
         Time of each point / h.
+    restore : ndarray, shape (n - 1, 2)
+        Smooth inner accelerations that gain a unit of velocity / h, and of way / h^2.
 
     """
 
@@ -75,7 +75,7 @@ class Grid:
                             + (0.0625 - 0.5 / np.pi ** 2) * rise))
         self.jerk = 0.5 * np.pi * rise
         self.elapsed = np.concatenate((np.arange(n + 1.0), np.arange(n) + 0.5))
-        self._restore = self._restoring_shapes()
+        self.restore = self._restoring_shapes()
 
     def _restoring_shapes(self) -> Array:
         """Return smooth changes of inner accelerations that add a unit of velocity, and of way."""
@@ -198,108 +198,32 @@ class Grid:
         return (np.stack((by_y.qd[:, n], by_y.q[:, n]), axis=1),
                 np.stack((by_T.qd[:, n], by_T.q[:, n]), axis=1))
 
-    def moved(self, points: Array, m: Motion, step: Motion, size: float) -> Motion:
+    def profiles(self, points: Array, m: Motion) -> list[JointProfile]:
         """
-        Return the motion after a step, again through every via point.
-
-        Velocities and accelerations follow the durations as if time were stretched, which keeps
-        the way; what is left of the step's second order is mended by smooth changes.
+        Return each coordinate's motion as cycloid pieces.
 
         Parameters
         ----------
-        points : ndarray, shape (N + 1, 3)
-            Via points [rad].
-        m : Motion
-            Its unknowns.
-        step : Motion
-            Change of every unknown.
-        size : float
-            Part of the step that is taken.
-
-        Returns
-        -------
-        Motion
-            Not mended where a duration is not positive.
-
-        """
-        T = m.T + size * step.T
-        if not (T > 0.0).all():
-            return m._replace(T=T)
-        rate = step.T[:, np.newaxis] / m.T[:, np.newaxis]
-        # of the segments that a via point is between, above all the shorter: its way has less play
-        play = m.T[:, np.newaxis] ** 3
-        beside = (rate[:-1] * play[1:] + rate[1:] * play[:-1]) / (play[:-1] + play[1:])
-        v = (m.v + size * (step.v + beside * m.v)) / (1.0 + size * beside)
-        a = (m.a + size * (step.a + 2.0 * beside * m.a)) / (1.0 + size * beside) ** 2
-        rate = rate[:, np.newaxis]
-        inner = (m.inner + size * (step.inner + 2.0 * rate * m.inner)) / (1.0 + size * rate) ** 2
-        return self.restored(points, Motion(inner, v, a, T))
-
-    def slowed(self, m: Motion, T: Array) -> Motion:
-        """
-        Return a motion with stops at every via point, run through in other durations.
-
-        Parameters
-        ----------
-        m : Motion
-            Its unknowns.
-        T : ndarray, shape (N,)
-            The durations [s].
-
-        Returns
-        -------
-        Motion
-            The same way.
-
-        """
-        return m._replace(inner=m.inner * ((m.T / T) ** 2)[:, np.newaxis, np.newaxis], T=T)
-
-    def stretched(self, m: Motion, factor: float) -> Motion:
-        """
-        Return a motion run through more slowly, as a whole.
-
-        Parameters
-        ----------
-        m : Motion
-            Its unknowns.
-        factor : float
-            What every time is multiplied by.
-
-        Returns
-        -------
-        Motion
-            The same way.
-
-        """
-        return Motion(m.inner / factor ** 2, m.v / factor, m.a / factor ** 2, m.T * factor)
-
-    def restored(self, points: Array, m: Motion) -> Motion:
-        """
-        Return the motion with inner accelerations mended to meet the via points exactly.
-
-        Parameters
-        ----------
-        points : ndarray, shape (N + 1, 3)
-            Via points [rad].
+        points : ndarray, shape (N + 1, J)
+            Via points.
         m : Motion
             Its unknowns.
 
         Returns
         -------
-        Motion
-            Of the same via velocities, via accelerations and durations.
+        list of JointProfile
+            A half-period ramp from node to node.
 
         """
-        nodes, v0, v1 = self.nodes(m)
-        h = (m.T / self.n)[:, np.newaxis]
-        wanted = np.stack(((v1 - v0) / h, (np.diff(points, axis=0) - m.T[:, np.newaxis] * v0)
-                           / h ** 2), axis=1)
-        lacking = wanted - np.stack((self.qd[self.n], self.q[self.n])) @ nodes
-        return m._replace(inner=m.inner + self._restore @ lacking)
+        n, (nodes, _, _), at = self.n, self.nodes(m), self.states(points, m)
+        h = np.repeat(m.T / n, n)
+        return [JointProfile(cycloid.ramp(h, *(f[..., j].ravel() for f in (
+            at.q[:, :n], at.qd[:, :n], nodes[:, :-1], nodes[:, 1:]))))
+            for j in range(m.inner.shape[-1])]
 
     def trajectory(self, points: Array, m: Motion) -> PiecewiseTrajectory:
         """
-        Return the motion as cycloid pieces.
+        Return the motion of all joints.
 
         Parameters
         ----------
@@ -311,60 +235,8 @@ class Grid:
         Returns
         -------
         PiecewiseTrajectory
-            A half-period ramp from node to node.
+            See `profiles`.
 
         """
-        nodes, _, _ = self.nodes(m)
-        at = self.states(points, m)
-        h = np.broadcast_to((m.T / self.n)[:, np.newaxis], (len(m.T), self.n)).ravel()
-        profiles = []
-        for j in range(3):
-            q, qd, a0, a1 = (f.ravel() for f in (
-                at.q[:, :self.n, j], at.qd[:, :self.n, j], nodes[:, :-1, j], nodes[:, 1:, j]))
-            profiles.append(JointProfile(cycloid.ramp(h, q, qd, a0, a1)))
-        return PiecewiseTrajectory(profiles, np.concatenate(([0.0], np.cumsum(m.T))))
-
-    def rest_to_rest(self, points: Array) -> Array:
-        """
-        Return node accelerations of straight motions of 1 s with a stop at every point.
-
-        Parameters
-        ----------
-        points : ndarray, shape (N + 1, 3)
-            Via points [rad].
-
-        Returns
-        -------
-        ndarray, shape (N, n + 1, 3)
-            [rad/s^2]; those of a motion of T seconds are 1 / T^2 as large.
-
-        """
-        shape = np.sin(2.0 * np.pi * np.arange(self.n + 1) / self.n)
-        shape *= self.n ** 2 / (self.q[self.n] @ shape)
-        return shape[:, np.newaxis] * np.diff(points, axis=0)[:, np.newaxis]
-
-    def rest_to_rest_legs(self, points: Array) -> Array:
-        """
-        Return node accelerations of a segment of 1 s that stops at points on its way.
-
-        Parameters
-        ----------
-        points : ndarray, shape (legs + 1, 3)
-            Where it begins, stops and ends [rad]; longer legs have more of the n ramps.
-
-        Returns
-        -------
-        ndarray, shape (n + 1, 3)
-            [rad/s^2].
-
-        """
-        legs = len(points) - 1
-        long = np.sqrt(np.abs(np.diff(points, axis=0)).max(axis=1))
-        spare = (self.n - LEAST_RAMPS * legs) * np.cumsum(long) / long.sum()
-        ends = np.concatenate(([0], LEAST_RAMPS * np.arange(1, legs + 1)
-                               + np.round(spare).astype(int)))
-        nodes = np.zeros((self.n + 1, 3))
-        for leg, (first, last) in enumerate(zip(ends[:-1], ends[1:])):
-            part = Grid(last - first).rest_to_rest(points[leg:leg + 2])[0]
-            nodes[first:last + 1] += part * (self.n / (last - first)) ** 2
-        return nodes
+        return PiecewiseTrajectory(
+            self.profiles(points, m), np.concatenate(([0.0], np.cumsum(m.T))))

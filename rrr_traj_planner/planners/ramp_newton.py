@@ -14,107 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray
 from rrr_traj_planner.planners.ramp_chain import Motion
-from rrr_traj_planner.planners.ramp_constraints import Change
+from rrr_traj_planner.planners.ramp_curvature import Curvature
 from scipy.linalg import solveh_banded
 
 STIFF = 1e60  # holds an unknown where it is
 STIFFENING = (0.0, 1e-9, 1e-6, 1e-3, 1.0)
-
-
-class Curvature(NamedTuple):
-    """Gradient and Gauss-Newton Hessian of the barrier in each segment's own unknowns."""
-
-    yy: Array  # (N, J, m, m) where joints are independent, else (N, J m, J m)
-    yT: Array  # (N, J, m)
-    TT: Array  # (N,)
-    y: Array   # (N, J, m)
-    T: Array   # (N,)
-
-
-def curvature(slacks: list[Array], linear: list[Change], duals: list[Array],
-              barrier: float, weights: Array) -> Curvature:
-    """
-    Return gradient and Hessian of weights . T - barrier * sum log(slack), Gauss-Newton.
-
-    Parameters
-    ----------
-    slacks : list of ndarray, shape (2, N, p, K)
-        Room below and above.
-    linear : list of Change
-        How the limited quantities change.
-    duals : list of ndarray
-        Multipliers, as slacks.
-    barrier : float
-        The barrier's weight.
-    weights : ndarray, shape (N,)
-        Of the durations in the objective.
-
-    Returns
-    -------
-    Curvature
-        Of all segments.
-
-    """
-    N, J, m = _sizes(linear)
-    coupled = any(x.by_y.ndim > 3 for x in linear)
-    y, T = pulled(linear, [barrier * (1.0 / s[0] - 1.0 / s[1]) for s in slacks])
-    T += weights
-    yy, yT, TT = np.zeros((N, J, m, m)), np.zeros((N, J, m)), np.zeros(N)
-    full = np.zeros((N, J * m, J * m)) if coupled else None
-    for s, x, dual in zip(slacks, linear, duals):
-        weight = (dual / s).sum(axis=0)
-        TT += (weight * x.by_T ** 2).sum(axis=(1, 2))
-        if x.by_y.ndim == 3:
-            D = x.by_y[:, np.newaxis]                                   # (N, 1, p, m)
-            Dt = np.swapaxes(D, -1, -2)
-            by_joint = np.moveaxis(weight, -1, 1)[..., np.newaxis]      # (N, 3, p, 1)
-            yy += Dt @ (by_joint * D)
-            yT += (Dt @ (np.moveaxis(weight * x.by_T, -1, 1)[..., np.newaxis]))[..., 0]
-        else:
-            D = x.by_y.reshape(N, -1, J * m)
-            Dt = np.swapaxes(D, -1, -2)
-            full += Dt @ (weight.reshape(N, -1, 1) * D)
-            yT += (Dt @ (weight * x.by_T).reshape(N, -1, 1)).reshape(N, J, m)
-    if full is None:
-        return Curvature(yy, yT, TT, y, T)
-    for j in range(J):
-        full[:, j * m:(j + 1) * m, j * m:(j + 1) * m] += yy[:, j]
-    return Curvature(full, yT, TT, y, T)
-
-
-def pulled(linear: list[Change], pulls: list[Array]) -> tuple[Array, Array]:
-    """
-    Return how a weighted sum of the limited quantities changes.
-
-    Parameters
-    ----------
-    linear : list of Change
-        How the limited quantities change.
-    pulls : list of ndarray, shape (N, p, K)
-        Their weights.
-
-    Returns
-    -------
-    tuple of ndarray
-        By each segment's own unknowns (N, J, m), by its duration (N,).
-
-    """
-    N, J, m = _sizes(linear)
-    y, T = np.zeros((N, J, m)), np.zeros(N)
-    for x, pull in zip(linear, pulls):
-        T += (pull * x.by_T).sum(axis=(1, 2))
-        if x.by_y.ndim == 3:
-            y += np.swapaxes(pull, 1, 2) @ x.by_y
-        else:
-            y += (pull.reshape(N, 1, -1) @ x.by_y.reshape(N, -1, J * m)).reshape(N, J, m)
-    return y, T
-
-
-def _sizes(linear: list[Change]) -> tuple[int, int, int]:
-    """Return the numbers of segments, of coordinates and of each segment's own unknowns."""
-    by_y = linear[-1].by_y  # only there may coordinates act on each other
-    return by_y.shape[0], linear[-1].by_T.shape[-1] if by_y.ndim == 3 else by_y.shape[-2], (
-        by_y.shape[-1])
 
 
 class Freedom(NamedTuple):
@@ -128,6 +32,23 @@ class Freedom(NamedTuple):
     tie: Array       # (N,), 0 where free or fixed
     weights: Array   # (N,), in the objective
     still: BoolArray  # (N - 1, J), joints whose velocity at a via point stays as it is
+
+    def cost(self, T: Array) -> float:
+        """
+        Return what is minimised.
+
+        Parameters
+        ----------
+        T : ndarray, shape (N,)
+            Durations [s].
+
+        Returns
+        -------
+        float
+            Their weighted sum.
+
+        """
+        return float(self.weights @ T)
 
 
 class Step(NamedTuple):

@@ -9,6 +9,7 @@ from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
+from rrr_traj_planner.planners.ramp_moves import restored, slowed
 from rrr_traj_planner.planners.ramp_newton import Freedom
 from rrr_traj_planner.planners.ramp_problem import fastest, mended, Solved
 from rrr_traj_planner.planners.ramp_start import rest_to_rest
@@ -70,7 +71,7 @@ def _kept(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
         if m is None:
             return None
         stretch = float((m.T / durations)[~free].max())
-        return grid.slowed(m, np.where(free, m.T, stretch * tie))
+        return slowed(m, np.where(free, m.T, stretch * tie))
 
     return mended(task, grid, Freedom(free, tie, weights, _no_stops(durations)), begin,
                   LEAST_STRETCH * tie)
@@ -114,7 +115,7 @@ def _fastest_of_free(task: JointTask, grid: Grid, durations: Array, kept: Solved
     free, z = np.isnan(durations), _stretch(kept, durations)
     m = kept.motion
     z = float(np.nanmax(m.T / durations))
-    start = grid.restored(task.points, Motion(
+    start = restored(grid, task.points, Motion(
         m.inner * z ** 2, m.v * z, m.a * z ** 2, np.where(free, m.T / z, durations)))
     freedom = Freedom(free, np.zeros(len(free)), free.astype(float), _no_stops(durations))
     found = mended(task, grid, freedom, lambda planned, constraints: start)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
-from rrr_traj_planner.planners.interior_point import Centre, CONVERGED, minimise, Outcome
+from rrr_traj_planner.planners.interior_point import Centre, is_within, minimise, Outcome
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
 from rrr_traj_planner.planners.ramp_fit import beyond_range, fitted, torque_fits
@@ -33,7 +33,6 @@ class Solved(NamedTuple):
     motion: Motion    # of which the trajectory is a little slower, where it had to be
     cost: float       # its weighted durations [s]
     gap: float        # what a better motion could save of them at most
-    converged: bool
 
 
 def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved | None:
@@ -111,7 +110,7 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
                            task.should_stop)
         found += _those_that_fit(task, grid, freedom, start, outcome)
         if found and found[-1].motion is outcome.motion and (
-                found[-1].cost <= (1.0 + WORTH_IT) * float(freedom.weights @ outcome.motion.T)):
+                found[-1].cost <= (1.0 + WORTH_IT) * freedom.cost(outcome.motion.T)):
             break
         if found and task.should_stop():
             break
@@ -128,7 +127,7 @@ def _nearer(task: JointTask, grid: Grid, room: Room, floor: Array | None,
     for part in PARTS_OF_ROOM:
         constraints = room.part(part).constraints(task, grid, floor)
         for centre in reversed(centres):
-            if _strictly_within(constraints, centre.motion):
+            if is_within(constraints, centre.motion):
                 return None if part == 1.0 else minimise(
                     constraints, centre, freedom._replace(still=room.still), task.should_stop,
                     centre.barrier or 0.0)
@@ -140,7 +139,7 @@ def _begun(task: JointTask, grid: Grid, room: Room, floor: Array | None,
     """Return the last centre that has room, else a motion from rest and as much as it has."""
     constraints = room.constraints(task, grid, floor)
     for centre in reversed(centres):
-        if _strictly_within(constraints, centre.motion):
+        if is_within(constraints, centre.motion):
             return room, constraints, centre
     for part in (*PARTS_OF_ROOM, 0.0):
         reduced = room.kept().part(part)
@@ -148,7 +147,7 @@ def _begun(task: JointTask, grid: Grid, room: Room, floor: Array | None,
         motion = begin(task, constraints)
         if motion is None:
             return None
-        if _strictly_within(constraints, motion):
+        if is_within(constraints, motion):
             return reduced, constraints, Centre(motion, None)
     return None
 
@@ -157,20 +156,13 @@ def _those_that_fit(task: JointTask, grid: Grid, freedom: Freedom, start: Centre
                     outcome: Outcome) -> list[Solved]:
     """Return what keeps every limit: a centre that does as it is, the outcome perhaps slowed."""
     may_stretch = bool((freedom.free | (freedom.tie > 0.0)).all())
-    least, found = float(freedom.weights @ outcome.motion.T), []
+    least, found = freedom.cost(outcome.motion.T), []
     for motion in (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion):
         trajectory = fitted(task, grid.trajectory(task.points, motion), may_stretch)
         if trajectory is None:
             continue
-        cost = float(freedom.weights @ np.diff(trajectory.via_times))
-        gap = outcome.gap + cost - least
-        found.append(Solved(trajectory, motion, cost, gap, gap < CONVERGED * cost))
-        if cost <= (1.0 + WORTH_IT) * float(freedom.weights @ motion.T):
+        cost = freedom.cost(np.diff(trajectory.via_times))
+        found.append(Solved(trajectory, motion, cost, outcome.gap + cost - least))
+        if cost <= (1.0 + WORTH_IT) * freedom.cost(motion.T):
             break
     return found[::-1]
-
-
-def _strictly_within(constraints: Constraints, m: Motion) -> bool:
-    return min(float(s.min()) for s in constraints.slacks(m)) > 0.0
-
-

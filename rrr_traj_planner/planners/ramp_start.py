@@ -7,10 +7,12 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.planners.holdable_way import gravity_share, holdable_way, HOLDING_ROOM
-from rrr_traj_planner.planners.ramp_chain import Grid, LEAST_RAMPS, Motion
+from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
+from rrr_traj_planner.planners.ramp_moves import restored, slowed
 from rrr_traj_planner.planners.request import JointTask
 
+LEAST_RAMPS = 4         # of a motion from rest to rest
 ROOM = 1.02             # durations over the least that fit
 LEAST_DURATION = 1e-4   # s
 SLOW = 3.0              # torque makes a straight way so much slower: another is looked for
@@ -43,13 +45,13 @@ def rest_to_rest(task: JointTask, constraints: Constraints) -> Motion | None:
         return None
     rest = np.zeros((len(nodes) - 1, 3))
     m = Motion(nodes[:, 1:-1], rest, rest, np.ones(len(nodes)))
-    return grid.restored(task.points, grid.slowed(m, T))
+    return restored(grid, task.points, slowed(m, T))
 
 
 def _fastest_ways(task: JointTask, constraints: Constraints) -> tuple[Array, Array]:
     """Return node accelerations for durations of 1 s, and least durations, of all segments."""
     grid = constraints.grid
-    nodes = grid.rest_to_rest(task.points)
+    nodes = rest_to_rest_shapes(grid, task.points)
     T, without_torque = _least_durations(task, constraints, nodes)
     for k in np.flatnonzero(T > SLOW * without_torque):
         corners = holdable_way(task, task.points[k], task.points[k + 1],
@@ -57,7 +59,7 @@ def _fastest_ways(task: JointTask, constraints: Constraints) -> tuple[Array, Arr
         if corners is None:
             continue
         around = nodes.copy()
-        around[k] = grid.rest_to_rest_legs(corners)
+        around[k] = rest_to_rest_legs(grid, corners)
         duration = _least_durations(task, constraints, around)[0][k]
         if duration < T[k]:
             nodes[k], T[k] = around[k], duration
@@ -90,6 +92,57 @@ def _least_durations(task: JointTask, constraints: Constraints,
     blocked_by_margin = (room <= 0.0).any(axis=(1, 2))
     by_torque[blocked.any(axis=1) | blocked_by_margin] = np.inf
     return np.maximum(T, ROOM * by_torque), T
+
+
+def rest_to_rest_shapes(grid: Grid, points: Array) -> Array:
+    """
+    Return node accelerations of straight motions of 1 s with a stop at every point.
+
+    Parameters
+    ----------
+    grid : Grid
+        The family of motions.
+    points : ndarray, shape (N + 1, 3)
+        Via points [rad].
+
+    Returns
+    -------
+    ndarray, shape (N, n + 1, 3)
+        [rad/s^2]; those of a motion of T seconds are 1 / T^2 as large.
+
+    """
+    shape = np.sin(2.0 * np.pi * np.arange(grid.n + 1) / grid.n)
+    shape *= grid.n ** 2 / (grid.q[grid.n] @ shape)
+    return shape[:, np.newaxis] * np.diff(points, axis=0)[:, np.newaxis]
+
+
+def rest_to_rest_legs(grid: Grid, points: Array) -> Array:
+    """
+    Return node accelerations of a segment of 1 s that stops at points on its way.
+
+    Parameters
+    ----------
+    grid : Grid
+        The family of motions.
+    points : ndarray, shape (legs + 1, 3)
+        Where it begins, stops and ends [rad]; longer legs have more of the n ramps.
+
+    Returns
+    -------
+    ndarray, shape (n + 1, 3)
+        [rad/s^2].
+
+    """
+    legs = len(points) - 1
+    long = np.sqrt(np.abs(np.diff(points, axis=0)).max(axis=1))
+    spare = (grid.n - LEAST_RAMPS * legs) * np.cumsum(long) / long.sum()
+    ends = np.concatenate(([0], LEAST_RAMPS * np.arange(1, legs + 1)
+                           + np.round(spare).astype(int)))
+    nodes = np.zeros((grid.n + 1, 3))
+    for leg, (first, last) in enumerate(zip(ends[:-1], ends[1:])):
+        part = rest_to_rest_shapes(Grid(last - first), points[leg:leg + 2])[0]
+        nodes[first:last + 1] += part * (grid.n / (last - first)) ** 2
+    return nodes
 
 
 def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:

@@ -14,9 +14,10 @@ import numpy as np
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.followable import acceleration_scale, followable
+from rrr_traj_planner.planners.interior_point import unconverged_note
 from rrr_traj_planner.planners.ramp_chain import Grid
 from rrr_traj_planner.planners.ramp_prescribed import prescribed
-from rrr_traj_planner.planners.ramp_problem import fastest, Solved
+from rrr_traj_planner.planners.ramp_problem import fastest
 from rrr_traj_planner.planners.ramp_start import cannot_be_held
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
@@ -60,15 +61,9 @@ def plan(task: JointTask) -> Trajectory:
         task, grid, task.durations)
     if found is None:
         raise cannot_be_held(task, grid)
-    return PiecewiseTrajectory(found.trajectory.profiles, found.trajectory.via_times, _note(found))
-
-
-def _note(found: Solved) -> str:
-    """Return what there is to be said of how the method ended."""
-    if found.converged:
-        return ''
-    part = 100.0 * min(found.gap / found.trajectory.duration, 1.0)
-    return f'planning ended before it converged: at most {part:.3g} % of the time could be saved'
+    trajectory = found.trajectory
+    return PiecewiseTrajectory(trajectory.profiles, trajectory.via_times,
+                               unconverged_note(found.gap, found.cost))
 
 
 def _ramps(task: JointTask) -> int:

@@ -9,6 +9,7 @@ from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
+from rrr_traj_planner.planners.ramp_moves import restored
 from rrr_traj_planner.planners.ramp_newton import Freedom
 from rrr_traj_planner.planners.ramp_start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
@@ -29,7 +30,7 @@ def random_motion(seed, n=None, segments=None):
     points = rng.uniform([-1.0, 0.8, -0.8], [1.0, 1.8, 0.8], (N + 1, 3))
     m = Motion(rng.normal(0.0, 1.0, (N, grid.n - 1, 3)), rng.normal(0.0, 0.3, (N - 1, 3)),
                rng.normal(0.0, 0.5, (N - 1, 3)), rng.uniform(0.7, 2.5, N))
-    return grid, points, grid.restored(points, m)
+    return grid, points, restored(grid, points, m)
 
 
 def random_step(seed, m):

@@ -1,6 +1,7 @@
 """What the planners of Cartesian paths refuse, and how they read a request."""
 
 from dataclasses import replace
+import re
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from random_paths import NONE, PLANNERS
 from rrr_traj_planner.core.errors import (
     InvalidInputError,
     LimitViolationError,
+    StartStateError,
     UnreachableError,
 )
 from rrr_traj_planner.core.inverse_kinematics import elbow_of, inverse_kinematics
@@ -104,8 +106,26 @@ def test_a_start_leads_in_along_the_path_from_its_tip(planner_id, elbow):
 @each_planner
 def test_a_start_on_the_other_branch_is_refused(planner_id):
     start = inverse_kinematics(MODEL, (1.0, 0.0, 0.6), 'down')
-    with pytest.raises(LimitViolationError, match='^the start state is on elbow branch down: '):
+    with pytest.raises(StartStateError, match=(
+            r'^the start state is on elbow branch down \(joint_3 at .* rad\): along a path')):
         planned(planner_id, [(1.0, 0.3, 0.7)], start=start, elbow='up')
+
+
+@each_planner
+def test_without_an_elbow_a_start_on_branch_down_stays_on_it(planner_id):
+    start = inverse_kinematics(MODEL, (1.0, 0.0, 0.6), 'down')
+    found = planned(planner_id, [(1.0, 0.3, 0.7), (0.8, 0.4, 0.9)], start=start)
+    assert elbow_of(found.trajectory(found.trajectory.duration)[0]) == 'down'
+    with pytest.raises(UnreachableError):  # named for the start's own branch, not the other
+        planned(planner_id, [(3.0, 0.3, 0.7)], start=start)
+
+
+@each_planner
+def test_what_is_left_is_told_where_planning_is_stopped_before_it_begins(planner_id):
+    found = planned(planner_id, [(1.0, 0.0, 0.6), (1.0, 0.3, 0.7), (0.8, 0.4, 0.9)],
+                    should_stop=lambda: True)
+    left = re.search(r'planning ended before it converged: at most (\S+) % of', found.note)
+    assert left and 0.0 < float(left[1]) <= 100.0
 
 
 @each_planner

@@ -10,7 +10,7 @@ from rrr_traj_planner.core.gauss import gauss
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.septic import SEPTIC
-from rrr_traj_planner.planners.free_via_velocities import planned
+from rrr_traj_planner.planners.free_via_velocities import planner_with
 from rrr_traj_planner.planners.motion_law import chain_of
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest
@@ -47,7 +47,7 @@ def test_one_joint_alone_takes_the_time_of_two_transitions(planner_id):
     # 0.5 rad at 1 rad/s^2: u t = 0.5 with t = peak u: 2 t = 2 sqrt(0.5 peak).
     q = np.array([[0.3, 1.5, 0.0], [0.8, 1.5, 0.0]])
     task = JointTask(ARM, FREE, q, None, 0.01)
-    motion = planned(task, {'gauss': gauss(), 'septic': SEPTIC}[planner_id])
+    motion = planner_with({'gauss': gauss(), 'septic': SEPTIC}[planner_id])(task)
     assert motion.duration == pytest.approx(2.0 * np.sqrt(0.5 * PEAK[planner_id]), rel=1e-4)
     assert motion.peaks().acceleration[0] == pytest.approx(1.0, rel=1e-5)
 
@@ -118,6 +118,6 @@ def test_transitions_at_full_acceleration_last_five_samples_whatever_the_functio
 def test_series_of_order_9_takes_the_time_of_the_closed_form_to_a_thousandth():
     q = plan(ARM, FREE, table('6.1')).trajectory
     task = JointTask(ARM, FREE, q(q.via_times)[0], None, 0.01)
-    closed, series = (planned(task, gauss(order=order)).duration for order in (None, 9))
+    closed, series = (planner_with(gauss(order=order))(task).duration for order in (None, 9))
     assert series == pytest.approx(closed, rel=1e-3)
     assert series != closed

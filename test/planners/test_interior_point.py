@@ -15,9 +15,11 @@ from ramp_cases import (
     shifted,
     slow_start,
 )
-from rrr_traj_planner.planners import interior_point
-from rrr_traj_planner.planners.interior_point import _Local, _rate, _Tried, Centre, minimise
+from rrr_traj_planner.planners import interior_step
+from rrr_traj_planner.planners.interior_point import Centre, minimise
+from rrr_traj_planner.planners.interior_step import Local, rate_of, Tried
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_moves import restored, stepped
 from rrr_traj_planner.planners.ramp_newton import Freedom
 from scipy.optimize import minimize
 
@@ -215,23 +217,23 @@ class Bent:
         slacks = self.constraints.slacks(self.motion)
         duals = [barrier / s for s in slacks]
         self.weights = [d / s for d, s in zip(duals, slacks)]
-        local = _Local(self.constraints, self.motion, duals, all_free(len(self.motion.T)),
+        local = Local(self.constraints, self.motion, duals, all_free(len(self.motion.T)),
                        0.1 * barrier)
         self.slacks, self.changes = local.slacks, local.changes
         self.step = next(local.steps())
         self.rates = self.rates_of(self.step.motion)
         self.bend = lambda size: local.bend(
-            self.constraints, self.motion, _Tried(self.step, self.rates, size, None))
+            self.constraints, self.motion, Tried(self.step, self.rates, size, None))
 
     def rates_of(self, step):
-        return [_rate(self.constraints, x, step) for x in self.changes]
+        return [rate_of(self.constraints, x, step) for x in self.changes]
 
     def aside(self, size, bend=None):
         """Return what slacks after the step are beside their linear prediction."""
         step = self.step.motion
         if bend is not None:
             step = shifted(step, bend, size)
-        moved = self.grid.moved(self.points, self.motion, step, size)
+        moved = stepped(self.grid, self.points, self.motion, step, size)
         return [after - s - size * r for after, s, r in zip(
             self.constraints.slacks(moved), self.slacks, self.rates)]
 
@@ -259,8 +261,8 @@ def test_no_other_bend_that_keeps_the_ends_leaves_less_beside_the_prediction(see
     total = case.error([x / w for w, x in zip(case.weights, left)])
     for k in range(5):
         other = random_step(10 * seed + k, case.motion)
-        inner = (case.grid.restored(case.points, shifted(case.motion, other, tiny)).inner
-                 - case.grid.restored(case.points, shifted(case.motion, other, -tiny)).inner)
+        inner = (restored(case.grid, case.points, shifted(case.motion, other, tiny)).inner
+                 - restored(case.grid, case.points, shifted(case.motion, other, -tiny)).inner)
         rates = case.rates_of(other._replace(inner=inner / (2.0 * tiny)))
         slope = sum((x * r).sum() for x, r in zip(left, rates))
         assert abs(slope) <= 1e-5 * total * case.error(rates)
@@ -273,7 +275,7 @@ def test_a_step_whose_equations_are_singular_is_skipped(monkeypatch):
     def singular(*_):
         raise np.linalg.LinAlgError('Singular matrix')
 
-    monkeypatch.setattr(interior_point, 'newton_step', singular)
+    monkeypatch.setattr(interior_step, 'newton_step', singular)
     outcome = minimise(constraints, Centre(start, None), all_free(len(start.T)), never)
     assert outcome.motion is start
     assert not outcome.converged

@@ -16,6 +16,7 @@ from rrr_traj_planner.planners.path_constraints import (
 )
 from rrr_traj_planner.planners.path_table import PathTable
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_moves import restored
 
 SEEDS = range(12)
 LIMITS = JointLimits(max_jerk=[10.0] * 3, max_effort=[300.0] * 3)
@@ -35,7 +36,7 @@ def random_problem(seed, limits=LIMITS, max_tip_speed=TIP_SPEED, margin=0.0, ste
     inner = rng.normal(0.0, 0.05, (N, grid.n - 1, 1))
     m = Motion(inner, speed[:, np.newaxis], rng.normal(0.0, 0.05, (N - 1, 1)), L.copy())
     m.T[[0, -1]] *= 2.0
-    return constraints, grid.restored(constraints.points, m)
+    return constraints, restored(grid, constraints.points, m)
 
 
 def demands_of(constraints, m):

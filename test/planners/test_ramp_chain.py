@@ -5,7 +5,13 @@ import pytest
 from ramp_cases import own_unknowns, random_motion, random_step, shifted
 from random_cases import central_difference
 from rrr_traj_planner.core.cycloid import ramp
-from rrr_traj_planner.planners.ramp_chain import Grid, LEAST_RAMPS, Motion
+from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_moves import restored, slowed, stepped, stretched
+from rrr_traj_planner.planners.ramp_start import (
+    LEAST_RAMPS,
+    rest_to_rest_legs,
+    rest_to_rest_shapes,
+)
 
 SEEDS = range(12)
 EXACT = {'rel': 1e-11, 'abs': 1e-11}      # rounding
@@ -57,9 +63,9 @@ def test_restored_motions_meet_every_via_point_at_its_velocity(seed):
 def test_restoring_changes_nothing_but_inner_accelerations_and_those_only_once(seed):
     grid, points, m = random_motion(seed)
     off = m._replace(inner=m.inner + random_step(seed, m).inner)
-    back = grid.restored(points, off)
+    back = restored(grid, points, off)
     assert all(f is g for f, g in zip(back[1:], off[1:]))
-    assert grid.restored(points, back).inner == pytest.approx(back.inner, **EXACT)
+    assert restored(grid, points, back).inner == pytest.approx(back.inner, **EXACT)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -68,7 +74,7 @@ def test_moved_motions_meet_every_via_point_at_its_velocity(seed, size):
     grid, points, m = random_motion(seed)
     step = random_step(seed, m)
     step = step._replace(T=0.2 * np.tanh(step.T) * m.T)
-    moved = grid.moved(points, m, step, size)
+    moved = stepped(grid, points, m, step, size)
     assert grid.states(points, moved).q[:, grid.n] == pytest.approx(points[1:], **EXACT)
     assert grid.states(points, moved).qd[:, grid.n] == pytest.approx(
         grid.nodes(moved)[2], **EXACT)
@@ -81,8 +87,8 @@ def test_a_step_that_stretches_time_is_followed_as_a_stretch(seed):
     for rate, size in ((0.3, 1.0), (-0.4, 0.5)):
         # the derivative of a stretch by the factor 1 + rate * size
         step = Motion(-2.0 * rate * m.inner, -rate * m.v, -2.0 * rate * m.a, rate * m.T)
-        moved = grid.moved(points, m, step, size)
-        for found, expected in zip(moved, grid.stretched(m, 1.0 + rate * size)):
+        moved = stepped(grid, points, m, step, size)
+        for found, expected in zip(moved, stretched(m, 1.0 + rate * size)):
             assert found == pytest.approx(expected, **EXACT)
 
 
@@ -93,11 +99,11 @@ def test_a_step_that_keeps_the_ends_to_first_order_is_followed_to_first_order(se
     step = step._replace(T=0.1 * step.T)
     # mend the step's own inner accelerations: its ends must not move to first order
     tiny = 1e-6
-    inner = (grid.restored(points, shifted(m, step, tiny)).inner
-             - grid.restored(points, shifted(m, step, -tiny)).inner) / (2.0 * tiny)
+    inner = (restored(grid, points, shifted(m, step, tiny)).inner
+             - restored(grid, points, shifted(m, step, -tiny)).inner) / (2.0 * tiny)
     step = step._replace(inner=inner)
     for size in (1e-3, 1e-4):
-        moved = grid.moved(points, m, step, size)
+        moved = stepped(grid, points, m, step, size)
         scale = np.abs(step.inner).max() + np.abs(m.inner).max()
         assert moved.inner == pytest.approx(
             m.inner + size * step.inner, abs=300.0 * size ** 2 * scale)
@@ -109,11 +115,11 @@ def test_a_step_that_keeps_the_ends_to_first_order_is_followed_to_first_order(se
 def test_a_via_point_follows_the_stretch_of_the_much_shorter_of_its_segments(first):
     grid, points, m = random_motion(5, segments=2)
     short = np.array([first, not first])
-    m = grid.restored(points, m._replace(T=np.where(short, 1e-2, 1.0)))
+    m = restored(grid, points, m._replace(T=np.where(short, 1e-2, 1.0)))
     nothing = Motion(*(np.zeros_like(f) for f in m))
     factor = 1.3
     step = nothing._replace(v=-0.3 * m.v, a=-0.6 * m.a, T=np.where(short, 0.3 * m.T, 0.0))
-    moved = grid.moved(points, m, step, 1.0)
+    moved = stepped(grid, points, m, step, 1.0)
     assert moved.v == pytest.approx(m.v / factor, rel=1e-5)
     assert moved.a == pytest.approx(m.a / factor ** 2, rel=1e-5)
 
@@ -121,7 +127,7 @@ def test_a_via_point_follows_the_stretch_of_the_much_shorter_of_its_segments(fir
 def test_moved_motions_of_no_duration_are_returned_as_such():
     grid, points, m = random_motion(1)
     step = random_step(1, m)._replace(T=-1.1 * m.T)
-    assert (grid.moved(points, m, step, 1.0).T < 0.0).all()
+    assert (stepped(grid, points, m, step, 1.0).T < 0.0).all()
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -166,8 +172,8 @@ def test_straight_motions_stop_at_every_point_and_never_turn_back(n):
     points = np.array([[0.0, 1.0, 0.0], [0.5, 0.7, 0.0], [-0.3, 1.2, 0.4]])
     grid = Grid(n)
     rest = np.zeros((1, 3))
-    m = Motion(grid.rest_to_rest(points)[:, 1:-1], rest, rest, np.ones(2))
-    slow = grid.slowed(m, np.array([2.0, 3.0]))
+    m = Motion(rest_to_rest_shapes(grid, points)[:, 1:-1], rest, rest, np.ones(2))
+    slow = slowed(m, np.array([2.0, 3.0]))
     for motion in (m, slow):
         at = grid.states(points, motion)
         assert at.q[:, n] == pytest.approx(points[1:], **EXACT)
@@ -182,7 +188,7 @@ def stops_on_the_way(seed):
     grid, rest = Grid(int(rng.integers(8, 41))), np.zeros((0, 3))
     legs = int(rng.integers(1, grid.n // LEAST_RAMPS + 1))
     points = rng.uniform(-1.0, 1.0, (legs + 1, 3))
-    m = Motion(grid.rest_to_rest_legs(points)[np.newaxis, 1:-1], rest, rest, np.ones(1))
+    m = Motion(rest_to_rest_legs(grid, points)[np.newaxis, 1:-1], rest, rest, np.ones(1))
     at = grid.states(points[[0, -1]], m)
     q, qd = at.q[0, :grid.n + 1], at.qd[0, :grid.n + 1]
     still = np.abs(qd).max(axis=1) <= 1e-10
@@ -211,7 +217,7 @@ def test_legs_have_ramps_as_the_roots_of_their_lengths_beside_the_least():
     # 12 ramps to spare, 3 : 1 for legs of 9 and 1
     points = np.array([[0.0, 0.0, 0.0], [0.0, 0.9, 0.2], [0.1, 0.9, 0.2]])
     grid, rest = Grid(12 + 2 * LEAST_RAMPS), np.zeros((0, 3))
-    m = Motion(grid.rest_to_rest_legs(points)[np.newaxis, 1:-1], rest, rest, np.ones(1))
+    m = Motion(rest_to_rest_legs(grid, points)[np.newaxis, 1:-1], rest, rest, np.ones(1))
     q = grid.states(points[[0, -1]], m).q[0]
     assert q[LEAST_RAMPS + 9] == pytest.approx(points[1], abs=1e-12)
 
@@ -219,7 +225,7 @@ def test_legs_have_ramps_as_the_roots_of_their_lengths_beside_the_least():
 @pytest.mark.parametrize('seed', SEEDS)
 def test_stretched_motions_go_the_same_way_more_slowly(seed):
     grid, points, m = random_motion(seed)
-    at, slow = grid.states(points, m), grid.states(points, grid.stretched(m, 1.7))
+    at, slow = grid.states(points, m), grid.states(points, stretched(m, 1.7))
     assert slow.q == pytest.approx(at.q, **EXACT)
     assert slow.qd == pytest.approx(at.qd / 1.7, **EXACT)
     assert slow.jerk == pytest.approx(at.jerk / 1.7 ** 3, **EXACT)

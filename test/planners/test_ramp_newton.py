@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from ramp_cases import all_free, bounds, FREE, LIMITS, own_unknowns, random_motion, slow_start
 from rrr_traj_planner.planners.ramp_chain import Motion
-from rrr_traj_planner.planners.ramp_newton import Curvature, curvature, Freedom, newton_step
+from rrr_traj_planner.planners.ramp_curvature import Curvature, curvature
+from rrr_traj_planner.planners.ramp_newton import Freedom, newton_step
 
 SEEDS = range(8)
 

@@ -8,6 +8,7 @@ import pytest
 from ramp_cases import all_free, ARM, bounds, LIMITS, NONE, random_motion, share_of
 from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.planners.interior_point import Centre, minimise
+from rrr_traj_planner.planners.ramp_moves import restored
 from rrr_traj_planner.planners.ramp_room import LARGER, MOST_VELOCITY_ROOM, Room
 from rrr_traj_planner.planners.ramp_start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
@@ -209,7 +210,7 @@ def test_joints_that_leave_their_range_beside_a_via_point_at_its_end_stop_there(
         limits = replace(LIMITS, max_effort=NONE, max_position=np.where(
             np.arange(3) == j, points[k, j], LIMITS.max_position))
         task = JointTask(ARM, limits, points, None, 0.01)
-        m = grid.restored(points, m)
+        m = restored(grid, points, m)
         room = Room.none(grid, 3)
         slow = rest_to_rest(task, room.constraints(task, grid, None))
         still = room.grown(task, grid, slow, m, grid.trajectory(points, m)).still

@@ -19,7 +19,8 @@ from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix, inver
 from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
-from rrr_traj_planner.planners.ramp_start import cannot_be_held, rest_to_rest
+from rrr_traj_planner.planners.ramp_moves import slowed
+from rrr_traj_planner.planners.ramp_start import cannot_be_held, rest_to_rest, rest_to_rest_shapes
 from rrr_traj_planner.planners.request import JointTask
 
 SEEDS = range(12)
@@ -44,7 +45,7 @@ def test_start_stops_at_every_via_point_strictly_within_all_limits(seed, limits)
 def test_start_is_slower_than_it_must_be_by_two_percent_only(seed):
     grid, points, _ = random_motion(seed)
     constraints, m = slow_start(LIMITS, grid, points)
-    faster = grid.slowed(m, m.T / (1.001 * ROOM))
+    faster = slowed(m, m.T / (1.001 * ROOM))
     slacks = constraints.slacks(faster)
     for k in range(len(m.T)):  # in each segment some limit is then broken
         assert min(s[:, k].min() for s in slacks) < 0.0
@@ -104,10 +105,10 @@ def test_the_faster_of_the_straight_way_and_another_is_taken():
     for seed in range(40):
         task, constraints, m = started(hardly_open(seed))
         grid, rest = constraints.grid, np.zeros((0, 3))
-        way = grid.rest_to_rest(task.points)[:, 1:-1]
+        way = rest_to_rest_shapes(grid, task.points)[:, 1:-1]
 
         def straight_in(part, grid=grid, way=way, rest=rest, T=m.T, constraints=constraints):
-            m = grid.slowed(Motion(way, rest, rest, np.ones(1)), part * T)
+            m = slowed(Motion(way, rest, rest, np.ones(1)), part * T)
             return min(s.min() for s in constraints.slacks(m)) > 0.0
 
         assert not straight_in(1.0 / (1.001 * ROOM))
