@@ -18,8 +18,8 @@ demo: setup  ## plan a motion through via points and run it on the simulated arm
 test: lint  ## linters and every test; options for pytest in ARGS
 	@$(in_env) python -m pytest $(ARGS)
 
-lint: setup  ## ruff, and mypy on the core and the planners
-	@$(in_env) ruff check && mypy
+lint: setup  ## ruff, flake8 with ament_flake8's rules, mypy on the core and the planners
+	@$(in_env) ruff check && python -m flake8 && mypy
 
 bench: setup  ## run the benchmarks; options in ARGS
 	@$(in_env) python -m pip install --quiet --no-deps -r requirements/bench.txt

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """
 How planning takes hostile requests: no bug, sound answers, the same answer to the same request.
 
@@ -20,7 +34,7 @@ from hypothesis import given, HealthCheck, Phase, seed, settings
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / 'test' / 'nodes'))
-from hostile_requests import answered, assert_sound, CODES, hostile_requests  # noqa: E402
+from hostile_requests import answered, assert_sound, CODES, hostile_requests  # noqa: E402, I100
 
 NAMES = {getattr(CODES, name): name for name in dir(CODES)
          if name.isupper() and isinstance(getattr(CODES, name), int)}

@@ -1,20 +1,54 @@
-"""ROS's own linters, where they are installed (`ament_lint_auto` and the like from apt)."""
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""ROS's own linters: those that are among the wheels, the others where apt has installed them."""
 
 from __future__ import annotations
 
+from configparser import ConfigParser
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
+SOURCES = [str(ROOT / name) for name in ('rrr_traj_planner', 'test', 'benchmarks', 'setup.py')]
+
+
+def flake8_rules(file):
+    """Return what a configuration of flake8 says, but for what it leaves out."""
+    parser = ConfigParser()
+    parser.read_string(file.read_text())
+    return {key: value for key, value in parser['flake8'].items() if key != 'extend-exclude'}
+
+
+def test_code_is_as_ament_flake8_wants_it():
+    main = pytest.importorskip('ament_flake8.main')
+    assert main.main(argv=SOURCES) == 0
+
+
+def test_make_lint_has_the_rules_of_ament_flake8():
+    package = Path(pytest.importorskip('ament_flake8').__file__).parent
+    theirs = flake8_rules(package / 'configuration' / 'ament_flake8.ini')
+    assert flake8_rules(ROOT / '.flake8') == theirs
 
 
 def test_docstrings_are_as_ament_pep257_wants_them():
     main = pytest.importorskip('ament_pep257.main')
-    # D401 takes properties for functions.
-    assert main.main(argv=['--add-ignore', 'D401', '--', str(ROOT / 'rrr_traj_planner')]) == 0
+    assert main.main(argv=SOURCES) == 0
 
 
-def test_package_xml_is_as_ament_xmllint_wants_it():
-    main = pytest.importorskip('ament_xmllint.main')
-    assert main.main(argv=[str(ROOT / 'package.xml')]) == 0
+def test_notices_are_as_ament_copyright_wants_them():
+    main = pytest.importorskip('ament_copyright.main')
+    files = [str(ROOT / name) for name in ('scripts', 'LICENSE', 'CONTRIBUTING.md')]
+    assert main.main(argv=[*SOURCES, *files]) == 0

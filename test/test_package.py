@@ -1,4 +1,18 @@
-"""package.xml: well formed, and a key for everything that is imported."""
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""package.xml: as its schema has it, and a key for everything that is imported."""
 
 from __future__ import annotations
 
@@ -8,22 +22,25 @@ import sys
 from xml.etree import ElementTree
 
 from catkin_pkg.package import parse_package
+from lxml import etree
 import pytest
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = 'rrr_traj_planner'
+PACKAGES = ('.', 'rrr_traj_planner_interfaces')
 XML = ElementTree.parse(ROOT / 'package.xml').getroot()
 
-# Keys that differ from the module's name; None where rosdep has no key: an extra of setup.py.
+# Keys that differ from the module's name; None where no system has a package: pip's alone, without
+# which `demo --record` says so and its tests are skipped.
 KEYS = {
-    'hypothesis': 'python3-hypothesis', 'matplotlib': 'python3-matplotlib', 'mcap': None,
-    'mcap_ros2': None, 'mpl_toolkits': 'python3-matplotlib', 'numpy': 'python3-numpy',
-    'pytest': 'python3-pytest', 'scipy': 'python3-scipy', 'urdf_parser_py': 'urdfdom_py',
-    'yaml': 'python3-yaml', 'catkin_pkg': 'python3-catkin-pkg-modules'}
+    'catkin_pkg': 'python3-catkin-pkg-modules', 'hypothesis': 'python3-hypothesis',
+    'lxml': 'python3-lxml', 'matplotlib': 'python3-matplotlib', 'mcap': None, 'mcap_ros2': None,
+    'mpl_toolkits': 'python3-matplotlib', 'numpy': 'python3-numpy', 'pytest': 'python3-pytest',
+    'scipy': 'python3-scipy', 'urdf_parser_py': 'urdfdom_py', 'yaml': 'python3-yaml'}
 
 
 def imported(folder):
-    """Return what modules of a folder import from elsewhere."""
+    """Return what modules of a folder import from elsewhere, or skip tests without."""
     files = sorted((ROOT / folder).rglob('*.py'))
     names = set()
     for file in files:
@@ -32,6 +49,8 @@ def imported(folder):
                 names |= {alias.name.split('.')[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 names.add(node.module.split('.')[0])
+            elif isinstance(node, ast.Call) and ast.unparse(node.func) == 'pytest.importorskip':
+                names.add(ast.literal_eval(node.args[0]).split('.')[0])
     return names - set(sys.stdlib_module_names) - {PACKAGE} - {file.stem for file in files}
 
 
@@ -39,10 +58,25 @@ def keys(*tags):
     return {element.text for tag in tags for element in XML.iter(tag)}
 
 
-def test_package_xml_is_valid():
+@pytest.mark.parametrize('folder', PACKAGES)
+def test_package_xml_keeps_to_its_schema(folder):
+    """Do what ament_xmllint does with xmllint, which fetches the schema at every call."""
+    xml = etree.parse(ROOT / folder / 'package.xml')
+    (model,) = xml.xpath('/processing-instruction("xml-model")')
+    file = ROOT / 'test' / 'schema' / model.get('href').rpartition('/')[2]
+    etree.XMLSchema(etree.parse(file)).assertValid(xml)
+
+
+@pytest.mark.parametrize('folder', PACKAGES)
+def test_package_xml_raises_no_warning(folder):
     warnings = []
-    package = parse_package(str(ROOT / 'package.xml'), warnings=warnings)
-    assert (package.name, warnings) == (PACKAGE, [])
+    parse_package(str(ROOT / folder / 'package.xml'), warnings=warnings)
+    assert warnings == []
+
+
+def test_licence_that_package_xml_names_is_there():
+    package = parse_package(str(ROOT / 'package.xml'))
+    assert (package.name, package.licenses[0]) == (PACKAGE, 'Apache-2.0')
     assert (ROOT / package.licenses[0].file).is_file()
 
 

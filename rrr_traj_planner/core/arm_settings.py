@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """What the simulated arm and its controller are made of."""
 
 from __future__ import annotations
@@ -69,10 +83,10 @@ class ArmSettings:
 
     @property
     def loaded_model(self) -> RobotModel:
-        """The arm with its payload."""
+        """Return the arm with its payload."""
         return with_payload(self.model, self.payload.mass)
 
     @property
     def controller_model(self) -> RobotModel:
-        """The arm as its controller knows it."""
+        """Return the arm as its controller knows it."""
         return self.loaded_model if self.payload.known_to_controller else self.model

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Tip position from joint positions, and the Jacobian with its rate."""
 
 from __future__ import annotations
@@ -62,8 +76,8 @@ def jacobian(model: RobotModel, q: ArrayLike) -> Array:
     Z1, Z2, Z3, Z4 = _z_terms(model, q)
     zero = np.zeros_like(s1)
     return matrix((-Z3 * s1, Z4 * c1, Z1 * c1),
-                   (Z3 * c1, Z4 * s1, Z1 * s1),
-                   (zero, Z3, Z2))
+                  (Z3 * c1, Z4 * s1, Z1 * s1),
+                  (zero, Z3, Z2))
 
 
 def jacobian_rate(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Derivatives of joint positions along a path, from those of the tip's position."""
 
 from __future__ import annotations
@@ -101,7 +115,7 @@ def _in_plane(model: RobotModel, z: list[Complex],
     A1, B1 = _solved(a, b, -1j * z[1])
     A2, B2 = _solved(a, b, -1j * (z[2] + A1 ** 2 * a + B1 ** 2 * b))
     A3, B3 = _solved(a, b, -1j * (z[3] + 3.0 * (A1 * A2 * a + B1 * B2 * b)
-                                 + 1j * (A1 ** 3 * a + B1 ** 3 * b)))
+                                  + 1j * (A1 ** 3 * a + B1 ** 3 * b)))
     return [A, A1, A2, A3], [B, B1, B2, B3]
 
 

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """A motion of all joints over time: what every planner returns and everything else reads."""
 
 from __future__ import annotations
@@ -60,11 +74,11 @@ class Trajectory(ABC):
     @property
     @abstractmethod
     def knots(self) -> Array:
-        """Times between which the motion is analytic, increasing, 0 and duration included."""
+        """Return the times between which the motion is analytic, from 0 to the duration."""
 
     @property
     def step_times(self) -> Array:
-        """Times [s] at which acceleration steps, increasing; mostly none."""
+        """Return the times [s] at which acceleration steps, increasing; mostly none."""
         return np.zeros(0)
 
     @abstractmethod

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The demonstration's client: asks the planner, drives the arm, records what it did."""
 
 from __future__ import annotations
@@ -25,7 +39,8 @@ from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.configuration_files import Task
 from rrr_traj_planner.nodes.demo_messages import plan_request, trajectory_points
 from rrr_traj_planner.nodes.demo_recording import demo_recorder
-from rrr_traj_planner.nodes.entry import end_ros, made, start_ros, StartError
+from rrr_traj_planner.nodes.entry import StartError
+from rrr_traj_planner.nodes.node_life import end_ros, made, start_ros
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
 from rrr_traj_planner.nodes.processes import ending
 from rrr_traj_planner_interfaces.srv import PlanTrajectory

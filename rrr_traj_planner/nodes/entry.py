@@ -1,5 +1,19 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """
-How every node script starts and ends.
+How every script begins and ends: its arguments, what goes wrong, its exit code.
 
 `--help` is answered before ROS is touched; a start that fails says why in one line and ends with
 exit code 1; SIGINT and SIGTERM end the script with exit code 0, from its first lines on.
@@ -10,13 +24,10 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Sequence
 import os
-import signal
 import sys
-from types import FrameType
-from typing import Any
-import warnings
 
 from rrr_traj_planner.core.errors import RrrPlannerError
+from rrr_traj_planner.nodes.signals import ignore_signals, interrupt_on_signals
 
 NO_ROS = (
     'ROS 2 is not in this environment ({error}): source /opt/ros/jazzy/setup.bash and the '
@@ -32,31 +43,8 @@ EPILOG = (
     '--ros-args --params-file FILE -p NAME:=VALUE -r FROM:=TO')
 
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
-WATCH_PERIOD = 0.25  # s
-
-
 class StartError(RrrPlannerError):
     """A script that cannot start: its text is all that a user needs."""
-
-
-class Interrupt:
-    """
-    The handler of SIGINT and SIGTERM: Ctrl-C for both, until ROS takes over.
-
-    rclpy's own handlers shut its context down, which ends a spin in order, and call this one
-    afterwards. An exception would then hit whatever code is running, destructors included.
-    """
-
-    raises = True
-
-    def __call__(self, number: int, frame: FrameType | None) -> None:
-        """Interrupt the script, if that is still wanted."""
-        if self.raises:
-            raise KeyboardInterrupt
-
-
-_interrupt = Interrupt()  # one for the process, as signals are
 
 
 def parse(name: str, description: str, arguments: Sequence[str] | None,
@@ -116,29 +104,6 @@ def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]
     return own, ros
 
 
-def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
-             arguments: Sequence[str] | None = None) -> int:
-    """
-    Run one node until it is told to end.
-
-    Parameters
-    ----------
-    name, description : str
-        The script and what it does.
-    load : callable
-        Imports the node's module and returns its class; called when `--help` is out of the way.
-    arguments : sequence of str, optional
-        The command line without the script's name; None: `sys.argv`'s.
-
-    Returns
-    -------
-    int
-        Exit code: 0 after SIGINT or SIGTERM, 1 after a start that failed.
-
-    """
-    return guarded(name, lambda: spin(load, parse(name, description, arguments)[1]))
-
-
 def guarded(name: str, work: Callable[[], int]) -> int:
     """
     Run a script's work; turn its end, whichever way, into an exit code.
@@ -161,10 +126,7 @@ def guarded(name: str, work: Callable[[], int]) -> int:
     # is loaded, and to the children too.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     try:
-        _interrupt.raises = True
-        for number in SIGNALS:
-            signal.signal(number, _interrupt)
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)  # see processes.py
+        interrupt_on_signals()
         return work()
     except KeyboardInterrupt:
         ignore_signals()  # nothing is left to be ended
@@ -181,131 +143,3 @@ def guarded(name: str, work: Callable[[], int]) -> int:
             raise
     print(f'{name}: {text}', file=sys.stderr)
     return 1
-
-
-def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int:
-    """
-    Start ROS and a node, spin until the context is shut down, and clean up.
-
-    Parameters
-    ----------
-    load : callable
-        Imports the node's module and returns its class.
-    ros_arguments : list of str
-        As from `parse`.
-
-    Returns
-    -------
-    int
-        Exit code.
-
-    """
-    import rclpy
-    from rclpy.clock import Clock, ClockType
-    from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-    from rclpy.impl.implementation_singleton import rclpy_implementation
-
-    make_node = load()
-    executor = node = None
-    try:
-        start_ros(ros_arguments)
-        executor = SingleThreadedExecutor()
-        node = made(make_node)
-        # A signal wakes the executor before it shuts the context down: on a busy machine the
-        # executor may find the context well and go to sleep for good. So it looks again.
-        node.create_timer(WATCH_PERIOD, lambda: None, clock=Clock(
-            clock_type=ClockType.STEADY_TIME))
-        executor.add_node(node)
-        executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except rclpy_implementation.RCLError:
-        if rclpy.ok():  # else the context was shut down under a callback, by SIGTERM
-            raise
-    finally:
-        _clean_up(executor, node)
-    return 0
-
-
-def start_ros(ros_arguments: list[str]) -> None:
-    """
-    Start ROS; from then on SIGINT and SIGTERM shut its context down and raise nothing.
-
-    Parameters
-    ----------
-    ros_arguments : list of str
-        As from `parse`.
-
-    Raises
-    ------
-    StartError
-        If an argument or a parameter file is wrong.
-
-    """
-    import rclpy
-    try:
-        rclpy.init(args=ros_arguments)
-        _interrupt.raises = False
-    except Exception as error:
-        raise StartError(f'ROS refuses to start: {_one_line(error)}') from error
-
-
-def end_ros() -> None:
-    """End ROS; from then on SIGINT and SIGTERM interrupt the script again."""
-    import rclpy
-    rclpy.try_shutdown()
-    _interrupt.raises = True
-
-
-def ignore_signals() -> None:
-    """Let no further SIGINT or SIGTERM disturb the end of the process."""
-    for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)
-
-
-def made(make_node: Callable[[], Any]) -> Any:
-    """
-    Make a node; names and parameter files that ROS refuses are the user's to read.
-
-    Parameters
-    ----------
-    make_node : callable
-        Its class.
-
-    Returns
-    -------
-    Node
-        The node.
-
-    Raises
-    ------
-    StartError
-        If ROS refuses.
-
-    """
-    import rclpy
-    from rclpy.exceptions import NameValidationException, ParameterException
-    from rclpy.impl.implementation_singleton import rclpy_implementation
-    try:
-        return make_node()
-    except (ParameterException, NameValidationException, rclpy_implementation.RCLError) as error:
-        if not rclpy.ok():  # shut down meanwhile: no fault of the node
-            raise
-        raise StartError(_one_line(error)) from error
-
-
-def _clean_up(executor: Any, node: Any) -> None:
-    """End what was started, also when a second signal comes meanwhile."""
-    import rclpy
-    ignore_signals()
-    # What a signal has kept the executor from starting is no news.
-    warnings.filterwarnings('ignore', 'coroutine .* was never awaited', RuntimeWarning)
-    if executor is not None:
-        executor.shutdown(timeout_sec=1.0)
-    if node is not None:
-        node.destroy_node()
-    rclpy.try_shutdown()
-
-
-def _one_line(error: BaseException) -> str:
-    return ' '.join(str(error).split())

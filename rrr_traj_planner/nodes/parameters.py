@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """
 The parameters of both nodes: one table, the checks it implies, the configurations made of it.
 
@@ -38,7 +52,7 @@ class Row(NamedTuple):
 
     @property
     def range_text(self) -> str:
-        """What its value must be, for people."""
+        """Return what its value must be, for people."""
         if not isinstance(self.default, list):
             return self.item_text
         if isinstance(self.default[0], str):
@@ -47,7 +61,7 @@ class Row(NamedTuple):
 
     @property
     def item_text(self) -> str:
-        """What its value, or each item of a list, must be."""
+        """Return what its value, or each item of a list, must be."""
         item = self.default[0] if isinstance(self.default, list) else self.default
         if isinstance(item, bool):
             return 'true or false'
@@ -143,7 +157,7 @@ TABLE: tuple[Row, ...] = (
         'stay where they are', nodes=(ARM,)),
     Row('allow_nonzero_velocity_at_trajectory_end', False, 'whether the last point of a '
         'trajectory may have a velocity', nodes=(ARM,)),
-    Row('constraints.stopped_velocity_tolerance', 0.01, "velocity error that is none at a "
+    Row('constraints.stopped_velocity_tolerance', 0.01, 'velocity error that is none at a '
         "trajectory's end; 0: any", 'rad/s', 0.0, 1e3, nodes=(ARM,)),
     Row('constraints.goal_time', 0.0, "time after a trajectory's end for meeting the goal's "
         'tolerances; 0: any', 's', 0.0, 1e6, nodes=(ARM,)),

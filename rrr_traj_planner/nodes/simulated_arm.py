@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The script `simulated_arm`: an arm with physics and a controller, on ROS topics."""
 
 from __future__ import annotations
@@ -6,7 +20,8 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rrr_traj_planner.nodes.entry import end_ros, guarded, made, parse, spin, start_ros
+from rrr_traj_planner.nodes.entry import guarded, parse
+from rrr_traj_planner.nodes.node_life import end_ros, made, spin, start_ros
 
 if TYPE_CHECKING:
     from rrr_traj_planner.nodes.arm_node import SimulatedArm

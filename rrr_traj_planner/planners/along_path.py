@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """What the planners of Cartesian paths share: path, check, timing, and what there is to say."""
 
 from __future__ import annotations
@@ -47,9 +61,10 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
     path = largest_radii(family, task.tips, task.max_deviation)
     joints = check_workspace(task.model, task.limits, path, task.elbow, task.start)
     arm_path = ArmPath(task.model, task.limits, path, task.elbow, joints.start)
-    limits = followable(task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
+    limits, cruise = followable(
+        task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
     timed = fastest_along(PathTask(
-        arm_path, limits, task.max_tip_speed, task.steady_zones, task.should_stop))
+        arm_path, limits, cruise, task.max_tip_speed, task.steady_zones, task.should_stop))
     return timed.trajectory.noted(_note(task, timed))
 
 

@@ -1,8 +1,23 @@
-"""Limits on jerk that let samples follow a motion, where nothing else bounds it."""
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""How fast acceleration may change, and how, so that samples can follow a motion."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
@@ -15,9 +30,20 @@ from rrr_traj_planner.core.model import RobotModel
 # rebuilds from them must keep a limit.
 SAMPLES, SAMPLES_OF_LIMITED = 2.0, 4.0
 
+# Part of a ramp during which jerk is constant, and how many times as long as it must a swing has
+# to last for samples to follow jerk that rises and falls so fast.
+CRUISE, SLOW_ENOUGH = 0.6, 7.5
+
+
+class Followable(NamedTuple):
+    """What samples can follow."""
+
+    limits: JointLimits  # with finite limits on jerk
+    cruise: float        # part of a ramp during which jerk is constant
+
 
 def followable(model: RobotModel, limits: JointLimits, q: Array,
-               sample_period: float) -> JointLimits:
+               sample_period: float) -> Followable:
     """
     Return limits whose jerk keeps changes of acceleration so long that samples can follow them.
 
@@ -34,8 +60,8 @@ def followable(model: RobotModel, limits: JointLimits, q: Array,
 
     Returns
     -------
-    JointLimits
-        With finite jerk limits.
+    Followable
+        Jerk cruises where its limits make every swing much longer than samples do.
 
     Raises
     ------
@@ -45,7 +71,8 @@ def followable(model: RobotModel, limits: JointLimits, q: Array,
     """
     samples = np.where(np.isinf(limits.max_acceleration), SAMPLES, SAMPLES_OF_LIMITED)
     jerk = np.pi * acceleration_scale(model, limits, q) / (samples * sample_period)
-    return replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk))
+    cruise = CRUISE if (SLOW_ENOUGH * limits.max_jerk <= jerk).all() else 0.0
+    return Followable(replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk)), cruise)
 
 
 def acceleration_scale(model: RobotModel, limits: JointLimits, q: Array) -> Array:

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """What a path asks of the joints, tabulated along it as smooth pieces with derivatives."""
 
 from __future__ import annotations
@@ -11,6 +25,7 @@ from rrr_traj_planner.core.path_trajectory import ArmPath
 from scipy.interpolate import CubicSpline
 
 INTERVALS = 48  # of each piece
+PARTS = 8       # of the whole length: no piece is longer than one
 
 
 class Demand(NamedTuple):
@@ -41,7 +56,7 @@ class PathTable:
     Attributes
     ----------
     ends : ndarray, shape (N + 1,)
-        Places where the pieces meet [m]: via points and joins.
+        Places where the pieces meet [m]: via points, joins, and what parts long pieces.
     vias : ndarray of int, shape (n,)
         Which of these are the via points.
     places : ndarray, shape (N, INTERVALS + 1)
@@ -55,7 +70,7 @@ class PathTable:
 
     def __init__(self, arm_path: ArmPath) -> None:
         path = arm_path.path
-        self.ends = np.unique(np.concatenate((path.via_s, path.joins)))
+        self.ends = _parted(np.unique(np.concatenate((path.via_s, path.joins))))
         self.vias = np.searchsorted(self.ends, path.via_s)
         self._lengths = np.diff(self.ends)
         u = np.linspace(0.0, 1.0, INTERVALS + 1)
@@ -64,7 +79,9 @@ class PathTable:
         values = self._demanded(arm_path)
         self.holding = values[..., 15:]
         ddq = values[..., 3:6]
-        self.steps = np.concatenate((ddq[1:, 0] - ddq[:-1, -1], np.zeros((1, 3))))
+        steps = np.where(np.isin(self.ends[1:-1], path.joins)[:, np.newaxis],
+                         ddq[1:, 0] - ddq[:-1, -1], 0.0)
+        self.steps = np.concatenate((steps, np.zeros((1, 3))))
         spline = CubicSpline(u, np.moveaxis(values, 1, 0))
         self._c = np.moveaxis(spline.c, 2, 0)  # (N, 4, INTERVALS, 18)
 
@@ -110,3 +127,10 @@ class PathTable:
         if order > 1:
             found.append((6.0 * c3 * x + 2.0 * c2) / L ** 2)
         return [Demand(*np.split(f, 6, axis=-1)) for f in found]
+
+
+def _parted(ends: Array) -> Array:
+    """Return ends of pieces between which long ones are parted equally."""
+    counts = np.ceil(np.diff(ends) / ends[-1] * PARTS).astype(int)
+    return np.concatenate((*(np.linspace(a, b, k, endpoint=False) for a, b, k in zip(
+        ends[:-1], ends[1:], np.maximum(counts, 1))), ends[-1:]))

@@ -1,5 +1,19 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """
-The fastest motion along a given path: its progress is a chain of half-period ramps.
+The fastest motion along a given path: its progress is a chain of ramps.
 
 One coordinate, the length behind the tip, takes the place of the joints in the method of
 `time_optimal`: pieces of the path are its segments, and what the joints may do bounds it.
@@ -38,7 +52,7 @@ from rrr_traj_planner.planners.ramp_moves import stretched
 from rrr_traj_planner.planners.ramp_newton import Freedom
 from rrr_traj_planner.planners.ramp_room import near_points
 
-RAMPS = 20         # in a piece of the path
+RAMPS = 16         # in a piece of the path
 LOOKS = 8          # between two points
 ROOM = 1.02        # durations of the start over the least that fit
 HOLDING_ROOM = 1e-6
@@ -53,6 +67,7 @@ class PathTask(NamedTuple):
 
     arm_path: ArmPath
     limits: JointLimits
+    cruise: float                      # part of a ramp during which the change of sdd is constant
     max_tip_speed: float               # [m/s], infinite: none
     steady_zones: bool                 # whether the tip keeps its speed on curved zones (5.58)
     should_stop: Callable[[], bool]
@@ -85,7 +100,7 @@ def fastest_along(task: PathTask) -> Timed:
         If the motors cannot hold the arm somewhere on the path; with the place.
 
     """
-    table, grid = PathTable(task.arm_path), Grid(RAMPS)
+    table, grid = PathTable(task.arm_path), Grid(RAMPS, task.cruise)
     _refuse_heavy(task, table)
     N = len(table.ends) - 1
     freedom = Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 1), bool))

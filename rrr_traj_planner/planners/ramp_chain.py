@@ -1,5 +1,19 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """
-Motions whose acceleration is a chain of half-period ramps between node values (3.4 with 1/a = pi).
+Motions whose acceleration is a chain of ramps between node values.
 
 Each segment between via points has n ramps of equal length. Node accelerations are the unknowns:
 the acceleration keeps its limits everywhere if it does at the nodes, jerk is continuous, zero at
@@ -11,12 +25,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-
-# Displacement of a ramp of length h from rest: h^2 (a0 / 2 + (a1 - a0) RAMP_SHARE).
-RAMP_SHARE = 0.25 - 1.0 / np.pi ** 2
+from rrr_traj_planner.core.ramps import Ramps, RampShape
 
 
 class Motion(NamedTuple):
@@ -45,9 +56,13 @@ class Grid:
     ----------
     n : int
         Number of ramps, at least 4.
+    cruise : float
+        Part of each during which jerk is constant; 0: the thesis's half-periods.
 
     Attributes
     ----------
+    shape : RampShape
+        Of every ramp.
     qdd, qd, q : ndarray, shape (2 n + 1, n + 1)
         From node accelerations to acceleration, velocity gained / h and way gained / h^2 at the
         points, h the length of a ramp.
@@ -60,20 +75,19 @@ class Grid:
 
     """
 
-    def __init__(self, n: int) -> None:
-        self.n = n
-        one = np.eye(n + 1)
+    def __init__(self, n: int, cruise: float = 0.0) -> None:
+        self.n, self.shape = n, RampShape(cruise)
+        one, whole = np.eye(n + 1), self.shape(1.0)[0]
         qd, q = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
         for j in range(n):
             qd[j + 1] = qd[j] + 0.5 * (one[j] + one[j + 1])
-            q[j + 1] = q[j] + qd[j] + 0.5 * one[j] + RAMP_SHARE * (one[j + 1] - one[j])
+            q[j + 1] = q[j] + qd[j] + 0.5 * one[j] + whole * (one[j + 1] - one[j])
         rise = one[1:] - one[:-1]
+        way, speed, _, _ = self.shape(0.5)
         self.qdd = np.vstack((one, 0.5 * (one[1:] + one[:-1])))
-        # half a ramp: (1 - cos)/2 integrated once and twice up to s = 1/2
-        self.qd = np.vstack((qd, qd[:-1] + 0.5 * one[:-1] + (0.25 - 0.5 / np.pi) * rise))
-        self.q = np.vstack((q, q[:-1] + 0.5 * qd[:-1] + 0.125 * one[:-1]
-                            + (0.0625 - 0.5 / np.pi ** 2) * rise))
-        self.jerk = 0.5 * np.pi * rise
+        self.qd = np.vstack((qd, qd[:-1] + 0.5 * one[:-1] + speed * rise))
+        self.q = np.vstack((q, q[:-1] + 0.5 * qd[:-1] + 0.125 * one[:-1] + way * rise))
+        self.jerk = self.shape.peak_jerk * rise
         self.elapsed = np.concatenate((np.arange(n + 1.0), np.arange(n) + 0.5))
         self.restore = self._restoring_shapes()
 
@@ -200,7 +214,7 @@ class Grid:
 
     def profiles(self, points: Array, m: Motion) -> list[JointProfile]:
         """
-        Return each coordinate's motion as cycloid pieces.
+        Return each coordinate's motion as pieces.
 
         Parameters
         ----------
@@ -212,14 +226,14 @@ class Grid:
         Returns
         -------
         list of JointProfile
-            A half-period ramp from node to node.
+            A ramp from node to node.
 
         """
         n, (nodes, _, _), at = self.n, self.nodes(m), self.states(points, m)
-        h = np.repeat(m.T / n, n)
-        return [JointProfile(cycloid.ramp(h, *(f[..., j].ravel() for f in (
-            at.q[:, :n], at.qd[:, :n], nodes[:, :-1], nodes[:, 1:]))))
-            for j in range(m.inner.shape[-1])]
+        h, J = np.repeat(m.T / n, n), m.inner.shape[-1]
+        q, qd, a, rise = (f.reshape(-1, J).T for f in (
+            at.q[:, :n], at.qd[:, :n], nodes[:, :-1], np.diff(nodes, axis=1)))
+        return [JointProfile(Ramps(h, q[j], qd[j], a[j], rise[j], self.shape)) for j in range(J)]
 
     def trajectory(self, points: Array, m: Motion) -> PiecewiseTrajectory:
         """

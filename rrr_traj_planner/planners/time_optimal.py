@@ -1,9 +1,24 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """
 `time_optimal`: as fast as velocity, acceleration, jerk and torque allow, with continuous jerk.
 
-The acceleration is a chain of the thesis's half-period ramps; node accelerations, via velocities
-and durations are optimised together, from rest at every via point on, by an interior-point method
-whose every iterate is a valid motion.
+The acceleration is a chain of the thesis's half-period ramps, whose jerk cruises at its peak where
+a limit on jerk shapes them (`core.ramps`); node accelerations, via velocities and durations are
+optimised together, from rest at every via point on, by an interior-point method whose every
+iterate is a valid motion.
 """
 
 from __future__ import annotations
@@ -54,9 +69,9 @@ def plan(task: JointTask) -> Trajectory:
         If no way between two via points is found along which the motors can hold the arm.
 
     """
-    task = replace(task, limits=followable(
-        task.model, task.limits, task.points, task.sample_period))
-    grid = Grid(_ramps(task))
+    limits, cruise = followable(task.model, task.limits, task.points, task.sample_period)
+    task = replace(task, limits=limits)
+    grid = Grid(_ramps(task), cruise)
     found = fastest(task, grid) if task.durations is None else prescribed(
         task, grid, task.durations)
     if found is None:
@@ -77,4 +92,3 @@ def _ramps(task: JointTask) -> int:
     if swing >= SHAPED * T:
         return ramps
     return int(np.clip(T / (SAMPLES_PER_RAMP * task.sample_period), ramps, MOST_RAMPS))
-

@@ -1,10 +1,24 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """
 How many coefficients a motion is made of, as the thesis counts them (6.5 a).
 
-A transition of the thesis's function has a, b, c, d and e (3.4-3.7), one of seventh order eight
-(C.1), one of fourth order five (6.1), Gauss's function mu, sigma and C0 to C2 (appendix A, closed
-form); a piece at constant velocity two (4.11). Of a motion along a path of the tip, the pieces of
-its progress are counted, not the geometry.
+A transition of the thesis's function has a, b, c, d and e (3.4-3.7), and so has a ramp: when its
+jerk cruises is the same for all ramps of a motion. One of seventh order has eight (C.1), one of
+fourth order five (6.1), Gauss's function mu, sigma and C0 to C2 (appendix A, closed form); a piece at constant velocity two (4.11), the cubic cruise of a 4-3-4 four. Of a motion along
+a path of the tip, the pieces of its progress are counted, not the geometry.
 """
 
 from __future__ import annotations
@@ -17,10 +31,13 @@ from rrr_traj_planner.core.cycloid import CycloidPiece
 from rrr_traj_planner.core.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.pieces import Pieces
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.polynomial_piece import PolynomialPiece
+from rrr_traj_planner.core.ramps import Ramps
 from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.core.transition_shape import ShapedPiece
 
 CRUISE = 2
+CUBIC_CRUISE = 4
 PER_TRANSITION = {'cycloid': 5, 'gauss': 5, 'quartic': 5, 'septic': 8}
 
 
@@ -30,11 +47,12 @@ class Coefficients(NamedTuple):
     transitions: int     # over all joints
     cruises: int
     per_transition: int
+    per_cruise: int = CRUISE
 
     @property
     def total(self) -> int:
-        """Number of coefficients of the whole motion."""
-        return self.transitions * self.per_transition + self.cruises * CRUISE
+        """Return the number of coefficients of the whole motion."""
+        return self.transitions * self.per_transition + self.cruises * self.per_cruise
 
 
 def coefficients(trajectory: Trajectory) -> Coefficients:
@@ -55,7 +73,8 @@ def coefficients(trajectory: Trajectory) -> Coefficients:
     profiles = profiles_of(trajectory)
     moving = np.concatenate([is_transition(p.pieces) for p in profiles])
     return Coefficients(int(moving.sum()), int((~moving).sum()),
-                        PER_TRANSITION[_function(profiles[0].pieces)])
+                        PER_TRANSITION[_function(profiles[0].pieces)],
+                        _per_cruise(profiles[0].pieces))
 
 
 def profiles_of(trajectory: Trajectory) -> tuple[JointProfile, ...]:
@@ -97,15 +116,23 @@ def is_transition(pieces: Pieces) -> BoolArray:
     Returns
     -------
     ndarray of bool, shape (n,)
-        Whether velocity changes there.
+        Whether velocity changes there; of a 4-3-4, whether it is a quartic.
 
     """
+    if isinstance(pieces, PolynomialPiece):
+        return np.asarray(pieces.snap != 0.0)
     acceleration, _ = pieces.peaks()
     return np.asarray(acceleration > 0.0)
 
 
+def _per_cruise(pieces: Any) -> int:
+    return CUBIC_CRUISE if isinstance(pieces, PolynomialPiece) else CRUISE
+
+
 def _function(pieces: Any) -> str:
-    if isinstance(pieces, CycloidPiece):
+    if isinstance(pieces, PolynomialPiece):
+        return 'quartic'
+    if isinstance(pieces, (CycloidPiece, Ramps)):
         return 'cycloid'
     if isinstance(pieces, ShapedPiece) and pieces.shape.name in PER_TRANSITION:
         return pieces.shape.name

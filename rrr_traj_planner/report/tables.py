@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Tables: rows of texts with heads, as HTML for a page and as CSV beside it."""
 
 from __future__ import annotations
@@ -63,7 +77,8 @@ class Table:
         heads = ''.join(f'<th scope="col">{escape(h)}</th>' for h in self.heads)
         body = ''.join(f'<tr>{self._cells(row)}</tr>\n' for row in self.rows)
         return ('<div class="scroll" tabindex="0" role="region" '
-                f'aria-label="{escape(self.title)}"><table><thead><tr>{heads}</tr></thead>\n<tbody>{body}</tbody></table></div>')
+                f'aria-label="{escape(self.title)}"><table><thead><tr>{heads}</tr></thead>\n'
+                f'<tbody>{body}</tbody></table></div>')
 
     def _cells(self, row: Sequence[str]) -> str:
         left = len(self.heads) - len(row)

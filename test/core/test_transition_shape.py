@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Transitions of every shape: integrals, ends, symmetry, peaks, and trajectories made of them."""
 
 import numpy as np
@@ -17,8 +31,6 @@ DENSE = np.linspace(0.0, 1.0, 20001)
 # A peak between two of 20,001 samples: a parabola of the width of a sigma, at most 1/6 of it all.
 BETWEEN_SAMPLES = 1e-6
 S = np.linspace(0.05, 0.95, 7)
-
-
 
 
 @pytest.fixture(params=SHAPES, ids=lambda s: f'{s.name} {s.peak_acceleration:.3f}')

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """A running arm node for tests: what it publishes, and ways to talk to it."""
 
 from __future__ import annotations
@@ -52,7 +66,7 @@ class Arm:
         self._disturber.publish(JointState(
             name=list(torques), effort=[float(x) for x in torques.values()]))
 
-    def set(self, name, value):
+    def set_parameter(self, name, value):
         """Set a parameter, and return the answer."""
         message = ParameterMessage(
             name=name, value=Parameter(name, value=value).get_parameter_value())

@@ -1,20 +1,34 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Bags as MCAP's reference reader for ROS 2 sees them."""
 
 from __future__ import annotations
 
 import pytest
 
-pytest.importorskip('mcap_ros2', reason='needs mcap-ros2-support, of requirements/test.in')
-
-from mcap.reader import make_reader  # noqa: E402
-from mcap_ros2.decoder import DecoderFactory  # noqa: E402
+MISSING = 'needs mcap-ros2-support, of requirements/test.in'
+mcap_reader = pytest.importorskip('mcap.reader', reason=MISSING)
+mcap_decoder = pytest.importorskip('mcap_ros2.decoder', reason=MISSING)
 
 
 def messages_by_topic(file):
     """Return the (record, decoded message) pairs of each topic, in order."""
     found = {}
     with file.open('rb') as stream:
-        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        reader = mcap_reader.make_reader(
+            stream, validate_crcs=True, decoder_factories=[mcap_decoder.DecoderFactory()])
         for _, channel, record, message in reader.iter_decoded_messages():
             found.setdefault(channel.topic, []).append((record, message))
     return found
@@ -23,7 +37,7 @@ def messages_by_topic(file):
 def summary(file):
     """Return header and summary of a bag."""
     with file.open('rb') as stream:
-        reader = make_reader(stream)
+        reader = mcap_reader.make_reader(stream)
         return reader.get_header(), reader.get_summary()
 
 

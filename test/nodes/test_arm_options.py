@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The arm's options over DDS: payload, friction, encoders, disturbance, tolerances, rules."""
 
 from __future__ import annotations
@@ -25,11 +39,12 @@ def weight(mass):
 def test_payload_changes_at_run_time_and_is_known_when_told(ros):
     arm = Arm(ros)
     arm.actual.wait_for()
-    assert arm.set('payload.mass', 2.0).successful
-    sagged = arm.actual.next(lambda m: np.abs(np.subtract(m.effort, weight(2.0))).max() < 1.0)
+    assert arm.set_parameter('payload.mass', 2.0).successful
+    sagged = arm.actual.wait_for_next(
+        lambda m: np.abs(np.subtract(m.effort, weight(2.0))).max() < 1.0)
     assert np.abs(np.subtract(sagged.position, START)).max() > 1e-4
-    assert arm.set('payload.known_to_controller', True).successful
-    arm.actual.next(lambda m: np.abs(np.subtract(m.position, START)).max() < 1e-9)
+    assert arm.set_parameter('payload.known_to_controller', True).successful
+    arm.actual.wait_for_next(lambda m: np.abs(np.subtract(m.position, START)).max() < 1e-9)
 
 
 def test_friction_keeps_a_disturbed_arm_exactly_where_it_is(ros):
@@ -40,9 +55,9 @@ def test_friction_keeps_a_disturbed_arm_exactly_where_it_is(ros):
     arm.disturb(joint_1=9.0, joint_3=-9.0, joint_2=float('nan'))  # refused: the first is read
     log.wait_for(lambda m: 'must be in' in m.msg)
     for _ in range(20):
-        assert arm.actual.next().position == before.position
+        assert arm.actual.wait_for_next().position == before.position
     arm.disturb(joint_1=11.0)
-    arm.actual.next(lambda m: m.position[0] > before.position[0])
+    arm.actual.wait_for_next(lambda m: m.position[0] > before.position[0])
 
 
 def test_disturbance_deflects_the_arm_until_it_ends(ros):
@@ -50,7 +65,7 @@ def test_disturbance_deflects_the_arm_until_it_ends(ros):
     arm.disturb(joint_3=100.0)
     arm.actual.wait_for(lambda m: m.position[2] > START[2] + 0.01)
     arm.disturb()
-    arm.actual.next(at(START))
+    arm.actual.wait_for_next(at(START))
 
 
 def test_bad_disturbance_is_refused_with_a_reason_and_changes_nothing(ros):
@@ -74,7 +89,7 @@ def test_bad_disturbance_is_refused_with_a_reason_and_changes_nothing(ros):
              'a disturbance has efforts alone, no positions or velocities')):
         publisher.publish(message)
         log.wait_for(lambda m, text=text: m.msg == text and m.level == 40)
-    assert at(START, 1e-9)(arm.actual.next())
+    assert at(START, 1e-9)(arm.actual.wait_for_next())
 
 
 def test_joint_states_are_what_encoders_tell(ros):
@@ -86,7 +101,7 @@ def test_joint_states_are_what_encoders_tell(ros):
     arm.actual.wait_for(lambda m: np.abs(np.subtract(m.position, GOAL)).max() <= 4.0 * resolution)
     for message in arm.actual.messages:
         assert (np.array(message.position) % resolution == 0.0).all()
-    assert np.abs(error.next().position).max() > 0.0
+    assert np.abs(error.wait_for_next().position).max() > 0.0
 
 
 def test_tracking_error_is_desired_less_actual_at_the_same_time(ros):
@@ -120,9 +135,9 @@ def test_blocked_arm_gives_up_says_so_and_holds(ros):
                  'Holding position due to state tolerance violation'):
         log.wait_for(lambda m, text=text: m.msg.startswith(text) and m.level == 40)
     arm.disturb()
-    rest = arm.desired.next(lambda m: not np.any(m.velocity))
+    rest = arm.desired.wait_for_next(lambda m: not np.any(m.velocity))
     assert rest.position[0] < START[0] + 0.3
-    arm.actual.next(at(rest.position))
+    arm.actual.wait_for_next(at(rest.position))
 
 
 def test_missed_goal_is_given_up_after_its_time(ros):
@@ -131,7 +146,7 @@ def test_missed_goal_is_given_up_after_its_time(ros):
     arm.disturb(joint_1=100.0)
     arm.send(rest_to_rest(GOAL, 0.3))
     log.wait_for(lambda m: m.msg == 'Exceeded goal_time_tolerance: holding position...')
-    rest = arm.desired.next()
+    rest = arm.desired.wait_for_next()
     assert 1e-3 < rest.position[0] - GOAL[0] < 0.05  # where the disturbance had it
 
 
@@ -140,7 +155,7 @@ def test_command_timeout_holds_what_was_reached(ros):
     log = ros.listen(Log, '/rosout', 100)
     arm.send(rest_to_rest(GOAL, 0.2))
     log.wait_for(lambda m: m.msg == 'Aborted due to command timeout' and m.level == 30)
-    np.testing.assert_allclose(arm.desired.next().position, GOAL, atol=1e-3)
+    np.testing.assert_allclose(arm.desired.wait_for_next().position, GOAL, atol=1e-3)
 
 
 def test_partial_goal_moves_its_joint_alone(ros):
@@ -148,7 +163,7 @@ def test_partial_goal_moves_its_joint_alone(ros):
     log = ros.listen(Log, '/rosout', 100)
     arm.send((0.3, [GOAL[2]]), names=['joint_3'])
     log.wait_for(lambda m: m.msg.startswith("Joints on incoming trajectory don't match"))
-    assert arm.set('allow_partial_joints_goal', True).successful
+    assert arm.set_parameter('allow_partial_joints_goal', True).successful
     arm.send((0.3, [GOAL[2]]), names=['joint_3'])
     arm.actual.wait_for(at((START[0], START[1], GOAL[2])))
 
@@ -157,7 +172,7 @@ def test_end_with_a_velocity_is_rested_at_where_it_is_allowed(ros):
     arm = Arm(ros, allow_nonzero_velocity_at_trajectory_end=True)
     arm.send((0.3, GOAL, (0.1, 0.0, 0.0)))
     arm.actual.wait_for(at(GOAL))
-    rest = arm.desired.next()
+    rest = arm.desired.wait_for_next()
     np.testing.assert_array_equal(rest.position, GOAL)
     assert not np.any(rest.velocity)
 
@@ -170,6 +185,6 @@ def test_end_with_a_velocity_is_rested_at_where_it_is_allowed(ros):
     ('publish_clock', True, 'read-only')])
 def test_options_without_sense_are_refused(ros, name, value, text):
     arm = Arm(ros)
-    answer = arm.set(name, value)
+    answer = arm.set_parameter(name, value)
     assert not answer.successful
     assert text in answer.reason

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The arm's time: a clock that it follows, or is."""
 
 from __future__ import annotations
@@ -58,7 +72,7 @@ def test_time_stands_and_goes_in_single_steps(ros):
     stepped = round(reached[1] * SECOND)
     arm.actual.wait_for(lambda m: stamp(m) == stepped)
     assert pause(ros, False).success
-    arm.actual.next(lambda m: stamp(m) > stepped + SECOND // 10)
+    arm.actual.wait_for_next(lambda m: stamp(m) > stepped + SECOND // 10)
 
 
 def test_arm_that_follows_a_clock_does_not_let_it_stand(ros):
@@ -71,9 +85,9 @@ def test_arm_that_follows_a_clock_does_not_let_it_stand(ros):
 def test_factor_changes_at_run_time(ros):
     arm = Arm(ros, publish_clock=True, real_time_factor=0.5)
     arm.actual.wait_for()
-    assert arm.set('real_time_factor', 20.0).successful
-    since = stamp(arm.actual.next())
-    arm.actual.next(lambda m: stamp(m) > since + 10 * SECOND)
+    assert arm.set_parameter('real_time_factor', 20.0).successful
+    since = stamp(arm.actual.wait_for_next())
+    arm.actual.wait_for_next(lambda m: stamp(m) > since + 10 * SECOND)
 
 
 def test_stamped_trajectory_is_followed_on_the_arm_s_own_clock(ros):

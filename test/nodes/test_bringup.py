@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The script `bringup`: both nodes come up together, and end together, whatever ends first."""
 
 from __future__ import annotations
@@ -12,10 +26,9 @@ import pytest
 from rrr_traj_planner.nodes.bringup import node_arguments
 from rrr_traj_planner.nodes.processes import NodeProcesses, signals_held
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from scripts import CONFIG, DEADLINE, Script, script
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
-
-from scripts import CONFIG, DEADLINE, Script, script
 
 
 def assert_up(ros, states):

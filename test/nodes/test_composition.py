@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Both nodes together: in one process, in namespaces, renamed, twice, late and restarted."""
 
 from __future__ import annotations
@@ -15,13 +29,12 @@ from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.nodes.arm_node import SimulatedArm
 from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from scripts import CONFIG, Script, script
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory
 from visualization_msgs.msg import Marker, MarkerArray
-
-from scripts import CONFIG, Script, script
 
 LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 DEADLINE = 20.0  # s

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Via-point files and arms' files: found here or among the package's, and checked."""
 
 from __future__ import annotations
@@ -8,7 +22,6 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.configuration_files import arm_file, read_task, shipped_folder
-
 from scripts import CONFIG
 
 POINTS = 'via_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n'

@@ -1,36 +1,24 @@
-"""Scripts as processes: help without ROS, wrong files, missing packages, signals."""
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Scripts begin and end: help without ROS, wrong options, missing packages."""
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-import signal
-import subprocess
-import sys
-
+from arm_process import arm_process, ended, RUN
 import pytest
 from rrr_traj_planner.nodes.entry import split_ros_arguments
-from sensor_msgs.msg import JointState
-
-ROOT = Path(__file__).parents[2]
-DEADLINE = 20.0
-
-RUN = 'import sys; from rrr_traj_planner.nodes.simulated_arm import main; sys.exit(main())'
-
-
-def arm_process(*arguments, code=RUN):
-    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get('PYTHONPATH')) if p)
-    return subprocess.Popen(
-        [sys.executable, '-c', code, *arguments], text=True, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, env={**os.environ, 'PYTHONPATH': path})
-
-
-def ended(process):
-    try:
-        output, errors = process.communicate(timeout=DEADLINE)
-        return process.returncode, output, errors
-    finally:
-        process.kill()
 
 
 def without(module):
@@ -60,50 +48,13 @@ def test_missing_ros_is_said_in_one_line():
 
 def test_missing_interfaces_are_said_in_one_line():
     code, _, errors = ended(arm_process(code=(
-        'import sys; from rrr_traj_planner.nodes.entry import run_node\n'
+        'import sys; from rrr_traj_planner.nodes.node_life import run_node\n'
         'def load():\n    sys.modules["rrr_traj_planner_interfaces"] = None\n'
         '    import rrr_traj_planner_interfaces\n'
         'sys.exit(run_node("planner", "", load))')))
     assert code == 1
     assert 'ln -s rrr_traj_planner/rrr_traj_planner_interfaces' in errors
     assert errors.count('\n') == 1
-
-
-@pytest.mark.parametrize(('yaml', 'text'), [
-    ('arm: {d1: 5}', 'parameter arm.d1 is 5, must be in [-100, 100] m (written with a point'),
-    ('arm: {mass: [1.0, -1.0, 1.0]}', 'arm.mass[1] is -1 kg, must be in [0, 100000] kg'),
-    ('physics_step: 1.0', 'parameter physics_step is 1 s, must be in [1e-05, 0.01] s'),
-    ('joint_limits: {joint_3: {max_position: -4.0}}',
-     'joint_limits.joint_3.min_position is -3.14159 rad, must be below')])
-def test_wrong_file_stops_the_node_with_one_line(tmp_path, yaml, text):
-    file = tmp_path / 'arm.yaml'
-    file.write_text(f'/**:\n  ros__parameters: {{{yaml}}}\n')
-    code, _, errors = ended(arm_process('--ros-args', '--params-file', str(file)))
-    assert code == 1
-    assert text in errors
-    assert errors.startswith('simulated_arm: ')
-    assert errors.count('\n') == 1
-
-
-def test_file_that_is_missing_stops_the_node():
-    code, _, errors = ended(arm_process('--ros-args', '--params-file', '/no/such/file.yaml'))
-    assert code == 1
-    assert 'simulated_arm: ROS refuses to start: ' in errors
-    assert 'Traceback' not in errors
-
-
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize('arm', ['thesis_arm.yaml', 'thesis_arm_joint_2_250.yaml'])
-def test_signal_ends_a_running_arm_in_order(ros, number, arm):
-    states = ros.listen(JointState, 'joint_states')
-    process = arm_process('--ros-args', '--params-file', str(ROOT / 'config' / arm))
-    try:
-        assert states.wait_for().name == ['joint_1', 'joint_2', 'joint_3']
-        process.send_signal(number)
-        code, _, errors = ended(process)
-    finally:
-        process.kill()
-    assert (code, errors) == (0, '')
 
 
 @pytest.mark.parametrize(('line', 'own', 'ros'), [

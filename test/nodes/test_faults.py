@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Processes that are killed and come back, floods, and clocks that jump."""
 
 from __future__ import annotations
@@ -15,11 +29,10 @@ import pytest
 from rcl_interfaces.srv import GetParameters
 from rosgraph_msgs.msg import Clock
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from scripts import python, Script, script
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
-
-from scripts import python, Script, script
 
 CODES = PlanTrajectory.Response
 QUIET = ('--ros-args', '--log-level', 'fatal')
@@ -100,7 +113,7 @@ def test_planner_goes_on_where_the_arm_is_killed_while_moving_and_comes_back(ros
         with Script(script('simulated_arm'), *QUIET) as arm:
             states.wait_for()
             ros.publisher(JointTrajectory, 'joint_trajectory').publish(long_way())
-            states.next(moving)
+            states.wait_for_next(moving)
             killed(arm)
         assert plan(ros) == CODES.SUCCESS
         since = len(states.messages)
@@ -117,9 +130,9 @@ def test_arm_goes_on_where_the_planner_is_killed(ros):
         with Script(script('planner'), *QUIET) as planner:
             assert plan(ros) == CODES.SUCCESS
             ros.publisher(JointTrajectory, 'joint_trajectory').publish(long_way())
-            states.next(moving)
+            states.wait_for_next(moving)
             killed(planner)
-        states.next(moving)
+        states.wait_for_next(moving)
         assert ros.call(Trigger, 'simulated_arm/hold').success
         assert arm.process.poll() is None
 
@@ -164,7 +177,7 @@ def test_arm_answers_and_moves_under_a_thousand_trajectories_a_second(ros):
         assert len(times) > FLOOD_SECONDS * 10.0
         assert np.isfinite([m.position for m in states.messages]).all()
         publisher.publish(trajectory([(0.5, GOAL)]))
-        states.next(at(GOAL, 1e-3))
+        states.wait_for_next(at(GOAL, 1e-3))
         assert arm.process.poll() is None
 
 
@@ -196,7 +209,7 @@ def test_arm_stands_a_clock_that_jumps_back_and_forth(ros):
     assert np.isfinite(q).all()
     assert np.abs(np.diff(q, axis=0)).max() < 0.05  # time may jump, the arm may not
     arm.actual.wait_for(at(GOAL))
-    after = stamp(arm.actual.next())
+    after = stamp(arm.actual.wait_for_next())
     assert abs(after - now[0]) < SECOND
 
 

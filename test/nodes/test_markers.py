@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """What both nodes publish to be looked at: robot_description and markers."""
 
 from __future__ import annotations
@@ -63,8 +77,8 @@ def test_description_follows_the_parameters_that_are_in_it_and_no_others(ros):
     arm = Arm(ros)
     description = ros.listen(String, 'robot_description', LATCHED)
     description.wait_for()
-    assert arm.set('payload.mass', 1.0).successful
-    assert arm.set('friction.coulomb', [1.0, 2.0, 3.0]).successful
+    assert arm.set_parameter('payload.mass', 1.0).successful
+    assert arm.set_parameter('friction.coulomb', [1.0, 2.0, 3.0]).successful
     expected = urdf(MODEL, JointLimits(), friction=Friction(coulomb=(1.0, 2.0, 3.0)))
     description.wait_for(lambda m: m.data == expected)
     assert len(description.messages) == 2
@@ -131,9 +145,9 @@ def test_marker_rate_zero_ends_them_and_another_brings_them_back(ros):
     arm.send(rest_to_rest(GOAL, 0.3))
     arm.desired.wait_for(at(GOAL))
     assert not markers.messages
-    assert arm.set('marker_rate', 20.0).successful
+    assert arm.set_parameter('marker_rate', 20.0).successful
     markers.wait_for()
-    assert arm.set('marker_rate', 0.0).successful
+    assert arm.set_parameter('marker_rate', 0.0).successful
     count = len(markers.messages)
     arm.send(rest_to_rest(START, 0.3))
     arm.desired.wait_for(at(START), len(arm.desired.messages))

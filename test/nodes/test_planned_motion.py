@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """What the planner answers, driven unchanged by the arm: two processes, and DDS between."""
 
 from __future__ import annotations
@@ -9,10 +23,9 @@ from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.nodes.arm_messages import nanoseconds
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from scripts import Script, script
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
-
-from scripts import Script, script
 
 # The bound of the demonstration [m].
 REACHED = 2e-3

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The node `trajectory_planner`: busy and responsive, its parameters, what it publishes, bugs."""
 
 from __future__ import annotations
@@ -29,9 +43,8 @@ from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
 from rrr_traj_planner.planners import registry
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
-from trajectory_msgs.msg import JointTrajectory
-
 from scripts import CONFIG
+from trajectory_msgs.msg import JointTrajectory
 
 DEADLINE = 20.0
 CODES = PlanTrajectory.Response

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The node's diagnostics: what is counted, and how it is told."""
 
 from __future__ import annotations
@@ -112,7 +126,7 @@ def test_node_tells_once_a_second_what_requests_have_come_to(ros):
     assert values['last error'].startswith('GOAL_CONSTRAINTS_VIOLATED: via point 2: joint_2')
     assert float(values['last error at [s]']) == pytest.approx(
         message.header.stamp.sec, abs=10.0)
-    later = [told.next() for _ in range(2)]
+    later = [told.wait_for_next() for _ in range(2)]
     gap = later[1].header.stamp.sec - later[0].header.stamp.sec + 1e-9 * (
         later[1].header.stamp.nanosec - later[0].header.stamp.nanosec)
     assert gap == pytest.approx(1.0, abs=0.5)
@@ -134,4 +148,4 @@ def test_diagnostics_go_on_where_simulated_time_stands(ros):
     made(ros, use_sim_time=True)
     told = ros.listen(DiagnosticArray, 'diagnostics')
     told.wait_for()
-    assert told.next().header.stamp.sec == 0
+    assert told.wait_for_next().header.stamp.sec == 0

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The node `simulated_arm` over DDS: holding, following, refusing, stopping, keeping time."""
 
 from __future__ import annotations
@@ -33,7 +47,7 @@ def test_trajectory_is_followed_and_held(ros):
     arm.send((0.0, START, (0,) * 3, (0,) * 3), rest_to_rest(GOAL, 0.4))
     arm.actual.wait_for(moving)
     arm.actual.wait_for(at(GOAL))
-    held = arm.actual.next()
+    held = arm.actual.wait_for_next()
     np.testing.assert_allclose(held.position, GOAL, atol=1e-5)
     assert_no_jump(arm.desired.messages)
     by_stamp = {stamp(m): m for m in arm.actual.messages}
@@ -103,9 +117,9 @@ def test_hold_stops_the_arm_short_of_its_goal(ros):
     answer = arm.trigger('hold')
     assert answer.success
     assert answer.message.startswith('at rest in ')
-    rest = arm.desired.next(lambda m: not np.any(m.velocity))
+    rest = arm.desired.wait_for_next(lambda m: not np.any(m.velocity))
     assert np.abs(np.subtract(rest.position, START)).max() < 0.3
-    arm.actual.next(at(rest.position))
+    arm.actual.wait_for_next(at(rest.position))
     assert_no_jump(arm.desired.messages, limit=1.0)
 
 
@@ -115,9 +129,9 @@ def test_reset_returns_to_the_initial_position_and_drops_the_trajectory(ros):
     arm.desired.wait_for(moving)
     assert arm.trigger('reset').success
     for listener in (arm.actual, arm.desired):
-        state = listener.next(at(START, 1e-12))
+        state = listener.wait_for_next(at(START, 1e-12))
         np.testing.assert_allclose(state.position, START, atol=1e-12)
-    assert not moving(arm.desired.next())
+    assert not moving(arm.desired.wait_for_next())
 
 
 def test_time_is_the_clock_s_in_whole_steps(ros):
@@ -142,9 +156,9 @@ def test_arm_catches_up_after_a_pause(ros):
 
 def test_changed_effort_limit_saturates_the_motors(ros):
     arm = Arm(ros)
-    assert arm.set('joint_limits.joint_2.max_effort', 100.0).successful
-    arm.actual.next(lambda m: m.effort[1] == 100.0)  # it takes 163 N m to hold
-    arm.actual.next(lambda m: m.position[1] == 0.0)  # it sinks onto its stop
+    assert arm.set_parameter('joint_limits.joint_2.max_effort', 100.0).successful
+    arm.actual.wait_for_next(lambda m: m.effort[1] == 100.0)  # it takes 163 N m to hold
+    arm.actual.wait_for_next(lambda m: m.position[1] == 0.0)  # it sinks onto its stop
 
 
 def test_names_and_positions_come_from_parameters(ros):

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Seeded chains of ramps for the tests of what they are made of and how they are optimised."""
 
 from dataclasses import replace
@@ -25,7 +39,7 @@ COARSE, FINE = 61, 601  # cells of joint 2 and of joint 3 in which a way is look
 def random_motion(seed, n=None, segments=None):
     """Return a grid, via points and a motion through them."""
     rng = np.random.default_rng(7000 + seed)
-    grid = Grid(n or int(rng.integers(4, 13)))
+    grid = Grid(n or int(rng.integers(4, 13)), cruise=(0.0, 0.6)[seed % 2])
     N = segments or int(rng.integers(1, 5))
     points = rng.uniform([-1.0, 0.8, -0.8], [1.0, 1.8, 0.8], (N + 1, 3))
     m = Motion(rng.normal(0.0, 1.0, (N, grid.n - 1, 3)), rng.normal(0.0, 0.3, (N - 1, 3)),

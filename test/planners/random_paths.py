@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """Seeded random paths that an arm can follow, with limits made to fit them, and their plans."""
 
 from __future__ import annotations
@@ -16,6 +30,7 @@ from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.path_trajectory import ArmPath
 from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.planners.followable import followable
 from rrr_traj_planner.planners.path_timing import fastest_along, PathTask
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import never, PlanningRequest
@@ -37,16 +52,22 @@ class PathCase:
 
     @cached_property
     def arm_path(self):
-        """The path as the planner is to find it."""
+        """Return the path as the planner is to find it."""
         r = self.request
         path = largest_radii(getattr(path_design, r.planner_id), r.via_points, r.max_deviation)
         start = check_workspace(self.model, self.limits, path, r.elbow).start
         return ArmPath(self.model, self.limits, path, r.elbow, start)
 
+    @property
+    def cruise(self):
+        """Return what `followable` says of the case's own limits."""
+        return followable(self.model, self.limits, self.arm_path(self.arm_path.path.via_s).q,
+                          self.request.sample_period).cruise
+
     def timed(self, max_tip_speed=np.inf, **limits):
         """Return the fastest motion along the path, with limits changed."""
         return fastest_along(PathTask(
-            self.arm_path, replace(self.limits, **limits), max_tip_speed, False,
+            self.arm_path, replace(self.limits, **limits), self.cruise, max_tip_speed, False,
             never)).trajectory
 
     def planned(self, **changes):

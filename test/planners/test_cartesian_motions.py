@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """What every plan along a Cartesian path keeps, on random feasible paths and on the tables."""
 
 from dataclasses import replace
@@ -156,8 +170,6 @@ def share_of_time_at_limits(table, planner_id, **limits):
 
 @each_planner
 @pytest.mark.parametrize('table', TABLES)
-@pytest.mark.xfail(strict=True, reason='0.61 to 0.68: the jerk of a ramp is half a sine, at 95 '
-                   'percent of its limit for a fifth of the ramp; ramps take a third of the time')
 def test_some_limit_is_used_to_95_percent_for_80_percent_of_the_time(planner_id, table):
     assert share_of_time_at_limits(table, planner_id) >= 0.8
 

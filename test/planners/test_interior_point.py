@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The interior-point method against a general solver, closed forms and its own promises."""
 
 from dataclasses import replace
@@ -218,7 +232,7 @@ class Bent:
         duals = [barrier / s for s in slacks]
         self.weights = [d / s for d, s in zip(duals, slacks)]
         local = Local(self.constraints, self.motion, duals, all_free(len(self.motion.T)),
-                       0.1 * barrier)
+                      0.1 * barrier)
         self.slacks, self.changes = local.slacks, local.changes
         self.step = next(local.steps())
         self.rates = self.rates_of(self.step.motion)

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """What the table of a path gives, against the path itself, differences and the dynamics."""
 
 import numpy as np
@@ -5,7 +19,7 @@ import pytest
 from random_cases import central_difference
 from random_paths import random_case
 from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
-from rrr_traj_planner.planners.path_table import PathTable
+from rrr_traj_planner.planners.path_table import PARTS, PathTable
 
 SEEDS = range(16)
 # Of each quantity's largest value on the path: dq, ddq, dddq, m, c, g. Cubics through 49 places
@@ -97,11 +111,17 @@ def test_torque_of_a_motion_is_what_the_table_says(seed):
     assert d.m * a + d.c * v ** 2 + d.g == pytest.approx(tau, abs=TORQUE * size)
 
 
-def test_pieces_meet_at_via_points_and_joins():
+def test_pieces_meet_at_via_points_and_joins_and_where_long_ones_are_parted_equally():
     for seed in SEEDS:
         arm_path, table = random_table(seed)
-        wanted = {*arm_path.path.via_s.tolist(), *arm_path.path.joins.tolist()}
-        assert set(table.ends.tolist()) == wanted
+        wanted = np.unique(np.concatenate((arm_path.path.via_s, arm_path.path.joins)))
+        whole, lengths = wanted[-1], np.diff(table.ends)
+        assert set(wanted.tolist()) <= set(table.ends.tolist())
+        assert lengths.max() <= whole / PARTS * (1.0 + 1e-12)
+        for begin, end in zip(wanted, wanted[1:]):
+            parts = lengths[(table.ends[:-1] >= begin) & (table.ends[1:] <= end)]
+            assert parts == pytest.approx((end - begin) / len(parts), rel=1e-9)
+            assert len(parts) == 1 or (end - begin) / (len(parts) - 1) > whole / PARTS
         assert table.ends[table.vias].tolist() == arm_path.path.via_s.tolist()
         assert table.places[:, 0].tolist() == table.ends[:-1].tolist()
         assert table.places[:, -1].tolist() == table.ends[1:].tolist()

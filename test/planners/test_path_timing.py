@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The fastest motion along a path: against a second method, and by the laws of time."""
 
 from functools import cache
@@ -16,6 +30,7 @@ SEEDS = range(12)
 BELOW = 0.995
 ABOVE = 1.08
 CONVERGED = 2e-3   # relative, of two motions that each are within 1e-3 of the fastest
+
 
 @cache
 def free_time(seed):
@@ -96,7 +111,8 @@ def test_a_motion_that_is_cut_short_keeps_its_limits_and_goes_on(seed, iteration
         left[0] -= 1
         return left[0] < 0
 
-    found = fastest_along(PathTask(case.arm_path, case.limits, np.inf, False, should_stop))
+    found = fastest_along(PathTask(
+        case.arm_path, case.limits, case.cruise, np.inf, False, should_stop))
     m = Measured(case, None, found.trajectory)
     assert m.use().max() <= 1.0 + 1e-6
     assert m.motion.progress(m.t)[1].min() >= -1e-12

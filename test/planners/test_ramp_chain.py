@@ -1,10 +1,24 @@
-"""Chains of ramps against the thesis's function, quadrature and finite differences."""
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Chains of ramps against single ramps, quadrature and finite differences."""
 
 import numpy as np
 import pytest
 from ramp_cases import own_unknowns, random_motion, random_step, shifted
 from random_cases import central_difference
-from rrr_traj_planner.core.cycloid import ramp
+from rrr_traj_planner.core.ramps import Ramps
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_moves import restored, slowed, stepped, stretched
 from rrr_traj_planner.planners.ramp_start import (
@@ -19,13 +33,14 @@ DIFFERENCE = {'rel': 1e-6, 'abs': 1e-7}   # of a fourth-order difference
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_states_are_those_of_consecutive_ramps_of_the_thesis(seed):
+def test_states_are_those_of_consecutive_ramps(seed):
     grid, points, m = random_motion(seed)
     at, (nodes, v0, _) = grid.states(points, m), grid.nodes(m)
     for k, T in enumerate(m.T):
         q, qd = points[k], v0[k]
         for i in range(grid.n):
-            piece = ramp(T / grid.n, q, qd, nodes[k, i], nodes[k, i + 1])
+            piece = Ramps(T / grid.n, q, qd, nodes[k, i], nodes[k, i + 1] - nodes[k, i],
+                          grid.shape)
             for row, s in ((i, 0.0), (grid.n + 1 + i, 0.5), (i + 1, 1.0)):
                 expected = piece.at(s)
                 assert at.q[k, row] == pytest.approx(expected[0], **EXACT)
@@ -36,7 +51,7 @@ def test_states_are_those_of_consecutive_ramps_of_the_thesis(seed):
 
 
 def test_states_are_the_integrals_of_the_acceleration():
-    grid, points, m = random_motion(3, n=6, segments=1)
+    grid, points, m = random_motion(2, n=6, segments=1)
     nodes, h = grid.nodes(m)[0][0], m.T[0] / 6
     t = np.linspace(0.0, m.T[0], 6 * 4000 + 1)
     i = np.minimum((t / h).astype(int), 5)

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """
 What every plan of the thesis's other functions and approaches keeps, on random feasible tasks.
 
@@ -15,7 +29,7 @@ from rrr_traj_planner.core.interpolation import Interpolant
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner
 
-EXACT = ['gauss', 'septic', 'cycloid_approach_c']
+EXACT = ['gauss', 'septic', 'cycloid_approach_c', 'poly_434']
 MISSING = ['cycloid_approach_b', 'poly_414']
 SEEDS = range(40)
 FEW = {'gauss': range(32), 'septic': range(32)}  # a task beyond takes them long

@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """
 `time_optimal`: its motion times, the bounds of every plan, prescribed durations and refusals.
 
@@ -22,6 +36,7 @@ from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners import time_optimal
+from rrr_traj_planner.planners.followable import CRUISE
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest
 from thesis_cases import POINTS
@@ -268,9 +283,14 @@ def test_position_velocity_and_acceleration_are_continuous_across_knots():
     assert broken(jump) == {}
 
 
+def steepest_jerk(ramps):
+    """Return how fast jerk changes: it rises as a sine does, in (1 - cruise) / 2 of a ramp."""
+    return (ramps.peaks()[1] * np.pi / ((1.0 - ramps.shape.cruise) * ramps.duration)).max()
+
+
 def test_jerk_is_zero_at_every_knot_and_continuous():
     def jump(m):
-        steepest = [np.abs(p.pieces.b * (p.pieces.w / p.pieces.duration) ** 2).max()
+        steepest = [0.0 if m.plan.via_times[-1] == 0.0 else steepest_jerk(p.pieces)
                     for p in m.plan.trajectory.profiles]
         at_knots = max(np.abs(np.concatenate((p.pieces.at(0.0)[3], p.pieces.at(1.0)[3]))).max()
                        for p in m.plan.trajectory.profiles)
@@ -281,10 +301,14 @@ def test_jerk_is_zero_at_every_knot_and_continuous():
     assert broken(jump) == {}
 
 
-def test_every_piece_is_a_half_period_ramp():
+def test_jerk_cruises_only_where_every_joint_s_own_limit_shapes_the_motion():
+    cruises = {True: set(), False: set()}
     for m in outcomes()[0].values():
         if m.plan.via_times[-1] > 0.0:
-            assert all((p.pieces.w == np.pi).all() for p in m.plan.trajectory.profiles)
+            cruises[bool(np.isfinite(m.task.limits.max_jerk).all())] |= {
+                p.pieces.shape.cruise for p in m.plan.trajectory.profiles}
+    assert cruises[False] == {0.0}
+    assert CRUISE in cruises[True]
 
 
 @pytest.mark.parametrize(('values', 'limit'), LIMITED)

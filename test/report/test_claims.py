@@ -1,3 +1,17 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
 """The thesis's claims (6.5), tested; docs/claims.md says the same."""
 
 from __future__ import annotations
@@ -90,7 +104,7 @@ def test_time_optimal_is_within_four_per_cent_of_the_limit_with_jerk(plans):
 
 
 @pytest.mark.parametrize('planner_id', [
-    'cycloid', 'cycloid_approach_a', 'gauss', 'poly_414', 'septic', 'time_optimal'])
+    'cycloid', 'cycloid_approach_a', 'gauss', 'poly_414', 'poly_434', 'septic', 'time_optimal'])
 def test_document_has_the_figures_of_motions(plans, planner_id):
     t1, r1, t3, r3, above, swing = (float(re.sub(r'[^\d.]', '', x)) for x in ROWS[planner_id])
     of = (plans.on_table_6_1(planner_id), plans.on_table_6_3(planner_id))

@@ -1,0 +1,116 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Pieces of a joint's motion that are polynomials in time, of fourth order at most."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+
+
+class PolynomialPiece(NamedTuple):
+    """One piece, or several; implements `Pieces`. Rates are by time, at the piece's start."""
+
+    duration: Any      # [s]
+    position: Any      # [rad]
+    velocity: Any      # [rad/s]
+    acceleration: Any  # [rad/s^2]
+    jerk: Any          # [rad/s^3]
+    snap: Any          # constant [rad/s^4], 0 for a cubic
+
+    def at(self, s: Any) -> tuple[Array, Array, Array, Array]:
+        """
+        Return position, velocity, acceleration and jerk; see `Pieces`.
+
+        Parameters
+        ----------
+        s : array_like
+            In [0, 1], of a shape that broadcasts with the values.
+
+        Returns
+        -------
+        tuple of ndarray
+            [rad], [rad/s], [rad/s^2], [rad/s^3].
+
+        """
+        _, p, v, a, j, n = self
+        t = self.duration * s
+        return (p + t * (v + t * (a / 2.0 + t * (j / 6.0 + t * n / 24.0))),
+                v + t * (a + t * (j / 2.0 + t * n / 6.0)),
+                a + t * (j + t * n / 2.0), j + t * n)
+
+    def arrays(self) -> dict[str, Any]:
+        """Return every value by its name; see `Pieces`."""
+        return self._asdict()
+
+    def made_of(self, arrays: Iterable[Any]) -> PolynomialPiece:
+        """
+        Return pieces made of other values; see `Pieces`.
+
+        Parameters
+        ----------
+        arrays : iterable
+            The values, in the order of the fields.
+
+        Returns
+        -------
+        PolynomialPiece
+            The pieces.
+
+        """
+        return PolynomialPiece(*arrays)
+
+    def stretched(self, factor: float) -> PolynomialPiece:
+        """
+        Return the same positions run through at another rate; see `Pieces`.
+
+        Parameters
+        ----------
+        factor : float
+            What every time is multiplied by, positive.
+
+        Returns
+        -------
+        PolynomialPiece
+            The pieces.
+
+        """
+        duration, position, *rates = self
+        return PolynomialPiece(duration * factor, position, *(
+            rate / factor ** order for order, rate in enumerate(rates, 1)))
+
+    def turning_points(self) -> Array:
+        """Return the ends and the zeros of the acceleration, shape (n, 4); see `Pieces`."""
+        # a + j T s + n (T s)^2 / 2 = 0; of both roots, one without cancellation first
+        T, half = self.duration, 0.5 * self.snap * self.duration ** 2
+        slope = self.jerk * T
+        root = np.sqrt(np.maximum(slope ** 2 - 4.0 * half * self.acceleration, 0.0))
+        large = -0.5 * (slope + np.where(slope < 0.0, -root, root))
+        with np.errstate(divide='ignore', invalid='ignore'):
+            zeros = np.stack((large / half, self.acceleration / large), axis=-1)
+        zeros = np.sort(np.clip(np.where(np.isfinite(zeros), zeros, 0.0), 0.0, 1.0), axis=-1)
+        start = np.zeros(zeros.shape[:-1] + (1,))
+        return np.concatenate((start, zeros, start + 1.0), axis=-1)
+
+    def peaks(self) -> tuple[Array, Array]:
+        """Return the largest magnitudes of acceleration and of jerk; see `Pieces`."""
+        with np.errstate(divide='ignore', invalid='ignore'):
+            level = np.where(self.snap != 0.0, -self.jerk / (self.snap * self.duration), 0.0)
+        turning = np.clip(np.where(np.isfinite(level), level, 0.0), 0.0, 1.0)
+        _, _, accelerations, jerks = zip(*(self.at(s) for s in (0.0, turning, 1.0)))
+        return (np.abs(accelerations).max(axis=0), np.abs(jerks).max(axis=0))

@@ -1,0 +1,206 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Ramps from one acceleration to another: half a period of the thesis's function, parted at its peak.
+
+Where the jerk of a half-period (3.4 with 1/a = pi) has risen to its peak it may cruise there,
+before it falls again: what the thesis does with velocity (4.2) done with jerk. A limit on jerk is
+then used to the full for most of a ramp; jerk is continuous, and zero at both ends, all the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import pi
+from typing import Any, NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import InvalidInputError
+
+
+class RampShape:
+    """
+    The part of its rise that a ramp of unit duration has behind it, over time.
+
+    Parameters
+    ----------
+    cruise : float
+        Part of its duration during which jerk is constant, in [0, 1); 0: a half-period.
+
+    Attributes
+    ----------
+    peak_jerk : float
+        Of a ramp that gains a unit of acceleration: pi / 2 for a half-period, towards 1 for more
+        cruise.
+
+    Raises
+    ------
+    InvalidInputError
+        If the cruise is not in [0, 1).
+
+    """
+
+    def __init__(self, cruise: float = 0.0) -> None:
+        if not 0.0 <= cruise < 1.0:
+            raise InvalidInputError(f'cruise is {cruise}, must be in [0, 1)')
+        self.cruise = cruise
+        self._rise = 0.5 * (1.0 - cruise)
+        self._rate = 0.5 * pi / self._rise      # of the phase in which jerk rises
+        self.peak_jerk = 1.0 / (cruise + 4.0 * self._rise / pi)
+        # the part behind it when jerk has risen, and the integrals until then
+        self._part = self.peak_jerk / self._rate
+        self._first = self._part * (self._rise - 1.0 / self._rate)
+        self._second = self._part * (0.5 * self._rise ** 2 - 1.0 / self._rate ** 2)
+        self._half = float(self._early(np.array(0.5))[0])
+
+    def __call__(self, s: Any) -> tuple[Array, Array, Array, Array]:
+        """
+        Return the part of the rise and its integrals and derivative.
+
+        Parameters
+        ----------
+        s : array_like
+            Time over, in [0, 1].
+
+        Returns
+        -------
+        tuple of ndarray
+            Second integral, first integral, the part itself (from 0 to 1), derivative.
+
+        """
+        s = np.asarray(s, dtype=float)
+        late, beyond = s > 0.5, s - 0.5
+        # the second half is the first, turned about the middle
+        second, first, part, rate = self._early(np.where(late, 1.0 - s, s))
+        return (np.where(late, 2.0 * self._half + 0.5 * beyond ** 2 - second, second),
+                np.where(late, beyond + first, first), np.where(late, 1.0 - part, part), rate)
+
+    def reached(self, part: Any) -> Array:
+        """
+        Return when a part of the rise is reached.
+
+        Parameters
+        ----------
+        part : array_like
+            In [0, 1].
+
+        Returns
+        -------
+        ndarray
+            Time, in [0, 1].
+
+        """
+        part = np.asarray(part, dtype=float)
+        nearer = np.minimum(part, 1.0 - part)
+        cosine = 1.0 - np.minimum(nearer, self._part) / self._part
+        s = np.arccos(cosine) / self._rate + np.maximum(nearer - self._part, 0.0) / self.peak_jerk
+        return np.asarray(np.where(part > 0.5, 1.0 - s, s))
+
+    def _early(self, s: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the four values in the first half."""
+        early, w = np.minimum(s, self._rise), np.maximum(s - self._rise, 0.0)  # rising, cruising
+        phase = self._rate * early
+        sine = np.sin(phase)
+        versine = 2.0 * np.sin(0.5 * phase) ** 2  # 1 - cos, exact near 0
+        jerk, part = self.peak_jerk, self._part
+        return (part * (0.5 * early ** 2 - versine / self._rate ** 2)
+                + w * (self._first + w * (0.5 * part + jerk / 6.0 * w)),
+                part * (early - sine / self._rate) + w * (part + 0.5 * jerk * w),
+                part * versine + jerk * w, jerk * sine)
+
+
+class Ramps(NamedTuple):
+    """One ramp of a joint's motion, or several, all of one shape; implements `Pieces`."""
+
+    duration: Any      # [s]
+    position: Any      # at s = 0 [rad]
+    velocity: Any      # at s = 0 [rad/s]
+    acceleration: Any  # at s = 0 [rad/s^2]
+    rise: Any          # of acceleration, until s = 1 [rad/s^2]
+    shape: RampShape
+
+    def at(self, s: Any) -> tuple[Array, Array, Array, Array]:
+        """
+        Return position, velocity, acceleration and jerk; see `Pieces`.
+
+        Parameters
+        ----------
+        s : array_like
+            In [0, 1], of a shape that broadcasts with the values.
+
+        Returns
+        -------
+        tuple of ndarray
+            [rad], [rad/s], [rad/s^2], [rad/s^3].
+
+        """
+        T, v, a, rise = self.duration, self.velocity, self.acceleration, self.rise
+        second, first, part, rate = self.shape(s)
+        return (self.position + T * (v * s + T * (0.5 * a * s * s + rise * second)),
+                v + T * (a * s + rise * first), a + rise * part, rise / T * rate)
+
+    def arrays(self) -> dict[str, Any]:
+        """Return every value by its name; see `Pieces`."""
+        return {'duration': self.duration, 'position': self.position, 'velocity': self.velocity,
+                'acceleration': self.acceleration, 'rise': self.rise}
+
+    def made_of(self, arrays: Iterable[Any]) -> Ramps:
+        """
+        Return ramps of the same shape made of other values; see `Pieces`.
+
+        Parameters
+        ----------
+        arrays : iterable
+            Durations, positions, velocities, accelerations and rises.
+
+        Returns
+        -------
+        Ramps
+            The ramps.
+
+        """
+        duration, position, velocity, acceleration, rise = arrays
+        return Ramps(duration, position, velocity, acceleration, rise, self.shape)
+
+    def stretched(self, factor: float) -> Ramps:
+        """
+        Return the same positions run through at another rate; see `Pieces`.
+
+        Parameters
+        ----------
+        factor : float
+            What every time is multiplied by, positive.
+
+        Returns
+        -------
+        Ramps
+            The ramps.
+
+        """
+        return Ramps(self.duration * factor, self.position, self.velocity / factor,
+                     self.acceleration / factor ** 2, self.rise / factor ** 2, self.shape)
+
+    def turning_points(self) -> Array:
+        """Return the ends and the zero of the acceleration, shape (n, 3); see `Pieces`."""
+        part = np.divide(-self.acceleration, self.rise, out=np.zeros(np.shape(self.rise)),
+                         where=self.rise != 0.0)
+        zero = self.shape.reached(np.clip(part, 0.0, 1.0))
+        return np.stack((np.zeros_like(zero), zero, np.ones_like(zero)), axis=-1)
+
+    def peaks(self) -> tuple[Array, Array]:
+        """Return the largest magnitudes of acceleration and of jerk; see `Pieces`."""
+        return (np.maximum(np.abs(self.acceleration), np.abs(self.acceleration + self.rise)),
+                self.shape.peak_jerk * np.abs(self.rise) / self.duration)

@@ -1,0 +1,171 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The life of a node's process: ROS starts, the node is made and spins, all is cleaned up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+import warnings
+
+from rrr_traj_planner.nodes.entry import guarded, parse, StartError
+from rrr_traj_planner.nodes.signals import ignore_signals, interrupt_again, interrupt_no_longer
+
+WATCH_PERIOD = 0.25  # s
+
+
+def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
+             arguments: Sequence[str] | None = None) -> int:
+    """
+    Run one node until it is told to end.
+
+    Parameters
+    ----------
+    name, description : str
+        The script and what it does.
+    load : callable
+        Imports the node's module and returns its class; called when `--help` is out of the way.
+    arguments : sequence of str, optional
+        The command line without the script's name; None: `sys.argv`'s.
+
+    Returns
+    -------
+    int
+        Exit code: 0 after SIGINT or SIGTERM, 1 after a start that failed.
+
+    """
+    return guarded(name, lambda: spin(load, parse(name, description, arguments)[1]))
+
+
+def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int:
+    """
+    Start ROS and a node, spin until the context is shut down, and clean up.
+
+    Parameters
+    ----------
+    load : callable
+        Imports the node's module and returns its class.
+    ros_arguments : list of str
+        As from `entry.parse`.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    """
+    import rclpy
+    from rclpy.clock import Clock, ClockType
+    from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+
+    make_node = load()
+    executor = node = None
+    try:
+        start_ros(ros_arguments)
+        executor = SingleThreadedExecutor()
+        node = made(make_node)
+        # A signal wakes the executor before it shuts the context down: on a busy machine the
+        # executor may find the context well and go to sleep for good. So it looks again.
+        node.create_timer(WATCH_PERIOD, lambda: None, clock=Clock(
+            clock_type=ClockType.STEADY_TIME))
+        executor.add_node(node)
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except rclpy_implementation.RCLError:
+        if rclpy.ok():  # else the context was shut down under a callback, by SIGTERM
+            raise
+    finally:
+        _clean_up(executor, node)
+    return 0
+
+
+def start_ros(ros_arguments: list[str]) -> None:
+    """
+    Start ROS; from then on SIGINT and SIGTERM shut its context down and raise nothing.
+
+    Parameters
+    ----------
+    ros_arguments : list of str
+        As from `entry.parse`.
+
+    Raises
+    ------
+    StartError
+        If an argument or a parameter file is wrong.
+
+    """
+    import rclpy
+    try:
+        rclpy.init(args=ros_arguments)
+        interrupt_no_longer()
+    except Exception as error:
+        raise StartError(f'ROS refuses to start: {_one_line(error)}') from error
+
+
+def end_ros() -> None:
+    """End ROS; from then on SIGINT and SIGTERM interrupt the script again."""
+    import rclpy
+    rclpy.try_shutdown()
+    interrupt_again()
+
+
+def made(make_node: Callable[[], Any]) -> Any:
+    """
+    Make a node; names and parameter files that ROS refuses are the user's to read.
+
+    Parameters
+    ----------
+    make_node : callable
+        Its class.
+
+    Returns
+    -------
+    Node
+        The node.
+
+    Raises
+    ------
+    StartError
+        If ROS refuses.
+
+    """
+    import rclpy
+    from rclpy.exceptions import NameValidationException, ParameterException
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+    try:
+        return make_node()
+    except (ParameterException, NameValidationException, rclpy_implementation.RCLError) as error:
+        if not rclpy.ok():  # shut down meanwhile: no fault of the node
+            raise
+        raise StartError(_one_line(error)) from error
+
+
+def _clean_up(executor: Any, node: Any) -> None:
+    """End what was started, also when a second signal comes meanwhile."""
+    import rclpy
+    ignore_signals()
+    # What a signal has kept the executor from starting is no news.
+    warnings.filterwarnings('ignore', 'coroutine .* was never awaited', RuntimeWarning)
+    if executor is not None:
+        executor.shutdown(timeout_sec=1.0)
+    if node is not None:
+        node.destroy_node()
+    rclpy.try_shutdown()
+
+
+def _one_line(error: BaseException) -> str:
+    return ' '.join(str(error).split())

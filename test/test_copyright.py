@@ -1,0 +1,44 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Every source file begins with the notice of the licence, as ament_copyright reads it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+import re
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+FOLDERS = ('rrr_traj_planner', 'rrr_traj_planner_interfaces', 'test', 'benchmarks', 'scripts')
+FILES = [ROOT / 'setup.py', *sorted(
+    file for folder in FOLDERS for kind in ('*.py', '*.cmake')
+    for file in (ROOT / folder).rglob(kind))]
+
+HOLDER = re.compile(r'# Copyright 20\d\d(-20\d\d)? rrr_traj_planner developers')
+
+
+def licensed_under():
+    """Return the notice that the licence itself asks for, from its appendix."""
+    text = (ROOT / 'LICENSE').read_text()
+    lines = text[text.index('   Licensed under the Apache License'):].splitlines()
+    return [f'# {line[3:]}'.rstrip() for line in lines[:11]]
+
+
+@pytest.mark.parametrize('file', FILES, ids=lambda f: str(f.relative_to(ROOT)))
+def test_file_begins_with_the_notice(file):
+    first, empty, *rest = file.read_text().splitlines()[:14]
+    assert HOLDER.fullmatch(first)
+    assert (empty, rest) == ('#', [*licensed_under(), ''])
