@@ -17,9 +17,16 @@
 from glob import glob
 from xml.etree import ElementTree
 
-from setuptools import find_packages, setup
+from setuptools import Extension, find_packages, setup
 
 NAME = 'rrr_traj_planner'
+NATIVE = f'{NAME}/planners/native'
+
+# Without a compiler the package works too: planners/compiled.py says how.
+CHAIN = Extension(
+    f'{NATIVE}/chain'.replace('/', '.'), sorted(glob(f'{NATIVE}/*.c')),
+    depends=sorted(glob(f'{NATIVE}/*.h') + glob(f'{NATIVE}/*.inc')),
+    extra_compile_args=['-std=c99', '-O3'], optional=True)
 
 setup(
     name=NAME,
@@ -30,6 +37,7 @@ setup(
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
     package_data={f'{NAME}.report': ['*.css', '*.js']},
+    ext_modules=[CHAIN],
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),

@@ -40,6 +40,10 @@ ZOOM_POINTS = 9
 # many peaks, each of which may hide the highest.
 CANDIDATES = 400
 
+# A local maximum of the grid is followed where it might be the highest of all: between points a
+# smooth quantity rises by an eighth of its second difference, where it has corners by half of it.
+RISE = 1.0
+
 TORQUE_TOLERANCE = 1e-9  # relative, for the rounding of a torque that is just at its limit
 
 
@@ -195,6 +199,8 @@ def _brackets(values: Array, grid: Array) -> tuple[Array, Array, IntArray]:
     """Return the intervals around the highest local maxima of each column."""
     padded = np.pad(values, ((1, 1), (0, 0)), constant_values=-np.inf)
     local = (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
+    with np.errstate(invalid='ignore'):
+        local &= values + RISE * _bends(values) >= values.max(axis=0)
     columns, rows = [], []
     for j in range(3):
         candidates = np.flatnonzero(local[:, j] & (values[:, j] > 0.0))
@@ -204,6 +210,14 @@ def _brackets(values: Array, grid: Array) -> tuple[Array, Array, IntArray]:
     row, column = np.concatenate(rows), np.concatenate(columns)
     last = len(grid) - 1
     return grid[np.maximum(row - 1, 0)], grid[np.minimum(row + 1, last)], column
+
+
+def _bends(values: Array) -> Array:
+    """Return the largest second difference beside each point; a peak between rises an eighth."""
+    if len(values) < 3:
+        return np.full(values.shape, np.inf)
+    bends = np.pad(np.abs(np.diff(values, 2, axis=0)), ((2, 2), (0, 0)), mode='edge')
+    return np.asarray(np.max([bends[k:k + len(values)] for k in range(3)], axis=0))
 
 
 def torque_grid(trajectory: Trajectory) -> Array:

@@ -78,6 +78,11 @@ class JointProfile:
         s = self.pieces.turning_points()
         return float(np.abs(self._columns().at(s)[1]).max())
 
+    @cached_property
+    def begins(self) -> Array:
+        """Return the positions where the pieces begin, shape (n,) [rad]."""
+        return np.asarray(self.pieces.at(0.0)[0])
+
     def position_range(self) -> tuple[float, float]:
         """Return the least and the largest position [rad]."""
         least, most = self.piece_ranges

@@ -60,10 +60,9 @@ class RampShape:
         self._rise = 0.5 * (1.0 - cruise)
         self._rate = 0.5 * pi / self._rise      # of the phase in which jerk rises
         self.peak_jerk = 1.0 / (cruise + 4.0 * self._rise / pi)
-        # the part behind it when jerk has risen, and the integrals until then
+        # the part behind it when jerk has risen, and its integral until then
         self._part = self.peak_jerk / self._rate
         self._first = self._part * (self._rise - 1.0 / self._rate)
-        self._second = self._part * (0.5 * self._rise ** 2 - 1.0 / self._rate ** 2)
         self._half = float(self._early(np.array(0.5))[0])
 
     def __call__(self, s: Any) -> tuple[Array, Array, Array, Array]:

@@ -26,11 +26,17 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners import compiled
 from rrr_traj_planner.planners.interior_step import (
+    BACKTRACKS,
     best_step,
     Constraints,
+    LEAST_BEND,
+    LEAST_ROOM_KEPT,
     Local,
     log_of,
+    SHORT,
+    SUFFICIENT_GAIN,
     TO_BOUNDARY,
 )
 from rrr_traj_planner.planners.ramp_chain import Motion
@@ -132,6 +138,8 @@ def minimise(constraints: Constraints, start: Centre, freedom: Freedom,
         Never slower than the start.
 
     """
+    if compiled.LIBRARY is not None:
+        return _minimised_by_compiled(constraints, start, freedom, should_stop, least_barrier)
     motion, known = start
     slacks = constraints.slacks(motion)
     count = sum(s.size for s in slacks)
@@ -168,6 +176,20 @@ def minimise(constraints: Constraints, start: Centre, freedom: Freedom,
                 break
             barrier, merits = barrier * BARRIER_REDUCTION, []
     return Outcome(best, gap, gap < CONVERGED * freedom.cost(best.T), centres)
+
+
+def _minimised_by_compiled(constraints: Constraints, start: Centre, freedom: Freedom,
+                           should_stop: Callable[[], bool], least_barrier: float) -> Outcome:
+    settings = compiled.Settings(
+        RELATIVE_GAP, BARRIER_REDUCTION, CENTRED, STALL, START, FAR_FROM_CENTRE,
+        DUAL_CORRIDOR, SUFFICIENT_GAIN, SHORT, LEAST_BEND, TO_BOUNDARY, LEAST_ROOM_KEPT, PATIENCE,
+        RAISES, ITERATIONS, BACKTRACKS)
+    found = compiled.Compiled(
+        constraints.grid, constraints.points, constraints.tables(), freedom, settings).minimised(
+            *start, least_barrier, should_stop)
+    return Outcome(found.motion, found.gap,
+                   found.gap < CONVERGED * freedom.cost(found.motion.T),
+                   [Centre(*c) for c in found.centres])
 
 
 def _first_barrier(constraints: Constraints, motion: Motion, freedom: Freedom,

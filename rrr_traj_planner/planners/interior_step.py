@@ -26,6 +26,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.limit_tables import Tables
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Change
 from rrr_traj_planner.planners.ramp_curvature import Curvature, curvature, pulled
@@ -37,7 +38,7 @@ SUFFICIENT_GAIN = 1e-4
 SHORT = 0.05                 # a step of less than this part of it is tried again, simpler
 LEAST_BEND = 1e-3            # size of step at which it is found out how slacks leave their rates
 TO_BOUNDARY = 0.995          # part of the way to the boundary that a step may go
-LEAST_ROOM_KEPT = 0.005      # part of its room that a constraint keeps in a step
+LEAST_ROOM_KEPT = 0.004      # part of its room that a constraint keeps in a step, and less
 
 
 class Constraints(Protocol):
@@ -95,6 +96,9 @@ class Constraints(Protocol):
             By y twice, by y and T, by T twice.
 
         """
+
+    def tables(self) -> Tables:
+        """Return the limits as the compiled method takes them."""
 
 
 class Tried(NamedTuple):

@@ -21,6 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.planners.limit_tables import PATH, Tables
 from rrr_traj_planner.planners.path_table import Demand, PathTable
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion, States
 from rrr_traj_planner.planners.ramp_constraints import Change
@@ -215,6 +216,20 @@ class PathConstraints:
         HT = (H @ bent.by_T[..., np.newaxis])[..., 0]
         yT = np.einsum('npim,npi->nm', bent.by_y, HT)[:, np.newaxis]
         return yy, yT, (bent.by_T * HT).sum(axis=(1, 2))
+
+    def tables(self) -> Tables:
+        """Return the limits as the compiled method takes them."""
+        N, P, _ = self._upper.shape
+        bounds, boxed = np.zeros((2, N, P, 4)), np.zeros((P, 4), bool)
+        general, kept = np.zeros((2, N, P, SPEED)), np.zeros((P, SPEED), bool)
+        for column, quantity in enumerate(self._kept):
+            of, flags, at = (general, kept, quantity) if quantity < SPEED else (
+                bounds, boxed, 1 + quantity - SPEED)
+            of[0, ..., at], of[1, ..., at] = self._lower[..., column], self._upper[..., column]
+            flags[:, at] = True
+        return Tables(PATH, bounds[0], bounds[1], boxed, general[0], general[1], kept,
+                      table=self.table.coefficients, steps=self.table.steps,
+                      overshoot=OVERSHOOT)
 
     def demands(self, s: Array, order: int = 0) -> list[Demand]:
         """

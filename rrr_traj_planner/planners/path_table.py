@@ -63,6 +63,8 @@ class PathTable:
         Where the table has its values [m].
     holding : ndarray, shape (N, INTERVALS + 1, 3)
         Gravity's torques there [N m].
+    coefficients : ndarray, shape (N, 4, INTERVALS, 18)
+        Cubic ones, highest first, of all columns of `Demand` by the part of its interval.
     steps : ndarray, shape (N, 3)
         By how much ddq steps at each piece's end.
 
@@ -83,7 +85,7 @@ class PathTable:
                          ddq[1:, 0] - ddq[:-1, -1], 0.0)
         self.steps = np.concatenate((steps, np.zeros((1, 3))))
         spline = CubicSpline(u, np.moveaxis(values, 1, 0))
-        self._c = np.moveaxis(spline.c, 2, 0)  # (N, 4, INTERVALS, 18)
+        self.coefficients = np.ascontiguousarray(np.moveaxis(spline.c, 2, 0))
 
     def _demanded(self, arm_path: ArmPath) -> Array:
         """Return all columns at the table's places, one-sided at the pieces' ends, (N, u, 18)."""
@@ -119,7 +121,7 @@ class PathTable:
         index = np.clip(u.astype(int), 0, INTERVALS - 1)
         x = ((u - index) / INTERVALS)[..., np.newaxis]
         rows = np.arange(len(s))[:, np.newaxis]
-        c3, c2, c1, c0 = (self._c[rows, k, index] for k in range(4))
+        c3, c2, c1, c0 = (self.coefficients[rows, k, index] for k in range(4))
         L = self._lengths[:, np.newaxis, np.newaxis]
         found = [((c3 * x + c2) * x + c1) * x + c0]
         if order > 0:

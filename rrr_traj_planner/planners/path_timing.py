@@ -48,9 +48,9 @@ from rrr_traj_planner.planners.path_constraints import (
 from rrr_traj_planner.planners.path_start import cycloid_along, uniform_along
 from rrr_traj_planner.planners.path_table import Demand, PathTable
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_look import near_points
 from rrr_traj_planner.planners.ramp_moves import stretched
 from rrr_traj_planner.planners.ramp_newton import Freedom
-from rrr_traj_planner.planners.ramp_room import near_points
 
 RAMPS = 16         # in a piece of the path
 LOOKS = 8          # between two points

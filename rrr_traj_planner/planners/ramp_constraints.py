@@ -24,6 +24,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.equations import Terms
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.limit_tables import ALONE, Tables, TORQUE
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion, States
 
 DIFFERENCE = 1e-7  # rad: the change of the equations' terms with position is a difference over it
@@ -187,6 +188,26 @@ class Constraints:
 
         """
         return torque_hessian(bent, duals)
+
+    def tables(self) -> Tables:
+        """Return the limits as the compiled method takes them."""
+        N, n, P = len(self.points) - 1, self.grid.n, 2 * self.grid.n + 1
+        kinds = {'q': (0, 0), 'qd': (1, 0), 'qdd': (2, 0), 'jerk': (3, n + 1)}  # first point
+        bounds, boxed = np.zeros((2, N, P, 4, 3)), np.zeros((P, 4, 3), bool)
+        for name, rows, lower, upper in self._boxes:
+            kind, first = kinds[name]
+            bounds[0, :, first + rows, kind] = np.swapaxes(
+                np.broadcast_to(lower, (N, len(rows), 3)), 0, 1)
+            bounds[1, :, first + rows, kind] = np.swapaxes(
+                np.broadcast_to(upper, (N, len(rows), 3)), 0, 1)
+            boxed[first + rows, kind] = True
+        kept = np.zeros((P, 3), bool)
+        kept[1:] = self.with_torque
+        effort = np.concatenate((np.full((N, 1, 3), FAR), self.effort), axis=1)
+        return Tables(
+            TORQUE if self.with_torque else ALONE, bounds[0].reshape(N, P, 12),
+            bounds[1].reshape(N, P, 12), boxed.reshape(P, 12), -effort, effort, kept, self.floor,
+            np.array(self._constants), difference=DIFFERENCE)
 
     def _room(self, at: States, T: Array) -> list[Array]:
         found = []

@@ -52,7 +52,7 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
         return None
     factor = stretch_to_fit(task, trajectory)
     if factor <= 1.0 + ROUNDING:
-        return trajectory.stretched(factor) if factor > 1.0 else trajectory
+        return trajectory.stretched(factor) if factor > 1.0 and may_stretch else trajectory
     if np.isinf(factor) or not may_stretch:
         return None
     slowed = trajectory.stretched(factor)
@@ -78,11 +78,18 @@ def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
     """
     beyond = np.zeros((2, len(task.points) - 1, 3))
     starts = trajectory.via_times[1:-1] - 1e-12
+    limits = task.limits
     for j, profile in enumerate(trajectory.profiles):
+        # no piece leads further from where it begins than at peak velocity
+        reach = profile.peak_velocity * profile.pieces.duration
+        begins = profile.begins
+        if ((begins + reach <= limits.max_position[j])
+                & (begins - reach >= limits.min_position[j])).all():
+            continue
         least, most = profile.piece_ranges
         segment = np.searchsorted(starts, profile.knots[:-1], side='right')
-        np.maximum.at(beyond[0, :, j], segment, most - task.limits.max_position[j])
-        np.maximum.at(beyond[1, :, j], segment, task.limits.min_position[j] - least)
+        np.maximum.at(beyond[0, :, j], segment, most - limits.max_position[j])
+        np.maximum.at(beyond[1, :, j], segment, limits.min_position[j] - least)
     return np.where(beyond > POSITION_TOLERANCE, beyond, 0.0)
 
 
@@ -103,10 +110,12 @@ def stretch_to_fit(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
         At most 1 where it fits as it is; infinite where no slowing helps.
 
     """
-    peaks, limits = trajectory.peaks(), task.limits
-    kinematic = max((peaks.velocity / limits.max_velocity).max(),
-                    np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
-                    np.cbrt((peaks.jerk / limits.max_jerk).max()))
+    limits, profiles = task.limits, trajectory.profiles
+    velocity = np.array([p.peak_velocity for p in profiles])
+    acceleration, jerk = np.array([[v.max() for v in p.pieces.peaks()] for p in profiles]).T
+    kinematic = max((velocity / limits.max_velocity).max(),
+                    np.sqrt((acceleration / limits.max_acceleration).max()),
+                    np.cbrt((jerk / limits.max_jerk).max()))
     # a motion may pass, but not slowly, where gravity alone would be too much
     if torque_fits(task, trajectory):
         return float(kinematic)

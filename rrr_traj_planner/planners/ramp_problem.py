@@ -23,10 +23,18 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
-from rrr_traj_planner.planners.interior_point import Centre, is_within, minimise, Outcome
+from rrr_traj_planner.planners.interior_point import (
+    Centre,
+    CONVERGED,
+    is_within,
+    minimise,
+    Outcome,
+)
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
-from rrr_traj_planner.planners.ramp_fit import beyond_range, fitted, torque_fits
+from rrr_traj_planner.planners.ramp_fit import fitted, torque_fits
+from rrr_traj_planner.planners.ramp_look import Look
+from rrr_traj_planner.planners.ramp_moves import stretched
 from rrr_traj_planner.planners.ramp_newton import Freedom
 from rrr_traj_planner.planners.ramp_room import Room
 from rrr_traj_planner.planners.ramp_start import rest_to_rest
@@ -34,7 +42,11 @@ from rrr_traj_planner.planners.request import JointTask
 
 REPAIRS = 20             # rounds of mending what happens between the points that are looked at
 PARTS_OF_ROOM = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)
+APPROACHES = 5           # rounds of coming nearer to room that no centre has, each time with a
+HIGHER = 10.0            # barrier so much higher
 WORTH_IT = 1e-3          # a stretch longer than this is better mended by planning again
+RESTARTS = 4             # from the best that was found, where it is not the optimum
+WITHIN = 1e-6            # relative: so much slower, a motion on its limits is within them
 
 
 Begin = Callable[[JointTask, Constraints], Motion | None]
@@ -75,11 +87,40 @@ def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved |
     freedom = Freedom(np.ones(segments, bool), np.zeros(segments), np.ones(segments),
                       np.zeros((segments - 1, 3), bool))
     if np.isfinite(task.limits.max_acceleration).all():
-        free = replace(task.limits, max_effort=np.full(3, np.inf))
-        found = mended(replace(task, limits=free), grid, freedom, rest_to_rest, floor)
+        free = replace(task, limits=replace(task.limits, max_effort=np.full(3, np.inf)))
+        found = mended(free, grid, freedom, rest_to_rest, floor)
         if found is not None and torque_fits(task, found.trajectory):
-            return found
-    return mended(task, grid, freedom, rest_to_rest, floor)
+            better = _bettered(free, grid, freedom, found, floor)
+            return better if torque_fits(task, better.trajectory) else _bettered(
+                task, grid, freedom, found, floor)
+    found = mended(task, grid, freedom, rest_to_rest, floor)
+    return None if found is None else _bettered(task, grid, freedom, found, floor)
+
+
+def _bettered(task: JointTask, grid: Grid, freedom: Freedom, solved: Solved,
+              floor: Array | None) -> Solved:
+    """Return what is found by solving again from the best so far, until it is the optimum."""
+    for _ in range(RESTARTS):
+        if solved.gap < CONVERGED * solved.cost or task.should_stop():
+            break
+        again = _solved_from(task, grid, freedom, solved, floor)
+        if again is None or again.cost > (1.0 - WORTH_IT) * solved.cost:
+            break
+        solved = again
+    return solved
+
+
+def _solved_from(task: JointTask, grid: Grid, freedom: Freedom, solved: Solved,
+                 floor: Array | None) -> Solved | None:
+    """
+    Return what is found from a motion that keeps every limit, which need not be the faster one.
+
+    It may leave room where a motion with stops at the via points has none: at the ends of ranges,
+    and between two points that are close together.
+    """
+    slower = (1.0 + WITHIN) * solved.cost / freedom.cost(solved.motion.T)
+    start = stretched(solved.motion, slower)
+    return mended(task, grid, freedom, lambda planned, constraints: start, floor)
 
 
 def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
@@ -109,12 +150,17 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
     room = Room.none(grid, len(freedom.free))._replace(still=freedom.still)
     centres: list[Centre] = []
     slow: Motion | None = None
-    found: list[Solved] = []
+    approaches = 0
+    tried: list[tuple[Outcome, Motion]] = []  # what was found, from which start
     for _ in range(REPAIRS):
-        nearer = _nearer(task, grid, room, floor, centres, freedom)
-        if nearer is not None and nearer.centres:
-            centres += nearer.centres
-            continue
+        asked = room
+        if approaches < APPROACHES:
+            nearer = _nearer(task, grid, room, floor, centres, freedom, HIGHER ** approaches)
+            if nearer is not None and nearer.centres:
+                centres += nearer.centres
+                approaches += 1
+                continue
+        approaches = 0
         begun = _begun(task, grid, room, floor, centres, begin)
         if begun is None:
             break
@@ -122,29 +168,42 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
         slow = slow or start.motion
         outcome = minimise(constraints, start, freedom._replace(still=room.still),
                            task.should_stop)
-        found += _those_that_fit(task, grid, freedom, start, outcome)
-        if found and found[-1].motion is outcome.motion and (
-                found[-1].cost <= (1.0 + WORTH_IT) * freedom.cost(outcome.motion.T)):
-            break
-        if found and task.should_stop():
-            break
-        trajectory = grid.trajectory(task.points, outcome.motion)
-        room = room.grown(task, grid, slow, outcome.motion, trajectory)
+        look = Look(task, grid, outcome.motion)
+        if look.stretch() <= 1.0 + WORTH_IT and not look.beyond_range().any():
+            fits = _fitting(task, grid, freedom, outcome, outcome.motion)
+            if fits is not None and fits.cost <= (1.0 + WORTH_IT) * freedom.cost(
+                    outcome.motion.T):
+                return fits
+        tried.append((outcome, start.motion))
+        if task.should_stop():
+            found = _best_that_fits(task, grid, freedom, tried)
+            if found is not None:
+                return found
+        room = room.grown(task, grid, slow, look)
         # where ranges are left it takes another course, not a nearby one
-        centres = [] if beyond_range(task, trajectory).any() else centres + outcome.centres
-    return min(found, default=None, key=lambda s: s.cost)
+        centres = [] if look.beyond_range().any() else centres + outcome.centres
+        if not centres and room.is_same(asked):
+            break  # the same again
+    return _best_that_fits(task, grid, freedom, tried)
 
 
 def _nearer(task: JointTask, grid: Grid, room: Room, floor: Array | None,
-            centres: list[Centre], freedom: Freedom) -> Outcome | None:
-    """Return a centre nearer to the room where no other has all of it, but one has some."""
-    for part in PARTS_OF_ROOM:
+            centres: list[Centre], freedom: Freedom, higher: float) -> Outcome | None:
+    """
+    Return a centre nearer to the room where no other has all of it, but one has some.
+
+    The higher its barrier, the further it is from all limits.
+    """
+    for part in PARTS_OF_ROOM if centres else ():
         constraints = room.part(part).constraints(task, grid, floor)
         for centre in reversed(centres):
             if is_within(constraints, centre.motion):
-                return None if part == 1.0 else minimise(
-                    constraints, centre, freedom._replace(still=room.still), task.should_stop,
-                    centre.barrier or 0.0)
+                if part == 1.0:
+                    return None
+                barrier = None if centre.barrier is None else higher * centre.barrier
+                return minimise(constraints, Centre(centre.motion, barrier),
+                                freedom._replace(still=room.still), task.should_stop,
+                                barrier or 0.0)
     return None
 
 
@@ -166,17 +225,28 @@ def _begun(task: JointTask, grid: Grid, room: Room, floor: Array | None,
     return None
 
 
-def _those_that_fit(task: JointTask, grid: Grid, freedom: Freedom, start: Centre,
-                    outcome: Outcome) -> list[Solved]:
-    """Return what keeps every limit: a centre that does as it is, the outcome perhaps slowed."""
+def _best_that_fits(task: JointTask, grid: Grid, freedom: Freedom,
+                    tried: list[tuple[Outcome, Motion]]) -> Solved | None:
+    """Return the fastest of outcomes and centres that keeps every limit, as it is or slowed."""
+    best: Solved | None = None
+    for outcome, start in sorted(tried, key=lambda t: freedom.cost(t[0].motion.T)):
+        for motion in (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start):
+            cost = freedom.cost(motion.T)
+            if best is not None and best.cost <= cost:
+                break
+            fits = _fitting(task, grid, freedom, outcome, motion)
+            if fits is not None and (best is None or fits.cost < best.cost):
+                best = fits
+    return best
+
+
+def _fitting(task: JointTask, grid: Grid, freedom: Freedom, outcome: Outcome,
+             motion: Motion) -> Solved | None:
+    """Return a motion slowed until it keeps every limit, None where that cannot be."""
     may_stretch = bool((freedom.free | (freedom.tie > 0.0)).all())
-    least, found = freedom.cost(outcome.motion.T), []
-    for motion in (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion):
-        trajectory = fitted(task, grid.trajectory(task.points, motion), may_stretch)
-        if trajectory is None:
-            continue
-        cost = freedom.cost(np.diff(trajectory.via_times))
-        found.append(Solved(trajectory, motion, cost, outcome.gap + cost - least))
-        if cost <= (1.0 + WORTH_IT) * freedom.cost(motion.T):
-            break
-    return found[::-1]
+    trajectory = fitted(task, grid.trajectory(task.points, motion), may_stretch)
+    if trajectory is None:
+        return None
+    cost = freedom.cost(np.diff(trajectory.via_times))
+    return Solved(trajectory, motion, cost,
+                  outcome.gap + cost - freedom.cost(outcome.motion.T))

@@ -25,17 +25,14 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.dynamics import gravity_torque
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
-from rrr_traj_planner.planners.ramp_fit import beyond_range
+from rrr_traj_planner.planners.ramp_look import Look
 from rrr_traj_planner.planners.request import JointTask
 
 LARGER = 1.2             # than what was exceeded
 MOST_VELOCITY_ROOM = 0.1  # of a velocity limit
-LOOKS = 12               # at velocity and torque between two points
-ROUNDING = 1e-7          # relative
 
 
 class Room(NamedTuple):
@@ -86,6 +83,23 @@ class Room(NamedTuple):
         return self._replace(positions=part * self.positions, velocities=part * self.velocities,
                              efforts=part * self.efforts)
 
+    def is_same(self, other: Room) -> bool:
+        """
+        Return whether there is as much room elsewhere.
+
+        Parameters
+        ----------
+        other : Room
+            Of the same motions.
+
+        Returns
+        -------
+        bool
+            True where every value is the same.
+
+        """
+        return all(np.array_equal(a, b) for a, b in zip(self, other))
+
     def kept(self) -> Room:
         """
         Return what a slow motion can keep.
@@ -120,8 +134,7 @@ class Room(NamedTuple):
         return Constraints(task.model, task.limits, grid, task.points, self.positions,
                            self.velocities, self.efforts, floor)
 
-    def grown(self, task: JointTask, grid: Grid, slow: Motion, m: Motion,
-              trajectory: PiecewiseTrajectory) -> Room:
+    def grown(self, task: JointTask, grid: Grid, slow: Motion, look: Look) -> Room:
         """
         Return more room where a motion breaks limits.
 
@@ -133,10 +146,8 @@ class Room(NamedTuple):
             The family of motions.
         slow : Motion
             With stops at the via points; positions get no more room than it leaves.
-        m : Motion
-            The motion that breaks limits.
-        trajectory : PiecewiseTrajectory
-            The same motion.
+        look : Look
+            At a motion that breaks limits.
 
         Returns
         -------
@@ -145,9 +156,9 @@ class Room(NamedTuple):
 
         """
         q = grid.states(task.points, slow).q
-        positions, still = self._positions(task, q, beyond_range(task, trajectory))
+        positions, still = self._positions(task, q, look.beyond_range())
         spare = task.limits.max_effort - np.abs(gravity_torque(task.model, q))
-        velocity, effort = _excess(task, grid, m, trajectory)
+        velocity, effort = look.excess()
         return Room(
             positions, np.minimum(self.velocities + LARGER * velocity,
                                   MOST_VELOCITY_ROOM * task.limits.max_velocity),
@@ -163,57 +174,3 @@ class Room(NamedTuple):
         room = np.stack((task.limits.max_position - ends, ends - task.limits.min_position))
         at_start, at_end = ((beyond > 0.0) & (room[:, k] <= 2.0 * most) for k in (0, 1))
         return positions, self.still | (at_end[:, :-1] | at_start[:, 1:]).any(axis=0)
-
-
-def _excess(task: JointTask, grid: Grid, m: Motion,
-            trajectory: PiecewiseTrajectory) -> tuple[Array, Array]:
-    """Return by how much velocities and torques near each point exceed limits, (N, 2 n + 1, 3)."""
-    starts = np.concatenate(([0.0], np.cumsum(m.T)[:-1]))
-    t = starts[:, np.newaxis] + m.T[:, np.newaxis] * np.linspace(
-        0.0, 1.0, 2 * grid.n * LOOKS + 1)
-    q, qd, qdd, _ = (f.reshape(*t.shape, 3) for f in trajectory(t.ravel()))
-    velocity = _near_points(np.abs(qd), task.limits.max_velocity)
-    if np.isinf(task.limits.max_effort).all():
-        return velocity, np.zeros_like(velocity)
-    tau = np.abs(inverse_dynamics(task.model, q, qd, qdd))
-    return velocity, _near_points(tau, task.limits.max_effort)
-
-
-def near_points(x: Array, limit: Array, looks: int) -> Array:
-    """
-    Return by how much magnitudes, seen in the order of time, exceed a limit near each point.
-
-    Between two looks they rise by an eighth of their second difference at most.
-
-    Parameters
-    ----------
-    x : ndarray, shape (N, 2 n looks + 1, K)
-        Magnitudes.
-    limit : ndarray, shape (K,)
-        Infinite where there is none.
-    looks : int
-        Between two of a segment's 2 n + 1 points.
-
-    Returns
-    -------
-    ndarray, shape (N, 2 n + 1, K)
-        Nodes, then the middles between them.
-
-    """
-    bend = np.abs(np.diff(x, 2, axis=1)) / 8.0
-    near = np.pad(bend, ((0, 0), (2, 2), (0, 0)), mode='edge')
-    peaks = x + np.max([near[:, k:k + x.shape[1]] for k in range(3)], axis=0)
-    excess = np.where(peaks > limit, peaks - limit * (1.0 - ROUNDING), 0.0)
-    # within half a half-ramp to both sides of every point
-    half = np.pad(excess, ((0, 0), (looks // 2, looks // 2), (0, 0)), mode='edge')
-    width = x.shape[1] - 1
-    near = np.max([half[:, k:k + width + 1:looks] for k in range(looks + 1)], axis=0)
-    return np.concatenate((near[:, ::2], near[:, 1::2]), axis=1)
-
-
-def _near_points(x: Array, limit: Array) -> Array:
-    """Return the same, what is near a segment's first point told of the points beside it too."""
-    near, n = near_points(x, limit, LOOKS), (x.shape[1] - 1) // (2 * LOOKS)
-    near[:-1, n] = np.maximum(near[:-1, n], near[1:, 0])
-    near[:, n + 1] = np.maximum(near[:, n + 1], near[:, 0])
-    return near

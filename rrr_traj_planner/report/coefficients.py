@@ -17,8 +17,9 @@ How many coefficients a motion is made of, as the thesis counts them (6.5 a).
 
 A transition of the thesis's function has a, b, c, d and e (3.4-3.7), and so has a ramp: when its
 jerk cruises is the same for all ramps of a motion. One of seventh order has eight (C.1), one of
-fourth order five (6.1), Gauss's function mu, sigma and C0 to C2 (appendix A, closed form); a piece at constant velocity two (4.11), the cubic cruise of a 4-3-4 four. Of a motion along
-a path of the tip, the pieces of its progress are counted, not the geometry.
+fourth order five (6.1), Gauss's function mu, sigma and C0 to C2 (appendix A, closed form); a piece
+at constant velocity two (4.11), the cubic cruise of a 4-3-4 four. Of a motion along a path of the
+tip, the pieces of its progress are counted, not the geometry.
 """
 
 from __future__ import annotations

@@ -50,6 +50,11 @@ def test_without_cruise_it_is_the_thesis_s_half_period(seed):
         assert value == pytest.approx(expected, **EXACT)
 
 
+def test_a_ramp_is_a_half_period_if_nothing_is_said():
+    assert RampShape().cruise == 0.0
+    assert RampShape().peak_jerk == pytest.approx(0.5 * np.pi, **EXACT)
+
+
 @each_cruise
 def test_shape_is_the_triple_integral_of_its_jerk(cruise):
     s = np.linspace(0.0, 1.0, 40_001)
@@ -103,6 +108,20 @@ def test_a_ramp_of_no_rise_keeps_its_acceleration(cruise):
     one = Ramps(*(np.array([x]) for x in (2.0, 1.0, -1.0, 0.5, 0.0)), RampShape(cruise))
     q, qd, qdd, qddd = one.at(0.5)
     assert [float(x[0]) for x in (q, qd, qdd, qddd)] == pytest.approx([0.25, -0.5, 0.5, 0.0])
+    with np.errstate(all='raise'):
+        assert one.turning_points().tolist() == [[0.0, 0.0, 1.0]]
+
+
+@each_cruise
+@pytest.mark.parametrize('seed', SEEDS)
+def test_velocity_turns_at_the_zero_of_acceleration_else_at_an_end(seed, cruise):
+    ramps = random_ramps(seed, cruise)
+    start, zero, end = ramps.turning_points().T
+    assert (start.tolist(), end.tolist()) == ([0.0] * len(zero), [1.0] * len(zero))
+    turns = ramps.acceleration * (ramps.acceleration + ramps.rise) < 0.0
+    assert turns.any()
+    assert ramps.at(zero)[2][turns] == pytest.approx(0.0, abs=1e-12)
+    assert set(zero[~turns]) == {0.0, 1.0}
 
 
 @each_cruise

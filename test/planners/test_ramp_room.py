@@ -21,8 +21,11 @@ import numpy as np
 import pytest
 from ramp_cases import all_free, ARM, bounds, LIMITS, NONE, random_motion, share_of
 from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.planners.interior_point import Centre, minimise
-from rrr_traj_planner.planners.ramp_moves import restored
+from rrr_traj_planner.planners.ramp_look import Look
+from rrr_traj_planner.planners.ramp_moves import restored, stretched
+from rrr_traj_planner.planners.ramp_problem import fastest
 from rrr_traj_planner.planners.ramp_room import LARGER, MOST_VELOCITY_ROOM, Room
 from rrr_traj_planner.planners.ramp_start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
@@ -33,6 +36,8 @@ LESS = 0.2         # of what was exceeded, that is exceeded after room was made
 COUNTS = 1e-4      # relative, that was exceeded
 BETWEEN = 2e-3     # of what was exceeded, that a dense grid may miss
 LOOKS = 100        # of the dense grid from point to point
+NEAR = 0.02        # relative: chains of 8 ramps exceed a limit far between the points
+KEPT = 1e-6        # relative: by so little more, a limit counts as kept
 
 
 def never():
@@ -58,8 +63,7 @@ class Case:
         self.task = JointTask(ARM, limits_of(kind, self.points), self.points, None, 0.01)
         self.none = Room.none(self.grid, len(self.points) - 1)
         self.slow, self.motion = self.solved(self.none)
-        self.room = self.none.grown(self.task, self.grid, self.slow, self.motion,
-                                    self.trajectory(self.motion))
+        self.room = self.none.grown(self.task, self.grid, self.slow, self.look(self.motion))
 
     def solved(self, room):
         """Return the motion to begin with and the fastest one, with room."""
@@ -68,6 +72,9 @@ class Case:
         assert min(s.min() for s in constraints.slacks(start)) > 0.0
         return start, minimise(constraints, Centre(start, None),
                                freedom._replace(still=room.still), never).motion
+
+    def look(self, m):
+        return Look(self.task, self.grid, m)
 
     def trajectory(self, m):
         return self.grid.trajectory(self.points, m)
@@ -173,13 +180,29 @@ def test_a_motion_planned_again_with_room_exceeds_much_less(kind, seed):
         c.task.limits.max_velocity, c.task.limits.max_effort)))
     before, after = (np.array([(x / scale).max() for x, scale in zip(c.excess(m), scales)])
                      for m in (c.motion, again))
-    assert (after <= np.maximum(LESS * before, COUNTS)).all()
+    # Where a joint is to stop at a via point from now on, the motion takes another course, which
+    # exceeds limits in other places: what the first round makes of it says nothing.
+    assert (after <= np.maximum(LESS * before, COUNTS)).all() or c.room.still.any()
+
+
+@every
+def test_rounds_of_room_end_near_the_optimum_within_every_limit(kind, seed):
+    c = case(kind, seed)
+    found = fastest(c.task, c.grid)
+    assert found.gap <= NEAR * found.cost
+    slower = found.cost / found.motion.T.sum()
+    assert slower <= 1.0 + NEAR
+    exceeded = [x.max() for x in c.excess(stretched(found.motion, slower))]
+    assert max(exceeded[:2]) <= POSITION_TOLERANCE
+    assert max(exceeded[2:]) <= KEPT * max(
+        limit.max() for limit in (c.task.limits.max_velocity, c.task.limits.max_effort)
+        if np.isfinite(limit).all())
 
 
 @every
 def test_room_stays_as_it_was_where_no_limit_is_broken(kind, seed):
     c = case(kind, seed)
-    again = c.room.grown(c.task, c.grid, c.slow, c.slow, c.trajectory(c.slow))
+    again = c.room.grown(c.task, c.grid, c.slow, c.look(c.slow))
     assert max(x.max() for x in c.excess(c.slow)) <= 1e-9
     for name in ('positions', 'velocities', 'efforts', 'still'):
         assert (getattr(again, name) == getattr(c.room, name)).all()
@@ -188,7 +211,7 @@ def test_room_stays_as_it_was_where_no_limit_is_broken(kind, seed):
 @every
 def test_room_never_shrinks(kind, seed):
     c = case(kind, seed)
-    more = c.room.grown(c.task, c.grid, c.slow, c.motion, c.trajectory(c.motion))
+    more = c.room.grown(c.task, c.grid, c.slow, c.look(c.motion))
     for name in ('velocities', 'efforts', 'positions'):
         assert (getattr(more, name) >= getattr(c.room, name)).all()
 
@@ -227,7 +250,7 @@ def test_joints_that_leave_their_range_beside_a_via_point_at_its_end_stop_there(
         m = restored(grid, points, m)
         room = Room.none(grid, 3)
         slow = rest_to_rest(task, room.constraints(task, grid, None))
-        still = room.grown(task, grid, slow, m, grid.trajectory(points, m)).still
+        still = room.grown(task, grid, slow, Look(task, grid, m)).still
         beside = grid.states(points, m).q[[k - 1, k], :, j].max() > points[k, j] + 1e-6
         assert not beside or still[k - 1, j]
         assert not np.delete(still, j, axis=1).any()

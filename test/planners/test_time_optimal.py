@@ -92,9 +92,9 @@ def measured(limits, q, **request):
 
 # Table, limits, the least time of any motion whose jerk may jump (NOTES 3), what ours may take.
 TIMES = [
-    ('6.1', LIMITS, 2.1285, 2.22), ('6.3', STRONG, 2.5815, 2.67),
-    ('6.1', replace(LIMITS, **QUICK), 1.0490, 1.10),
-    ('6.3', replace(STRONG, **QUICK), 1.5389, 1.60),
+    ('6.1', LIMITS, 2.1285, 2.16), ('6.3', STRONG, 2.5815, 2.615),
+    ('6.1', replace(LIMITS, **QUICK), 1.0490, 1.07),
+    ('6.3', replace(STRONG, **QUICK), 1.5389, 1.57),
     ('6.1', replace(LIMITS, max_acceleration=NONE, max_jerk=NONE), 0.9181, 0.935)]
 
 
@@ -129,9 +129,10 @@ def test_a_single_segment_takes_about_the_closed_form_of_least_time(D, v, a, J):
     limits = replace(LIMITS, max_velocity=[v] * 3, max_acceleration=[a] * 3, max_jerk=[J] * 3,
                      max_effort=NONE)
     q = [[0.2, 1.2, 0.1], [0.2 + D, 1.2, 0.1]]
-    found = plan(ARM, limits, through(q, sample_period=0.002)).trajectory.duration
-    # A ramp's mean jerk is 2 / pi of its peak; one ramp in twenty is lost where the sign turns.
-    assert least(J) <= found <= 1.06 * least(2.0 / np.pi * J)
+    found = plan(ARM, limits, through(q, sample_period=0.002)).trajectory
+    # A ramp's mean jerk is part of its peak; one ramp in twenty is lost where the sign turns.
+    mean = J / found.profiles[0].pieces.shape.peak_jerk
+    assert least(J) <= found.duration <= 1.04 * least(mean)
 
 
 def test_answers_do_not_depend_on_the_unit_of_time():
@@ -423,12 +424,10 @@ SPECIAL = {
 
 @pytest.mark.parametrize('name', SPECIAL)
 @pytest.mark.parametrize('limits', [LIMITS, replace(LIMITS, **QUICK)], ids=['a', 'torque'])
-def test_special_tasks_are_planned_within_every_limit(limits, name):
+def test_special_tasks_are_planned_to_the_optimum_within_every_limit(limits, name):
     m = measured(limits, SPECIAL[name])
     assert excess(m) == []
-    part_left(m.plan)  # a note, if any, is the one that is known
-    if name != 'close pair and back':
-        assert part_left(m.plan) < 1.0
+    assert part_left(m.plan) < 1.0
 
 
 @pytest.mark.parametrize('name', HARD_CASES)
@@ -442,14 +441,6 @@ def test_repeated_points_share_their_time_and_cost_none():
     assert (once.via_times == more.via_times[[0, 2, 4]]).all()
     assert more.via_times[0] == more.via_times[1] == 0.0
     assert more.via_times[2] == more.via_times[3]
-
-
-@pytest.mark.parametrize('name', ['close pair', 'close pair at the start', 'close pair alone',
-                                  pytest.param('close pair and back', marks=pytest.mark.xfail(
-                                      strict=True, reason='the method stalls there'))])
-@pytest.mark.parametrize('limits', [LIMITS, replace(LIMITS, **QUICK)], ids=['a', 'torque'])
-def test_close_pairs_are_planned_to_the_optimum(limits, name):
-    assert part_left(measured(limits, SPECIAL[name]).plan) < 1.0
 
 
 @pytest.mark.parametrize('limits', [LIMITS, replace(LIMITS, **QUICK)], ids=['a', 'torque'])

@@ -1,0 +1,516 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* The interior-point method: every iterate strictly within the limits (interior_point.py and
+ * interior_step.py, whose names are used). */
+#include "chain.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FLOOR_WEIGHT = 3 };  /* a floor counts as often as there are coordinates */
+static const double FAR = 1e6;
+
+/* Which limits there are at a segment's points, and where a motion's values are kept. */
+typedef struct {
+    const Problem *p;
+    const Settings *set;
+    int boxes, general, M;   /* limits of a segment */
+    int *box_at, *general_at;  /* offsets into (P, 4 J) and (P, E) */
+    uint8_t *looked;         /* (P), whether there are general limits at a point */
+    /* near a motion */
+    double *z, *x;           /* states, and general values (N, P, E) */
+    double *gradient;        /* (N, P, E, 4 J) */
+    double *slack, *dual, *rate, *aside;  /* (N, M, 2): above and below; (N, 2) for floors after */
+    double *Q, *r, *Q_full, *r_T, *Q_T, *second;
+    double *dz;
+    double *newton;
+} Work;
+
+typedef struct {
+    Motion motion;
+    double *slack;
+} Point;
+
+typedef struct {
+    Motion step;
+    double *rate;
+    double size, gain;
+    Point to;                /* valid where size > 0 */
+    int known;
+} Tried;
+
+static size_t limits_size(const Work *w)
+{
+    return 2 * (size_t)w->p->N * (w->M + 1);
+}
+
+static double *floors(const Work *w, double *slack)
+{
+    return slack + 2 * (size_t)w->p->N * w->M;
+}
+
+static void general_at(const Problem *p, int k, int i, const double *z, double *x,
+                       double *gradient, const double *weights, double *second)
+{
+    if (p->kind == TORQUE)
+        torque_at(p, z, x, gradient, weights, second);
+    else
+        path_at(p, k, i, z, x, gradient, weights, second);
+}
+
+/* Room to the limits at a motion's states. */
+static void room(const Work *w, const double *T, const double *z, double *x, double *gradient,
+                 double *slack)
+{
+    const Problem *p = w->p;
+    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
+    for (int k = 0; k < p->N; ++k) {
+        const double *at = z + (size_t)k * P * Z, *lower = p->lower + (size_t)k * P * Z,
+            *upper = p->upper + (size_t)k * P * Z;
+        double *to = slack + 2 * (size_t)k * w->M;
+        for (int c = 0; c < w->boxes; ++c, to += 2) {
+            const int i = w->box_at[c];
+            to[0] = upper[i] - at[i];
+            to[1] = at[i] - lower[i];
+        }
+        double *xk = x + (size_t)k * P * E;
+        for (int i = 0; i < P && w->general; ++i)
+            if (w->looked[i])
+                general_at(p, k, i, at + (size_t)i * Z, xk + (size_t)i * E, gradient
+                           ? gradient + ((size_t)k * P + i) * E * Z : NULL, NULL, NULL);
+        lower = p->general_lower + (size_t)k * P * E;
+        upper = p->general_upper + (size_t)k * P * E;
+        for (int c = 0; c < w->general; ++c, to += 2) {
+            const int i = w->general_at[c];
+            to[0] = upper[i] - xk[i];
+            to[1] = xk[i] - lower[i];
+        }
+        double *spare = floors(w, slack) + 2 * k;
+        spare[1] = p->floor ? T[k] - p->floor[k] : 1.0;
+        spare[0] = p->floor ? FAR - spare[1] : 1.0;
+    }
+}
+
+static double log_of(const Work *w, const double *slack)
+{
+    const size_t all = 2 * (size_t)w->p->N * w->M;
+    double sum = 0.0;
+    size_t i = 0;
+    for (; i + 8 <= all; i += 8)
+        sum += log(slack[i] * slack[i + 1] * slack[i + 2] * slack[i + 3]
+                   * slack[i + 4] * slack[i + 5] * slack[i + 6] * slack[i + 7]);
+    for (; i < all; ++i)
+        sum += log(slack[i]);
+    const double *spare = slack + all;
+    for (int k = 0; w->p->floor && k < 2 * w->p->N; ++k)
+        sum += FLOOR_WEIGHT * log(spare[k]);
+    return sum;
+}
+
+static size_t limits_count(const Work *w)
+{
+    return 2 * (size_t)w->p->N * (w->M + (w->p->floor ? FLOOR_WEIGHT : 0));
+}
+
+/* First derivatives of a sum of limited quantities, pulled below by pull[1], above by pull[0]. */
+static void pulled(const Work *w, const double *pull, double *r, double *r_T)
+{
+    const Problem *p = w->p;
+    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
+    memset(r, 0, (size_t)p->N * P * Z * sizeof(double));
+    for (int k = 0; k < p->N; ++k) {
+        const double *from = pull + 2 * (size_t)k * w->M;
+        double *rk = r + (size_t)k * P * Z;
+        for (int c = 0; c < w->boxes; ++c, from += 2)
+            rk[w->box_at[c]] += from[0] - from[1];
+        for (int c = 0; c < w->general; ++c, from += 2) {
+            const int i = w->general_at[c];
+            const double *g = w->gradient + ((size_t)k * P * E + i) * Z, f = from[0] - from[1];
+            double *to = rk + (size_t)(i / E) * Z;
+            for (int a = 0; a < Z; ++a)
+                to[a] += f * g[a];
+        }
+        const double *spare = pull + 2 * (size_t)p->N * w->M + 2 * k;
+        r_T[k] = p->floor ? FLOOR_WEIGHT * (spare[0] - spare[1]) : 0.0;
+    }
+}
+
+/* The problem near a motion: room, derivatives, and the Gauss-Newton Hessian of the barrier. */
+static void localised(Work *w, Motion m, const double *dual, double barrier, double *scratch)
+{
+    const Problem *p = w->p;
+    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
+    motion_states(p, m, w->z);
+    room(w, m.T, w->z, w->x, w->gradient, w->slack);
+    const size_t all = limits_size(w);
+    for (size_t i = 0; i < all; ++i)
+        scratch[i] = barrier / w->slack[i];
+    pulled(w, scratch, w->r, w->r_T);
+    memset(w->Q, 0, (size_t)p->N * P * Z * Z * sizeof(double));
+    for (int k = 0; k < p->N; ++k) {
+        const double *s = w->slack + 2 * (size_t)k * w->M, *d = dual + 2 * (size_t)k * w->M;
+        double *Qk = w->Q + (size_t)k * P * Z * Z;
+        for (int c = 0; c < w->boxes; ++c, s += 2, d += 2) {
+            const int i = w->box_at[c];
+            Qk[(size_t)i * Z + i % Z] += d[0] / s[0] + d[1] / s[1];
+        }
+        for (int c = 0; c < w->general; ++c, s += 2, d += 2) {
+            const int i = w->general_at[c];
+            const double *g = w->gradient + ((size_t)k * P * E + i) * Z;
+            const double weight = d[0] / s[0] + d[1] / s[1];
+            double *to = Qk + (size_t)(i / E) * Z * Z;
+            for (int a = 0; a < Z; ++a) {
+                const double f = weight * g[a];
+                if (f != 0.0)
+                    for (int b = 0; b < Z; ++b)
+                        to[a * Z + b] += f * g[b];
+            }
+        }
+        const double *sf = floors(w, w->slack) + 2 * k;
+        const double *df = dual + 2 * (size_t)p->N * w->M + 2 * k;
+        w->Q_T[k] = p->floor ? FLOOR_WEIGHT * (df[0] / sf[0] + df[1] / sf[1]) : 0.0;
+    }
+}
+
+/* Add the general limits' own curvature to the Hessian. */
+static void bend_added(Work *w, const double *dual)
+{
+    const Problem *p = w->p;
+    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
+    double weights[MOST_GENERAL];
+    memcpy(w->Q_full, w->Q, (size_t)p->N * P * Z * Z * sizeof(double));
+    for (int k = 0; k < p->N; ++k) {
+        const double *d = dual + 2 * ((size_t)k * w->M + w->boxes);
+        int c = 0;
+        for (int i = 0; i < P; ++i) {
+            if (!w->looked[i])
+                continue;
+            memset(weights, 0, sizeof weights);
+            for (; c < w->general && w->general_at[c] < (i + 1) * E; ++c)
+                weights[w->general_at[c] - i * E] = d[2 * c] - d[2 * c + 1];
+            general_at(p, k, i, w->z + ((size_t)k * P + i) * Z, NULL, NULL, weights,
+                       w->Q_full + ((size_t)k * P + i) * Z * Z);
+        }
+    }
+}
+
+/* How slacks change along a step. */
+static void rates_of(const Work *w, Motion step, const double *dz, double *rate)
+{
+    const Problem *p = w->p;
+    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
+    for (int k = 0; k < p->N; ++k) {
+        const double *at = dz + (size_t)k * P * Z;
+        double *to = rate + 2 * (size_t)k * w->M;
+        for (int c = 0; c < w->boxes; ++c, to += 2) {
+            to[0] = -at[w->box_at[c]];
+            to[1] = at[w->box_at[c]];
+        }
+        for (int c = 0; c < w->general; ++c, to += 2) {
+            const int i = w->general_at[c];
+            const double *g = w->gradient + ((size_t)k * P * E + i) * Z,
+                *d = at + (size_t)(i / E) * Z;
+            double sum = 0.0;
+            for (int a = 0; a < Z; ++a)
+                sum += g[a] * d[a];
+            to[0] = -sum;
+            to[1] = sum;
+        }
+        double *spare = floors(w, rate) + 2 * k;
+        spare[1] = p->floor ? step.T[k] : 0.0;
+        spare[0] = -spare[1];
+    }
+}
+
+
+/* Find a step's size and what it leads to; see _line_search. */
+static void searched(Work *w, Motion m, Tried *t, const Motion *bend, double barrier, double *z,
+                     double *x, Motion towards)
+{
+    const Problem *p = w->p;
+    const Settings *set = w->set;
+    const size_t all = limits_size(w), unknowns = motion_size(p);
+    const double merit = motion_cost(p, m) - barrier * log_of(w, w->slack);
+    double worst = 0.0;
+    for (size_t i = 0; i < all; ++i) {
+        const double towards_limit = -t->rate[i] / w->slack[i];
+        if (towards_limit > worst)
+            worst = towards_limit;
+    }
+    double size = worst > set->to_boundary ? set->to_boundary / worst : 1.0;
+    t->known = 0;
+    for (int trial = 0; trial < set->backtracks; ++trial, size *= 0.5) {
+        for (size_t i = 0; i < unknowns; ++i)
+            towards.inner[i] = t->step.inner[i] + (bend ? size * bend->inner[i] : 0.0);
+        if (!motion_stepped(p, m, towards, size, t->to.motion))
+            continue;
+        motion_states(p, t->to.motion, z);
+        room(w, t->to.motion.T, z, x, NULL, t->to.slack);
+        int kept = 1;
+        for (size_t i = 0; i < all && kept; ++i)
+            kept = t->to.slack[i] >= set->least_room_kept * w->slack[i];
+        if (kept && motion_cost(p, t->to.motion) - barrier * log_of(w, t->to.slack)
+                <= merit - set->sufficient_gain * size * t->gain) {
+            t->size = size;
+            t->known = 1;
+            return;
+        }
+    }
+    t->size = 0.0;
+}
+
+/* The change, by size squared, that mends what slacks do beside their rates; 0 where unknown. */
+static int bent(Work *w, Motion m, const Tried *t, Motion bend, Motion moved, double *z, double *x,
+                double *pull, double *dz)
+{
+    const Problem *p = w->p;
+    const double size = t->size > w->set->least_bend ? t->size : w->set->least_bend;
+    double gain;
+    if (!motion_stepped(p, m, t->step, size, moved))
+        return 0;
+    motion_states(p, moved, z);
+    room(w, moved.T, z, x, NULL, pull);
+    const size_t all = limits_size(w);
+    for (size_t i = 0; i < all; ++i)
+        pull[i] = -w->dual[i] / w->slack[i] * (pull[i] - w->slack[i] - size * t->rate[i])
+            / (size * size);
+    double *r = w->second, *r_T = r + (size_t)p->N * (2 * p->n + 1) * 4 * p->J;
+    pulled(w, pull, r, r_T);
+    for (int k = 0; k < p->N; ++k)
+        r_T[k] -= p->weights[k];  /* the step adds them */
+    return newton_step(p, m, w->z, w->Q, r, w->Q_T, r_T, bend, dz, &gain, w->newton) == 0;
+}
+
+typedef struct {
+    Work w;
+    double *memory;
+    Tried tried[4];
+    Motion bend, towards, best;
+    double *dz, *z, *x, *pull;
+} Run;
+
+static double *taken(double **next, size_t size)
+{
+    double *found = *next;
+    *next += (size + 3) / 4 * 4;
+    return found;
+}
+
+static int prepared(Run *run, const Problem *p, const Settings *set)
+{
+    Work *w = &run->w;
+    const size_t P = 2 * p->n + 1, Z = 4 * p->J, N = p->N, E = p->E;
+    memset(run, 0, sizeof *run);
+    w->p = p, w->set = set;
+    w->box_at = malloc((P * Z + P * E + 1) * sizeof(int) + P);
+    if (!w->box_at)
+        return 1;
+    w->general_at = w->box_at + P * Z;
+    w->looked = (uint8_t *)(w->general_at + P * E + 1);
+    for (size_t i = 0; i < P * Z; ++i)
+        if (p->boxed[i])
+            w->box_at[w->boxes++] = (int)i;
+    memset(w->looked, 0, P);
+    for (size_t i = 0; i < P * E; ++i)
+        if (p->kept[i]) {
+            w->general_at[w->general++] = (int)i;
+            w->looked[i / E] = 1;
+        }
+    w->M = w->boxes + w->general;
+    const size_t limits = limits_size(w) + 4, motion = motion_size(p) + 4;
+    const size_t states = N * P * Z + 4, values = N * P * E + 4;
+    const size_t size = 13 * limits + 11 * motion + 8 * states + 3 * values
+        + values * Z + 2 * states * Z + 4 * (N + 4) + newton_size(p) + 64;
+    double *next = run->memory = malloc(size * sizeof(double));
+    if (!next)
+        return 1;
+    w->z = taken(&next, states - 4), w->x = taken(&next, values - 4);
+    w->gradient = taken(&next, (values - 4) * Z);
+    w->slack = taken(&next, limits - 4), w->dual = taken(&next, limits - 4);
+    w->aside = taken(&next, limits - 4);
+    w->Q = taken(&next, (states - 4) * Z), w->Q_full = taken(&next, (states - 4) * Z);
+    w->r = taken(&next, states - 4), w->r_T = taken(&next, N), w->Q_T = taken(&next, N);
+    w->second = taken(&next, states - 4 + N);
+    for (int i = 0; i < 4; ++i) {
+        Tried *t = &run->tried[i];
+        t->step = motion_at(p, taken(&next, motion - 4));
+        t->rate = taken(&next, limits - 4);
+        t->to.motion = motion_at(p, taken(&next, motion - 4));
+        t->to.slack = taken(&next, limits - 4);
+    }
+    run->bend = motion_at(p, taken(&next, motion - 4));
+    run->towards = motion_at(p, taken(&next, motion - 4));
+    run->best = motion_at(p, taken(&next, motion - 4));
+    run->dz = taken(&next, states - 4), run->z = taken(&next, states - 4);
+    run->x = taken(&next, values - 4), run->pull = taken(&next, limits - 4);
+    w->newton = taken(&next, newton_size(p));
+    return 0;
+}
+
+/* A Newton step with or without the general limits' own curvature; 0 where there is none. */
+static int suggested(Run *run, Motion m, int full, Tried *t)
+{
+    Work *w = &run->w;
+    if (full)
+        bend_added(w, w->dual);
+    if (newton_step(w->p, m, w->z, full ? w->Q_full : w->Q, w->r, w->Q_T, w->r_T, t->step,
+                    run->dz, &t->gain, w->newton) || !isfinite(t->gain))
+        return 0;
+    if (full && !(t->gain > 0.0))
+        return 0;
+    rates_of(w, t->step, run->dz, t->rate);
+    return 1;
+}
+
+/* The first of the suggested steps that gets far, else the one that gets furthest. */
+static Tried *best_step(Run *run, Motion m, double barrier)
+{
+    Work *w = &run->w;
+    Tried *best = NULL;
+    int count = 0;
+    for (int full = w->p->kind != BOXES_ALONE; full >= 0; --full) {
+        Tried *t = &run->tried[count];
+        if (!suggested(run, m, full, t))
+            continue;
+        ++count;
+        searched(w, m, t, NULL, barrier, run->z, run->x, run->towards);
+        if (!best || t->size > best->size)
+            best = t;
+        if (t->size <= w->set->narrow) {
+            Tried *again = &run->tried[count];
+            if (bent(w, m, t, run->bend, again->to.motion, run->z, run->x, run->pull, run->dz)) {
+                ++count;
+                memcpy(again->rate, t->rate, limits_size(w) * sizeof(double));
+                motion_copy(w->p, again->step, t->step);
+                again->gain = t->gain;
+                searched(w, m, again, &run->bend, barrier, run->z, run->x, run->towards);
+                if (again->size > best->size)
+                    best = again;
+                t = again;
+            }
+        }
+        if (t->size > w->set->narrow)
+            break;
+    }
+    return best;
+}
+
+/* Multipliers after a step that keeps them positive, in sight of barrier / slack. */
+static void duals_moved(Work *w, const double *old, const double *rate, const double *slack,
+                        double barrier, double *change)
+{
+    const size_t all = limits_size(w);
+    double worst = 0.0;
+    for (size_t i = 0; i < all; ++i) {
+        change[i] = barrier / old[i] - w->dual[i] - w->dual[i] / old[i] * rate[i];
+        const double towards_zero = -change[i] / w->dual[i];
+        if (towards_zero > worst)
+            worst = towards_zero;
+    }
+    const double size = worst > w->set->to_boundary ? w->set->to_boundary / worst : 1.0;
+    const double corridor = w->set->dual_corridor;
+    for (size_t i = 0; i < all; ++i) {
+        const double central = barrier / slack[i];
+        double d = w->dual[i] + size * change[i];
+        d = d < central / corridor ? central / corridor : d;
+        w->dual[i] = d > central * corridor ? central * corridor : d;
+    }
+}
+
+static int cancelled(int32_t (*should_stop)(void))
+{
+    return should_stop && should_stop();
+}
+
+/* See chain_minimised in compiled.py. Returns the number of centres, or -1 without memory. */
+int chain_minimised(const Problem *p, const Settings *set, double *motion, double known,
+                    double least_barrier, int32_t (*should_stop)(void), double *gap,
+                    double *centres, double *barriers, int32_t *iterations)
+{
+    Run run;
+    if (prepared(&run, p, set)) {
+        free(run.w.box_at);
+        return -1;
+    }
+    Work *w = &run.w;
+    Motion m = motion_at(p, motion);
+    const size_t all = limits_size(w), unknowns = motion_size(p);
+    const double count = (double)limits_count(w);
+    double barrier = known > 0.0 ? known : set->start * motion_cost(p, m) / count;
+    int found = 0, merits = 0;
+    double *merit = malloc((set->iterations + 1) * sizeof(double));
+    if (!merit) {
+        free(run.w.box_at);
+        free(run.memory);
+        return -1;
+    }
+    motion_states(p, m, w->z);
+    room(w, m.T, w->z, w->x, NULL, w->slack);
+    for (int i = 0; i < set->raises; ++i) {
+        for (size_t c = 0; c < all; ++c)
+            w->dual[c] = barrier / w->slack[c];
+        localised(w, m, w->dual, barrier, w->aside);
+        Tried *t = &run.tried[0];
+        if (!(p->kind != BOXES_ALONE && suggested(&run, m, 1, t)) && !suggested(&run, m, 0, t))
+            break;
+        if (t->gain < set->far_from_centre * barrier)
+            break;
+        barrier /= set->barrier_reduction;
+    }
+    motion_copy(p, run.best, m);
+    *gap = INFINITY;
+    *iterations = 0;
+    for (int i = 0; i < set->iterations; ++i) {
+        if (cancelled(should_stop))
+            break;
+        ++*iterations;
+        localised(w, m, w->dual, barrier, w->aside);
+        Tried *t = best_step(&run, m, barrier);
+        if (!t)
+            break;
+        const double *slack = t->known ? t->to.slack : w->slack;
+        duals_moved(w, w->slack, t->rate, slack, barrier, w->aside);
+        if (t->known) {
+            motion_copy(p, m, t->to.motion);
+            if (motion_cost(p, m) < motion_cost(p, run.best))
+                motion_copy(p, run.best, m);
+        }
+        const double cost = motion_cost(p, m);
+        merit[merits++] = cost - barrier * log_of(w, slack);
+        const double left = t->gain * (1.0 - 0.5 * t->size) + count * barrier;
+        if (left < *gap)
+            *gap = left;
+        const int stalled = !t->known || (merits > set->patience
+            && merit[merits - 1 - set->patience] - merit[merits - 1] < set->stall * cost);
+        if (stalled || t->gain < set->centred * count * barrier) {
+            if (count * barrier < set->relative_gap * cost)
+                break;
+            if (found < CENTRES) {
+                memcpy(centres + found * unknowns, m.inner, unknowns * sizeof(double));
+                barriers[found++] = barrier;
+            }
+            if (barrier <= least_barrier)
+                break;
+            barrier *= set->barrier_reduction;
+            merits = 0;
+        }
+    }
+    motion_copy(p, m, run.best);
+    free(merit);
+    free(run.w.box_at);
+    free(run.memory);
+    return found;
+}

@@ -1,0 +1,258 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* One Newton step on a chain of ramps: segments condensed to their borders, durations eliminated,
+ * what is left solved as a band (ramp_newton.py). The cost is linear in ramps and segments. */
+#include "chain.h"
+
+#include <math.h>
+#include <string.h>
+
+#define J 1
+#define FRONT(name) one_##name
+#include "front.inc"
+#undef J
+#undef FRONT
+#define J 3
+#define FRONT(name) three_##name
+#include "front.inc"
+#undef J
+#undef FRONT
+
+enum { MOST_BORDER = 4 * MOST_JOINTS + 1, MOST_BAND = 4 * MOST_JOINTS };
+static const double STIFF = 1e60;
+static const double STIFFENING[] = {0.0, 1e-9, 1e-6, 1e-3, 1.0};
+
+/* Coordinates are independent of each other, but for time, where boxes alone limit them. */
+static int apart(const Problem *p)
+{
+    return p->J == 1 || p->kind == BOXES_ALONE;
+}
+
+static size_t rows_size(const Problem *p)
+{
+    return apart(p) ? p->J * one_rows_size(p->n) : three_rows_size(p->n);
+}
+
+static size_t band_size(const Problem *p)
+{
+    return (size_t)p->N * 2 * p->J * (4 * p->J + 3);
+}
+
+size_t newton_size(const Problem *p)
+{
+    const size_t B = 4 * p->J, P = 2 * p->n + 1;
+    return p->N * ((B + 1) * (B + 2) + rows_size(p)) + 2 * band_size(p)
+        + P * (4 + 16 + 4 + 4) + (size_t)p->n + (p->N + 1) * 2 * p->J;
+}
+
+/* Take one coordinate's part of states, first and second derivatives. */
+static void picked(const Problem *p, int j, const double *z, const double *Q, const double *r,
+                   double *own_z, double *own_Q, double *own_r)
+{
+    const int J = p->J, Z = 4 * J;
+    for (int i = 0; i < 2 * p->n + 1; ++i)
+        for (int a = 0; a < 4; ++a) {
+            own_z[4 * i + a] = z[i * Z + a * J + j];
+            own_r[4 * i + a] = r[i * Z + a * J + j];
+            for (int b = 0; b < 4; ++b)
+                own_Q[16 * i + 4 * a + b] =
+                    Q[((size_t)i * Z + a * J + j) * Z + b * J + j];
+        }
+}
+
+/* Solve a symmetric band of m unknowns, w entries from the diagonal down, for 2 right sides. */
+static int band_solved(double *band, double *right, int m, int w)
+{
+    for (int c = 0; c < m; ++c) {
+        double *column = band + (size_t)c * w;
+        if (!(column[0] > 0.0) || !isfinite(column[0]))
+            return 1;
+        const double root = sqrt(column[0]);
+        column[0] = root;
+        for (int i = 1; i < w; ++i)
+            column[i] /= root;
+        for (int i = 1; i < w && c + i < m; ++i)
+            for (int k = i; k < w && c + k < m; ++k)
+                band[(size_t)(c + i) * w + k - i] -= column[i] * column[k];
+        for (int s = 0; s < 2; ++s) {
+            right[2 * c + s] /= root;
+            for (int i = 1; i < w && c + i < m; ++i)
+                right[2 * (c + i) + s] -= column[i] * right[2 * c + s];
+        }
+    }
+    for (int c = m - 1; c >= 0; --c)
+        for (int s = 0; s < 2; ++s) {
+            double sum = right[2 * c + s];
+            for (int i = 1; i < w && c + i < m; ++i)
+                sum -= band[(size_t)c * w + i] * right[2 * (c + i) + s];
+            right[2 * c + s] = sum / band[(size_t)c * w];
+        }
+    return 0;
+}
+
+/* Steps at the via points (N + 1, 2 J), and of the common unknown of tied durations. */
+static double coupled(const Problem *p, const double *S, const double *r, double tie_tie,
+                      double tie_r, double *at_vias, double *memory)
+{
+    const int N = p->N, H = 2 * p->J, B = 2 * H, W = B + 1, m = (N - 1) * H, w = 2 * H;
+    double *band = memory, *right = band + (size_t)m * w;
+    double *solved = right + 2 * m;  /* band and right again: to solve in */
+    memset(at_vias, 0, (size_t)(N + 1) * H * sizeof(double));
+    if (m == 0)
+        return tie_tie != 0.0 ? -tie_r / tie_tie : 0.0;
+    memset(band, 0, (size_t)m * w * sizeof(double));
+    for (int k = 0; k < N - 1; ++k) {
+        const double *one = S + (size_t)k * W * W, *next = one + (size_t)W * W;
+        for (int i = 0; i < H; ++i) {
+            double *column = band + ((size_t)k * H + i) * w;
+            for (int c = i; c < H; ++c)
+                column[c - i] = one[(H + c) * W + H + i] + next[c * W + i];
+            if (k < N - 2)
+                for (int c = 0; c < H; ++c)
+                    column[H + c - i] = next[(H + c) * W + i];
+            right[2 * (k * H + i)] = r[(size_t)k * W + H + i] + r[(size_t)(k + 1) * W + i];
+            right[2 * (k * H + i) + 1] = p->tie[k] * one[(H + i) * W + B]
+                + p->tie[k + 1] * next[i * W + B];
+            if (i < p->J && p->still[k * p->J + i])
+                column[0] = STIFF;
+        }
+    }
+    const size_t all = (size_t)m * (w + 2);
+    for (size_t trial = 0; trial <= sizeof STIFFENING / sizeof *STIFFENING; ++trial) {
+        memcpy(solved, band, all * sizeof(double));
+        if (trial == sizeof STIFFENING / sizeof *STIFFENING) {
+            for (int c = 0; c < m; ++c)
+                for (int s = 0; s < 2; ++s)
+                    solved[(size_t)m * w + 2 * c + s] /= fabs(band[(size_t)c * w]);
+            break;
+        }
+        for (int c = 0; c < m; ++c)
+            solved[(size_t)c * w] += STIFFENING[trial] * fabs(band[(size_t)c * w]);
+        if (!band_solved(solved, solved + (size_t)m * w, m, w))
+            break;
+    }
+    const double *x = solved + (size_t)m * w;
+    double by_r = 0.0, by_tie = 0.0, common = 0.0;
+    for (int c = 0; c < m; ++c) {
+        by_r += right[2 * c + 1] * x[2 * c];
+        by_tie += right[2 * c + 1] * x[2 * c + 1];
+    }
+    if (tie_tie != 0.0)
+        common = -(tie_r - by_r) / (tie_tie - by_tie);
+    for (int c = 0; c < m; ++c)
+        at_vias[H + c] = -(x[2 * c] + x[2 * c + 1] * common);
+    return common;
+}
+
+int newton_step(const Problem *p, Motion m, const double *z, const double *Q, const double *r,
+                const double *Q_T, const double *r_T, Motion step, double *dz, double *gain,
+                double *memory)
+{
+    const int J = p->J, N = p->N, n = p->n, Z = 4 * J, B = 4 * J, W = B + 1, P = 2 * n + 1;
+    double *S = memory, *right = S + (size_t)N * W * W;
+    double *rows = right + (size_t)N * W;
+    double *own_z = rows + N * rows_size(p), *own_Q = own_z + 4 * P, *own_r = own_Q + 16 * P;
+    double *own_dz = own_r + 4 * P, *own_inner = own_dz + 4 * P, *at_vias = own_inner + n;
+    double *band = at_vias + (size_t)(N + 1) * 2 * J;
+    for (int k = 0; k < N; ++k) {
+        double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
+        const double *zk = z + (size_t)k * P * Z, *Qk = Q + (size_t)k * P * Z * Z;
+        const double *pull = r + (size_t)k * P * Z;
+        double *kept = rows + k * rows_size(p);
+        if (!apart(p)) {
+            if (three_condensed(p, m.T[k], zk, Qk, pull, Sk, rk, (three_Rows *)kept))
+                return 1;
+        } else {
+            memset(Sk, 0, (size_t)W * W * sizeof(double));
+            memset(rk, 0, (size_t)W * sizeof(double));
+            for (int j = 0; j < J; ++j) {
+                double one[25], one_r[5];
+                const int at[5] = {j, J + j, 2 * J + j, 3 * J + j, B};
+                picked(p, j, zk, Qk, pull, own_z, own_Q, own_r);
+                if (one_condensed(p, m.T[k], own_z, own_Q, own_r, one, one_r,
+                                  (one_Rows *)(kept + j * one_rows_size(n))))
+                    return 1;
+                for (int a = 0; a < 5; ++a) {
+                    rk[at[a]] += one_r[a];
+                    for (int b = 0; b < 5; ++b)
+                        Sk[at[a] * W + at[b]] += one[5 * a + b];
+                }
+            }
+        }
+        Sk[B * W + B] += Q_T[k];
+        rk[B] += r_T[k] + p->weights[k];
+    }
+    double tie_tie = 0.0, tie_r = 0.0;
+    for (int k = 0; k < N; ++k) {  /* free durations are eliminated */
+        double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
+        tie_tie += p->tie[k] * p->tie[k] * Sk[B * W + B];
+        tie_r += p->tie[k] * rk[B];
+        if (!p->free[k] || Sk[B * W + B] == 0.0)
+            continue;
+        for (int i = 0; i < B; ++i) {
+            const double factor = Sk[i * W + B] / Sk[B * W + B];
+            for (int c = 0; c < B; ++c)
+                Sk[i * W + c] -= factor * Sk[B * W + c];
+            rk[i] -= factor * rk[B];
+        }
+    }
+    const double common = coupled(p, S, right, tie_tie, tie_r, at_vias, band);
+    *gain = 0.0;
+    for (int k = 0; k < N; ++k) {
+        const double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
+        const double *border = at_vias + (size_t)k * 2 * J;  /* v0, a0, v1, a1: side by side */
+        double dT = p->tie[k] * common;
+        if (p->free[k]) {
+            dT = 0.0;
+            if (Sk[B * W + B] != 0.0) {
+                double sum = rk[B];
+                for (int i = 0; i < B; ++i)
+                    sum += Sk[B * W + i] * border[i];
+                dT = -sum / Sk[B * W + B];
+            }
+        }
+        step.T[k] = dT;
+        const double *zk = z + (size_t)k * P * Z;
+        double *to = dz + (size_t)k * P * Z, *inner = step.inner + (size_t)k * (n - 1) * J;
+        const double *kept = rows + k * rows_size(p);
+        if (!apart(p))
+            three_expanded(p, m.T[k], zk, border, dT, (const three_Rows *)kept, inner, to);
+        else
+            for (int j = 0; j < J; ++j) {
+                const double own[4] = {border[j], border[J + j], border[2 * J + j],
+                                       border[3 * J + j]};
+                for (int i = 0; i < P; ++i)
+                    for (int a = 0; a < 4; ++a)
+                        own_z[4 * i + a] = zk[i * Z + a * J + j];
+                one_expanded(p, m.T[k], own_z, own, dT,
+                             (const one_Rows *)(kept + j * one_rows_size(n)), own_inner, own_dz);
+                for (int i = 0; i < n - 1; ++i)
+                    inner[i * J + j] = own_inner[i];
+                for (int i = 0; i < P; ++i)
+                    for (int a = 0; a < 4; ++a)
+                        to[i * Z + a * J + j] = own_dz[4 * i + a];
+            }
+        const double *pull = r + (size_t)k * P * Z;
+        for (int i = 0; i < P * Z; ++i)
+            *gain -= pull[i] * to[i];
+        *gain -= (r_T[k] + p->weights[k]) * dT;
+    }
+    for (int k = 0; k < N - 1; ++k)
+        for (int j = 0; j < J; ++j) {
+            step.v[k * J + j] = at_vias[(size_t)(k + 1) * 2 * J + j];
+            step.a[k * J + j] = at_vias[(size_t)(k + 1) * 2 * J + J + j];
+        }
+    return 0;
+}
