@@ -36,13 +36,9 @@ LONGEST_STEP = 0.012  # s
 # the square of that.
 ZOOM_ROUNDS = 6
 ZOOM_POINTS = 9
-# Brackets followed for each joint, the highest first: a torque that is at its limit for long has
-# many peaks, each of which may hide the highest.
-CANDIDATES = 400
-
-# A local maximum of the grid is followed where it might be the highest of all: between points a
-# smooth quantity rises by an eighth of its second difference, where it has corners by half of it.
-RISE = 1.0
+# A local maximum is followed where it might be the highest of all by more than this part: between
+# points a smooth quantity rises by an eighth of its second difference, one with corners by half.
+RISE, NEGLIGIBLE = 1.0, 1e-10
 
 TORQUE_TOLERANCE = 1e-9  # relative, for the rounding of a torque that is just at its limit
 
@@ -164,7 +160,7 @@ def maximum_over_time(quantity: Callable[[Array], Array], grid: Array) -> Extrem
     Parameters
     ----------
     quantity : callable
-        Values of shape (n, 3) at times of shape (n,).
+        Values of shape (n, K) at times of shape (n,).
     grid : ndarray
         Increasing times [s], fine enough for each high local maximum to show.
 
@@ -175,39 +171,38 @@ def maximum_over_time(quantity: Callable[[Array], Array], grid: Array) -> Extrem
 
     """
     values = quantity(grid)
-    best = values.argmax(axis=0)
-    value, time = values[best, range(3)], grid[best]
+    columns, best = range(values.shape[1]), values.argmax(axis=0)
+    value, time = values[best, columns], grid[best]
     low, high, column = _brackets(values, grid)
     for _ in range(ZOOM_ROUNDS if np.isfinite(value).all() else 0):
+        if not len(column):
+            break
         width = (high - low) / (ZOOM_POINTS - 1)
         t = low[:, np.newaxis] + width[:, np.newaxis] * np.arange(ZOOM_POINTS)
-        at = quantity(t.ravel()).reshape(t.shape + (3,))
+        at = quantity(t.ravel()).reshape(*t.shape, -1)
         own = at[np.arange(len(t))[:, np.newaxis], np.arange(ZOOM_POINTS), column[:, np.newaxis]]
         top = own.argmax(axis=1)
         highest = own[np.arange(len(t)), top]
-        for j in range(3):
+        for j in columns:
             rows = np.flatnonzero(column == j)
             if len(rows) and highest[rows].max() > value[j]:
                 row = rows[highest[rows].argmax()]
                 value[j], time[j] = highest[row], t[row, top[row]]
         centre = t[np.arange(len(t)), top]
         low, high = np.maximum(centre - width, low), np.minimum(centre + width, high)
+        bend = _bends(own.T)[top, np.arange(len(t))]
+        promising = highest + RISE * bend > value[column] * (1.0 + NEGLIGIBLE)
+        low, high, column = low[promising], high[promising], column[promising]
     return Extreme(value, time)
 
 
 def _brackets(values: Array, grid: Array) -> tuple[Array, Array, IntArray]:
-    """Return the intervals around the highest local maxima of each column."""
+    """Return the intervals around local maxima of each column that may hide its highest value."""
     padded = np.pad(values, ((1, 1), (0, 0)), constant_values=-np.inf)
     local = (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
     with np.errstate(invalid='ignore'):
-        local &= values + RISE * _bends(values) >= values.max(axis=0)
-    columns, rows = [], []
-    for j in range(3):
-        candidates = np.flatnonzero(local[:, j] & (values[:, j] > 0.0))
-        order = np.argsort(-values[candidates, j], kind='stable')[:CANDIDATES]
-        rows.append(candidates[order])
-        columns.append(np.full(len(order), j))
-    row, column = np.concatenate(rows), np.concatenate(columns)
+        local &= values + RISE * _bends(values) > values.max(axis=0) * (1.0 + NEGLIGIBLE)
+    column, row = np.nonzero((local & (values > 0.0)).T)
     last = len(grid) - 1
     return grid[np.maximum(row - 1, 0)], grid[np.minimum(row + 1, last)], column
 

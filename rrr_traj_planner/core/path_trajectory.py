@@ -159,17 +159,27 @@ class PathTrajectory(Trajectory):
     def _peaks(self) -> Peaks:
         grid = times_within(self, STEPS_PER_KNOT)
         grid = np.unique(np.concatenate((grid, self.knots[1:] - BEFORE)))
-        return Peaks(
-            velocity=maximum_over_time(lambda t: np.abs(self(t)[1]), grid).value,
-            acceleration=maximum_over_time(lambda t: np.abs(self(t)[2]), grid).value,
-            jerk=maximum_over_time(lambda t: np.abs(self(t)[3]), grid).value,
-            min_position=-maximum_over_time(lambda t: FAR - self(t)[0], grid).value + FAR,
-            max_position=maximum_over_time(lambda t: FAR + self(t)[0], grid).value - FAR)
+
+        def quantities(t: Array) -> Array:
+            q, qd, qdd, qddd = self(t)
+            return np.concatenate(
+                (np.abs(qd), np.abs(qdd), np.abs(qddd), FAR - q, FAR + q), axis=1)
+
+        velocity, acceleration, jerk, least, most = np.split(
+            maximum_over_time(quantities, grid).value, 5)
+        return Peaks(velocity=velocity, acceleration=acceleration, jerk=jerk,
+                     min_position=FAR - least, max_position=most - FAR)
 
     def stretched(self, factor: float) -> PathTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""
-        return PathTrajectory(self.arm_path, self.progress.stretched(factor),
-                              self.via_times * factor, self.join_times * factor, self.note)
+        slower = PathTrajectory(self.arm_path, self.progress.stretched(factor),
+                                self.via_times * factor, self.join_times * factor, self.note)
+        if '_peaks' in self.__dict__:  # they are dear
+            p = self._peaks
+            slower.__dict__['_peaks'] = Peaks(
+                p.velocity / factor, p.acceleration / factor ** 2, p.jerk / factor ** 3,
+                p.min_position, p.max_position)
+        return slower
 
     def noted(self, note: str) -> PathTrajectory:
         """
