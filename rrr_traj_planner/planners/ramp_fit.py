@@ -50,13 +50,19 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
     """
     if beyond_range(task, trajectory).any():
         return None
-    factor = stretch_to_fit(task, trajectory)
+    by_torque, factor = torque_stretch(task, trajectory), stretch_of_rates(task, trajectory)
+    # a motion may pass, but not slowly, where gravity alone would be too much
+    hurries = np.isinf(by_torque)
+    if hurries and not torque_fits(task, trajectory):
+        return None
+    if not hurries:
+        factor = max(factor, by_torque)
     if factor <= 1.0 + ROUNDING:
         return trajectory.stretched(factor) if factor > 1.0 and may_stretch else trajectory
-    if np.isinf(factor) or not may_stretch:
+    if not may_stretch:
         return None
     slowed = trajectory.stretched(factor)
-    return slowed if stretch_to_fit(task, slowed) <= 1.0 + ROUNDING else None
+    return None if hurries and not torque_fits(task, slowed) else slowed
 
 
 def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
@@ -93,9 +99,9 @@ def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
     return np.where(beyond > POSITION_TOLERANCE, beyond, 0.0)
 
 
-def stretch_to_fit(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
+def stretch_of_rates(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
     """
-    Return by how much a motion must be slowed for every limit but the positions'.
+    Return by how much a motion must be slowed for its velocities, accelerations and jerk.
 
     Parameters
     ----------
@@ -107,19 +113,15 @@ def stretch_to_fit(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
     Returns
     -------
     float
-        At most 1 where it fits as it is; infinite where no slowing helps.
+        At most 1 where they fit as they are.
 
     """
     limits, profiles = task.limits, trajectory.profiles
     velocity = np.array([p.peak_velocity for p in profiles])
     acceleration, jerk = np.array([[v.max() for v in p.pieces.peaks()] for p in profiles]).T
-    kinematic = max((velocity / limits.max_velocity).max(),
-                    np.sqrt((acceleration / limits.max_acceleration).max()),
-                    np.cbrt((jerk / limits.max_jerk).max()))
-    # a motion may pass, but not slowly, where gravity alone would be too much
-    if torque_fits(task, trajectory):
-        return float(kinematic)
-    return float(max(kinematic, torque_stretch(task, trajectory)))
+    return float(max((velocity / limits.max_velocity).max(),
+                     np.sqrt((acceleration / limits.max_acceleration).max()),
+                     np.cbrt((jerk / limits.max_jerk).max())))
 
 
 def torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:

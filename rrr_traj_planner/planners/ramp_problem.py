@@ -45,8 +45,8 @@ PARTS_OF_ROOM = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)
 APPROACHES = 5           # rounds of coming nearer to room that no centre has, each time with a
 HIGHER = 10.0            # barrier so much higher
 WORTH_IT = 1e-3          # a stretch longer than this is better mended by planning again
-RESTARTS = 4             # from the best that was found, where it is not the optimum
-WITHIN = 1e-6            # relative: so much slower, a motion on its limits is within them
+RESTARTS = 8             # from the best that was found, where it is not the optimum
+SLOWER = (1e-6, 0.02)    # than it, first by just enough to be within its limits
 
 
 Begin = Callable[[JointTask, Constraints], Motion | None]
@@ -100,26 +100,27 @@ def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved |
 def _bettered(task: JointTask, grid: Grid, freedom: Freedom, solved: Solved,
               floor: Array | None) -> Solved:
     """Return what is found by solving again from the best so far, until it is the optimum."""
+    tries = list(SLOWER)
     for _ in range(RESTARTS):
-        if solved.gap < CONVERGED * solved.cost or task.should_stop():
+        if not tries or solved.gap < CONVERGED * solved.cost or task.should_stop():
             break
-        again = _solved_from(task, grid, freedom, solved, floor)
+        again = _solved_from(task, grid, freedom, solved, floor, tries[0])
         if again is None or again.cost > (1.0 - WORTH_IT) * solved.cost:
-            break
-        solved = again
+            tries.pop(0)
+        solved = min((s for s in (solved, again) if s is not None), key=lambda s: s.cost)
     return solved
 
 
 def _solved_from(task: JointTask, grid: Grid, freedom: Freedom, solved: Solved,
-                 floor: Array | None) -> Solved | None:
+                 floor: Array | None, slower: float) -> Solved | None:
     """
-    Return what is found from a motion that keeps every limit, which need not be the faster one.
+    Return what is found from a motion that keeps every limit on, run through a part slower.
 
     It may leave room where a motion with stops at the via points has none: at the ends of ranges,
     and between two points that are close together.
     """
-    slower = (1.0 + WITHIN) * solved.cost / freedom.cost(solved.motion.T)
-    start = stretched(solved.motion, slower)
+    factor = (1.0 + slower) * solved.cost / freedom.cost(solved.motion.T)
+    start = stretched(solved.motion, factor)
     return mended(task, grid, freedom, lambda planned, constraints: start, floor)
 
 

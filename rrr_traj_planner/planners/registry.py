@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import NamedTuple
@@ -95,9 +96,14 @@ def register_path(planner_id: str) -> Callable[[CartesianPlanner], CartesianPlan
 
 def planner_ids() -> list[str]:
     """Return every known id, sorted."""
+    _import_planners()
+    return sorted(_planners)
+
+
+@cache
+def _import_planners() -> None:
     for module in iter_modules(rrr_traj_planner.planners.__path__):
         import_module(f'rrr_traj_planner.planners.{module.name}')
-    return sorted(_planners)
 
 
 def planner(planner_id: str) -> Registered:

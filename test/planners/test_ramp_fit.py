@@ -21,7 +21,7 @@ import pytest
 from ramp_cases import ARM, LIMITS, NONE, random_motion, share_of
 from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.planners.ramp_fit import beyond_range, fitted, stretch_to_fit, torque_fits
+from rrr_traj_planner.planners.ramp_fit import beyond_range, fitted, stretch_of_rates, torque_fits
 from rrr_traj_planner.planners.request import JointTask
 
 SEEDS = range(12)
@@ -70,7 +70,7 @@ def test_stretch_is_the_root_of_what_is_exceeded(seed, limit, values, power):
     case = Case(seed)
     for part in (0.5, 0.9, 1.3):
         limits = np.append(part, [2.0, 2.0]) * case.largest(values)
-        assert stretch_to_fit(case.task(**{limit: limits}), case.trajectory) == pytest.approx(
+        assert stretch_of_rates(case.task(**{limit: limits}), case.trajectory) == pytest.approx(
             part ** (-1.0 / power), rel=BETWEEN)
 
 
@@ -146,7 +146,7 @@ def test_a_motion_may_hurry_past_a_pose_that_cannot_be_held_but_not_be_slowed_th
     slower = replace(task, limits=replace(task.limits, max_velocity=0.5 * case.largest('qd')))
     assert fitted(slower, case.trajectory, may_stretch=True) is None
     weaker = replace(task, limits=replace(task.limits, max_effort=0.98 * task.limits.max_effort))
-    assert stretch_to_fit(weaker, case.trajectory) == np.inf
+    assert not torque_fits(weaker, case.trajectory)
     assert fitted(weaker, case.trajectory, may_stretch=True) is None
 
 
