@@ -39,7 +39,8 @@ PER_SAMPLE = 20          # checked points between two samples
 ROOM = 1e-6              # relative, the promise of every planner
 POSITION_ROOM = 1e-9     # rad
 PLACE_ROOM = 1e-8        # m, and s for what rests
-KNOT_WIDTH = 1e-9        # s, the distance over which jerk is looked at for jumps
+KNOT_WIDTH = 1e-9        # s, the distance over which jerk is looked at for jumps,
+PART_OF_PIECE = 1e-4     # less between short pieces, in which jerk rises steeply
 JUMP = 1e-3              # of the largest jerk, that counts as none
 PROGRESS = 250           # tasks after which it is said how far it has come
 PERCENTILES = (50, 90, 99, 100)
@@ -99,8 +100,10 @@ def violations(task: Task, found: Plan) -> list[str]:
 def _jumps(found: Plan, largest: float) -> list[str]:
     """Return the largest jump of jerk at a knot, if there is one."""
     motion = found.trajectory
+    pieces = np.diff(motion.knots)
+    width = np.minimum(KNOT_WIDTH, PART_OF_PIECE * np.minimum(pieces[:-1], pieces[1:]))
     knots = motion.knots[1:-1]
-    before, after = motion(knots - KNOT_WIDTH)[3], motion(knots + KNOT_WIDTH)[3]
+    before, after = motion(knots - width)[3], motion(knots + width)[3]
     jump = np.abs(after - before).max(initial=0.0)
     return [f'jerk jumps by {jump:.3g} rad/s^3'] if jump > JUMP * largest else []
 

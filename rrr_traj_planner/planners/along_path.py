@@ -21,16 +21,19 @@ from collections.abc import Callable
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cartesian_path import CartesianPath
+from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
 from rrr_traj_planner.core.largest_radii import largest_radii
 from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.workspace_check import check_workspace
 from rrr_traj_planner.planners.followable import followable
 from rrr_traj_planner.planners.interior_point import unconverged_note
-from rrr_traj_planner.planners.path_timing import fastest_along, PathTask, Timed
+from rrr_traj_planner.planners.path_timing import kept, nearly_fastest_along, PathTask, Timed
 from rrr_traj_planner.planners.request import CartesianTask
 
 Family = Callable[[Array, ArrayLike], CartesianPath]
 
+SMALLER = 0.7    # radii, than those before
+WORTH_IT = 1e-3  # of the time, that smaller radii must gain
 STEP = 1e-3  # rad/s^2: joint accelerations that step by more are told of
 
 
@@ -48,7 +51,8 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
     Returns
     -------
     PathTrajectory
-        On the path of the largest radii that the deviation allows.
+        On the path whose radii are the largest that the deviation allows, or part of them where
+        the motion is faster then.
 
     Raises
     ------
@@ -59,13 +63,33 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
 
     """
     path = largest_radii(family, task.tips, task.max_deviation)
+    asked = _timing(task, path)
+    timed = nearly_fastest_along(asked)
+    while len(path.radii) and not task.should_stop():
+        # smaller ones bend more, but their way is another one: now and then the faster
+        path = family(task.tips, SMALLER * path.radii)
+        if (path.deviation > task.max_deviation).any():
+            break
+        try:
+            smaller = _timing(task, path)
+            again = nearly_fastest_along(smaller)
+        except (UnreachableError, LimitViolationError):
+            break
+        if again.trajectory.duration >= (1.0 - WORTH_IT) * timed.trajectory.duration:
+            break
+        asked, timed = smaller, again
+    timed = kept(asked, timed)
+    return timed.trajectory.noted(_note(task, timed))
+
+
+def _timing(task: CartesianTask, path: CartesianPath) -> PathTask:
+    """Return what is asked of the timing, after a check that the arm can follow the path."""
     joints = check_workspace(task.model, task.limits, path, task.elbow, task.start)
     arm_path = ArmPath(task.model, task.limits, path, task.elbow, joints.start)
     limits, cruise = followable(
         task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
-    timed = fastest_along(PathTask(
-        arm_path, limits, cruise, task.max_tip_speed, task.steady_zones, task.should_stop))
-    return timed.trajectory.noted(_note(task, timed))
+    return PathTask(
+        arm_path, limits, cruise, task.max_tip_speed, task.steady_zones, task.should_stop)
 
 
 def _note(task: CartesianTask, timed: Timed) -> str:

@@ -92,7 +92,30 @@ def fastest_along(task: PathTask) -> Timed:
     Returns
     -------
     Timed
-        Its limits kept between the points that are looked at too.
+        Within every limit, between the points that are looked at too.
+
+    Raises
+    ------
+    LimitViolationError
+        If the motors cannot hold the arm somewhere on the path; with the place.
+
+    """
+    return kept(task, nearly_fastest_along(task))
+
+
+def nearly_fastest_along(task: PathTask) -> Timed:
+    """
+    Return the fastest motion along a path as a table of the path has it.
+
+    Parameters
+    ----------
+    task : PathTask
+        Path and limits.
+
+    Returns
+    -------
+    Timed
+        Within limits but for what the table's interpolation leaves.
 
     Raises
     ------
@@ -126,10 +149,28 @@ def fastest_along(task: PathTask) -> Timed:
             break
         margins = margins + LARGER * excess
     _, motion, gap = min(found, key=lambda f: f[0])
-    trajectory = _trajectory(task, table, grid, motion)
-    # what the table's interpolation leaves
-    factor = _exact_stretch(task, trajectory)
-    return Timed(trajectory.stretched(factor) if factor > 1.0 else trajectory, gap)
+    return Timed(_trajectory(task, table, grid, motion), gap)
+
+
+def kept(task: PathTask, timed: Timed) -> Timed:
+    """
+    Return a motion slowed by what the table's interpolation leaves, measured exactly.
+
+    Parameters
+    ----------
+    task : PathTask
+        Path and limits.
+    timed : Timed
+        As of `nearly_fastest_along`.
+
+    Returns
+    -------
+    Timed
+        Within every limit.
+
+    """
+    factor = _exact_stretch(task, timed.trajectory)
+    return timed._replace(trajectory=timed.trajectory.stretched(factor)) if factor > 1.0 else timed
 
 
 def _in_zones(task: PathTask, table: PathTable) -> BoolArray:

@@ -24,6 +24,7 @@ from rrr_traj_planner.core.inverse_kinematics import elbow_of, inverse_kinematic
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.along_path import SMALLER, WORTH_IT
 from rrr_traj_planner.planners.request import PlanningRequest
 
 SEEDS = range(16)
@@ -90,7 +91,7 @@ def test_via_points_are_hit_on_the_branch_that_was_asked_for(seed):
 @each_seed
 def test_tip_is_on_the_path_and_within_the_deviation_of_the_polyline(seed):
     m = measured(seed)
-    path, points = m.case.arm_path.path, m.case.request.via_points
+    path, points = m.motion.arm_path.path, m.case.request.via_points
     s = np.clip(m.motion.progress(m.t)[0], 0.0, path.length)
     assert np.linalg.norm(m.tip - path(s)[0], axis=1).max() <= ON_PATH
     nearest = np.full(len(m.tip), np.inf)
@@ -106,10 +107,28 @@ def test_tip_goes_on_all_the_time_and_does_not_stop_at_via_points(seed):
     m = measured(seed)
     s, sd, _, _ = m.motion.progress(m.t)
     assert (np.diff(s) >= -1e-14 * s[-1]).all()
-    assert s[[0, -1]] == pytest.approx((0.0, m.case.arm_path.path.length), abs=1e-12)
+    assert s[[0, -1]] == pytest.approx((0.0, m.motion.arm_path.path.length), abs=1e-12)
     inner = m.motion.progress(m.plan.via_times[1:-1])[1]
     assert (inner > SLOWEST * sd.max()).all()
     assert (sd[1:-1] > 0.0).all()
+
+
+@each_seed
+def test_radii_are_the_largest_or_smaller_where_that_is_faster(seed):
+    m = measured(seed)
+    largest = m.case.arm_path.path.radii
+    if not len(largest):
+        return
+    part = m.motion.arm_path.path.radii / largest
+    steps = np.log(part[0]) / np.log(SMALLER)
+    assert part == pytest.approx(SMALLER ** round(steps), rel=1e-6)
+    gained = 1.0 - m.motion.duration / m.case.timed().duration
+    assert gained >= (0.5 * WORTH_IT * round(steps) if round(steps) else -2.0 * WORTH_IT)
+
+
+def test_some_radii_are_smaller():
+    assert any((measured(seed).motion.arm_path.path.radii
+                < 0.9 * measured(seed).case.arm_path.path.radii).any() for seed in SEEDS)
 
 
 @each_seed
