@@ -61,7 +61,7 @@ def random(count: int = TASKS, seed: int = SEED, say: bool = False) -> list[Row]
         for name, target, (ours, best) in ((MEDIAN, median, times[len(times) // 2]),
                                            (WORST, worst, times[-1])):
             rows.append(compared(f'{count} random tasks, {label}: time_optimal / limit, {name}',
-                                 target, ours, best))
+                                 target, ours, best, count=len(times)))
     return rows
 
 
@@ -76,7 +76,7 @@ def peers(count: int = PEER_TASKS, seed: int = SEED) -> list[Row]:
         times = sorted(((_own(task), theirs(task.joint_task())) for task in chosen),
                        key=lambda t: t[0] / t[1])
         rows.append(compared(f'{len(chosen)} random tasks, v, a, jerk 10: time_optimal / {name}, '
-                             f'{MEDIAN}', target, *times[len(times) // 2]))
+                             f'{MEDIAN}', target, *times[len(times) // 2], count=len(times)))
     return rows
 
 

@@ -22,14 +22,17 @@ from dataclasses import replace
 from itertools import count, islice
 import math
 
-from measuring import compared, REPETITIONS, Row, seconds, setting, side_by_side, table
+from measuring import compared, in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
 from path_tasks import path_task, PLANNERS, task_path
 from peers import both, GRID_POINTS, torque_of
 from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.path_trajectory import ArmPath
 from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.planners.followable import followable
+from rrr_traj_planner.planners.path_timing import fastest_along, PathTask
 from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.request import never
 from tasks import gentle, NONE, STRONG, Task, WEAK
 from tasks import table as thesis_table
 from toppra import algorithm, constraint
@@ -37,7 +40,8 @@ from toppra.interpolator import AbstractGeometricPath
 
 PATHS = 24                    # random ones for each planner
 RANDOM_REPETITIONS = 3        # of planning each of them
-MOTION, PLANNING = 1.08, 2.0  # the most that is asked for
+MOTION, PLANNING = 1.08, 2.0  # the most that is asked for, of plan()
+TIMING = {'line_arc': 1.0, 'line_polynomial': None}  # likewise, of timing a path that is ready
 PLAIN = 20                    # from the seed of one plain task to the next
 
 
@@ -94,14 +98,16 @@ def tables(repetitions: int = REPETITIONS) -> list[Row]:
             arm_path = _arm_path(task)
             label = f'{task.name}: {planner_id} / TOPP-RA'
             rows.append(compared(label, MOTION, _own(task), toppra_duration(task, arm_path)))
-            rows.append(compared(f'planning, {label}', PLANNING, *(1e3 * x for x in side_by_side(
-                lambda task=task: _own(task),
-                lambda task=task, arm_path=arm_path: toppra_duration(task, arm_path),
-                repetitions)), 'ms'))
+            medians = in_turns(
+                lambda: _timed(task, arm_path), lambda: toppra_duration(task, arm_path),
+                lambda: _own(task), repetitions=repetitions)
+            rows.append(timed(f'planning, {label}, the path ready', TIMING[planner_id], medians))
+            rows.append(timed(f'planning, {label}, plan()', PLANNING, medians, ours=2))
     return rows
 
 
-def random(paths: int = PATHS, say: bool = False) -> list[Row]:
+def random(paths: int = PATHS, repetitions: int = RANDOM_REPETITIONS,
+           say: bool = False) -> list[Row]:
     """Return the median and the worst ratio over random paths of random arms and limits."""
     rows = []
     for first, planner_id in enumerate(PLANNERS):
@@ -109,22 +115,21 @@ def random(paths: int = PATHS, say: bool = False) -> list[Row]:
         for task in islice(_random_tasks(first), paths):
             arm_path = _arm_path(task)
             motion.append((_own(task), toppra_duration(task, arm_path)))
-            planning.append(np.median([(
-                seconds(lambda task=task: _own(task)),
-                seconds(lambda task=task, arm_path=arm_path: toppra_duration(task, arm_path)))
-                for _ in range(RANDOM_REPETITIONS)], axis=0))
+            planning.append(in_turns(
+                lambda: _own(task), lambda: toppra_duration(task, arm_path),
+                repetitions=repetitions).times)
             if say:
                 print(f'{planner_id}, {task.name}: {len(task.request.via_points)} points, '
                       f'{motion[-1][0]:.4f} s / {motion[-1][1]:.4f} s = '
                       f'{motion[-1][0] / motion[-1][1]:.4f}; planning {planning[-1][0]:.3f} s / '
                       f'{planning[-1][1]:.3f} s', flush=True)
         for what, pairs, target, scale, unit in (
-                ('', motion, MOTION, 1.0, 's'), ('planning, ', planning, PLANNING, 1e3, 'ms')):
+                ('', motion, MOTION, 1.0, 's'), ('planning, plan(), ', planning, PLANNING, 1e3, 'ms')):
             pairs = sorted(pairs, key=lambda pair: pair[0] / pair[1])
             for label, pair in (('median', pairs[len(pairs) // 2]), ('worst', pairs[-1])):
                 rows.append(compared(
                     f'{what}{paths} random paths, v, a, torque: {planner_id} / TOPP-RA, {label}',
-                    target, *(scale * x for x in pair), unit))
+                    target, *(scale * x for x in pair), unit, paths))
     return rows
 
 
@@ -140,6 +145,15 @@ def _arm_path(task: Task) -> ArmPath:
     path = task_path(task, task.request.via_points)
     joints = check_workspace(task.model, task.limits, path, task.request.elbow)
     return ArmPath(task.model, task.limits, path, task.request.elbow, joints.start)
+
+
+def _timed(task: Task, arm_path: ArmPath) -> float:
+    """Return how long our motion along a path that is ready takes [s]."""
+    limits, cruise = followable(task.model, task.limits, arm_path(arm_path.path.via_s).q,
+                                task.request.sample_period)
+    return fastest_along(PathTask(
+        arm_path, limits, cruise, task.request.max_tip_speed, task.request.steady_zones,
+        never)).trajectory.duration
 
 
 def _own(task: Task) -> float:

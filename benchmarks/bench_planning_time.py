@@ -12,72 +12,127 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How long planning takes, beside TOPP-RA, and how it grows with the via points."""
+"""How long planning takes, beside TOPP-RA and without compiled code, and how it grows."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+import math
 
-from measuring import compared, REPETITIONS, Row, setting, side_by_side, table
+from measuring import in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
 from peers import toppra_duration
+from rrr_traj_planner.planners import compiled
 from rrr_traj_planner.planners.planning import plan
-from tasks import full_torque, gentle, random_task, Task, WEAK
+from rrr_traj_planner.planners.registry import planner
+from tasks import full_torque, gentle, NONE, random_task, Task, WEAK
 from tasks import table as thesis_table
 
 SEED = 7
-FEW, MANY, GROWTH = 10, 100, 12.0  # via points, and by how much longer the many may take
-GROWTH_REPETITIONS = 3
+GROWTH = 12.0         # by how much longer ten times the via points may take
+GROWN = ((100, 10), (1000, 100))  # via points
+LONG_PERIOD = 0.05    # s between samples: an answer through 1,000 random points has 60,000
+GROWTH_BUDGET = 20.0  # s for one row
 
 
 def beside_toppra(repetitions: int = REPETITIONS) -> list[Row]:
-    """Return our planning times, from request to checked answer, over TOPP-RA's."""
+    """Return our planning times over TOPP-RA's, from joint via points and from the request."""
     rows = []
-    for label, limits, planners in (
+    for label, task, targets in _small_tasks():
+        given = task.joint_task()
+        for planner_id, target in targets.items():
+            medians = in_turns(
+                lambda: planner(planner_id).plan(given),
+                lambda: toppra_duration(given),
+                _planning(task, planner_id), repetitions=repetitions)
+            rows.append(timed(f'planning, {label}: {planner_id} / TOPP-RA', target, medians))
+            rows.append(timed(f'planning, {label}: plan() with {planner_id} / TOPP-RA', None,
+                              medians, ours=2))
+    return rows
+
+
+def compiled_beside_numpy(repetitions: int = REPETITIONS) -> list[Row]:
+    """Return planning times with compiled code over those of the same planner without."""
+    if compiled.LIBRARY is None:
+        print('no compiled code here: its rows are left out', flush=True)
+        return []
+    actions = {}
+    for label, task, targets in _small_tasks():
+        for planner_id in targets:
+            actions[f'{label}: {planner_id}'] = _planning(task, planner_id)
+    path = thesis_table('6.1', replace(gentle(WEAK), max_jerk=NONE), '')
+    actions['table 6.1, v, a, torque: line_arc'] = _planning(path, 'line_arc')
+    return [timed(f'planning, {label}, compiled / NumPy', None, in_turns(
+        action, _by_numpy(action), repetitions=repetitions)) for label, action in actions.items()]
+
+
+def growth(repetitions: int = REPETITIONS, budget: float = GROWTH_BUDGET) -> list[Row]:
+    """Return the planning times of many via points over those of few."""
+    rows = []
+    for many, few in GROWN:
+        for label, limits, planner_ids in (
+                ('v, a, jerk', gentle(), ('cycloid', 'time_optimal')),
+                ('v, torque', full_torque(WEAK), ('time_optimal',))):
+            tasks = [_random(n, limits, LONG_PERIOD) for n in (many, few)]
+            for planner_id in planner_ids:
+                rows.append(timed(
+                    f'planning, {planner_id}, {label}: {many:,} via points / {few}', GROWTH,
+                    in_turns(*(_planning(task, planner_id) for task in tasks),
+                             repetitions=repetitions, budget=budget)))
+    return rows
+
+
+def _small_tasks() -> Iterator[tuple[str, Task, dict[str, float]]]:
+    """Give label, task and the targets of planners."""
+    for label, limits, targets in (
             ('v, a', gentle(), {'cycloid': 0.1, 'time_optimal': 1.0}),
             ('v, torque', full_torque(WEAK), {'time_optimal': 1.0})):
         for task in (thesis_table('6.1', limits, label), _random(8, limits)):
-            given = task.joint_task()
-            for planner_id, target in planners.items():
-                ours, theirs = side_by_side(_planning(task, planner_id),
-                                            lambda given=given: toppra_duration(given),
-                                            repetitions)
-                rows.append(compared(
-                    f'planning, {len(given.points)} via points, {label}: '
-                    f'{planner_id} / TOPP-RA', target, 1e3 * ours, 1e3 * theirs, 'ms'))
-    return rows
+            yield f'{len(task.request.via_points)} via points, {label}', task, targets
 
 
-def growth(repetitions: int = GROWTH_REPETITIONS) -> list[Row]:
-    """Return the planning times of many via points over those of few."""
-    rows = []
-    for label, limits, planner_ids in (('v, a, jerk', gentle(), ('cycloid', 'time_optimal')),
-                                       ('torque', full_torque(WEAK), ('time_optimal',))):
-        many, few = (_random(n, limits) for n in (MANY, FEW))
-        for planner_id in planner_ids:
-            long, short = side_by_side(_planning(many, planner_id), _planning(few, planner_id),
-                                       repetitions)
-            rows.append(compared(f'planning, {planner_id}, {label}: {MANY} via points / {FEW}',
-                                 GROWTH, 1e3 * long, 1e3 * short, 'ms'))
-    return rows
+def _by_numpy(action: Callable[[], object]) -> Callable[[], object]:
+    def run() -> object:
+        with _without_compiled_code():
+            return action()
+
+    return run
 
 
-def _planning(task: Task, planner_id: str):
+@contextmanager
+def _without_compiled_code() -> Iterator[None]:
+    """Do what RRR_TRAJ_PLANNER_COMPILED=0 does."""
+    library = compiled.LIBRARY
+    compiled.LIBRARY = None
+    try:
+        yield
+    finally:
+        compiled.LIBRARY = library
+
+
+def _planning(task: Task, planner_id: str) -> Callable[[], object]:
     request = task.asked_of(planner_id)
     return lambda: plan(task.model, task.limits, request)
 
 
-def _random(points: int, limits: object) -> Task:
-    return random_task(np.random.default_rng(SEED), limits, points, f'{points} random points')
+def _random(points: int, limits: object, sample_period: float = 0.01) -> Task:
+    task = random_task(np.random.default_rng(SEED), limits, points, f'{points} random points')
+    return replace(task, request=replace(task.request, sample_period=sample_period))
 
 
 def main() -> None:
     """Print every ratio."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--repetitions', type=int, default=REPETITIONS)
+    parser.add_argument('--budget', type=float, default=math.inf,
+                        help='seconds for each row of growth, then fewer repetitions do')
     options = parser.parse_args()
     print(setting())
-    print(table(beside_toppra(options.repetitions) + growth()))
+    print(table(beside_toppra(options.repetitions) + compiled_beside_numpy(options.repetitions)
+                + growth(options.repetitions, options.budget)))
 
 
 if __name__ == '__main__':
