@@ -109,9 +109,9 @@ def main() -> None:
     """Print every ratio."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--repetitions', type=int, default=REPETITIONS)
-    print_rows = rows(parser.parse_args().repetitions)
+    found = rows(parser.parse_args().repetitions)
     print(setting())
-    print(table(print_rows))
+    print(table(found))
 
 
 if __name__ == '__main__':

@@ -19,6 +19,7 @@ from __future__ import annotations
 import argparse
 from array import array
 from collections.abc import Callable
+from copy import copy
 
 from measuring import in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
@@ -52,6 +53,7 @@ def rows(repetitions: int = REPETITIONS) -> list[Row]:
         'fields set to rows of NumPy': (lambda: _by_rows(points), TARGET),
         'fields set to lists': (lambda: _by_lists(points), TARGET),
         'points made with arguments': (lambda: _by_arguments(points), TARGET),
+        'copies of an empty point': (lambda: _by_copies(points), TARGET),
         'deserialised, the bytes ready': (
             lambda: deserialize_message(wire, JointTrajectory), TARGET),
         'private fields, no constructor': (lambda: _by_private_fields(points), None)}
@@ -111,6 +113,17 @@ def _by_arguments(points: TrajectoryPoints) -> JointTrajectory:
         filled.append(JointTrajectoryPoint(
             positions=q, velocities=qd, accelerations=qdd,
             time_from_start=Duration(sec=sec, nanosec=nanosec)))
+    return _message(filled)
+
+
+def _by_copies(points: TrajectoryPoints) -> JointTrajectory:
+    filled, empty, start = [], JointTrajectoryPoint(), Duration()
+    for stamp, q, qd, qdd in zip(_stamps(points), *_slices(points)):
+        point, since = copy(empty), copy(start)
+        point.positions, point.velocities, point.accelerations = q, qd, qdd
+        since.sec, since.nanosec = divmod(stamp, SECOND)
+        point.time_from_start = since
+        filled.append(point)
     return _message(filled)
 
 

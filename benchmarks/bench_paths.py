@@ -44,6 +44,8 @@ MOTION, PLANNING = 1.08, 2.0  # the most that is asked for, of plan()
 TIMING = {'line_arc': 1.0, 'line_polynomial': None}  # likewise, of timing a path that is ready
 PLAIN = 20                    # from the seed of one plain task to the next
 
+Pair = tuple[float, float]    # of ours and theirs
+
 
 class PathInJointSpace(AbstractGeometricPath):
     """An arm's path as TOPP-RA takes it, by arc length."""
@@ -89,21 +91,20 @@ def toppra_duration(task: Task, arm_path: ArmPath) -> float:
 
 def tables(repetitions: int = REPETITIONS) -> list[Row]:
     """Return times of motions and of planning for the thesis's tables."""
-    rows = []
-    for planner_id in PLANNERS:
-        for name, effort in (('6.1', WEAK), ('6.3', STRONG)):
-            task = thesis_table(name, replace(gentle(effort), max_jerk=NONE), 'v 1, a 1, torque')
-            task = replace(task, request=replace(
-                task.request, planner_id=planner_id, elbow='up'))
-            arm_path = _arm_path(task)
-            label = f'{task.name}: {planner_id} / TOPP-RA'
-            rows.append(compared(label, MOTION, _own(task), toppra_duration(task, arm_path)))
-            medians = in_turns(
-                lambda: _timed(task, arm_path), lambda: toppra_duration(task, arm_path),
-                lambda: _own(task), repetitions=repetitions)
-            rows.append(timed(f'planning, {label}, the path ready', TIMING[planner_id], medians))
-            rows.append(timed(f'planning, {label}, plan()', PLANNING, medians, ours=2))
-    return rows
+    return [row for planner_id in PLANNERS for name, effort in (('6.1', WEAK), ('6.3', STRONG))
+            for row in _table(planner_id, name, effort, repetitions)]
+
+
+def _table(planner_id: str, name: str, effort: object, repetitions: int) -> list[Row]:
+    task = thesis_table(name, replace(gentle(effort), max_jerk=NONE), 'v 1, a 1, torque')
+    task = replace(task, request=replace(task.request, planner_id=planner_id, elbow='up'))
+    arm_path, label = _arm_path(task), f'{task.name}: {planner_id} / TOPP-RA'
+    medians = in_turns(
+        lambda: _timed(task, arm_path), lambda: toppra_duration(task, arm_path),
+        lambda: _own(task), repetitions=repetitions)
+    return [compared(label, MOTION, _own(task), toppra_duration(task, arm_path)),
+            timed(f'planning, {label}, the path ready', TIMING[planner_id], medians),
+            timed(f'planning, {label}, plan()', PLANNING, medians, ours=2)]
 
 
 def random(paths: int = PATHS, repetitions: int = RANDOM_REPETITIONS,
@@ -111,26 +112,29 @@ def random(paths: int = PATHS, repetitions: int = RANDOM_REPETITIONS,
     """Return the median and the worst ratio over random paths of random arms and limits."""
     rows = []
     for first, planner_id in enumerate(PLANNERS):
-        motion, planning = [], []
-        for task in islice(_random_tasks(first), paths):
-            arm_path = _arm_path(task)
-            motion.append((_own(task), toppra_duration(task, arm_path)))
-            planning.append(in_turns(
-                lambda: _own(task), lambda: toppra_duration(task, arm_path),
-                repetitions=repetitions).times)
-            if say:
-                print(f'{planner_id}, {task.name}: {len(task.request.via_points)} points, '
-                      f'{motion[-1][0]:.4f} s / {motion[-1][1]:.4f} s = '
-                      f'{motion[-1][0] / motion[-1][1]:.4f}; planning {planning[-1][0]:.3f} s / '
-                      f'{planning[-1][1]:.3f} s', flush=True)
-        for what, pairs, target, scale, unit in (
-                ('', motion, MOTION, 1.0, 's'), ('planning, plan(), ', planning, PLANNING, 1e3, 'ms')):
+        found = [_both(task, repetitions, say) for task in islice(_random_tasks(first), paths)]
+        for what, target, scale, unit, pairs in (
+                ('', MOTION, 1.0, 's', [motion for motion, _ in found]),
+                ('planning, plan(), ', PLANNING, 1e3, 'ms', [times for _, times in found])):
             pairs = sorted(pairs, key=lambda pair: pair[0] / pair[1])
             for label, pair in (('median', pairs[len(pairs) // 2]), ('worst', pairs[-1])):
                 rows.append(compared(
                     f'{what}{paths} random paths, v, a, torque: {planner_id} / TOPP-RA, {label}',
                     target, *(scale * x for x in pair), unit, paths))
     return rows
+
+
+def _both(task: Task, repetitions: int, say: bool) -> tuple[Pair, Pair]:
+    """Return our and TOPP-RA's durations of motions, and of planning them [s]."""
+    arm_path = _arm_path(task)
+    motion = _own(task), toppra_duration(task, arm_path)
+    planning = in_turns(lambda: _own(task), lambda: toppra_duration(task, arm_path),
+                        repetitions=repetitions).times
+    if say:
+        print(f'{task.request.planner_id}, {task.name}: {len(task.request.via_points)} points, '
+              f'{motion[0]:.4f} s / {motion[1]:.4f} s = {motion[0] / motion[1]:.4f}; '
+              f'planning {planning[0]:.3f} s / {planning[1]:.3f} s', flush=True)
+    return motion, planning
 
 
 def _random_tasks(first: int) -> Iterator[Task]:
@@ -151,8 +155,9 @@ def _timed(task: Task, arm_path: ArmPath) -> float:
     """Return how long our motion along a path that is ready takes [s]."""
     limits, cruise = followable(task.model, task.limits, arm_path(arm_path.path.via_s).q,
                                 task.request.sample_period)
+    fresh = replace(arm_path)  # with nothing remembered
     return fastest_along(PathTask(
-        arm_path, limits, cruise, task.request.max_tip_speed, task.request.steady_zones,
+        fresh, limits, cruise, task.request.max_tip_speed, task.request.steady_zones,
         never)).trajectory.duration
 
 

@@ -40,18 +40,18 @@ GROWTH_BUDGET = 20.0  # s for one row
 
 def beside_toppra(repetitions: int = REPETITIONS) -> list[Row]:
     """Return our planning times over TOPP-RA's, from joint via points and from the request."""
-    rows = []
-    for label, task, targets in _small_tasks():
-        given = task.joint_task()
-        for planner_id, target in targets.items():
-            medians = in_turns(
-                lambda: planner(planner_id).plan(given),
-                lambda: toppra_duration(given),
-                _planning(task, planner_id), repetitions=repetitions)
-            rows.append(timed(f'planning, {label}: {planner_id} / TOPP-RA', target, medians))
-            rows.append(timed(f'planning, {label}: plan() with {planner_id} / TOPP-RA', None,
-                              medians, ours=2))
-    return rows
+    return [row for label, task, targets in _small_tasks() for planner_id, target in
+            targets.items() for row in _beside(label, task, planner_id, target, repetitions)]
+
+
+def _beside(label: str, task: Task, planner_id: str, target: float,
+            repetitions: int) -> list[Row]:
+    given, method = task.joint_task(), planner(planner_id).plan
+    medians = in_turns(lambda: method(given), lambda: toppra_duration(given),
+                       _planning(task, planner_id), repetitions=repetitions)
+    return [timed(f'planning, {label}: {planner_id} / TOPP-RA', target, medians),
+            timed(f'planning, {label}: plan() with {planner_id} / TOPP-RA', None, medians,
+                  ours=2)]
 
 
 def compiled_beside_numpy(repetitions: int = REPETITIONS) -> list[Row]:

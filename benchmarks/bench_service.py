@@ -41,7 +41,8 @@ def rows(repetitions: int = REPETITIONS) -> list[Row]:
     task = thesis_table('6.1', gentle(WEAK), '')
     period = _period(plan(task.model, task.limits, task.request).trajectory, POINTS)
     request = plan_request(TIPS['6.1'], sample_period=period)
-    with Process(sys.executable, SERVER, period) as server, Client() as client:
+    with Client() as client, Process(
+            sys.executable, SERVER, period, '--ros-args', '--log-level', 'error') as server:
         ask, echo = (client.service(server, name) for name in ('plan_trajectory', 'echo'))
         for call in (ask, echo):
             found = len(call(request).trajectory.points)

@@ -12,47 +12,74 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Run the quick form of every benchmark, print one table and write build/bench.json."""
+"""Run the quick form of every benchmark: one table, build/bench.json and build/bench.png."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 import json
 import os
 from pathlib import Path
+import sys
+import time
 
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')  # before numpy: for ours and theirs alike
 
+import bench_arm  # noqa: E402
+import bench_dynamics  # noqa: E402
+import bench_messages  # noqa: E402
 import bench_motion_time  # noqa: E402
 import bench_paths  # noqa: E402
 import bench_planning_time  # noqa: E402
+import bench_processes  # noqa: E402
+import bench_service  # noqa: E402
 from measuring import Row, setting, table  # noqa: E402
+from ratio_plot import draw  # noqa: E402
 
 QUICK_TASKS = 14
 QUICK_PATHS = 4
-RESULT = Path(__file__).parents[1] / 'build' / 'bench.json'
+BUILD = Path(__file__).parents[1] / 'build'
+RESULT, PICTURE = BUILD / 'bench.json', BUILD / 'bench.png'
 
 
-def rows(tasks: int) -> list[Row]:
-    """Return every row, in the order of the table."""
-    return [*bench_planning_time.beside_toppra(), *bench_planning_time.growth(),
-            *bench_motion_time.tables(), *bench_motion_time.random(tasks),
-            *bench_motion_time.peers(), *bench_paths.tables(), *bench_paths.random(QUICK_PATHS)]
+def groups(tasks: int) -> dict[str, Callable[[], list[Row]]]:
+    """Return what is measured, in the order of the table."""
+    return {
+        'planning beside TOPP-RA': bench_planning_time.beside_toppra,
+        'compiled code': bench_planning_time.compiled_beside_numpy,
+        'motions beside the limit': lambda: [
+            *bench_motion_time.tables(), *bench_motion_time.random(tasks)],
+        'motions beside TOPP-RA and Ruckig': bench_motion_time.peers,
+        'paths': lambda: [*bench_paths.tables(), *bench_paths.random(QUICK_PATHS)],
+        'dynamics': bench_dynamics.rows,
+        'simulated arm': bench_arm.rows,
+        'messages': bench_messages.rows,
+        'service': bench_service.rows,
+        'processes': bench_processes.rows,
+        'growth with the via points': bench_planning_time.growth}
 
 
 def main() -> None:
-    """Print and write the rows."""
+    """Print, write and draw the rows."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--tasks', type=int, default=QUICK_TASKS,
                         help='random tasks of each kind whose motion time is compared')
     options = parser.parse_args()
     print(setting(), flush=True)
-    found = rows(options.tasks)
+    found: list[Row] = []
+    for name, measured in groups(options.tasks).items():
+        began = time.monotonic()
+        found += measured()
+        print(f'{name}: {time.monotonic() - began:.0f} s', file=sys.stderr, flush=True)
     print(table(found))
-    RESULT.parent.mkdir(exist_ok=True)
-    RESULT.write_text(json.dumps([row._asdict() for row in found], indent=1) + '\n')
-    print(f'{sum(row.met for row in found)} of {len(found)} targets met; '
-          f'written to {RESULT.relative_to(RESULT.parents[1])}')
+    BUILD.mkdir(exist_ok=True)
+    RESULT.write_text(json.dumps([row.as_json() for row in found], indent=1,
+                                 allow_nan=False) + '\n')
+    asked = [row for row in found if row.target is not None]
+    draw(asked, setting(), PICTURE)
+    print(f'{sum(bool(row.met) for row in asked)} of {len(asked)} targets met, {len(found)} rows; '
+          f'written to {RESULT.relative_to(BUILD.parent)} and {PICTURE.relative_to(BUILD.parent)}')
 
 
 if __name__ == '__main__':

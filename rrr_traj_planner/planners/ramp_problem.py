@@ -25,7 +25,6 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.interior_point import (
     Centre,
-    CONVERGED,
     is_within,
     minimise,
     Outcome,
@@ -45,6 +44,7 @@ PARTS_OF_ROOM = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)
 APPROACHES = 5           # rounds of coming nearer to room that no centre has, each time with a
 HIGHER = 10.0            # barrier so much higher
 WORTH_IT = 1e-3          # a stretch longer than this is better mended by planning again
+POOR = 1e-2              # relative gap of what is solved again
 RESTARTS = 8             # from the best that was found, where it is not the optimum
 SLOWER = (1e-6, 0.02)    # than it, first by just enough to be within its limits
 
@@ -102,7 +102,7 @@ def _bettered(task: JointTask, grid: Grid, freedom: Freedom, solved: Solved,
     """Return what is found by solving again from the best so far, until it is the optimum."""
     tries = list(SLOWER)
     for _ in range(RESTARTS):
-        if not tries or solved.gap < CONVERGED * solved.cost or task.should_stop():
+        if not tries or solved.gap < POOR * solved.cost or task.should_stop():
             break
         again = _solved_from(task, grid, freedom, solved, floor, tries[0])
         if again is None or again.cost > (1.0 - WORTH_IT) * solved.cost:
