@@ -28,7 +28,7 @@ from rrr_traj_planner.core.trajectory import times_within, Trajectory
 
 # Torque is analytic between knots. So many steps there, none longer than LONGEST_STEP unless the
 # motion is so slow that MOST_STEPS are enough, put every high peak in a bracket of its own.
-STEPS_PER_INTERVAL = 20
+STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s
 

@@ -47,7 +47,7 @@ from rrr_traj_planner.planners.path_constraints import (
 )
 from rrr_traj_planner.planners.path_start import cycloid_along, uniform_along
 from rrr_traj_planner.planners.path_table import Demand, PathTable
-from rrr_traj_planner.planners.ramp_chain import Grid, Motion
+from rrr_traj_planner.planners.ramp_chain import Grid, grid_of, Motion
 from rrr_traj_planner.planners.ramp_look import near_points
 from rrr_traj_planner.planners.ramp_moves import stretched
 from rrr_traj_planner.planners.ramp_newton import Freedom
@@ -123,7 +123,7 @@ def nearly_fastest_along(task: PathTask) -> Timed:
         If the motors cannot hold the arm somewhere on the path; with the place.
 
     """
-    table, grid = PathTable(task.arm_path), Grid(RAMPS, task.cruise)
+    table, grid = PathTable(task.arm_path), grid_of(RAMPS, task.cruise)
     _refuse_heavy(task, table)
     N = len(table.ends) - 1
     freedom = Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 1), bool))

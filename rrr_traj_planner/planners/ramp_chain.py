@@ -22,6 +22,7 @@ every node and closed-form at its peaks, and position and velocity are linear in
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -46,6 +47,25 @@ class States(NamedTuple):
     qd: Array
     qdd: Array
     jerk: Array  # the peak of each ramp, signed, shape (N, n, 3)
+
+
+@lru_cache(maxsize=64)
+def grid_of(n: int, cruise: float) -> Grid:
+    """
+    Return the grid of so many ramps, made once.
+
+    Parameters
+    ----------
+    n, cruise
+        As of `Grid`.
+
+    Returns
+    -------
+    Grid
+        Not to be changed.
+
+    """
+    return Grid(n, cruise)
 
 
 class Grid:

@@ -92,19 +92,16 @@ class Look:
         by_torque = np.where(np.isinf(limits.max_effort), 0.0, share).max()
         return float(max(factor, np.sqrt(by_torque)))
 
+    @cached_property
     def beyond_range(self) -> Array:
         """
         Return how far each joint leaves its range in each segment, between looks too.
 
-        Returns
-        -------
-        ndarray, shape (2, N, 3)
-            Above and below [rad]; 0 within.
-
+        Shape (2, N, 3), above and below [rad]; 0 within.
         """
         limits, q = self._task.limits, self.q
-        turns = self.qd[:, :-1] * self.qd[:, 1:] < 0.0
-        bend = np.where(turns, np.maximum(_bends(q)[:, :-1], _bends(q)[:, 1:]), 0.0)
+        turns, bend = self.qd[:, :-1] * self.qd[:, 1:] < 0.0, _bends(q)
+        bend = np.where(turns, np.maximum(bend[:, :-1], bend[:, 1:]), 0.0)
         most, least = (f(q[:, :-1], q[:, 1:]) for f in (np.maximum, np.minimum))
         beyond = np.stack(((most + bend - limits.max_position).max(axis=1),
                            (limits.min_position - least + bend).max(axis=1)))

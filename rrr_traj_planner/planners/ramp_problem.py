@@ -154,23 +154,25 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
     approaches = 0
     tried: list[tuple[Outcome, Motion]] = []  # what was found, from which start
     for _ in range(REPAIRS):
-        asked = room
-        if approaches < APPROACHES:
+        asked, constraints = room, room.constraints(task, grid, floor)
+        start = _last_within(constraints, centres)
+        if start is None and centres and approaches < APPROACHES:
             nearer = _nearer(task, grid, room, floor, centres, freedom, HIGHER ** approaches)
-            if nearer is not None and nearer.centres:
-                centres += nearer.centres
+            if nearer:
+                centres += nearer
                 approaches += 1
                 continue
         approaches = 0
-        begun = _begun(task, grid, room, floor, centres, begin)
-        if begun is None:
-            break
-        room, constraints, start = begun
+        if start is None:
+            begun = _begun(task, grid, room, floor, begin)
+            if begun is None:
+                break
+            room, constraints, start = begun
         slow = slow or start.motion
         outcome = minimise(constraints, start, freedom._replace(still=room.still),
                            task.should_stop)
         look = Look(task, grid, outcome.motion)
-        if look.stretch() <= 1.0 + WORTH_IT and not look.beyond_range().any():
+        if look.stretch() <= 1.0 + WORTH_IT and not look.beyond_range.any():
             fits = _fitting(task, grid, freedom, outcome, outcome.motion)
             if fits is not None and fits.cost <= (1.0 + WORTH_IT) * freedom.cost(
                     outcome.motion.T):
@@ -182,39 +184,37 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
                 return found
         room = room.grown(task, grid, slow, look)
         # where ranges are left it takes another course, not a nearby one
-        centres = [] if look.beyond_range().any() else centres + outcome.centres
+        centres = [] if look.beyond_range.any() else centres + outcome.centres
         if not centres and room.is_same(asked):
             break  # the same again
     return _best_that_fits(task, grid, freedom, tried)
 
 
-def _nearer(task: JointTask, grid: Grid, room: Room, floor: Array | None,
-            centres: list[Centre], freedom: Freedom, higher: float) -> Outcome | None:
-    """
-    Return a centre nearer to the room where no other has all of it, but one has some.
+def _last_within(constraints: Constraints, centres: list[Centre]) -> Centre | None:
+    return next((c for c in reversed(centres) if is_within(constraints, c.motion)), None)
 
-    The higher its barrier, the further it is from all limits.
+
+def _nearer(task: JointTask, grid: Grid, room: Room, floor: Array | None,
+            centres: list[Centre], freedom: Freedom, higher: float) -> list[Centre]:
     """
-    for part in PARTS_OF_ROOM if centres else ():
+    Return centres nearer to the room where no other has all of it, but one has some.
+
+    The higher their barrier, the further they are from all limits.
+    """
+    for part in PARTS_OF_ROOM[1:]:
         constraints = room.part(part).constraints(task, grid, floor)
-        for centre in reversed(centres):
-            if is_within(constraints, centre.motion):
-                if part == 1.0:
-                    return None
-                barrier = None if centre.barrier is None else higher * centre.barrier
-                return minimise(constraints, Centre(centre.motion, barrier),
-                                freedom._replace(still=room.still), task.should_stop,
-                                barrier or 0.0)
-    return None
+        centre = _last_within(constraints, centres)
+        if centre is not None:
+            barrier = None if centre.barrier is None else higher * centre.barrier
+            return minimise(constraints, Centre(centre.motion, barrier),
+                            freedom._replace(still=room.still), task.should_stop,
+                            barrier or 0.0).centres
+    return []
 
 
 def _begun(task: JointTask, grid: Grid, room: Room, floor: Array | None,
-           centres: list[Centre], begin: Begin) -> tuple[Room, Constraints, Centre] | None:
-    """Return the last centre that has room, else a motion from rest and as much as it has."""
-    constraints = room.constraints(task, grid, floor)
-    for centre in reversed(centres):
-        if is_within(constraints, centre.motion):
-            return room, constraints, centre
+           begin: Begin) -> tuple[Room, Constraints, Centre] | None:
+    """Return a motion to begin with, and as much of the room as it has."""
     for part in (*PARTS_OF_ROOM, 0.0):
         reduced = room.kept().part(part)
         constraints = reduced.constraints(task, grid, floor)

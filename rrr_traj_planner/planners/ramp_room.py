@@ -156,7 +156,7 @@ class Room(NamedTuple):
 
         """
         q = grid.states(task.points, slow).q
-        positions, still = self._positions(task, q, look.beyond_range())
+        positions, still = self._positions(task, q, look.beyond_range)
         spare = task.limits.max_effort - np.abs(gravity_torque(task.model, q))
         velocity, effort = look.excess()
         return Room(

@@ -30,7 +30,7 @@ from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.followable import acceleration_scale, followable
 from rrr_traj_planner.planners.interior_point import unconverged_note
-from rrr_traj_planner.planners.ramp_chain import Grid
+from rrr_traj_planner.planners.ramp_chain import grid_of
 from rrr_traj_planner.planners.ramp_prescribed import prescribed
 from rrr_traj_planner.planners.ramp_problem import fastest
 from rrr_traj_planner.planners.ramp_start import cannot_be_held
@@ -71,7 +71,7 @@ def plan(task: JointTask) -> Trajectory:
     """
     limits, cruise = followable(task.model, task.limits, task.points, task.sample_period)
     task = replace(task, limits=limits)
-    grid = Grid(_ramps(task), cruise)
+    grid = grid_of(_ramps(task), cruise)
     found = fastest(task, grid) if task.durations is None else prescribed(
         task, grid, task.durations)
     if found is None:
