@@ -51,7 +51,7 @@ START = 0.3                  # the first barrier per constraint, over the start'
 FAR_FROM_CENTRE = 1e5        # gain over barrier at the start at which the barrier is raised
 RAISES = 6
 CONVERGED = 5e-3             # relative gap that counts as convergence
-ITERATIONS = 120
+ITERATIONS = 200
 DUAL_CORRIDOR = 1e6          # how far multipliers may be from barrier / slack
 
 

@@ -21,14 +21,10 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_moves import restored
 
-HALVINGS = 60  # of a phase's bracket
 
-
-def cycloid_along(grid: Grid, ends: Array) -> Motion:
+def paced_along(grid: Grid, ends: Array, speeds: Array) -> Motion:
     """
-    Return a full-period cycloid of 1 s from end to end.
-
-    However short the first piece and the last are, it comes to rest in them without haste.
+    Return a motion of given speeds where pieces meet, a cycloid of velocity between them.
 
     Parameters
     ----------
@@ -36,21 +32,20 @@ def cycloid_along(grid: Grid, ends: Array) -> Motion:
         The family of motions.
     ends : ndarray, shape (N + 1,)
         Places where the pieces meet [m].
+    speeds : ndarray, shape (N + 1,)
+        [m/s], no two neighbours 0.
 
     Returns
     -------
     Motion
-        Through every place.
+        Through every place, from rest to rest where the outer speeds are 0.
 
     """
-    length = float(ends[-1])
-    phase = _cycloid_phase(ends / length)
-    share = np.arange(1, grid.n) / grid.n
-    within = phase[:-1, np.newaxis] + np.diff(phase)[:, np.newaxis] * share
-    inner, a = (2.0 * np.pi * length * np.sin(p)[..., np.newaxis] for p in (within, phase[1:-1]))
-    v = length * (1.0 - np.cos(phase[1:-1]))[:, np.newaxis]
-    T = np.diff(phase) / (2.0 * np.pi)
-    return restored(grid, ends[:, np.newaxis], Motion(inner, v, a, T))
+    T = 2.0 * np.diff(ends) / (speeds[1:] + speeds[:-1])
+    N, share = len(T), np.arange(1, grid.n) / grid.n
+    rise = (np.diff(speeds) / T)[:, np.newaxis] * (1.0 - np.cos(2.0 * np.pi * share))
+    return restored(grid, ends[:, np.newaxis], Motion(
+        rise[..., np.newaxis], speeds[1:-1, np.newaxis], np.zeros((N - 1, 1)), T))
 
 
 def uniform_along(grid: Grid, ends: Array) -> Motion:
@@ -75,13 +70,3 @@ def uniform_along(grid: Grid, ends: Array) -> Motion:
     N = len(T)
     return restored(grid, ends[:, np.newaxis], Motion(
         np.zeros((N, grid.n - 1, 1)), np.ones((N - 1, 1)), np.zeros((N - 1, 1)), T))
-
-
-def _cycloid_phase(share: Array) -> Array:
-    """Return where a cycloid, phase - sin phase, has come to shares of its whole way."""
-    low, high = np.zeros_like(share), np.full_like(share, 2.0 * np.pi)
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        short = middle - np.sin(middle) < 2.0 * np.pi * share
-        low, high = np.where(short, middle, low), np.where(short, high, middle)
-    return np.where(share >= 1.0, 2.0 * np.pi, low)

@@ -45,7 +45,8 @@ from rrr_traj_planner.planners.path_constraints import (
     TORQUE,
     VELOCITY,
 )
-from rrr_traj_planner.planners.path_start import cycloid_along, uniform_along
+from rrr_traj_planner.planners.path_pace import paces
+from rrr_traj_planner.planners.path_start import paced_along, uniform_along
 from rrr_traj_planner.planners.path_table import Demand, PathTable
 from rrr_traj_planner.planners.ramp_chain import Grid, grid_of, Motion
 from rrr_traj_planner.planners.ramp_look import near_points
@@ -219,7 +220,11 @@ def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
                 steady: BoolArray) -> Motion:
     """Return a motion as slow as the limits ask for, of constant speed where pieces ask for it."""
     grid = constraints.grid
-    m = (uniform_along if steady.any() else cycloid_along)(grid, table.ends)
+    if steady.any():
+        m = uniform_along(grid, table.ends)
+    else:
+        m = paced_along(grid, table.ends, paces(
+            table, all_bounds(task.limits, task.max_tip_speed)))
     at = progress_at(grid, constraints.points, m)
     return stretched(m, ROOM * _stretch(
         task, constraints.demands(at.s)[0], at, constraints.margins))

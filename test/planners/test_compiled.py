@@ -23,7 +23,7 @@ from random_paths import never, random_case
 from rrr_traj_planner.planners import compiled
 from rrr_traj_planner.planners.interior_point import Centre, minimise
 from rrr_traj_planner.planners.path_constraints import PathConstraints, QUANTITIES
-from rrr_traj_planner.planners.path_start import cycloid_along
+from rrr_traj_planner.planners.path_start import paced_along
 from rrr_traj_planner.planners.path_table import PathTable
 from rrr_traj_planner.planners.ramp_chain import Grid
 from rrr_traj_planner.planners.ramp_moves import stretched
@@ -105,7 +105,9 @@ def test_a_chain_along_a_path_ends_at_the_same_motion(seed, steady):
     margins = 1e-3 * np.random.default_rng(seed).random((N, 2 * grid.n + 1, QUANTITIES))
     constraints = PathConstraints(table, replace(case.limits, max_jerk=[30.0] * 3), 0.7, grid,
                                   margins, np.zeros(N, bool))
-    m = cycloid_along(grid, table.ends)
+    speeds = np.full(N + 1, 0.3)
+    speeds[[0, -1]] = 0.0
+    m = paced_along(grid, table.ends, speeds)
     while min(s.min() for s in constraints.slacks(m)) <= 0.0:
         m = stretched(m, 1.3)
     if steady:

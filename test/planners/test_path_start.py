@@ -16,26 +16,48 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.path_start import cycloid_along, uniform_along
+from rrr_traj_planner.planners.path_start import paced_along, uniform_along
 from rrr_traj_planner.planners.ramp_chain import Grid
 
 
-@pytest.mark.parametrize('start', [cycloid_along, uniform_along])
-def test_motions_to_begin_from_pass_every_place_and_never_go_back(start):
-    rng, grid = np.random.default_rng(31), Grid(20)
-    for _ in range(50):
-        ends = np.concatenate(([0.0], np.cumsum(10.0 ** rng.uniform(-4.0, 0.0, 6))))
-        m = start(grid, ends)
-        at = grid.states(ends[:, np.newaxis], m)
-        assert at.q[:, grid.n, 0] == pytest.approx(ends[1:], rel=1e-9)
-        assert at.qd[1:, grid.n, 0][:-1] == pytest.approx(at.qd[2:, 0, 0], rel=1e-6)
-        speeds = at.qd[..., 0]
-        assert np.abs(speeds[[0, -1], [0, grid.n]]).max() < 1e-9 * speeds.max()
-        assert (np.sort(speeds.ravel())[2:] > 0.0).all()
+def rough_path(seed):
+    """Return ends of pieces from 0.1 mm to 1 m long, and speeds at them over as wide a range."""
+    rng = np.random.default_rng(seed)
+    ends = np.concatenate(([0.0], np.cumsum(10.0 ** rng.uniform(-4.0, 0.0, 6))))
+    return ends, np.concatenate(([0.0], 10.0 ** rng.uniform(-3.0, 0.0, 5), [0.0]))
 
 
-def test_a_cycloid_comes_to_rest_in_however_short_a_piece():
-    grid, ends = Grid(20), np.array([0.0, 1e-9, 0.4, 1.0 - 1e-9, 1.0])
-    m = cycloid_along(grid, ends)
-    assert m.T.sum() == pytest.approx(1.0)
-    assert np.abs(grid.nodes(m)[0]).max() <= 2.0 * np.pi * 1.01
+def paced(grid, ends, speeds):
+    return paced_along(grid, ends, speeds)
+
+
+def uniform(grid, ends, speeds):
+    return uniform_along(grid, ends)
+
+
+@pytest.mark.parametrize('start', [paced, uniform])
+@pytest.mark.parametrize('seed', range(50))
+def test_motions_to_begin_from_pass_every_place_and_never_go_back(start, seed):
+    grid = Grid(20, (0.0, 0.6)[seed % 2])
+    ends, speeds = rough_path(seed)
+    m = start(grid, ends, speeds)
+    at = grid.states(ends[:, np.newaxis], m)
+    assert at.q[:, grid.n, 0] == pytest.approx(ends[1:], rel=1e-9)
+    assert at.qd[1:, grid.n, 0][:-1] == pytest.approx(at.qd[2:, 0, 0], rel=1e-6)
+    found = at.qd[..., 0]
+    assert np.abs(found[[0, -1], [0, grid.n]]).max() < 1e-9 * found.max()
+    assert (np.sort(found.ravel())[2:] > 0.0).all()
+
+
+@pytest.mark.parametrize('seed', range(10))
+def test_a_paced_motion_has_the_speeds_asked_and_no_acceleration_where_pieces_meet(seed):
+    grid, (ends, speeds) = Grid(20), rough_path(seed)
+    m = paced_along(grid, ends, speeds)
+    assert m.v[:, 0] == pytest.approx(speeds[1:-1], rel=1e-12)
+    assert (m.a == 0.0).all()
+    # a cycloid of velocity covers the mean of its end speeds
+    assert m.T * (speeds[1:] + speeds[:-1]) == pytest.approx(2.0 * np.diff(ends), rel=1e-12)
+    between = grid.states(ends[:, np.newaxis], m).qd[..., 0]
+    low, high = (f(speeds[:-1], speeds[1:]) for f in (np.minimum, np.maximum))
+    room = 0.02 * (high - low) + 1e-12
+    assert (between.min(axis=1) >= low - room).all() and (between.max(axis=1) <= high + room).all()

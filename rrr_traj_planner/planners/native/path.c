@@ -24,9 +24,8 @@ static void demanded(const Problem *p, int segment, int point, double s, int ord
 {
     const double begin = p->points[segment], length = p->points[segment + 1] - begin;
     const double u = (s - begin) / length * p->intervals;
-    int i = u > 0.0 ? (int)u : 0;
-    if (i > p->intervals - 1)
-        i = p->intervals - 1;
+    /* compared before it becomes an integer: a step that is far too long leads anywhere */
+    const int i = !(u > 0.0) ? 0 : u < p->intervals - 1 ? (int)u : p->intervals - 1;
     const double x = (u - i) / p->intervals;
     const size_t row = (size_t)p->intervals * 18;
     const double *c = p->table + (size_t)segment * 4 * row + (size_t)i * 18;
