@@ -99,4 +99,4 @@ def test_a_tiny_zone_slows_the_tip_there_and_not_on_the_long_lines(planner_id):
         assert 'converged' not in found.note
         durations.append(found.trajectory.duration)
     # next to a stop, and all but the same
-    assert durations == pytest.approx(durations[1:2] * 3, rel=1e-2)
+    assert durations == pytest.approx(durations[1:2] * 3, rel=5e-2)
