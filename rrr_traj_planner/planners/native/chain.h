@@ -27,6 +27,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#define EXPORTED __attribute__((visibility("default")))
+
 enum { MOST_JOINTS = 3, MOST_STATES = 12, MOST_GENERAL = 12, CENTRES = 40 };
 enum { BOXES_ALONE, TORQUE, PATH };
 
