@@ -55,7 +55,7 @@ def _inverse(q: np.ndarray, qd: np.ndarray, qdd: np.ndarray, repetitions: int) -
         return inverse_dynamics(ARM, q, qd, qdd)
 
     _agree(ours(), theirs())
-    return [timed(f'inverse dynamics, {SAMPLES:,} samples / Pinocchio\'s rnea in a loop', INVERSE,
+    return [timed(f'inverse dynamics, {SAMPLES:,} samples / Pinocchio: rnea in a loop', INVERSE,
                   in_turns(ours, theirs, repetitions=repetitions))]
 
 
@@ -80,9 +80,9 @@ def _forward(q: np.ndarray, qd: np.ndarray, tau: np.ndarray, repetitions: int) -
     medians = in_turns(*(_repeated(f) for f in (in_floats, theirs, ours)),
                        repetitions=repetitions)
     per_call = medians._replace(times=tuple(t / CALLS for t in medians.times))
-    return [timed('forward dynamics, one state, floats (as the arm has it) / Pinocchio\'s aba',
+    return [timed('forward dynamics, one state, floats (as the arm has it) / Pinocchio: aba',
                   FORWARD, per_call),
-            timed('forward dynamics, one state, forward_dynamics() / Pinocchio\'s aba',
+            timed('forward dynamics, one state, forward_dynamics() / Pinocchio: aba',
                   FORWARD, per_call, ours=2)]
 
 

@@ -146,9 +146,13 @@ def _random_tasks(first: int) -> Iterator[Task]:
 
 
 def _arm_path(task: Task) -> ArmPath:
-    path = task_path(task, task.request.via_points)
-    joints = check_workspace(task.model, task.limits, path, task.request.elbow)
-    return ArmPath(task.model, task.limits, path, task.request.elbow, joints.start)
+    """Return the path that our planner has chosen; where it fails, the one of largest radii."""
+    try:
+        return plan(task.model, task.limits, task.request).trajectory.arm_path
+    except RrrPlannerError:
+        path = task_path(task, task.request.via_points)
+        joints = check_workspace(task.model, task.limits, path, task.request.elbow)
+        return ArmPath(task.model, task.limits, path, task.request.elbow, joints.start)
 
 
 def _timed(task: Task, arm_path: ArmPath) -> float:

@@ -33,7 +33,7 @@ from tasks import table as thesis_table
 
 SEED = 7
 GROWTH = 12.0         # by how much longer ten times the via points may take
-GROWN = ((100, 10), (1000, 100))  # via points
+FEW, MORE, MANY = 10, 100, 1000  # via points
 LONG_PERIOD = 0.05    # s between samples: an answer through 1,000 random points has 60,000
 GROWTH_BUDGET = 20.0  # s for one row
 
@@ -72,16 +72,16 @@ def compiled_beside_numpy(repetitions: int = REPETITIONS) -> list[Row]:
 def growth(repetitions: int = REPETITIONS, budget: float = GROWTH_BUDGET) -> list[Row]:
     """Return the planning times of many via points over those of few."""
     rows = []
-    for many, few in GROWN:
-        for label, limits, planner_ids in (
-                ('v, a, jerk', gentle(), ('cycloid', 'time_optimal')),
-                ('v, torque', full_torque(WEAK), ('time_optimal',))):
-            tasks = [_random(n, limits, LONG_PERIOD) for n in (many, few)]
-            for planner_id in planner_ids:
-                rows.append(timed(
-                    f'planning, {planner_id}, {label}: {many:,} via points / {few}', GROWTH,
-                    in_turns(*(_planning(task, planner_id) for task in tasks),
-                             repetitions=repetitions, budget=budget)))
+    for many, few, label, limits, planner_id in (
+            (MANY, MORE, 'v, a, jerk', gentle(), 'cycloid'),
+            (MANY, MORE, 'v, a, jerk', gentle(), 'time_optimal'),
+            (MORE, FEW, 'v, a, jerk', gentle(), 'cycloid'),
+            (MORE, FEW, 'v, a, jerk', gentle(), 'time_optimal'),
+            (MORE, FEW, 'v, torque', full_torque(WEAK), 'time_optimal')):
+        actions = (_planning(_random(n, limits, LONG_PERIOD), planner_id) for n in (many, few))
+        rows.append(timed(
+            f'planning, {planner_id}, {label}: {many:,} via points / {few}', GROWTH,
+            in_turns(*actions, repetitions=repetitions, budget=budget)))
     return rows
 
 

@@ -124,7 +124,7 @@ def in_turns(*actions: Callable[[], object], repetitions: int = REPETITIONS,
     if time.perf_counter() - begin > budget:
         rounds = [first]
     else:
-        while len(rounds) < LEAST_REPETITIONS or (
+        while len(rounds) < min(LEAST_REPETITIONS, repetitions) or (
                 len(rounds) < repetitions and time.perf_counter() - begin < budget):
             rounds.append([measure(action) for action in actions])
     return Medians(tuple(np.median(rounds, axis=0).tolist()), len(rounds))

@@ -19,12 +19,8 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-import matplotlib
+from matplotlib.figure import Figure
 from measuring import Row
-
-matplotlib.use('Agg')
-
-from matplotlib import pyplot as plt  # noqa: E402
 
 MET, MISSED = '#2a7a3b', '#c0392b'
 INCHES_A_ROW, WIDTH, MARGIN = 0.22, 13.0, 1.8
@@ -49,8 +45,8 @@ def draw(rows: list[Row], setting: str, path: Path) -> None:
     shares = [row.ratio / row.target for row in rows]
     shown = [s for s in shares if math.isfinite(s) and s > 0.0]
     low, high = min([*shown, 0.5]) / ROOM, max([*shown, 2.0]) * ROOM
-    figure, axes = plt.subplots(
-        figsize=(WIDTH, INCHES_A_ROW * len(rows) + MARGIN), layout='constrained')
+    figure = Figure(figsize=(WIDTH, INCHES_A_ROW * len(rows) + MARGIN), layout='constrained')
+    axes = figure.subplots()
     for y, (row, share) in enumerate(zip(rows, shares)):
         x = min(max(share, low), high) if not math.isnan(share) else high
         axes.plot((1.0, x), (y, y), color=MET if row.met else MISSED, linewidth=1.2, zorder=2)
@@ -65,10 +61,9 @@ def draw(rows: list[Row], setting: str, path: Path) -> None:
     axes.set_yticks(range(len(rows)), [f'{row.row}   (target {row.target:.3g})' for row in rows],
                     fontsize=7.5)
     axes.grid(axis='x', which='major', linewidth=0.5, color='0.85')
-    axes.set_xlabel('ratio / target  [1], logarithmic: left of 1 the target is met (green), right '
-                    'of it missed (red); the number is the ratio ours / theirs [1]')
+    axes.set_xlabel('ratio / target [1], logarithmic; 1 is the target: green met, red missed\n'
+                    'number at the point: the ratio, ours / theirs [1]')
     axes.set_title('rrr_traj_planner: what make bench has measured, over what is asked for')
     figure.text(0.01, 0.002, setting.replace('\n', '; '), fontsize=6.5, color='0.35')
     figure.get_layout_engine().set(rect=(0.0, 0.02, 1.0, 0.98))
     figure.savefig(path, dpi=DPI)
-    plt.close(figure)

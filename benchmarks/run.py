@@ -23,6 +23,7 @@ import os
 from pathlib import Path
 import sys
 import time
+import traceback
 
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')  # before numpy: for ours and theirs alike
 
@@ -60,18 +61,29 @@ def groups(tasks: int) -> dict[str, Callable[[], list[Row]]]:
         'growth with the via points': bench_planning_time.growth}
 
 
-def main() -> None:
+def measured_rows(tasks: int) -> tuple[list[Row], list[str]]:
+    """Return the rows, and the groups without any because something is broken."""
+    found: list[Row] = []
+    failed = []
+    for name, measured in groups(tasks).items():
+        began = time.monotonic()
+        try:
+            found += measured()
+        except Exception:  # ten minutes of other rows are not to be lost
+            traceback.print_exc()
+            failed.append(name)
+        print(f'{name}: {time.monotonic() - began:.0f} s', file=sys.stderr, flush=True)
+    return found, failed
+
+
+def main() -> int:
     """Print, write and draw the rows."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--tasks', type=int, default=QUICK_TASKS,
                         help='random tasks of each kind whose motion time is compared')
     options = parser.parse_args()
     print(setting(), flush=True)
-    found: list[Row] = []
-    for name, measured in groups(options.tasks).items():
-        began = time.monotonic()
-        found += measured()
-        print(f'{name}: {time.monotonic() - began:.0f} s', file=sys.stderr, flush=True)
+    found, failed = measured_rows(options.tasks)
     print(table(found))
     BUILD.mkdir(exist_ok=True)
     RESULT.write_text(json.dumps([row.as_json() for row in found], indent=1,
@@ -80,7 +92,10 @@ def main() -> None:
     draw(asked, setting(), PICTURE)
     print(f'{sum(bool(row.met) for row in asked)} of {len(asked)} targets met, {len(found)} rows; '
           f'written to {RESULT.relative_to(BUILD.parent)} and {PICTURE.relative_to(BUILD.parent)}')
+    if failed:
+        print(f'FAILED, without rows: {", ".join(failed)}')
+    return int(bool(failed))
 
 
 if __name__ == '__main__':
-    main()
+    raise SystemExit(main())
