@@ -43,7 +43,9 @@ REPAIRS = 20             # rounds of mending what happens between the points tha
 PARTS_OF_ROOM = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)
 APPROACHES = 5           # rounds of coming nearer to room that no centre has, each time with a
 HIGHER = 10.0            # barrier so much higher
-WORTH_IT = 1e-3          # a stretch longer than this is better mended by planning again
+WORTH_IT = 1e-3          # a stretch longer than this is better mended by planning again,
+PATIENCE = 4             # after so many rounds one of twice as much, and so on
+BEGINNINGS = 60          # segments that are begun from rest again, in all
 POOR = 1e-2              # relative gap of what is solved again
 RESTARTS = 8             # from the best that was found, where it is not the optimum
 SLOWER = (1e-6, 0.02)    # than it, first by just enough to be within its limits
@@ -151,9 +153,10 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
     room = Room.none(grid, len(freedom.free))._replace(still=freedom.still)
     centres: list[Centre] = []
     slow: Motion | None = None
-    approaches = 0
+    approaches, beginnings = 0, BEGINNINGS
     tried: list[tuple[Outcome, Motion]] = []  # what was found, from which start
-    for _ in range(REPAIRS):
+    for repair in range(REPAIRS):
+        worth_it = WORTH_IT * 2.0 ** max(repair - PATIENCE, 0)
         asked, constraints = room, room.constraints(task, grid, floor)
         start = _last_within(constraints, centres)
         if start is None and centres and approaches < APPROACHES:
@@ -172,9 +175,9 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
         outcome = minimise(constraints, start, freedom._replace(still=room.still),
                            task.should_stop)
         look = Look(task, grid, outcome.motion)
-        if look.stretch() <= 1.0 + WORTH_IT and not look.beyond_range.any():
+        if look.stretch() <= 1.0 + worth_it and not look.beyond_range.any():
             fits = _fitting(task, grid, freedom, outcome, outcome.motion)
-            if fits is not None and fits.cost <= (1.0 + WORTH_IT) * freedom.cost(
+            if fits is not None and fits.cost <= (1.0 + worth_it) * freedom.cost(
                     outcome.motion.T):
                 return fits
         tried.append((outcome, start.motion))
@@ -184,7 +187,10 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
                 return found
         room = room.grown(task, grid, slow, look)
         # where ranges are left it takes another course, not a nearby one
-        centres = [] if look.beyond_range.any() else centres + outcome.centres
+        if look.beyond_range.any() and beginnings >= len(freedom.free):
+            centres, beginnings = [], beginnings - len(freedom.free)
+        else:
+            centres = centres + outcome.centres
         if not centres and room.is_same(asked):
             break  # the same again
     return _best_that_fits(task, grid, freedom, tried)
