@@ -118,32 +118,31 @@ def stretch_for_torque(model: RobotModel, limits: JointLimits, trajectory: Traje
     if not np.isfinite(limits.max_effort).any():
         return Extreme(np.zeros(3), np.zeros(3))
     squared = maximum_over_time(
-        lambda t: squared_stretch(model, limits, trajectory, t), torque_grid(trajectory))
+        lambda t: squared_stretch(model, limits, *trajectory(t)[:3]), torque_grid(trajectory))
     return Extreme(np.sqrt(squared.value), squared.time)
 
 
-def squared_stretch(model: RobotModel, limits: JointLimits, trajectory: Trajectory,
-                    t: Array) -> Array:
+def squared_stretch(model: RobotModel, limits: JointLimits, q: Array, qd: Array,
+                    qdd: Array) -> Array:
     """
-    Return the square of the factor by which a motion must be slowed down, at given times.
+    Return the square of the factor by which a motion must be slowed down, where it is so.
 
     Run through more slowly by a factor f, the part of the torque that is not gravity falls
     with f squared. Limits below what gravity takes give an infinite factor.
 
     Parameters
     ----------
-    model, limits, trajectory
+    model, limits
         As in `stretch_for_torque`.
-    t : ndarray, shape (n,)
-        Times [s].
+    q, qd, qdd : ndarray, shape (..., 3)
+        Positions, velocities and accelerations [rad, rad/s, rad/s^2].
 
     Returns
     -------
-    ndarray, shape (n, 3)
+    ndarray, shape (..., 3)
         For each joint, 0 where it has no effort limit.
 
     """
-    q, qd, qdd, _ = trajectory(t)
     gravity = gravity_torque(model, q)
     motion = inverse_dynamics(model, q, qd, qdd) - gravity
     room = limits.max_effort - np.sign(motion) * gravity

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
@@ -34,7 +35,7 @@ from rrr_traj_planner.core.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory import Peaks, times_within, Trajectory
 
 STEPS_PER_PIECE = 24   # of the path, at which whole turns of the joints are remembered
-STEPS_PER_KNOT = 8     # of the time between knots, at which extremes are looked for
+STEPS_PER_KNOT = 6     # of the time between knots, at which extremes are looked for
 FAR = 1e3              # rad: makes positions positive, as what maxima are looked for must be
 LEAST_STEP = 1e-6      # rad/s^2: what is less is rounding
 BEFORE = 1e-9          # s before a knot, where what steps there still has its old value
@@ -157,18 +158,40 @@ class PathTrajectory(Trajectory):
 
     @cached_property
     def _peaks(self) -> Peaks:
+        return self._measured(lambda t, q, qd, qdd: np.zeros((len(t), 0)))[0]
+
+    def maxima(self, quantities: Callable[[Array, Array, Array, Array], Array]) -> Array:
+        """
+        Return the maxima of further quantities, found along with the peaks, which are kept.
+
+        Parameters
+        ----------
+        quantities : callable
+            Of times, positions, velocities and accelerations: values of shape (n, K).
+
+        Returns
+        -------
+        ndarray, shape (K,)
+            Over the continuous motion.
+
+        """
+        self.__dict__['_peaks'], found = self._measured(quantities)
+        return found
+
+    def _measured(self, quantities: Callable[[Array, Array, Array, Array], Array]) -> tuple[
+            Peaks, Array]:
         grid = times_within(self, STEPS_PER_KNOT)
         grid = np.unique(np.concatenate((grid, self.knots[1:] - BEFORE)))
 
-        def quantities(t: Array) -> Array:
+        def values(t: Array) -> Array:
             q, qd, qdd, qddd = self(t)
-            return np.concatenate(
-                (np.abs(qd), np.abs(qdd), np.abs(qddd), FAR - q, FAR + q), axis=1)
+            return np.concatenate((np.abs(qd), np.abs(qdd), np.abs(qddd), FAR - q, FAR + q,
+                                   quantities(t, q, qd, qdd)), axis=1)
 
-        velocity, acceleration, jerk, least, most = np.split(
-            maximum_over_time(quantities, grid).value, 5)
+        found = maximum_over_time(values, grid).value
+        velocity, acceleration, jerk, least, most = found[:15].reshape(5, 3)
         return Peaks(velocity=velocity, acceleration=acceleration, jerk=jerk,
-                     min_position=FAR - least, max_position=most - FAR)
+                     min_position=FAR - least, max_position=most - FAR), found[15:]
 
     def stretched(self, factor: float) -> PathTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""

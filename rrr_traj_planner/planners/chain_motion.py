@@ -144,7 +144,7 @@ def segment_stretch(task: JointTask, motion: ChainMotion) -> Array:
     if np.isinf(task.limits.max_effort).all():
         return np.zeros(len(motion.durations))
     t = torque_grid(motion.trajectory)
-    squared = squared_stretch(task.model, task.limits, motion.trajectory, t).max(axis=1)
+    squared = squared_stretch(task.model, task.limits, *motion.trajectory(t)[:3]).max(axis=1)
     segment = np.searchsorted(motion.trajectory.via_times[1:-1], t, side='right')
     worst = np.zeros(len(motion.durations))
     np.maximum.at(worst, segment, squared)

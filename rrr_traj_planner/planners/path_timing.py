@@ -28,7 +28,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.motion_torque import maximum_over_time, stretch_for_torque
+from rrr_traj_planner.core.motion_torque import squared_stretch
 from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.workspace_check import place_on_path
 from rrr_traj_planner.planners.interior_point import Centre, is_within, minimise, Outcome
@@ -256,13 +256,17 @@ def _excess(task: PathTask, table: PathTable, grid: Grid, m: Motion) -> tuple[Ar
 
 def _exact_stretch(task: PathTask, trajectory: PathTrajectory) -> float:
     """Return by how much a motion must be slowed, by its own values."""
-    peaks, limits = trajectory.peaks(), task.limits
-    speed = maximum_over_time(lambda t: trajectory.progress(t)[1][:, np.newaxis].repeat(3, axis=1),
-                              trajectory.knots).value[0]
+    limits, model = task.limits, task.arm_path.model
+
+    def quantities(t: Array, q: Array, qd: Array, qdd: Array) -> Array:
+        speed = trajectory.progress(t)[1][:, np.newaxis]
+        return np.concatenate((squared_stretch(model, limits, q, qd, qdd), speed), axis=1)
+
+    *squared, speed = trajectory.maxima(quantities)
+    peaks = trajectory.peaks()
     return float(max((peaks.velocity / limits.max_velocity).max(), speed / task.max_tip_speed,
                      np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
-                     np.cbrt((peaks.jerk / limits.max_jerk).max()),
-                     stretch_for_torque(task.arm_path.model, limits, trajectory).value.max()))
+                     np.cbrt((peaks.jerk / limits.max_jerk).max()), np.sqrt(max(squared))))
 
 
 def _between(table: PathTable, grid: Grid, m: Motion) -> Progress:
