@@ -156,12 +156,12 @@ CHANGES = (
     _odd_number('max_deviation', st.floats(1e-6, 1.0)))
 
 
-def answered(request, config=CONFIG):
+def answered(request, config=CONFIG, patience=PATIENCE):
     """Return the node's answer; a bug is raised."""
     asked = count()
     try:
         return success(plan(config.model, config.limits, planning_request(
-            request, config, lambda: next(asked) >= PATIENCE)), config)
+            request, config, lambda: next(asked) >= patience)), config)
     except ConvergenceError:
         raise
     except RrrPlannerError as error:
