@@ -22,6 +22,8 @@ limits allow: shorter ones miss by less.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
@@ -29,7 +31,11 @@ from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.barrier import Chain
 from rrr_traj_planner.planners.motion_law import chain_of, slowed_for_torque
-from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused, within_torque
+from rrr_traj_planner.planners.prescribed_by_search import (
+    fastest_beside_stays,
+    kept_or_refused,
+    within_torque,
+)
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.segment import TransitionLaw
@@ -75,7 +81,8 @@ def plan(task: JointTask) -> Trajectory:
     return kept_or_refused(
         lambda durations: within_torque(
             task, chain.law, lambda law: _motion_in(task, chain, law, durations)),
-        task.durations, lambda: np.diff(_fastest(task, chain).via_times))
+        task.durations, lambda: fastest_beside_stays(task, lambda points: plan(
+            replace(task, points=points, durations=None))))
 
 
 def _fastest(task: JointTask, chain: Chain) -> Trajectory:

@@ -23,6 +23,8 @@ motion is slowed, t_acc with it. Jerk steps where a quartic begins or ends.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
@@ -35,7 +37,11 @@ from rrr_traj_planner.planners.motion_law import (
     slowed_for_torque,
     torque_stretch,
 )
-from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused, TORQUE_TOLERANCE
+from rrr_traj_planner.planners.prescribed_by_search import (
+    fastest_beside_stays,
+    kept_or_refused,
+    TORQUE_TOLERANCE,
+)
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.straddled_motion import is_kept, Straddling, trajectory
@@ -100,7 +106,8 @@ def planned(task: JointTask, t_acc: float) -> Trajectory:
     if task.durations is not None:
         return kept_or_refused(
             lambda durations: _motion_in(task, chain, t_acc, durations), task.durations,
-            lambda: np.diff(_fastest(task, chain, t_acc).via_times))
+            lambda: fastest_beside_stays(task, lambda points: planned(
+                replace(task, points=points, durations=None), t_acc)))
     return _fastest(task, chain, t_acc)
 
 

@@ -22,6 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.motion_law import cannot_hold, torque_stretch
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.segment import TransitionLaw
@@ -121,6 +122,31 @@ def kept_or_refused(motion_in: Callable[[Array], PiecewiseTrajectory | None], du
     asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
     raise TimingError(f'segment_durations {asked} s are too short: {which} {offered} s',
                       tuple(offered))
+
+
+def fastest_beside_stays(task: JointTask, fastest: Callable[[Array], Trajectory]) -> Array:
+    """
+    Return the durations of the fastest motion, of stays those that are prescribed.
+
+    Parameters
+    ----------
+    task : JointTask
+        With durations.
+    fastest : callable
+        Returns the fastest motion through points (m + 1, 3), none of which repeats.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [s].
+
+    """
+    assert task.durations is not None
+    stays = (np.diff(task.points, axis=0) == 0.0).all(axis=1)
+    found = task.durations.copy()
+    if not stays.all():
+        found[~stays] = np.diff(fastest(task.points[np.append(True, ~stays)]).via_times)
+    return found
 
 
 def _least_stretch(motion_in: Callable[[Array], PiecewiseTrajectory | None], proportions: Array,

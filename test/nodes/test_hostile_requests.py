@@ -143,7 +143,7 @@ def test_node_answers_as_the_planners_do_and_goes_on(ask):
     def run(request):
         if request.planner_id in STOPPED:
             request.planner_id = 'cycloid'
-        response, expected = ask(request), answered(request, patience=np.inf)
+        response, expected = ask(request), answered(request, patience=inf)
         assert (response.error_code, response.message, response.failed_via_point) == (
             expected.error_code, expected.message, expected.failed_via_point)
         assert response.trajectory == expected.trajectory

@@ -14,12 +14,18 @@
 
 """Durations that are prescribed: kept where there is a motion, else others are offered."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from rrr_traj_planner.core.cycloid import transition
 from rrr_traj_planner.core.errors import TimingError
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused
+from rrr_traj_planner.planners.request import PlanningRequest
 
 PROFILE = JointProfile(transition(*(np.array([x]) for x in (1.0, 0.0, 0.0, 0.0))))
 MOTION = PiecewiseTrajectory([PROFILE] * 3, [0.0, 1.0])
@@ -57,3 +63,19 @@ def test_where_no_stretch_is_feasible_none_is_offered():
             r'^segment_durations \[1\.0\] s are too short, and no stretch of them is feas')) as no:
         kept_or_refused(lambda durations: None, np.array([1.0]))
     assert no.value.least_durations == ()
+
+
+@pytest.mark.parametrize('planner_id', ['cycloid_approach_b', 'poly_414'])
+@pytest.mark.parametrize('stay', [0, 1, 2])
+def test_beside_a_stay_durations_too_short_are_refused_with_feasible_ones(planner_id, stay):
+    tips = [(0.99, 0.54, 0.67), (0.42, 0.1, 1.56), (0.78, 0.66, 1.7)]
+    tips.insert(stay, tips[stay])
+    durations = [0.1] * 3
+    durations[stay] = 2.0
+    request = PlanningRequest(tips, planner_id=planner_id, segment_durations=durations)
+    with pytest.raises(TimingError, match='are too short: feasible are') as caught:
+        plan(RobotModel(), JointLimits(), request)
+    offered = caught.value.least_durations
+    assert offered[stay] == 2.0
+    found = plan(RobotModel(), JointLimits(), replace(request, segment_durations=offered))
+    assert np.diff(found.via_times) == pytest.approx(offered, rel=1e-9)
