@@ -26,7 +26,8 @@ NATIVE = f'{NAME}/planners/native'
 CHAIN = Extension(
     f'{NATIVE}/chain'.replace('/', '.'), sorted(glob(f'{NATIVE}/*.c')),
     depends=sorted(glob(f'{NATIVE}/*.h') + glob(f'{NATIVE}/*.inc')),
-    extra_compile_args=['-std=c99', '-O3', '-fvisibility=hidden'], optional=True)
+    extra_compile_args=['-std=c99', '-O3', '-fno-math-errno', '-fno-trapping-math',
+                        '-fvisibility=hidden'], optional=True)
 
 setup(
     name=NAME,

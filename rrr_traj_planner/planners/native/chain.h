@@ -60,6 +60,13 @@ typedef struct {
     double overshoot, difference;
 } Problem;
 
+/* Size of a segment's Hessian by its states: (P, 4 J, 4 J), of boxes alone the diagonals (P, 4 J). */
+static inline size_t hessian_size(const Problem *p)
+{
+    const size_t Z = 4 * p->J;
+    return (2 * (size_t)p->n + 1) * Z * (p->kind == BOXES_ALONE ? 1 : Z);
+}
+
 typedef struct {
     double *inner;          /* (N, n - 1, J) */
     double *v, *a;          /* (N - 1, J) */
@@ -81,7 +88,7 @@ void torque_at(const Problem *p, const double *z, double *x, double *gradient,
 void path_at(const Problem *p, int segment, int point, const double *z, double *x,
              double *gradient, const double *weights, double *second);
 
-/* newton.c: one Newton step. Q (N, P, 4 J, 4 J) and r (N, P, 4 J) are second and first derivatives
+/* newton.c: one Newton step. Q (N, hessian_size) and r (N, P, 4 J) are second and first derivatives
  * by the states; r_T, Q_T (N) by the durations themselves. Gives the step, how the states change
  * along it (N, P, 4 J), and what it promises to gain; not 0 where the system is singular. */
 size_t newton_size(const Problem *p);

@@ -129,13 +129,13 @@ void localised(Work *w, Motion m, const double *dual, double barrier, double *sc
     for (size_t i = 0; i < all; ++i)
         scratch[i] = barrier / w->slack[i];
     pulled(w, scratch, w->r, w->r_T);
-    memset(w->Q, 0, (size_t)p->N * P * Z * Z * sizeof(double));
+    memset(w->Q, 0, p->N * hessian_size(p) * sizeof(double));
     for (int k = 0; k < p->N; ++k) {
         const double *s = w->slack + 2 * (size_t)k * w->M, *d = dual + 2 * (size_t)k * w->M;
-        double *Qk = w->Q + (size_t)k * P * Z * Z;
+        double *Qk = w->Q + k * hessian_size(p);
         for (int c = 0; c < w->boxes; ++c, s += 2, d += 2) {
             const int i = w->box_at[c];
-            Qk[(size_t)i * Z + i % Z] += d[0] / s[0] + d[1] / s[1];
+            Qk[p->kind == BOXES_ALONE ? i : i * Z + i % Z] += d[0] / s[0] + d[1] / s[1];
         }
         for (int c = 0; c < w->general; ++c, s += 2, d += 2) {
             const int i = w->general_at[c];
@@ -161,7 +161,7 @@ void bend_added(Work *w, const double *dual)
     const Problem *p = w->p;
     const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
     double weights[MOST_GENERAL];
-    memcpy(w->Q_full, w->Q, (size_t)p->N * P * Z * Z * sizeof(double));
+    memcpy(w->Q_full, w->Q, p->N * hessian_size(p) * sizeof(double));
     for (int k = 0; k < p->N; ++k) {
         const double *d = dual + 2 * ((size_t)k * w->M + w->boxes);
         int c = 0;

@@ -130,7 +130,7 @@ static int prepared(Run *run, const Problem *p, const Settings *set)
     const size_t limits = limits_size(w) + 4, motion = motion_size(p) + 4;
     const size_t states = N * P * Z + 4, values = N * P * E + 4;
     const size_t size = 13 * limits + 11 * motion + 8 * states + 3 * values
-        + values * Z + 2 * states * Z + 4 * (N + 4) + newton_size(p) + 64;
+        + values * Z + 2 * (N * hessian_size(p) + 4) + 4 * (N + 4) + newton_size(p) + 64;
     double *next = run->memory = malloc(size * sizeof(double));
     if (!next)
         return 1;
@@ -138,7 +138,7 @@ static int prepared(Run *run, const Problem *p, const Settings *set)
     w->gradient = taken(&next, (values - 4) * Z);
     w->slack = taken(&next, limits - 4), w->dual = taken(&next, limits - 4);
     w->aside = taken(&next, limits - 4);
-    w->Q = taken(&next, (states - 4) * Z), w->Q_full = taken(&next, (states - 4) * Z);
+    w->Q = taken(&next, N * hessian_size(p)), w->Q_full = taken(&next, N * hessian_size(p));
     w->r = taken(&next, states - 4), w->r_T = taken(&next, N), w->Q_T = taken(&next, N);
     w->second = taken(&next, states - 4 + N);
     for (int i = 0; i < 4; ++i) {

@@ -67,8 +67,9 @@ static void picked(const Problem *p, int j, const double *z, const double *Q, co
             own_z[4 * i + a] = z[i * Z + a * J + j];
             own_r[4 * i + a] = r[i * Z + a * J + j];
             for (int b = 0; b < 4; ++b)
-                own_Q[16 * i + 4 * a + b] =
-                    Q[((size_t)i * Z + a * J + j) * Z + b * J + j];
+                own_Q[16 * i + 4 * a + b] = p->kind != BOXES_ALONE
+                    ? Q[((size_t)i * Z + a * J + j) * Z + b * J + j]
+                    : a == b ? Q[(size_t)i * Z + a * J + j] : 0.0;
         }
 }
 
@@ -168,7 +169,7 @@ int newton_step(const Problem *p, Motion m, const double *z, const double *Q, co
     double *band = at_vias + (size_t)(N + 1) * 2 * J;
     for (int k = 0; k < N; ++k) {
         double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
-        const double *zk = z + (size_t)k * P * Z, *Qk = Q + (size_t)k * P * Z * Z;
+        const double *zk = z + (size_t)k * P * Z, *Qk = Q + k * hessian_size(p);
         const double *pull = r + (size_t)k * P * Z;
         double *kept = rows + k * rows_size(p);
         if (!apart(p)) {
