@@ -38,8 +38,8 @@ KINDS = {
     'range': replace(FREE, min_position=[-1.05, 0.75, -0.85], max_position=[1.05, 1.85, 0.85])}
 
 # Derivatives by differences of 1e-7 differ by rounding over that; steps add it up. Along a path
-# whose limits all but touch, more of it; above all where they hold a speed to 1e-3 m/s^2.
-SAME, SAME_ALONG_PATHS, SAME_IF_STEADY = 1e-6, 2e-3, 5e-2
+# whose limits all but touch, more of it.
+SAME, SAME_ALONG_PATHS = 1e-6, 2e-3
 
 
 def both(constraints, start, freedom, should_stop=lambda: never, least_barrier=0.0):
@@ -115,8 +115,12 @@ def test_a_chain_along_a_path_ends_at_the_same_motion(seed, steady):
         if min(s.min() for s in constraints.slacks(m)) <= 0.0:
             m = stretched(m, 300.0)
     freedom = Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 1), bool))
-    assert_same(*both(constraints, Centre(m, None), freedom),
-                SAME_IF_STEADY if steady else SAME_ALONG_PATHS)
+    found, plain = both(constraints, Centre(m, None), freedom)
+    if steady:  # rounding leads a speed that is held to 1e-3 m/s^2 from one centre to another
+        assert found.motion.T.sum() == pytest.approx(plain.motion.T.sum(), rel=1e-3)
+        assert found.converged == plain.converged
+    else:
+        assert_same(found, plain, SAME_ALONG_PATHS)
 
 
 @pytest.mark.parametrize('iterations', [0, 1, 5])

@@ -126,21 +126,23 @@ void localised(Work *w, Motion m, const double *dual, double barrier, double *sc
     motion_states(p, m, w->z);
     room(w, m.T, w->z, w->x, w->gradient, w->slack);
     const size_t all = limits_size(w);
-    for (size_t i = 0; i < all; ++i)
-        scratch[i] = barrier / w->slack[i];
+    for (size_t i = 0; i < all; ++i) {
+        w->inverse[i] = 1.0 / w->slack[i];
+        scratch[i] = barrier * w->inverse[i];
+    }
     pulled(w, scratch, w->r, w->r_T);
     memset(w->Q, 0, p->N * hessian_size(p) * sizeof(double));
     for (int k = 0; k < p->N; ++k) {
-        const double *s = w->slack + 2 * (size_t)k * w->M, *d = dual + 2 * (size_t)k * w->M;
+        const double *s = w->inverse + 2 * (size_t)k * w->M, *d = dual + 2 * (size_t)k * w->M;
         double *Qk = w->Q + k * hessian_size(p);
         for (int c = 0; c < w->boxes; ++c, s += 2, d += 2) {
             const int i = w->box_at[c];
-            Qk[p->kind == BOXES_ALONE ? i : i * Z + i % Z] += d[0] / s[0] + d[1] / s[1];
+            Qk[p->kind == BOXES_ALONE ? i : i * Z + i % Z] += d[0] * s[0] + d[1] * s[1];
         }
         for (int c = 0; c < w->general; ++c, s += 2, d += 2) {
             const int i = w->general_at[c];
             const double *g = w->gradient + ((size_t)k * P * E + i) * Z;
-            const double weight = d[0] / s[0] + d[1] / s[1];
+            const double weight = d[0] * s[0] + d[1] * s[1];
             double *to = Qk + (size_t)(i / E) * Z * Z;
             for (int a = 0; a < Z; ++a) {
                 const double f = weight * g[a];

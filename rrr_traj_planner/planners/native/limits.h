@@ -29,6 +29,7 @@ typedef struct {
     double *z, *x;           /* states, and general values (N, P, E) */
     double *gradient;        /* (N, P, E, 4 J) */
     double *slack, *dual, *aside;  /* (N, M, 2): above and below; (N, 2) for floors after */
+    double *inverse;         /* 1 / slack */
     double *Q, *r, *Q_full, *r_T, *Q_T, *second;
     double *newton;
 } Work;

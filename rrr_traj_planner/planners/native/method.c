@@ -43,7 +43,7 @@ static void searched(Work *w, Motion m, Tried *t, const Motion *bend, double bar
     const double merit = motion_cost(p, m) - barrier * log_of(w, w->slack);
     double worst = 0.0;
     for (size_t i = 0; i < all; ++i) {
-        const double towards_limit = -t->rate[i] / w->slack[i];
+        const double towards_limit = -t->rate[i] * w->inverse[i];
         if (towards_limit > worst)
             worst = towards_limit;
     }
@@ -82,7 +82,7 @@ static int bent(Work *w, Motion m, const Tried *t, Motion bend, Motion moved, do
     room(w, moved.T, z, x, NULL, pull);
     const size_t all = limits_size(w);
     for (size_t i = 0; i < all; ++i)
-        pull[i] = -w->dual[i] / w->slack[i] * (pull[i] - w->slack[i] - size * t->rate[i])
+        pull[i] = -w->dual[i] * w->inverse[i] * (pull[i] - w->slack[i] - size * t->rate[i])
             / (size * size);
     double *r = w->second, *r_T = r + (size_t)p->N * (2 * p->n + 1) * 4 * p->J;
     pulled(w, pull, r, r_T);
@@ -129,13 +129,14 @@ static int prepared(Run *run, const Problem *p, const Settings *set)
     w->M = w->boxes + w->general;
     const size_t limits = limits_size(w) + 4, motion = motion_size(p) + 4;
     const size_t states = N * P * Z + 4, values = N * P * E + 4;
-    const size_t size = 13 * limits + 11 * motion + 8 * states + 3 * values
+    const size_t size = 14 * limits + 11 * motion + 8 * states + 3 * values
         + values * Z + 2 * (N * hessian_size(p) + 4) + 4 * (N + 4) + newton_size(p) + 64;
     double *next = run->memory = malloc(size * sizeof(double));
     if (!next)
         return 1;
     w->z = taken(&next, states - 4), w->x = taken(&next, values - 4);
     w->gradient = taken(&next, (values - 4) * Z);
+    w->inverse = taken(&next, limits - 4);
     w->slack = taken(&next, limits - 4), w->dual = taken(&next, limits - 4);
     w->aside = taken(&next, limits - 4);
     w->Q = taken(&next, N * hessian_size(p)), w->Q_full = taken(&next, N * hessian_size(p));
@@ -206,23 +207,23 @@ static Tried *best_step(Run *run, Motion m, double barrier)
 }
 
 /* Multipliers after a step that keeps them positive, in sight of barrier / slack. */
-static void duals_moved(Work *w, const double *old, const double *rate, const double *slack,
-                        double barrier, double *change)
+static void duals_moved(Work *w, const double *rate, const double *slack, double barrier,
+                        double *change)
 {
     const size_t all = limits_size(w);
     double worst = 0.0;
     for (size_t i = 0; i < all; ++i) {
-        change[i] = barrier / old[i] - w->dual[i] - w->dual[i] / old[i] * rate[i];
+        change[i] = (barrier - w->dual[i] * rate[i]) * w->inverse[i] - w->dual[i];
         const double towards_zero = -change[i] / w->dual[i];
         if (towards_zero > worst)
             worst = towards_zero;
     }
     const double size = worst > w->set->to_boundary ? w->set->to_boundary / worst : 1.0;
-    const double corridor = w->set->dual_corridor;
+    const double corridor = w->set->dual_corridor, part = 1.0 / corridor;
     for (size_t i = 0; i < all; ++i) {
         const double central = barrier / slack[i];
         double d = w->dual[i] + size * change[i];
-        d = d < central / corridor ? central / corridor : d;
+        d = d < central * part ? central * part : d;
         w->dual[i] = d > central * corridor ? central * corridor : d;
     }
 }
@@ -280,7 +281,7 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
         if (!t)
             break;
         const double *slack = t->known ? t->to.slack : w->slack;
-        duals_moved(w, w->slack, t->rate, slack, barrier, w->aside);
+        duals_moved(w, t->rate, slack, barrier, w->aside);
         if (t->known) {
             motion_copy(p, m, t->to.motion);
             if (motion_cost(p, m) < motion_cost(p, run.best))
