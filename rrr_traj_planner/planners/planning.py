@@ -37,7 +37,7 @@ from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limit_check import violations
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_torque import peak_torque
+from rrr_traj_planner.core.motion_torque import peak_torque, stretch_for_torque
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.sampling import sample
 from rrr_traj_planner.core.trajectory import Trajectory
@@ -221,8 +221,9 @@ def _rest(model: RobotModel, limits: JointLimits, request: PlanningRequest, q: A
 def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, via_times: Array) -> Plan:
     """Return the plan of a trajectory, after the checks that no planner is trusted with."""
+    period = request.sample_period
     for _ in range(RESAMPLING_ROUNDS):
-        points = sample(trajectory, request.sample_period, request.max_points)
+        points = sample(trajectory, period, request.max_points)
         factor = _stretch_for_interpolation(limits, points)
         if factor <= 1.0:
             break
@@ -234,7 +235,10 @@ def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
                 f'sample_period {request.sample_period} s is too long for segment_durations '
                 f'{list(request.segment_durations)} s: between the points the motion would '
                 'exceed its limits')
-        trajectory, via_times = trajectory.stretched(factor), via_times * factor
+        if np.isinf(stretch_for_torque(model, limits, trajectory).value).any():
+            period *= 0.5  # it hurries past a pose that cannot be held: no slower, but closer
+        else:
+            trajectory, via_times = trajectory.stretched(factor), via_times * factor
     peaks, effort = trajectory.peaks(), peak_torque(model, trajectory).value
     broken = violations(limits, peaks, effort)
     if broken:

@@ -35,6 +35,7 @@ from rrr_traj_planner.core.interpolation import Interpolant
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.motion_torque import stretch_for_torque
 from rrr_traj_planner.planners import time_optimal
 from rrr_traj_planner.planners.followable import CRUISE
 from rrr_traj_planner.planners.planning import plan
@@ -672,3 +673,24 @@ def test_prescribed_durations_are_kept_even_when_planning_is_stopped_early():
                      should_stop=stops_after(calls))
         assert excess(m) == []
         assert durations_of(m.plan) == pytest.approx([5.0, 6.0], abs=KEPT)
+
+
+def test_a_motion_that_hurries_past_a_pose_is_sampled_more_closely_instead_of_slowed():
+    # Gravity alone is 1.04 times joint 3's limit on the way: no slower motion keeps it.
+    limits = JointLimits(
+        min_position=[-1.40188418, 0.84157753, -1.23443453],
+        max_position=[0.0531041, 2.30419673, 1.1562909],
+        max_velocity=[2.81122301, 2.4985027, 0.51311566],
+        max_acceleration=[1.46388941, 0.51223958, 0.68577841], max_jerk=NONE,
+        max_effort=[3.08132901, 157.30897877, 54.64090592])
+    tips = [(0.46996464, -0.02130729, 0.88146230), (0.29513201, -0.10969616, 1.06199934),
+            (0.43890897, -0.58788287, 1.03682936), (0.51175404, -0.05552639, 0.53294995)]
+    model = RobotModel()
+    found = plan(model, limits, PlanningRequest(tips, planner_id='time_optimal'))
+    assert np.isinf(stretch_for_torque(model, limits, found.trajectory).value[2])
+    assert np.diff(found.points.times).max() <= 0.0055
+    t = np.linspace(0.0, found.points.times[-1], 20_001)
+    q, qd, qdd = Interpolant(found.points)(t)
+    assert (np.abs(qd) <= limits.max_velocity * (1.0 + BETWEEN_POINTS)).all()
+    assert (np.abs(qdd) <= limits.max_acceleration * (1.0 + BETWEEN_POINTS)).all()
+    assert (found.effort <= limits.max_effort * (1.0 + LIMIT_ROOM)).all()
