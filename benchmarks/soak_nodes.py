@@ -21,7 +21,8 @@ Planner and simulated arm run as processes of their own. A client asks for plans
 good ones and refused ones of every planner, sends what is planned to the arm, changes a limit and
 back, and has the arm reset now and then. Printed are the nodes' memory (resident, MiB), answers by
 code and the slowest answer. The exit code is 1 if a node ended, an answer was missing, a bug was
-met, or memory grew by more than GROWTH in the second half.
+met, or its memory's median grew by more than GROWTH from the third to the last
+quarter.
 """
 
 from __future__ import annotations
@@ -124,30 +125,33 @@ class Client:
 
 
 def resident(pid: int) -> float:
-    """Return a process's memory [MiB]."""
+    """Return a process's memory [MiB], what the system has put out of the way included."""
     text = Path(f'/proc/{pid}/status').read_text()
-    return int(re.search(r'VmRSS:\s+(\d+) kB', text)[1]) / 1024.0
+    return sum(int(kb) for kb in re.findall(r'Vm(?:RSS|Swap):\s+(\d+) kB', text)) / 1024.0
 
 
 def soak(client: Client, nodes: dict[str, subprocess.Popen], seconds: float) -> bool:
     """Run until the time is over; return whether all is well."""
-    began, number, told, early = monotonic(), 0, 0.0, {}
+    began, number, told = monotonic(), 0, 0.0
+    seen = []
     while (elapsed := monotonic() - began) < seconds:
         client.step(number := number + 1)
         if any(p.poll() is not None for p in nodes.values()):
             print('a node has ended')
             return False
         memory = {name: resident(p.pid) for name, p in nodes.items()}
-        if elapsed >= seconds / 2.0 and not early:
-            early = memory
+        seen.append((elapsed / seconds, memory))
         if elapsed - told >= REPORT_PERIOD:
             told = elapsed
             print(f'{elapsed:5.0f} s  {number} requests  ' + '  '.join(
                 f'{name} {mib:.1f} MiB' for name, mib in memory.items()), flush=True)
-    growth = {name: memory[name] - early[name] for name in nodes}
+    # a large request is large for a moment: medians of the third and of the last quarter
+    third, last = ([m for part, m in seen if low <= part < low + 0.25] for low in (0.5, 0.75))
+    growth = {name: float(np.median([m[name] for m in last])
+                          - np.median([m[name] for m in third])) for name in nodes}
     print(f'answers by code {dict(client.codes)}, missing {client.missing}, '
           f'slowest {client.slowest[0]:.2f} s ({client.slowest[1].strip()})')
-    print('growth in the second half: ' + '  '.join(
+    print('growth from the third quarter to the last: ' + '  '.join(
         f'{name} {mib:+.1f} MiB' for name, mib in growth.items()))
     return (client.missing == 0 and client.codes[PlanTrajectory.Response.FAILURE] == 0
             and max(growth.values()) <= GROWTH)
