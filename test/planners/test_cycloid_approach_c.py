@@ -18,7 +18,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.errors import LimitViolationError, TimingError
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
@@ -73,37 +72,3 @@ def test_only_the_segments_that_lack_torque_are_slowed():
     assert slowed[0] == pytest.approx(np.sqrt(2.0) * T[0], rel=1e-3)
     assert slowed[1] == pytest.approx(T[1], rel=1e-9)
     assert slow.effort[0] == pytest.approx(0.5 * inertia, rel=1e-6)
-
-
-def test_prescribed_durations_are_kept_and_free_ones_least():
-    least = np.diff(plan(ARM, LIMITS, table('6.1')).via_times)
-    answer = plan(ARM, LIMITS, table('6.1', segment_durations=[4.0, np.nan]))
-    assert np.diff(answer.via_times) == pytest.approx([4.0, least[1]], abs=1e-9)
-    assert plan(ARM, LIMITS, table('6.1', segment_durations=least)).via_times == pytest.approx(
-        np.concatenate(([0.0], np.cumsum(least))), abs=1e-9)
-
-
-def test_a_stay_at_a_point_may_be_prescribed():
-    q = [[0.3, 1.4, 0.0], [0.3, 1.4, 0.0], [0.8, 1.5, 0.1]]
-    answer = plan(ARM, LIMITS, through(q, segment_durations=[1.5, 4.0]))
-    assert answer.via_times == pytest.approx([0.0, 1.5, 5.5], abs=1e-9)
-    assert np.abs(answer.trajectory(np.linspace(0.0, 1.5, 9))[1]).max() == 0.0
-
-
-def test_durations_too_short_are_refused_by_segment_with_feasible_ones():
-    request = table('6.1', segment_durations=[4.0, 0.5])
-    with pytest.raises(TimingError, match=(
-            r'^segment_durations \[4\.0, 0\.5\] s are too short for segment 1: the least '
-            r'feasible are \[4\.0, 1\.17\d*\] s$')) as no:
-        plan(ARM, LIMITS, request)
-    answer = plan(ARM, LIMITS, replace(request, segment_durations=no.value.least_durations))
-    assert np.diff(answer.via_times) == pytest.approx(no.value.least_durations, abs=1e-9)
-
-
-def test_a_way_that_cannot_be_held_is_refused_by_segment():
-    # Half-way the forearm is level: 12 * 9.81 * 0.5 = 58.9 N m.
-    weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
-    q = [[0.2, 1.5, -1.5], [0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
-    with pytest.raises(LimitViolationError, match=(
-            r'^segment 1: on its way joint_3 needs 58\.9 N m to hold, limit 50 N m$')):
-        plan(ARM, weak, through(q))
