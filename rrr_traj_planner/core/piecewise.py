@@ -50,15 +50,19 @@ class JointProfile:
     """
 
     def __init__(self, pieces: Pieces) -> None:
-        fields = np.broadcast_arrays(*(finite_array(n, v) for n, v in pieces.arrays().items()))
-        if fields[0].ndim != 1 or (fields[0] < 0.0).any() or not (fields[0] > 0.0).any():
+        fields = np.array(np.broadcast_arrays(*pieces.arrays().values()), dtype=float)
+        if not np.isfinite(fields).all():
+            for name, value in pieces.arrays().items():
+                finite_array(name, value)
+        lasting = fields[0] > 0.0
+        if fields.ndim != 2 or (fields[0] < 0.0).any() or not lasting.any():
             raise InvalidInputError(
                 f'piece durations are {fields[0]} s, must not be negative, nor all zero')
-        lasting = fields[0] > 0.0
-        self.pieces = pieces.made_of(f[lasting] for f in fields)
-        self.knots = np.concatenate(([0.0], np.cumsum(self.pieces.duration)))
-        for array in (*self.pieces.arrays().values(), self.knots):
-            array.setflags(write=False)
+        fields = fields[:, lasting]
+        fields.setflags(write=False)
+        self.pieces = pieces.made_of(fields)
+        self.knots = np.concatenate(([0.0], np.cumsum(fields[0])))
+        self.knots.setflags(write=False)
 
     @property
     def duration(self) -> float:
@@ -175,7 +179,11 @@ class PiecewiseTrajectory(Trajectory):
         if (np.diff(self.via_times) < 0.0).any() or (self.via_times < 0.0).any() or (
                 self.via_times > self.duration + 1e-9).any():
             raise InvalidInputError(f'via_times {self.via_times} s must rise within the motion')
-        self._end = [p(np.array([p.duration]))[0][0] for p in self.profiles]
+
+    @cached_property
+    def _end(self) -> Array:
+        """Return the positions at the end, shape (3,) [rad]."""
+        return np.array([p(np.array([p.duration]))[0][0] for p in self.profiles])
 
     def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
         """Return position, velocity, acceleration and jerk; see `Trajectory`."""

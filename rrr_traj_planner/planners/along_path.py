@@ -25,8 +25,8 @@ from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
 from rrr_traj_planner.core.largest_radii import largest_radii
 from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.planners.convergence import unconverged_note
 from rrr_traj_planner.planners.followable import followable
-from rrr_traj_planner.planners.interior_point import unconverged_note
 from rrr_traj_planner.planners.path_timing import kept, nearly_fastest_along, PathTask, Timed
 from rrr_traj_planner.planners.request import CartesianTask
 

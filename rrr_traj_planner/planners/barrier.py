@@ -12,86 +12,45 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The log barrier of a chain of segments: value, gradient and a positive definite Hessian."""
+"""
+The log barrier of a chain of segments: value, gradient and a positive definite Hessian.
+
+It is a sum of parts, one for each joint of a segment, each via velocity and each duration.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.cycloid_transitions import CYCLOID
-from rrr_traj_planner.core.pieces import TransitionFunction
-from rrr_traj_planner.planners.segment import Reach, reach, TransitionLaw
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.planners import segment
+from rrr_traj_planner.planners.chain import Chain
 
-# The Hessian comes from differences of exact gradients, over this part of each variable's scale.
-DIFFERENCE = 1e-6
 LEAST_EIGENVALUE = 1e-12  # of a block scaled to a unit diagonal
-
-# What is added to v0, v1 and T in the four evaluations; velocities stay below their limit.
-TOWARDS = np.array([[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])[
-    ..., np.newaxis, np.newaxis, np.newaxis]
+TOLERATED = 0.75          # a part may rise by so much of its curvature, half of which is foretold
 
 FORTH_AND_BACK = np.array([1.0, -1.0])[:, np.newaxis, np.newaxis]
 
+# Signs of derivatives by v0, v1 and T.
+SIGNS = np.array([[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0]])[:, np.newaxis, np.newaxis]
 
-@dataclass(frozen=True, eq=False)
-class Chain:
-    """
-    Via points of all joints, and what bounds the motion through them.
 
-    Parameters
-    ----------
-    displacements : ndarray, shape (n, 3)
-        From point to point [rad].
-    law : TransitionLaw
-        Transitions' least durations.
-    max_velocity : ndarray, shape (3,)
-        [rad/s], finite.
-    lowest, highest : ndarray, shape (n - 1, 3)
-        Bounds of the velocities at the via points [rad/s], around 0.
-    function : TransitionFunction
-        What transitions are made of.
+class Parts(NamedTuple):
+    """Something for each part of the barrier."""
 
-    """
+    segments: Array    # of a segment's joint, shape (n, 3)
+    velocities: Array  # of a via velocity's bounds, (n - 1, 3)
+    durations: Array   # of a duration's floor, (n,)
 
-    displacements: Array
-    law: TransitionLaw
-    max_velocity: Array
-    lowest: Array
-    highest: Array
-    function: TransitionFunction = CYCLOID
 
-    def rest_to_rest_times(self) -> Array:
-        """Return the least durations with a stop at every via point, shape (n,) [s]."""
-        D = np.abs(self.displacements)
-        slope, root = self.law.slope, self.law.root
-        with np.errstate(divide='ignore', invalid='ignore'):
-            by_jerk = np.where(root > 0.0, (D / root) ** (2.0 / 3.0), np.inf)
-            # cruise u without a velocity limit: D = u t(u)
-            u = np.minimum(np.minimum(np.sqrt(D / slope), by_jerk), self.max_velocity)
-            total = np.where(D > 0.0, self.law.least_time(u) + D / u, 0.0)
-        return np.asarray(total.max(axis=1))
+class Local(NamedTuple):
+    """First and second derivatives of each part."""
 
-    def reaches(self, v0: Array, v1: Array, T: Array) -> Reach:
-        """
-        Return the largest displacements forth and back, stacked on a first axis.
-
-        Parameters
-        ----------
-        v0, v1 : ndarray, shape (n, 3)
-            Velocities at the segments' ends [rad/s].
-        T : ndarray, shape (n, 1)
-            Durations [s].
-
-        Returns
-        -------
-        Reach
-            Fields of shape (2, n, 3); those of the way back are of the opposite velocities.
-
-        """
-        return reach(self.law, self.max_velocity, FORTH_AND_BACK * v0, FORTH_AND_BACK * v1, T)
+    slope: Array       # of a segment's joint by v0, v1 and T, shape (n, 3, 3)
+    block: Array       # (n, 3, 3, 3), positive definite
+    velocities: Array  # (2, n - 1, 3)
+    durations: Array   # (2, n)
 
 
 class Derivatives(NamedTuple):
@@ -106,9 +65,9 @@ class Derivatives(NamedTuple):
     T_T: Array     # (n,), diagonal
 
 
-def value(chain: Chain, floor: Array | None, v: Array, T: Array) -> float:
+def values(chain: Chain, floor: Array | None, v: Array, T: Array) -> Parts:
     """
-    Return -sum log(slack) over every constraint.
+    Return -sum log(slack) over the constraints of each part.
 
     Parameters
     ----------
@@ -123,30 +82,57 @@ def value(chain: Chain, floor: Array | None, v: Array, T: Array) -> float:
 
     Returns
     -------
-    float
+    Parts
         Infinite where a constraint is not strictly kept.
 
     """
-    if not (T > 0.0).all():
-        return np.inf
     v0, v1 = _ends(v)
-    slacks = [_displacement_slacks(chain, chain.reaches(v0, v1, T[:, np.newaxis]).distance),
-              _change_slacks(chain, v0, v1, T), v - chain.lowest, chain.highest - v]
-    if floor is not None:
-        slacks.append(T - floor)
-    if min(float(s.min(initial=np.inf)) for s in slacks) <= 0.0:
-        return np.inf
-    return -sum(float(np.log(s).sum()) for s in slacks)
+    lasting = T > 0.0
+    some = np.where(lasting, T, 1.0)
+    reach = segment.reach(chain.law, chain.max_velocity, FORTH_AND_BACK * v0,
+                          FORTH_AND_BACK * v1, some[:, np.newaxis])
+    segments = _barrier(_displacement_slacks(chain, reach)) + _barrier(
+        _change_slacks(chain, v0, v1, some))
+    return Parts(np.where(lasting[:, np.newaxis], segments, np.inf),
+                 _barrier(np.stack((v - chain.lowest, chain.highest - v))),
+                 np.zeros(len(T)) if floor is None else _barrier((T - floor)[np.newaxis]))
 
 
-def derivatives(chain: Chain, floor: Array | None, v: Array, T: Array) -> Derivatives:
+def local(chain: Chain, floor: Array | None, v: Array, T: Array) -> Local:
     """
-    Return the barrier's gradient, and its Hessian with the curvature of each segment made convex.
+    Return the derivatives of each part, with the curvature of each segment made convex.
 
     Parameters
     ----------
     chain, floor, v, T
-        As in `value`, strictly feasible.
+        As in `values`, strictly feasible.
+
+    Returns
+    -------
+    Local
+        The derivatives.
+
+    """
+    slack, gradient, hessian = _segment_constraints(chain, v, T)
+    relative = gradient / slack[..., np.newaxis]
+    block = np.einsum('cnji,cnjk->njik', relative, relative) - (
+        hessian / slack[:2, ..., np.newaxis, np.newaxis]).sum(axis=0)
+    low, high = 1.0 / (v - chain.lowest), 1.0 / (chain.highest - v)
+    spare = np.zeros(len(T)) if floor is None else 1.0 / (T - floor)
+    return Local(-relative.sum(axis=0), _made_convex(block),
+                 np.stack((high - low, low ** 2 + high ** 2)), np.stack((-spare, spare ** 2)))
+
+
+def derivatives(at: Local, damping: Parts) -> Derivatives:
+    """
+    Return the barrier's derivatives.
+
+    Parameters
+    ----------
+    at : Local
+        Those of its parts.
+    damping : Parts
+        By how much of it each part's curvature is raised.
 
     Returns
     -------
@@ -154,21 +140,71 @@ def derivatives(chain: Chain, floor: Array | None, v: Array, T: Array) -> Deriva
         The Hessian is positive definite.
 
     """
-    slack, gradient, hessian = _segment_constraints(chain, v, T)
-    relative = gradient / slack[..., np.newaxis]
-    slope = -relative.sum(axis=0)
-    blocks = np.einsum('cnji,cnjk->njik', relative, relative) - (
-        hessian / slack[:2, ..., np.newaxis, np.newaxis]).sum(axis=0)
-    blocks = _made_convex(blocks)
-    low, high = 1.0 / (v - chain.lowest), 1.0 / (chain.highest - v)
-    g_T, T_T = slope[..., 2].sum(axis=1), blocks[..., 2, 2].sum(axis=1)
-    if floor is not None:
-        g_T -= 1.0 / (T - floor)
-        T_T += 1.0 / (T - floor) ** 2
+    at = damped(at, damping)
+    slope, block = at.slope, at.block
+    (g_v, v_v), (g_T, T_T) = at.velocities, at.durations
     return Derivatives(
-        g_v=slope[:-1, :, 1] + slope[1:, :, 0] - low + high, g_T=g_T,
-        v_v=blocks[:-1, :, 1, 1] + blocks[1:, :, 0, 0] + low ** 2 + high ** 2,
-        v_next=blocks[1:-1, :, 0, 1], v0_T=blocks[..., 0, 2], v1_T=blocks[..., 1, 2], T_T=T_T)
+        g_v=slope[:-1, :, 1] + slope[1:, :, 0] + g_v, g_T=slope[..., 2].sum(axis=1) + g_T,
+        v_v=block[:-1, :, 1, 1] + block[1:, :, 0, 0] + v_v,
+        v_next=block[1:-1, :, 0, 1], v0_T=block[..., 0, 2], v1_T=block[..., 1, 2],
+        T_T=block[..., 2, 2].sum(axis=1) + T_T)
+
+
+def damped(at: Local, damping: Parts) -> Local:
+    """
+    Return parts whose curvature is raised.
+
+    Parameters
+    ----------
+    at, damping
+        As in `derivatives`.
+
+    Returns
+    -------
+    Local
+        The parts.
+
+    """
+    (g_v, v_v), (g_T, T_T) = at.velocities, at.durations
+    return Local(at.slope, at.block * (1.0 + damping.segments)[..., np.newaxis, np.newaxis],
+                 np.stack((g_v, v_v * (1.0 + damping.velocities))),
+                 np.stack((g_T, T_T * (1.0 + damping.durations))))
+
+
+def misjudged(at: Local, dv: Array, dT: Array, change: Parts) -> list[BoolArray]:
+    """
+    Return which parts rise more along a step than their derivatives foretell.
+
+    Parameters
+    ----------
+    at : Local
+        The derivatives where it begins.
+    dv : ndarray, shape (n - 1, 3)
+        Changes of via velocities [rad/s].
+    dT : ndarray, shape (n,)
+        Changes of durations [s].
+    change : Parts
+        How the parts change along it.
+
+    Returns
+    -------
+    list of ndarray of bool
+        As the fields of `Parts`; all of them where there is none.
+
+    """
+    d0, d1 = _ends(dv)
+    step = np.stack((d0, d1, np.broadcast_to(dT[:, np.newaxis], d0.shape)), axis=-1)
+    bend = np.einsum('nji,njik,njk->nj', step, at.block, step)
+    first = Parts((at.slope * step).sum(axis=-1), at.velocities[0] * dv, at.durations[0] * dT)
+    second = Parts(bend, at.velocities[1] * dv ** 2, at.durations[1] * dT ** 2)
+    found = [~(c - f <= TOLERATED * s) for c, f, s in zip(change, first, second)]
+    return found if any(f.any() for f in found) else [np.ones_like(f) for f in found]
+
+
+def _barrier(slacks: Array) -> Array:
+    """Return -sum log over the first axis, infinite where one is not positive."""
+    kept = (slacks > 0.0).all(axis=0)
+    return np.where(kept, -np.log(np.where(slacks > 0.0, slacks, 1.0)).sum(axis=0), np.inf)
 
 
 def _segment_constraints(chain: Chain, v: Array, T: Array) -> tuple[Array, Array, Array]:
@@ -180,22 +216,16 @@ def _segment_constraints(chain: Chain, v: Array, T: Array) -> tuple[Array, Array
     """
     v0, v1 = _ends(v)
     t = T[:, np.newaxis]
-    step_v, step_T = DIFFERENCE * chain.max_velocity, DIFFERENCE * t
-    sides = reach(chain.law, chain.max_velocity, FORTH_AND_BACK * v0 + TOWARDS[0] * step_v,
-                  FORTH_AND_BACK * v1 + TOWARDS[1] * step_v, t + TOWARDS[2] * step_T)
-    signed = np.stack((FORTH_AND_BACK * sides.d_v0, FORTH_AND_BACK * sides.d_v1, sides.d_T), -1)
-    steps = np.stack(np.broadcast_arrays(
-        -FORTH_AND_BACK * step_v, -FORTH_AND_BACK * step_v, step_T + 0.0 * FORTH_AND_BACK))
-    hessian = np.moveaxis((signed[1:] - signed[0]) / steps[..., np.newaxis], 0, -1)
-    change = chain.law.largest_change(t)
-    rate = (chain.law.largest_change(t + step_T) - change) / step_T
+    law = chain.law
+    found = segment.derivatives(law, chain.max_velocity, FORTH_AND_BACK * v0,
+                                FORTH_AND_BACK * v1, t)
     one = np.ones_like(v0)
-    rate = rate * one
-    slack = np.concatenate((_displacement_slacks(chain, sides.distance[0]),
+    rate = law.change_rate(t) * one
+    slack = np.concatenate((_displacement_slacks(chain, found.distance),
                             _change_slacks(chain, v0, v1, T)))
-    gradient = np.concatenate((signed[0], [np.stack((one, -one, rate), -1)],
+    gradient = np.concatenate((SIGNS * found.gradient, [np.stack((one, -one, rate), -1)],
                                [np.stack((-one, one, rate), -1)]))
-    return slack, gradient, 0.5 * (hessian + np.swapaxes(hessian, -1, -2))
+    return slack, gradient, SIGNS[..., np.newaxis] * SIGNS[..., np.newaxis, :] * found.hessian
 
 
 def _ends(v: Array) -> tuple[Array, Array]:

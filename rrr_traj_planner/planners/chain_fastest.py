@@ -22,26 +22,26 @@ time.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.chain_motion import (
     at_rest,
     ChainMotion,
+    motion_with_floor,
+    quickest_motion,
     segment_stretch,
     slower_at,
     stretched_for_torque,
-    timed_motion,
 )
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.via_velocities import least_time
-
-# Durations are longer than the least by this part, so that they can be prescribed again.
-DURATION_ROOM = 1e-6
 
 STRAIGHTENING_ROUNDS = 5   # of lowering via velocities of a path that gravity blocks
 SLOWING_ROUNDS = 8         # of giving more time to the segments that lack torque
+BACKWARD = 1.0, 0.5        # powers, each tried, of what it asks of segments that last too long
 OVERSHOOT_ROUNDS = 8       # of lowering via velocities that overshoot a joint's range
 
 
@@ -70,21 +70,11 @@ def fastest(task: JointTask, chain: Chain, floor: Array | None) -> ChainMotion:
 
     """
     chain, motion, stretch = _holdable_motion(task, chain, floor)
-    best, least = motion, motion.durations.sum() * max(1.0, stretch.max())
-    lacking = np.zeros(len(stretch), dtype=bool)
-    for _ in range(SLOWING_ROUNDS):
-        lacking |= stretch > 1.0
-        if not lacking.any() or np.isinf(stretch).any():
-            break
-        # as long as torque asks for, neither more nor less
-        slow = np.where(lacking, motion.durations * stretch, 0.0)
-        slow = slow if floor is None else np.maximum(slow, floor)
-        motion = _least_time_motion(task, chain, slow)
-        stretch = segment_stretch(task, motion)
-        total = motion.durations.sum() * max(1.0, stretch.max())
-        if total < least:
-            best, least = motion, total
-    return stretched_for_torque(task, best)
+    candidates = [(motion, stretch)]
+    for backward in BACKWARD:
+        candidates += _slowed(task, chain, floor, motion, stretch, backward)
+    totals = [m.durations.sum() * max(1.0, s.max()) for m, s in candidates]
+    return stretched_for_torque(task, candidates[int(np.argmin(totals))][0])
 
 
 def fastest_with_stops(task: JointTask, chain: Chain, floor: Array) -> ChainMotion:
@@ -115,6 +105,26 @@ def fastest_with_stops(task: JointTask, chain: Chain, floor: Array) -> ChainMoti
     return stretched_for_torque(task, _least_time_motion(task, stops, floor))
 
 
+def _slowed(task: JointTask, chain: Chain, floor: Array | None, motion: ChainMotion,
+            stretch: Array, backward: float) -> Iterator[tuple[ChainMotion, Array]]:
+    """
+    Give motions, and their stretch, whose segments last as long as torque asks of the one before.
+
+    Where it asks for less than before, durations go back by a power of it.
+    """
+    lacking = np.zeros(len(stretch), dtype=bool)
+    for _ in range(SLOWING_ROUNDS):
+        lacking |= stretch > 1.0
+        if not lacking.any() or np.isinf(stretch).any() or task.should_stop():
+            return
+        change = np.where(stretch > 1.0, stretch, stretch ** backward)
+        slow = np.where(lacking, motion.durations * change, 0.0)
+        slow = slow if floor is None else np.maximum(slow, floor)
+        motion = _least_time_motion(task, chain, slow)
+        stretch = segment_stretch(task, motion)
+        yield motion, stretch
+
+
 def _holdable_motion(task: JointTask, chain: Chain,
                      floor: Array | None) -> tuple[Chain, ChainMotion, Array]:
     """
@@ -139,9 +149,9 @@ def _least_time_motion(task: JointTask, chain: Chain, floor: Array | None) -> Ch
     for round_ in range(OVERSHOOT_ROUNDS + 1):
         if round_ == OVERSHOOT_ROUNDS:
             chain = at_rest(chain)
-        durations = least_time(chain, floor).durations * (1.0 + DURATION_ROOM)
-        motion, overshoot = timed_motion(task, chain, durations)
-        if motion is not None and not overshoot.any():
+        motion, overshoot = (quickest_motion(task, chain) if floor is None
+                             else motion_with_floor(task, chain, floor))
+        if motion is not None:
             return motion
         chain = slower_at(chain, overshoot)
     raise ConvergenceError(

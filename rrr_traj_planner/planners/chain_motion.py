@@ -23,15 +23,20 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.core.motion_torque import squared_stretch, torque_grid
-from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners import segment_motion
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
+from rrr_traj_planner.planners.convergence import unconverged_note
 from rrr_traj_planner.planners.motion_law import cannot_hold, LEAST_VELOCITY, torque_stretch
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.via_velocities import least_stretch
+from rrr_traj_planner.planners.via_velocities import least_stretch, least_time
 
 STRETCH_TOLERANCE = 3e-7   # of prescribed durations: jerk then keeps its limit to 1e-6
 TORQUE_TOLERANCE = 5e-7    # of the stretch that torque asks for
+
+# Durations are longer than the least by this part, so that they can be prescribed again.
+DURATION_ROOM = 1e-6
+
 OVERSHOOT_REDUCTION = 0.5
 
 
@@ -63,7 +68,7 @@ def timed_motion(task: JointTask, chain: Chain, durations: Array,
     Returns
     -------
     tuple of ChainMotion and ndarray of bool, shape (n, 3)
-        None where the kinematic limits leave no such motion.
+        None where it overshoots, or the kinematic limits leave no such motion.
 
     """
     factor, solution = least_stretch(chain, durations)
@@ -72,14 +77,63 @@ def timed_motion(task: JointTask, chain: Chain, durations: Array,
         return None, np.zeros_like(chain.displacements, dtype=bool)
     if factor <= 1.0 and gently:
         v, T, factor = v * factor, durations, 1.0
-    v0, v1 = np.vstack((np.zeros(3), v)), np.vstack((v, np.zeros(3)))
-    parts = segment_motion.gentle_parts(
-        chain.law, chain.max_velocity, v0, v1, T[:, np.newaxis], chain.displacements)
-    trajectory = segment_motion.trajectory(
-        task.points, v0, v1, T[:, np.newaxis], parts, chain.function)
-    if factor != 1.0:
-        trajectory = trajectory.stretched(1.0 / factor)
-    return ChainMotion(trajectory, durations), _overshoot(task, trajectory)
+    motion, overshoot = _moved(task, chain, v, T, durations)
+    if motion is not None and factor != 1.0:
+        motion = motion._replace(trajectory=motion.trajectory.stretched(1.0 / factor))
+    return motion, overshoot
+
+
+def quickest_motion(task: JointTask, chain: Chain) -> tuple[ChainMotion | None, BoolArray]:
+    """
+    Return the motion of least total time, and which segments overshoot a joint's range.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    chain : Chain
+        The via points.
+
+    Returns
+    -------
+    tuple of ChainMotion and ndarray of bool, shape (n, 3)
+        None where it overshoots. Its note says where planning was stopped before it converged.
+
+    """
+    found = least_time(chain, should_stop=task.should_stop)
+    slower = 1.0 + DURATION_ROOM
+    durations = found.durations * slower
+    motion, overshoot = _moved(task, chain, found.velocities / slower, durations, durations)
+    if motion is not None:
+        motion.trajectory.note = unconverged_note(found.gap, motion.trajectory.duration)
+    return motion, overshoot
+
+
+def motion_with_floor(task: JointTask, chain: Chain,
+                      floor: Array) -> tuple[ChainMotion | None, BoolArray]:
+    """
+    Return the motion of least total time whose segments last long enough, and what overshoots.
+
+    Its via velocities are those of the least stretch: where a floor leaves time to spare, they
+    leave most room to slow down or hurry.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    chain : Chain
+        The via points.
+    floor : ndarray, shape (n,)
+        Durations [s] that no segment may fall below.
+
+    Returns
+    -------
+    tuple of ChainMotion and ndarray of bool, shape (n, 3)
+        As of `timed_motion`.
+
+    """
+    found = least_time(chain, floor, task.should_stop)
+    return timed_motion(task, chain, found.durations * (1.0 + DURATION_ROOM))
 
 
 def slower_at(chain: Chain, segments: BoolArray) -> Chain:
@@ -181,13 +235,42 @@ def stretched_for_torque(task: JointTask, motion: ChainMotion) -> ChainMotion:
     return ChainMotion(motion.trajectory.stretched(factor), motion.durations * factor)
 
 
-def _overshoot(task: JointTask, trajectory: PiecewiseTrajectory) -> BoolArray:
-    """Return in which segments which joints leave their range, shape (n, 3)."""
-    out = np.zeros((len(task.points) - 1, 3), dtype=bool)
-    starts = trajectory.via_times[1:-1] - 1e-12
-    for joint, profile in enumerate(trajectory.profiles):
-        least, most = profile.piece_ranges
-        beyond = (least < task.limits.min_position[joint] - POSITION_TOLERANCE) | (
-            most > task.limits.max_position[joint] + POSITION_TOLERANCE)
-        out[np.searchsorted(starts, profile.knots[:-1][beyond], side='right'), joint] = True
+def _moved(task: JointTask, chain: Chain, v: Array, T: Array,
+           durations: Array) -> tuple[ChainMotion | None, BoolArray]:
+    """Return the motion of given velocities and durations; none where it overshoots a range."""
+    rest = np.zeros((1, 3))
+    v0, v1 = np.concatenate((rest, v)), np.concatenate((v, rest))
+    parts = segment_motion.gentle_parts(
+        chain.law, chain.max_velocity, v0, v1, T[:, np.newaxis], chain.displacements)
+    overshoot = _overshoot(task, chain, v0, v1, parts)
+    if overshoot.any():
+        return None, overshoot
+    trajectory = segment_motion.trajectory(
+        task.points, v0, v1, T[:, np.newaxis], parts, chain.function)
+    return ChainMotion(trajectory, durations), overshoot
+
+
+def _overshoot(task: JointTask, chain: Chain, v0: Array, v1: Array,
+               parts: segment_motion.Parts) -> BoolArray:
+    """
+    Return in which segments which joints leave their range, shape (n, 3).
+
+    Via points lie within it, and between them position has an extreme only where a transition
+    leads to a velocity of the other sign. It is less than velocity times duration away.
+    """
+    limits, cruise = task.limits, parts.cruise
+    least, most = limits.min_position, limits.max_position
+    out = np.zeros(v0.shape, dtype=bool)
+    for point, duration, velocity, way in (
+            (task.points[:-1], parts.first, v0, 1.0), (task.points[1:], parts.last, v1, -1.0)):
+        furthest = point + way * velocity * duration
+        doubtful = (velocity * cruise < 0.0) & (duration > 0.0) & (
+            (furthest < least) | (furthest > most))
+        if doubtful.any():  # a last transition is a first one, backwards
+            row, joint = np.nonzero(doubtful)
+            at = row, joint
+            ranges = JointProfile(chain.function.transition(
+                duration[at], point[at], way * velocity[at], way * cruise[at])).piece_ranges
+            out[at] |= (ranges[0] < least[joint] - POSITION_TOLERANCE) | (
+                ranges[1] > most[joint] + POSITION_TOLERANCE)
     return out

@@ -19,9 +19,8 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.chain_fastest import (
-    DURATION_ROOM,
     fastest,
     fastest_with_stops,
     OVERSHOOT_ROUNDS,
@@ -30,6 +29,7 @@ from rrr_traj_planner.planners.chain_fastest import (
 from rrr_traj_planner.planners.chain_motion import (
     at_rest,
     ChainMotion,
+    DURATION_ROOM,
     segment_stretch,
     slower_at,
     STRETCH_TOLERANCE,
@@ -113,10 +113,10 @@ def _with_durations(task: JointTask, chain: Chain, durations: Array,
         if round_ == OVERSHOOT_ROUNDS:
             chain = at_rest(chain)
         motion, overshoot = timed_motion(task, chain, durations, gently)
-        if motion is None or not overshoot.any():
+        if motion is not None or not overshoot.any():
             return motion
         chain = slower_at(chain, overshoot)
-    return motion
+    return None
 
 
 def _too_short(task: JointTask, chain: Chain, durations: Array) -> TimingError:

@@ -28,7 +28,7 @@ from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.motion_law import chain_of, slowed_for_torque
 from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused, within_torque
 from rrr_traj_planner.planners.registry import register

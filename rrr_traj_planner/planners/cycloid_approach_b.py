@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.motion_law import chain_of, slowed_for_torque
 from rrr_traj_planner.planners.prescribed_by_search import (
     fastest_beside_stays,

@@ -27,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners import compiled
+from rrr_traj_planner.planners.convergence import CONVERGED
 from rrr_traj_planner.planners.interior_step import (
     BACKTRACKS,
     best_step,
@@ -50,7 +51,6 @@ STALL = 3e-4                 # than this part of the total time
 START = 0.3                  # the first barrier per constraint, over the start's total time
 FAR_FROM_CENTRE = 1e5        # gain over barrier at the start at which the barrier is raised
 RAISES = 6
-CONVERGED = 5e-3             # relative gap that counts as convergence
 ITERATIONS = 200
 DUAL_CORRIDOR = 1e6          # how far multipliers may be from barrier / slack
 
@@ -89,29 +89,6 @@ def is_within(constraints: Constraints, m: Motion) -> bool:
 
     """
     return min(float(s.min()) for s in constraints.slacks(m)) > 0.0
-
-
-def unconverged_note(gap: float, duration: float) -> str:
-    """
-    Return what there is to be said where the method ended before it converged.
-
-    Parameters
-    ----------
-    gap : float
-        What a better motion could save at most [s]; infinite where nothing is known.
-    duration : float
-        The motion's [s].
-
-    Returns
-    -------
-    str
-        Empty where it converged.
-
-    """
-    if gap < CONVERGED * duration:
-        return ''
-    part = 100.0 * min(gap / duration, 1.0)
-    return f'planning ended before it converged: at most {part:.3g} % of the time could be saved'
 
 
 def minimise(constraints: Constraints, start: Centre, freedom: Freedom,

@@ -22,7 +22,7 @@ from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
 from rrr_traj_planner.core.motion_torque import peak_holding_torque, stretch_for_torque
 from rrr_traj_planner.core.pieces import TransitionFunction
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.segment import TransitionLaw
 

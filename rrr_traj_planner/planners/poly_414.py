@@ -30,7 +30,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.quartic import QUARTIC
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.motion_law import (
     cannot_hold,
     chain_of,

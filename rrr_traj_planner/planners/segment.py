@@ -76,22 +76,39 @@ class TransitionLaw(NamedTuple):
             by_jerk = np.where(self.root > 0.0, (duration / self.root) ** 2, np.inf)
         return np.minimum(duration / self.slope, by_jerk)
 
+    def change_rate(self, duration: Array) -> Array:
+        """
+        Return by how much the largest change of velocity grows with the duration.
 
-class Reach(NamedTuple):
-    """The largest displacement of a segment and its derivatives."""
+        Parameters
+        ----------
+        duration : ndarray
+            [s].
 
-    cruise: Array    # cruise velocity that gives it [rad/s]
-    distance: Array  # [rad]
-    d_v0: Array
-    d_v1: Array
-    d_T: Array
+        Returns
+        -------
+        ndarray
+            [rad/s^2].
+
+        """
+        with np.errstate(divide='ignore', invalid='ignore'):
+            by_jerk = 2.0 * duration / self.root ** 2
+        return np.where(self.largest_change(duration) < duration / self.slope, by_jerk,
+                        1.0 / self.slope)
 
 
-def reach(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array) -> Reach:
+class Derivatives(NamedTuple):
+    """The largest displacement, and its derivatives by v0, v1 and T."""
+
+    distance: Array  # shape (...) [rad]
+    gradient: Array  # (..., 3)
+    hessian: Array   # (..., 3, 3)
+
+
+def largest_cruise(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
+                   T: Array) -> Array:
     """
-    Return the largest displacement in a given time between given velocities.
-
-    The least one is minus the reach between the opposite velocities.
+    Return the cruise that takes furthest in a given time between given velocities.
 
     Parameters
     ----------
@@ -106,32 +123,98 @@ def reach(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Arra
 
     Returns
     -------
-    Reach
-        Shapes broadcast.
+    ndarray
+        [rad/s]; shapes broadcast.
 
     """
-    gap = np.abs(v1 - v0)
-    rise = _rise(law, gap, T)
-    free = np.maximum(v0, v1) + rise
-    cruise = np.minimum(free, max_velocity)
-    capped = free > max_velocity
+    return np.minimum(_fastest_cruise(law, v0, v1, T), max_velocity)
+
+
+def reach(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array) -> Array:
+    """
+    Return the largest displacement in a given time between given velocities.
+
+    The least one is minus the reach between the opposite velocities.
+
+    Parameters
+    ----------
+    law, max_velocity, v0, v1, T
+        As in `largest_cruise`.
+
+    Returns
+    -------
+    ndarray
+        [rad]; shapes broadcast.
+
+    """
+    cruise = largest_cruise(law, max_velocity, v0, v1, T)
     u0, u1 = cruise - v0, cruise - v1
-    t0, t1 = law.least_time(u0), law.least_time(u1)
-    jerky0, jerky1 = t0 > law.slope * u0, t1 > law.slope * u1
-    p0, p1 = np.where(jerky0, 0.75, 1.0) * t0, np.where(jerky1, 0.75, 1.0) * t1
-    # inverse slopes of t(u): at u -> 0 the slope itself is infinite where jerk binds
+    return np.asarray(cruise * T - 0.5 * (u0 * law.least_time(u0) + u1 * law.least_time(u1)))
+
+
+def derivatives(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
+                T: Array) -> Derivatives:
+    """
+    Return the largest displacement and its derivatives.
+
+    With t_k how long the transition at end k lasts, i_k the inverse slope of t(u) there and m_k =
+    (t_k + u_k / i_k) / (2 t_k), a change of velocity by u costs m t: m is 1 where acceleration
+    bounds a transition, 3 / 4 where jerk does.
+
+    Parameters
+    ----------
+    law, max_velocity, v0, v1, T
+        As in `largest_cruise`; velocities below the maximum.
+
+    Returns
+    -------
+    Derivatives
+        One-sided where two laws or a limit meet.
+
+    """
+    free = _fastest_cruise(law, v0, v1, T)
+    capped = free >= max_velocity
+    cruise = np.where(capped, max_velocity, free)
+    u0, u1 = cruise - v0, cruise - v1
+    (t0, m0, i0, k0), (t1, m1, i1, k1) = _transition(law, u0), _transition(law, u1)
+    p0, p1 = m0 * t0, m1 * t1
     with np.errstate(divide='ignore', invalid='ignore'):
-        i0 = np.where(jerky0, 2.0 * u0 / t0, 1.0 / law.slope)
-        i1 = np.where(jerky1, 2.0 * u1 / t1, 1.0 / law.slope)
-        i0, i1 = np.nan_to_num(i0), np.nan_to_num(i1)
-        share = np.where(i0 + i1 > 0.0, i1 / (i0 + i1), 0.5)
+        q = np.where(capped, 0.0, 1.0 / (i0 + i1))
+        # where the cruise is at its limit it does not change, but for transitions at their ends
+        own0, own1 = np.where(capped, m0 / i0, m0 * q), np.where(capped, m1 / i1, m1 * q)
+    share, rest = i1 * q, i0 * q   # how the cruise follows v0 and v1
+    by_T = share * i0              # and the duration
     left = np.where(capped, 0.0, T - p0 - p1)
-    return Reach(
-        cruise=cruise,
-        distance=cruise * T - 0.5 * (u0 * t0 + u1 * t1),
-        d_v0=p0 + left * share,
-        d_v1=p1 + left * (1.0 - share),
-        d_T=cruise + left * share * i0)
+    skew = left * q ** 3 * (i0 * k1 + i1 * k0)         # of left * share with v0
+    skew_T = left * q ** 3 * (i0 ** 2 * k1 - i1 ** 2 * k0)  # and with T
+    more = (m0 - m1) * q                               # of left with v0
+    with_T = 1.0 - m0 * share - m1 * rest              # and with T
+    one_one = -own0 + more * share + skew
+    two_two = -own1 - more * rest + skew
+    one_two = m0 * q - more * share - skew
+    one_T = (m0 + with_T) * share + skew_T
+    two_T = (m1 + with_T) * rest - skew_T
+    T_T = by_T * (1.0 + with_T) + left * q ** 3 * (i1 ** 3 * k0 + i0 ** 3 * k1)
+    hessian = np.stack((one_one, one_two, one_T, one_two, two_two, two_T, one_T, two_T, T_T), -1)
+    return Derivatives(
+        cruise * T - 0.5 * (u0 * t0 + u1 * t1),
+        np.stack((p0 + left * share, p1 + left * rest, cruise + left * by_T), -1),
+        hessian.reshape(*hessian.shape[:-1], 3, 3))
+
+
+def _transition(law: TransitionLaw, u: Array) -> tuple[Array, Array, Array, Array]:
+    """Return t(u), m and i of `derivatives`, and how i changes with u, times i."""
+    by_acceleration, by_jerk = law.slope * u, law.root * np.sqrt(u)
+    jerky = by_jerk > by_acceleration
+    with np.errstate(divide='ignore', invalid='ignore'):
+        return (np.where(jerky, by_jerk, by_acceleration), np.where(jerky, 0.75, 1.0),
+                np.where(jerky, 2.0 * u / by_jerk, 1.0 / law.slope),
+                np.where(jerky, 2.0 / law.root ** 2, 0.0))
+
+
+def _fastest_cruise(law: TransitionLaw, v0: Array, v1: Array, T: Array) -> Array:
+    """Return the cruise that takes all the time, not bounded by the velocity limit."""
+    return np.asarray(np.maximum(v0, v1) + _rise(law, np.abs(v1 - v0), T))
 
 
 def _rise(law: TransitionLaw, gap: Array, T: Array) -> Array:

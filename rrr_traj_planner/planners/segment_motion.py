@@ -24,7 +24,9 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.pieces import Pieces, TransitionFunction
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.planners.segment import reach, TransitionLaw
+from rrr_traj_planner.planners import compiled
+from rrr_traj_planner.planners.compiled_segments import cruise_covering
+from rrr_traj_planner.planners.segment import largest_cruise, TransitionLaw
 
 BISECTIONS = 60
 
@@ -197,17 +199,26 @@ def _limited(law: TransitionLaw, max_velocity: Array, a: Array, b: Array, T: Arr
     the least such cruise, a single transition, stretched.
     """
     low = b
-    high = np.maximum(reach(law, max_velocity, a, b, T).cruise, b)
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        short = _displacement(law, middle, a, b, T) < D
-        low, high = np.where(short, middle, low), np.where(short, high, middle)
+    high = np.maximum(largest_cruise(law, max_velocity, a, b, T), b)
+    high = _cruise_covering(law, low, high, a, b, T, D)
     first, last = law.least_time(high - a), law.least_time(high - b)
     with np.errstate(divide='ignore', invalid='ignore'):
         stretched = np.clip(2.0 * (b * T - D) / (b - a), 0.0, T)
     single = _displacement(law, b, a, b, T) >= D
     return Parts(np.where(single, np.where(b > a, stretched, 0.0), first),
                  np.where(single, b, high), np.where(single, 0.0, last))
+
+
+def _cruise_covering(law: TransitionLaw, low: Array, high: Array, a: Array, b: Array, T: Array,
+                     D: Array) -> Array:
+    """Return the lowest cruise of a range that covers a displacement with shortest transitions."""
+    if compiled.LIBRARY is not None:
+        return cruise_covering(law, low, high, a, b, T, D, BISECTIONS)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        short = _displacement(law, middle, a, b, T) < D
+        low, high = np.where(short, middle, low), np.where(short, high, middle)
+    return high
 
 
 def _displacement(law: TransitionLaw, cruise: Array, a: Array, b: Array, T: Array) -> Array:

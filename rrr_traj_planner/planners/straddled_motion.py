@@ -30,7 +30,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.pieces import TransitionFunction
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.segment_motion import joint_profiles
 

@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.straddled_motion import excess, shortest_transitions, Straddling
 from scipy import sparse
 from scipy.optimize import linprog

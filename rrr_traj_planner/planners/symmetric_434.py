@@ -46,7 +46,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.law_434 import Law434
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 
 LEAST_PART, MOST_PART = 1e-7, 0.49  # of the duration, for lift-off; a cruise is always left
 USUAL_PART = 1.0 / 3.0

@@ -28,8 +28,8 @@ from dataclasses import replace
 import numpy as np
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.convergence import unconverged_note
 from rrr_traj_planner.planners.followable import acceleration_scale, followable
-from rrr_traj_planner.planners.interior_point import unconverged_note
 from rrr_traj_planner.planners.ramp_chain import grid_of
 from rrr_traj_planner.planners.ramp_prescribed import prescribed
 from rrr_traj_planner.planners.ramp_problem import fastest

@@ -91,8 +91,8 @@ def can_stop(law: TransitionLaw, max_velocity: Array, v0: Array, T: Array, D: Ar
 
     """
     rest = np.zeros_like(v0)
-    forth = reach(law, max_velocity, v0, rest, T).distance
-    back = -reach(law, max_velocity, -v0, rest, T).distance
+    forth = reach(law, max_velocity, v0, rest, T)
+    back = -reach(law, max_velocity, -v0, rest, T)
     fits = (law.least_time(v0) <= T) & (back <= D) & (D <= forth)
     return np.asarray(fits.all(axis=-1))
 

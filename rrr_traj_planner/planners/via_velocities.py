@@ -17,39 +17,28 @@ Velocities at the via points and durations of the segments that take least total
 
 For one joint the time that a segment takes between given velocities is bounded below by a
 second-order cone, so the problem is convex but for the bound from above (a joint must not be too
-fast for the others). A log-barrier Newton method solves it: always feasible, nine diagonals to
-factor in each step, so the cost is linear in the number of via points.
+fast for the others). A step of the method factors nine diagonals: its cost is linear in the number
+of via points.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from collections.abc import Callable
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.barrier import Chain, Derivatives, derivatives, value
+from rrr_traj_planner.planners.barrier import Derivatives
+from rrr_traj_planner.planners.central_path import follow, Solution
+from rrr_traj_planner.planners.chain import Chain
+from rrr_traj_planner.planners.request import never
 from scipy.linalg import solveh_banded
 
-# The barrier's gap, relative to the total time: what a better answer could save at most.
-RELATIVE_GAP = 2e-7
-BARRIER_REDUCTION = 0.12
-CENTRED = 0.5            # Newton decrement squared below which the barrier is lowered
-POLISHED = 1e-7          # the same at the end: the answer then varies smoothly with the task
-STEPS_TO_CENTRE = 25     # and after so many steps it is lowered all the same
-START_ROOM = 1.3         # the start's durations over the least ones from rest to rest
-SUFFICIENT_DECREASE = 0.1
-BACKTRACKS = 40
+START_ROOM = 1.3  # the start's durations over the least ones from rest to rest
 BANDWIDTH = 4
 
 
-class Solution(NamedTuple):
-    """Velocities at the via points and durations, strictly feasible."""
-
-    velocities: Array  # shape (n - 1, 3) [rad/s]
-    durations: Array   # shape (n,) [s]
-
-
-def least_time(chain: Chain, floor: Array | None = None) -> Solution:
+def least_time(chain: Chain, floor: Array | None = None,
+               should_stop: Callable[[], bool] = never) -> Solution:
     """
     Return the via velocities and durations of least total time.
 
@@ -59,19 +48,22 @@ def least_time(chain: Chain, floor: Array | None = None) -> Solution:
         The via points; no displacement zero in all joints.
     floor : ndarray, shape (n,), optional
         Durations [s] that no segment may fall below.
+    should_stop : callable
+        Asked before every step; True ends the search with what it has.
 
     Returns
     -------
     Solution
-        Where the problem is convex, within a relative 2e-7 of the least total time.
+        Where the problem is convex and nothing stops it, within a relative 2e-7 of the least
+        total time.
 
     """
     n = len(chain.displacements)
     T = chain.rest_to_rest_times()
     if floor is not None:
         T = np.maximum(T, floor)
-    return _follow_central_path(_FreeDurations(chain, floor), np.zeros((n - 1, 3)),
-                                START_ROOM * T)
+    return follow(_FreeDurations(chain, floor), np.zeros((n - 1, 3)), START_ROOM * T,
+                  should_stop)
 
 
 def least_stretch(chain: Chain, durations: Array) -> tuple[float, Solution]:
@@ -93,31 +85,15 @@ def least_stretch(chain: Chain, durations: Array) -> tuple[float, Solution]:
     """
     n = len(chain.displacements)
     factor = START_ROOM * max(float((chain.rest_to_rest_times() / durations).max()), 1e-6)
-    solution = _follow_central_path(_CommonStretch(chain, durations), np.zeros((n - 1, 3)),
-                                    factor * durations)
+    solution = follow(_CommonStretch(chain, durations), np.zeros((n - 1, 3)), factor * durations,
+                      never)
     return float(solution.durations[0] / durations[0]), solution
-
-
-class _Problem(Protocol):
-    """What is minimised along the central path."""
-
-    @property
-    def chain(self) -> Chain:
-        """Return the via points."""
-
-    @property
-    def floor(self) -> Array | None:
-        """Least durations, if there are any [s]."""
-
-    def objective(self, T: Array) -> float:
-        """Return what is minimised."""
-
-    def newton_step(self, b: Derivatives, weight: float) -> tuple[Array, Array, float]:
-        """Return steps of v and T for weight * objective + barrier, and the decrement squared."""
 
 
 class _FreeDurations:
     """Least sum of durations: every duration is a variable."""
+
+    proportions = None
 
     def __init__(self, chain: Chain, floor: Array | None) -> None:
         self.chain = chain
@@ -152,15 +128,15 @@ class _CommonStretch:
 
     def __init__(self, chain: Chain, durations: Array) -> None:
         self.chain = chain
-        self.durations = durations
+        self.proportions = durations
 
     def objective(self, T: Array) -> float:
         """Return the stretch."""
-        return float(T[0] / self.durations[0])
+        return float(T[0] / self.proportions[0])
 
     def newton_step(self, b: Derivatives, weight: float) -> tuple[Array, Array, float]:
         """Return the step: a band for the velocities, bordered by the stretch."""
-        d = self.durations
+        d = self.proportions
         g, h = weight + float(b.g_T @ d), float(b.T_T @ d ** 2)
         if len(d) == 1:
             return b.g_v, -g / h * d, g * g / h
@@ -174,36 +150,3 @@ class _CommonStretch:
         dv = -(x[:, 0] + x[:, 1] * stretch)
         decrement = -float(b.g_v.ravel() @ dv) - g * stretch
         return dv.reshape(-1, 3), stretch * d, decrement
-
-
-def _follow_central_path(problem: _Problem, v: Array, T: Array) -> Solution:
-    """Lower the barrier from a strictly feasible point until the gap is closed."""
-    constraints = 12 * len(T) + 6 * len(v)
-    weight = constraints / problem.objective(T)
-    while True:
-        v, T = _centre(problem, v, T, weight, CENTRED)
-        if constraints / weight < RELATIVE_GAP * problem.objective(T):
-            return Solution(*_centre(problem, v, T, weight, POLISHED))
-        weight /= BARRIER_REDUCTION
-
-
-def _centre(problem: _Problem, v: Array, T: Array, weight: float,
-            centred: float) -> tuple[Array, Array]:
-    """Return a point near the minimum of weight * objective + barrier."""
-    chain, floor = problem.chain, problem.floor
-    merit = weight * problem.objective(T) + value(chain, floor, v, T)
-    for _ in range(STEPS_TO_CENTRE):
-        dv, dT, decrement = problem.newton_step(derivatives(chain, floor, v, T), weight)
-        size = 1.0
-        for _ in range(BACKTRACKS):
-            v_new, T_new = v + size * dv, T + size * dT
-            trial = weight * problem.objective(T_new) + value(chain, floor, v_new, T_new)
-            if trial <= merit - SUFFICIENT_DECREASE * size * decrement:
-                break
-            size *= 0.5
-        else:
-            break  # rounding leaves no lower point to be found
-        v, T, merit = v_new, T_new, trial
-        if decrement < centred:
-            break
-    return v, T

@@ -19,7 +19,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from random_cases import central_difference
-from rrr_traj_planner.planners.barrier import Chain, derivatives, value
+from rrr_traj_planner.planners.barrier import (
+    damped,
+    derivatives,
+    local,
+    misjudged,
+    Parts,
+    values,
+)
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.segment import TransitionLaw
 
 SEEDS = range(20)
@@ -38,11 +46,63 @@ def chain_and_point(seed):
     return chain, 0.8 * T if seed % 2 else None, v, T
 
 
+def undamped(chain):
+    """Return no damping of any part."""
+    n = len(chain.displacements)
+    return Parts(np.zeros((n, 3)), np.zeros((n - 1, 3)), np.zeros(n))
+
+
+def value(chain, floor, v, T):
+    """Return the barrier."""
+    return sum(p.sum() for p in values(chain, floor, v, T))
+
+
+def dense_hessian(d):
+    """Return the Hessian, durations first, then velocities."""
+    n = len(d.T_T)
+    hessian = np.zeros((4 * n - 3, 4 * n - 3))  # T0, ..., then v0, v1, ...
+    hessian[range(n), range(n)] = d.T_T
+    for k in range(n - 1):
+        at = n + 3 * k + np.arange(3)
+        hessian[at, at] = d.v_v[k]
+        hessian[at, k] = hessian[k, at] = d.v1_T[k]
+        hessian[at, k + 1] = hessian[k + 1, at] = d.v0_T[k + 1]
+        if k + 1 < n - 1:
+            hessian[at, at + 3] = hessian[at + 3, at] = d.v_next[k]
+    return hessian
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_value_is_the_sum_of_logarithms_of_what_is_left_of_each_limit(seed):
+    # each slack by brute force over cruise velocities, as a limit on the displacement
+    chain, floor, v, T = chain_and_point(seed)
+    v0, v1 = np.vstack((np.zeros(3), v)), np.vstack((v, np.zeros(3)))
+    u = np.linspace(-chain.max_velocity, chain.max_velocity, 8001)[:, np.newaxis]
+    t0, t1 = chain.law.least_time(u - v0), chain.law.least_time(u - v1)
+    covered = 0.5 * (v0 + u) * t0 + u * (T[:, np.newaxis] - t0 - t1) + 0.5 * (u + v1) * t1
+    fits = t0 + t1 <= T[:, np.newaxis]
+    D = chain.displacements
+    change = chain.law.largest_change(T[:, np.newaxis])
+    slacks = (np.where(fits, covered, -np.inf).max(axis=0) - D,
+              D - np.where(fits, covered, np.inf).min(axis=0),
+              change - (v1 - v0), change + (v1 - v0))
+    found = values(chain, floor, v, T)
+    # the grid of cruises misses the best one by a bit, which hardly counts where much is left
+    enough = np.minimum(slacks[0], slacks[1]) > 0.05
+    assert enough.any()
+    assert found.segments[enough] == pytest.approx(
+        -sum(np.log(s) for s in slacks)[enough], abs=0.02)
+    assert found.velocities == pytest.approx(
+        -np.log(v - chain.lowest) - np.log(chain.highest - v), rel=1e-12)
+    assert found.durations == pytest.approx(
+        np.zeros(len(T)) if floor is None else -np.log(T - floor), rel=1e-12)
+
+
 @pytest.mark.parametrize('seed', SEEDS)
 def test_gradient_is_the_finite_difference_of_the_value(seed):
     chain, floor, v, T = chain_and_point(seed)
     assert np.isfinite(value(chain, floor, v, T))
-    ours = derivatives(chain, floor, v, T)
+    ours = derivatives(local(chain, floor, v, T), undamped(chain))
     for index in np.ndindex(v.shape):
         step = np.zeros_like(v)
         step[index] = 1.0
@@ -60,17 +120,37 @@ def test_gradient_is_the_finite_difference_of_the_value(seed):
 def test_hessian_is_positive_definite(seed, spare):
     chain, floor, v, T = chain_and_point(seed)
     T = spare * T  # much time to spare: there the barrier itself is not convex
-    d, n = derivatives(chain, floor, v, T), len(T)
-    hessian = np.zeros((4 * n - 3, 4 * n - 3))  # T0, ..., then v0, v1, ...
-    hessian[range(n), range(n)] = d.T_T
-    for k in range(n - 1):
-        at = n + 3 * k + np.arange(3)
-        hessian[at, at] = d.v_v[k]
-        hessian[at, k] = hessian[k, at] = d.v1_T[k]
-        hessian[at, k + 1] = hessian[k + 1, at] = d.v0_T[k + 1]
-        if k + 1 < n - 1:
-            hessian[at, at + 3] = hessian[at + 3, at] = d.v_next[k]
-    assert np.linalg.eigvalsh(hessian).min() > 0.0
+    d = derivatives(local(chain, floor, v, T), undamped(chain))
+    assert np.linalg.eigvalsh(dense_hessian(d)).min() > 0.0
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_damping_of_all_parts_alike_scales_the_hessian_and_no_gradient(seed):
+    chain, floor, v, T = chain_and_point(seed)
+    at, none = local(chain, floor, v, T), undamped(chain)
+    plain, twice = derivatives(at, none), derivatives(at, Parts(*(p + 1.0 for p in none)))
+    assert dense_hessian(twice) == pytest.approx(2.0 * dense_hessian(plain), rel=1e-12)
+    assert (twice.g_v == plain.g_v).all() and (twice.g_T == plain.g_T).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_a_part_that_is_left_is_misjudged_and_none_else_once_they_are_stiff(seed):
+    chain, floor, v, T = chain_and_point(seed)
+    at, before = local(chain, floor, v, T), values(chain, floor, v, T)
+    rng = np.random.default_rng(seed)
+    dv, dT = rng.normal(size=v.shape), rng.normal(size=T.shape)
+    dv, dT = 0.2 * chain.highest[:, :1] * dv, 0.2 * T * dT
+    after = values(chain, floor, v + dv, T + dT)
+    change = Parts(*(a - b for a, b in zip(after, before)))
+    wrong = misjudged(at, dv, dT, change)
+    left = [np.isinf(p) for p in after]
+    for out, found in zip(left, wrong):
+        assert found[out].all()
+    stiff = damped(at, Parts(*(p + 1e9 for p in undamped(chain))))
+    again = misjudged(stiff, dv, dT, change)
+    if any(out.any() for out in left):
+        for out, found in zip(left, again):
+            assert (found == out).all()
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -99,12 +179,3 @@ def test_rest_to_rest_times_are_what_a_hand_calculation_gives():
     jerky = replace(chain, law=TransitionLaw(np.full(3, 1e-9), np.full(3, 2.0)),
                     max_velocity=np.full(3, 9.0), displacements=np.full((1, 3), 2.0))
     assert jerky.rest_to_rest_times() == pytest.approx([4.0])
-
-
-def test_reaches_are_mirror_images_of_each_other():
-    chain, _, v, T = chain_and_point(0)
-    v0, v1 = np.vstack((np.zeros(3), v)), np.vstack((v, np.zeros(3)))
-    ours = chain.reaches(v0, v1, T[:, np.newaxis]).distance
-    mirrored = chain.reaches(-v0, -v1, T[:, np.newaxis]).distance
-    assert (ours[0] == mirrored[1]).all()
-    assert (ours[1] == mirrored[0]).all()

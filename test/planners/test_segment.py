@@ -17,7 +17,12 @@
 import numpy as np
 import pytest
 from random_cases import central_difference
-from rrr_traj_planner.planners.segment import reach, TransitionLaw
+from rrr_traj_planner.planners.segment import (
+    derivatives,
+    largest_cruise,
+    reach,
+    TransitionLaw,
+)
 
 LAWS = {'acceleration': TransitionLaw(np.full(3, 2.0), np.zeros(3)),
         'jerk': TransitionLaw(np.full(3, 2.0), np.full(3, 1.6)),
@@ -55,16 +60,16 @@ def test_reach_is_the_best_cruise_that_brute_force_finds(name, seed):
     t0, t1 = by_hand(law, u - v0), by_hand(law, u - v1)
     covered = 0.5 * (v0 + u) * t0 + u * (T - t0 - t1) + 0.5 * (u + v1) * t1
     best = np.where(t0 + t1 <= T * (1.0 + 1e-9), covered, -np.inf).max(axis=0)
-    assert (best <= ours.distance + 1e-9).all()
+    assert (best <= ours + 1e-9).all()
     # The grid of cruises misses the best one by up to a two-thousandth of the limit.
     found = np.isfinite(best)
-    assert (best >= ours.distance - T * limit / 1000.0)[found].all()
+    assert (best >= ours - T * limit / 1000.0)[found].all()
 
 
 @pytest.mark.parametrize(('name', 'seed'), CASES)
 def test_cruise_of_the_reach_can_be_driven_within_the_time(name, seed):
     law, limit, v0, v1, T = case(name, seed)
-    u = reach(law, limit, v0, v1, T).cruise
+    u = largest_cruise(law, limit, v0, v1, T)
     assert (u <= limit).all()
     assert (law.least_time(u - v0) + law.least_time(u - v1) <= T * (1.0 + 1e-9) + 1e-12).all()
 
@@ -73,36 +78,42 @@ def test_cruise_of_the_reach_can_be_driven_within_the_time(name, seed):
 def test_reach_backwards_in_time_is_the_same(name, seed):
     law, limit, v0, v1, T = case(name, seed)
     forwards, backwards = reach(law, limit, v0, v1, T), reach(law, limit, v1, v0, T)
-    assert forwards.distance == pytest.approx(backwards.distance, rel=1e-12)
-    assert forwards.d_v0 == pytest.approx(backwards.d_v1, rel=1e-9)
+    assert forwards == pytest.approx(backwards, rel=1e-12)
 
 
 @pytest.mark.parametrize(('name', 'seed'), CASES)
 def test_derivatives_are_finite_differences(name, seed):
     law, limit, v0, v1, T = case(name, seed)
-    v0, v1, T = 0.99 * v0, 0.99 * v1, 1.05 * T
-    ours = reach(law, limit, v0, v1, T)
-    for exact, function in (
-            (ours.d_v0, lambda x: reach(law, limit, v0 + x, v1, T).distance),
-            (ours.d_v1, lambda x: reach(law, limit, v0, v1 + x, T).distance),
-            (ours.d_T, lambda x: reach(law, limit, v0, v1, T + x).distance)):
-        coarse, fine = (central_difference(function, 0.0, step) for step in (1e-4, 1e-5))
-        smooth = np.abs(coarse - fine) < 1e-6  # no kink, where two laws or a limit meet, is near
-        assert exact[smooth] == pytest.approx(fine[smooth], rel=1e-5, abs=1e-6)
-        assert smooth.sum() >= 1
+    x = np.stack((0.99 * v0, 0.99 * v1, 1.05 * T))
+    ours = derivatives(law, limit, *x)
+    assert ours.distance == pytest.approx(reach(law, limit, *x), rel=1e-12)
+    for k, unit in enumerate(np.eye(3)[..., np.newaxis]):
+        def distance(step, unit=unit):
+            return reach(law, limit, *(x + step * unit))
+
+        def gradient(step, unit=unit):
+            return derivatives(law, limit, *(x + step * unit)).gradient.T
+
+        first, second = ours.gradient[:, k], ours.hessian[:, k].T
+        for exact, function in ((first, distance), (second, gradient)):
+            coarse, fine = (central_difference(function, 0.0, step) for step in (1e-4, 1e-5))
+            # no kink, where two laws or a limit meet, is near
+            smooth = np.abs(coarse - fine) < 1e-6 * (1.0 + np.abs(fine))
+            assert exact[smooth] == pytest.approx(fine[smooth], rel=1e-5, abs=1e-6)
+            assert smooth.sum() >= 1
 
 
 def test_reach_from_rest_to_rest_is_what_a_hand_calculation_gives():
     # 1 rad/s^2: a transition of u lasts 2 u. In 2 s: u = 0.5, and 0.5 rad; within 0.3 rad/s:
     # 0.3 * 2 - 0.3 * 0.6 = 0.42 rad.
     law, rest, T = LAWS['acceleration'], np.zeros(3), np.full(3, 2.0)
-    assert reach(law, np.full(3, 9.0), rest, rest, T).distance == pytest.approx([0.5] * 3)
-    assert reach(law, np.full(3, 0.3), rest, rest, T).distance == pytest.approx([0.42] * 3)
+    assert reach(law, np.full(3, 9.0), rest, rest, T) == pytest.approx([0.5] * 3)
+    assert reach(law, np.full(3, 0.3), rest, rest, T) == pytest.approx([0.42] * 3)
 
 
 def test_jerk_alone_makes_transitions_as_long_as_its_root():
     # u with 2 root sqrt(u) = T: u = (T / (2 root))^2, distance u T / 2.
     law = TransitionLaw(np.full(3, 1e-9), np.full(3, 2.0))
-    far = reach(law, np.full(3, 9.0), np.zeros(3), np.zeros(3), np.full(3, 4.0))
-    assert far.cruise == pytest.approx([1.0] * 3, rel=1e-6)
-    assert far.distance == pytest.approx([2.0] * 3, rel=1e-6)
+    case = law, np.full(3, 9.0), np.zeros(3), np.zeros(3), np.full(3, 4.0)
+    assert largest_cruise(*case) == pytest.approx([1.0] * 3, rel=1e-6)
+    assert reach(*case) == pytest.approx([2.0] * 3, rel=1e-6)

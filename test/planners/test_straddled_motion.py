@@ -19,7 +19,7 @@ import pytest
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.quartic import QUARTIC
 from rrr_traj_planner.core.septic import SEPTIC
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.straddled_motion import (
     changes_of_velocity,

@@ -16,7 +16,7 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.barrier import Chain
+from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.straddled_motion import excess
 from rrr_traj_planner.planners.straddled_timing import fastest, total_time

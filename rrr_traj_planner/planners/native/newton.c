@@ -14,6 +14,7 @@
 
 /* One Newton step on a chain of ramps: segments condensed to their borders, durations eliminated,
  * what is left solved as a band (ramp_newton.py). The cost is linear in ramps and segments. */
+#include "blocks.h"
 #include "chain.h"
 
 #include <math.h>
@@ -73,36 +74,6 @@ static void picked(const Problem *p, int j, const double *z, const double *Q, co
         }
 }
 
-/* Solve a symmetric band of m unknowns, w entries from the diagonal down, for 2 right sides. */
-static int band_solved(double *band, double *right, int m, int w)
-{
-    for (int c = 0; c < m; ++c) {
-        double *column = band + (size_t)c * w;
-        if (!(column[0] > 0.0) || !isfinite(column[0]))
-            return 1;
-        const double root = sqrt(column[0]);
-        column[0] = root;
-        for (int i = 1; i < w; ++i)
-            column[i] /= root;
-        for (int i = 1; i < w && c + i < m; ++i)
-            for (int k = i; k < w && c + k < m; ++k)
-                band[(size_t)(c + i) * w + k - i] -= column[i] * column[k];
-        for (int s = 0; s < 2; ++s) {
-            right[2 * c + s] /= root;
-            for (int i = 1; i < w && c + i < m; ++i)
-                right[2 * (c + i) + s] -= column[i] * right[2 * c + s];
-        }
-    }
-    for (int c = m - 1; c >= 0; --c)
-        for (int s = 0; s < 2; ++s) {
-            double sum = right[2 * c + s];
-            for (int i = 1; i < w && c + i < m; ++i)
-                sum -= band[(size_t)c * w + i] * right[2 * (c + i) + s];
-            right[2 * c + s] = sum / band[(size_t)c * w];
-        }
-    return 0;
-}
-
 /* Steps at the via points (N + 1, 2 J), and of the common unknown of tied durations. */
 static double coupled(const Problem *p, const double *S, const double *r, double tie_tie,
                       double tie_r, double *at_vias, double *memory)
@@ -141,7 +112,7 @@ static double coupled(const Problem *p, const double *S, const double *r, double
         }
         for (int c = 0; c < m; ++c)
             solved[(size_t)c * w] += STIFFENING[trial] * fabs(band[(size_t)c * w]);
-        if (!band_solved(solved, solved + (size_t)m * w, m, w))
+        if (!band_solved(solved, solved + (size_t)m * w, m, w, 2))
             break;
     }
     const double *x = solved + (size_t)m * w;

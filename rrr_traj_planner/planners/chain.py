@@ -1,0 +1,64 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The via points of a chain of segments, and what bounds the motion through them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.pieces import TransitionFunction
+from rrr_traj_planner.planners.segment import TransitionLaw
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """
+    Via points of all joints, and what bounds the motion through them.
+
+    Parameters
+    ----------
+    displacements : ndarray, shape (n, 3)
+        From point to point [rad].
+    law : TransitionLaw
+        Transitions' least durations.
+    max_velocity : ndarray, shape (3,)
+        [rad/s], finite.
+    lowest, highest : ndarray, shape (n - 1, 3)
+        Bounds of the velocities at the via points [rad/s], around 0.
+    function : TransitionFunction
+        What transitions are made of.
+
+    """
+
+    displacements: Array
+    law: TransitionLaw
+    max_velocity: Array
+    lowest: Array
+    highest: Array
+    function: TransitionFunction = CYCLOID
+
+    def rest_to_rest_times(self) -> Array:
+        """Return the least durations with a stop at every via point, shape (n,) [s]."""
+        D = np.abs(self.displacements)
+        slope, root = self.law.slope, self.law.root
+        with np.errstate(divide='ignore', invalid='ignore'):
+            by_jerk = np.where(root > 0.0, (D / root) ** (2.0 / 3.0), np.inf)
+            # cruise u without a velocity limit: D = u t(u)
+            u = np.minimum(np.minimum(np.sqrt(D / slope), by_jerk), self.max_velocity)
+            total = np.where(D > 0.0, self.law.least_time(u) + D / u, 0.0)
+        return np.asarray(total.max(axis=1))
