@@ -76,10 +76,38 @@ class Problem(Protocol):
         """Durations whose common stretch is sought; None: each is free [s]."""
 
     def objective(self, T: Array) -> float:
-        """Return what is minimised."""
+        """
+        Return what is minimised.
+
+        Parameters
+        ----------
+        T : ndarray, shape (n,)
+            Durations [s].
+
+        Returns
+        -------
+        float
+            Seconds, or a factor.
+
+        """
 
     def newton_step(self, b: Derivatives, weight: float) -> tuple[Array, Array, float]:
-        """Return steps of v and T for weight * objective + barrier, and the decrement squared."""
+        """
+        Return the Newton step of weight * objective + barrier.
+
+        Parameters
+        ----------
+        b : Derivatives
+            The barrier's.
+        weight : float
+            The objective's.
+
+        Returns
+        -------
+        tuple
+            Changes of via velocities (n - 1, 3) and durations (n,), the decrement squared.
+
+        """
 
 
 def follow(problem: Problem, v: Array, T: Array, should_stop: Callable[[], bool]) -> Solution:
