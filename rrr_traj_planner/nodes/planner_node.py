@@ -16,8 +16,8 @@
 
 from __future__ import annotations
 
-from queue import SimpleQueue
-from threading import Lock, Thread
+from collections import deque
+from contextlib import suppress
 from time import perf_counter
 import traceback
 from typing import Any, NamedTuple
@@ -27,10 +27,11 @@ from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Path
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock, ClockType
+from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from rclpy.task import Future
 from rrr_traj_planner.core.errors import ConvergenceError, quoted, RrrPlannerError
+from rrr_traj_planner.nodes.background import BackgroundThread
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
 from rrr_traj_planner.nodes.marker_messages import no_plan_markers, plan_markers
@@ -44,6 +45,7 @@ from rrr_traj_planner.nodes.planning_messages import (
 )
 from rrr_traj_planner.nodes.request_statistics import RequestStatistics
 from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.request import Plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory
 from visualization_msgs.msg import MarkerArray
@@ -60,14 +62,24 @@ class _Answer(NamedTuple):
     """What a request comes to."""
 
     response: PlanTrajectory.Response
-    path: Path | None = None  # the tip's, where there is a plan
-    markers: MarkerArray | None = None  # likewise
+    plan: Plan | None = None  # where there is one
     trace: str = ''           # of a bug, for the log
+
+
+class _Unseen(NamedTuple):
+    """A plan that has been answered, and is to be published."""
+
+    trajectory: JointTrajectory
+    plan: Plan
+    config: PlannerConfig
+    stamp: Time  # when it was asked
 
 
 class TrajectoryPlanner(Node):
     """
     Serves `plan_trajectory`; a thread plans, so that the node answers all else meanwhile.
+
+    A plan is answered first and published then, before the next request is taken up.
 
     Parameters
     ----------
@@ -94,42 +106,49 @@ class TrajectoryPlanner(Node):
         self._statistics = RequestStatistics()
         self._begun: float | None = None  # when what is planned was taken up
         self._diagnostics = self.create_publisher(DiagnosticArray, 'diagnostics', 10)
-        self._work: SimpleQueue[Any] = SimpleQueue()
-        self._answered = self.create_guard_condition(lambda: None)  # wakes the executor
-        self._ending, self._ended = Lock(), False
-        Thread(target=self._run_worker, name='planning', daemon=True).start()
-        # A group of its own, held while a request is planned: the next one waits its turn.
+        self._thread = BackgroundThread(self, 'planning')
+        # A group of its own, held while a request is planned and until its answer is sent, and
+        # while a plan is published: each waits its turn.
+        turns = MutuallyExclusiveCallbackGroup()
         self.create_service(PlanTrajectory, 'plan_trajectory', self._plan, qos_profile=WAITING,
-                            callback_group=MutuallyExclusiveCallbackGroup())
+                            callback_group=turns)
+        self._unseen: deque[_Unseen] = deque()
+        self._answered = self.create_guard_condition(self._show, callback_group=turns)
         self.create_timer(DIAGNOSTICS_PERIOD, self._diagnose,  # whatever the clock does
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     async def _plan(self, request: PlanTrajectory.Request,
                     _: PlanTrajectory.Response) -> PlanTrajectory.Response:
         """Answer a request; the executor goes on with other work until the plan is there."""
-        done, config = Future(), self._parameters_declared.config
+        config, stamp = self._parameters_declared.config, self.get_clock().now().to_msg()
         self._begun = perf_counter()
-        self._work.put((request, config, self.get_clock().now().to_msg(), done))
-        answer = await done
+        answer = await self._thread.call(_answer, request, config)
         self._begun = None
         name = quoted(request.planner_id or config.default_planner_id)[1:-1]
         self._statistics.add(answer.response, self.get_clock().now().to_msg())
         self._report(name, answer)
-        if answer.path is not None:
-            self._trajectory.publish(answer.response.trajectory)
-            self._path.publish(answer.path)
-            self._markers.publish(answer.markers)
+        if answer.plan is not None:
+            self._unseen.append(_Unseen(answer.response.trajectory, answer.plan, config, stamp))
+            self._answered.trigger()
         return answer.response
 
-    def _run_worker(self) -> None:
-        """Plan what is asked, until the node is destroyed."""
-        for request, config, stamp, done in iter(self._work.get, None):
-            answer = _answer(request, config, stamp)
-            with self._ending:
-                if self._ended:
-                    return
-                done.set_result(answer)
-                self._answered.trigger()
+    async def _show(self) -> None:
+        """Publish the plans that have been answered, oldest first."""
+        with suppress(InvalidHandle):  # the node may be destroyed meanwhile
+            while self._unseen:
+                await self._publish(self._unseen.popleft())
+
+    async def _publish(self, unseen: _Unseen) -> None:
+        """Publish a plan; the thread makes what is only looked at."""
+        trajectory, *plan_and_setting = unseen
+        self._trajectory.publish(trajectory)
+        try:
+            path, markers = await self._thread.call(_drawing, *plan_and_setting)
+        except Exception:  # a bug, but the plan is good and has been answered
+            self.get_logger().error(f'a plan cannot be drawn:\n{traceback.format_exc()}')
+            return
+        self._path.publish(path)
+        self._markers.publish(markers)
 
     def _diagnose(self) -> None:
         """Publish what requests have come to."""
@@ -154,28 +173,32 @@ class TrajectoryPlanner(Node):
 
     def destroy_node(self) -> None:
         """End the planning thread with the node; what it is at is not waited for."""
-        with self._ending:
-            self._ended = True
-        self._work.put(None)
+        self._thread.end()
         super().destroy_node()
 
 
-def _answer(request: PlanTrajectory.Request, config: PlannerConfig, stamp: Time) -> _Answer:
-    """Plan, in the planning thread; whatever goes wrong is an answer too."""
+def _answer(request: PlanTrajectory.Request, config: PlannerConfig) -> _Answer:
+    """Plan; whatever goes wrong is an answer too."""
     started = perf_counter()
-    path, markers, trace = None, None, ''
+    found, trace = None, ''
     try:
         deadline = started + config.planning_time_limit
         found = plan(config.model, config.limits, planning_request(
             request, config, lambda: perf_counter() > deadline))
         seconds = perf_counter() - started
-        response, path = success(found, config), tip_path(found.points, config, stamp)
-        markers = plan_markers(found.points, found.via_times, config.model, config.base_frame)
+        response = success(found, config)
     except Exception as error:
         seconds = perf_counter() - started
+        found = None
         if isinstance(error, RrrPlannerError) and not isinstance(error, ConvergenceError):
             response = refusal(error)
         else:  # a bug: the caller is told, the log has the trace
             response, trace = failure(error), traceback.format_exc()
     response.planning_time = seconds
-    return _Answer(response, path, markers, trace)
+    return _Answer(response, found, trace)
+
+
+def _drawing(found: Plan, config: PlannerConfig, stamp: Time) -> tuple[Path, MarkerArray]:
+    """Return the tip's path and the markers of a plan."""
+    return (tip_path(found.points, config, stamp),
+            plan_markers(found.points, found.via_times, config.model, config.base_frame))

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import os
-from threading import Condition, Thread
+from threading import Condition, Event, Thread
 
 import pytest
 import rclpy
@@ -67,7 +67,8 @@ class Ros:
         rclpy.init(context=self.context, domain_id=int(os.environ['ROS_DOMAIN_ID']))
         self._executor = SingleThreadedExecutor(context=self.context)
         self._nodes = []
-        self._thread = Thread(target=self._executor.spin, daemon=True)
+        self._closing = Event()
+        self._thread = Thread(target=self._spin, daemon=True)
         self.node = self.add(Node('tester', context=self.context))
         self._thread.start()
 
@@ -113,12 +114,20 @@ class Ros:
 
     def close(self):
         """End everything, in the order that leaves nothing behind."""
-        self._executor.shutdown(timeout_sec=DEADLINE)
+        # Not shut down while it spins: callbacks that then are ready would find it half gone.
+        self._closing.set()
+        if self._thread.is_alive():
+            self._executor.create_task(lambda: None)  # wakes it
         self._thread.join(DEADLINE)
+        self._executor.shutdown(timeout_sec=DEADLINE)
         while self._nodes:
             self._nodes.pop().destroy_node()
         self.context.try_shutdown()
         assert not self._thread.is_alive()
+
+    def _spin(self):
+        while not self._closing.is_set():
+            self._executor.spin_once()
 
 
 @pytest.fixture

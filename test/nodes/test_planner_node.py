@@ -208,12 +208,16 @@ def test_bug_is_told_logged_and_survived(ros, monkeypatch, error, text):
 
 
 def test_answer_that_cannot_be_written_is_no_success(ros, monkeypatch):
-    def broken(points, config, stamp):
-        raise RuntimeError('no path')
+    def broken(found, config):
+        raise RuntimeError('no message')
 
-    monkeypatch.setattr('rrr_traj_planner.nodes.planner_node.tip_path', broken)
+    monkeypatch.setattr('rrr_traj_planner.nodes.planner_node.success', broken)
     made(ros)
-    is_refused(plan(ros), CODES.FAILURE, 'internal error, RuntimeError: no path')
+    published = ros.listen(JointTrajectory, 'planned_trajectory', LATCHED)
+    is_refused(plan(ros), CODES.FAILURE, 'internal error, RuntimeError: no message')
+    monkeypatch.undo()
+    good = plan(ros)
+    assert published.wait_for() == good.trajectory
 
 
 def test_each_request_is_one_line_in_the_log(ros):
