@@ -244,9 +244,28 @@ def test_floats_and_arrays_give_the_same_equations():
         t = equations.terms(k, q[1], q[2], sin, cos)
         assert all(type(value) is float for value in t)
         assert equations.torques(t, *qd, *x) == pytest.approx(
-            inverse_dynamics(arm, q, qd, x), rel=1e-12, abs=1e-10)
+            inverse_dynamics(arm, [q], [qd], [x])[0], rel=1e-12, abs=1e-10)
         assert equations.accelerations(t, *qd, *x) == pytest.approx(
-            forward_dynamics(arm, q, qd, x), rel=1e-12, abs=1e-10)
+            forward_dynamics(arm, [q], [qd], [x])[0], rel=1e-12, abs=1e-10)
+
+
+@pytest.mark.parametrize('function', [inverse_dynamics, forward_dynamics])
+def test_one_state_goes_with_many(function):
+    many = random_states(np.random.default_rng(56), 20)
+    for mixed in ((many[0][0], many[1], many[2]), (many[0], many[1][0], many[2][0]),
+                  (many[0][0], many[1][0], many[2])):
+        expected = function(RobotModel(), *np.broadcast_arrays(*mixed))
+        assert function(RobotModel(), *mixed) == pytest.approx(expected, rel=1e-12, abs=1e-10)
+
+
+@pytest.mark.parametrize('function', [inverse_dynamics, forward_dynamics])
+@pytest.mark.parametrize('value', [np.inf, -np.inf, np.nan])
+def test_no_number_comes_of_a_position_that_is_none(function, value):
+    still = np.zeros(3)
+    with np.errstate(invalid='ignore'):
+        found = function(RobotModel(), (0.0, value, 0.0), still, still)
+    assert found.shape == (3,)
+    assert np.isnan(found[1:]).all()
 
 
 @pytest.mark.parametrize(('function', 'names'), [
