@@ -22,7 +22,7 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, IntArray
+from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.path_deviation import polyline_deviation
 from rrr_traj_planner.core.tangent_lines import Tangents
@@ -143,7 +143,8 @@ class CartesianPath:
         """Largest distance from the polyline near each interior via point [m]."""
         return polyline_deviation(self.points, lambda s: self(s)[0], self.via_s, self.zone_ends)
 
-    def __call__(self, s: ArrayLike, left: bool = False) -> tuple[Array, Array, Array, Array]:
+    def __call__(self, s: ArrayLike, left: bool | BoolArray = False) -> tuple[
+            Array, Array, Array, Array]:
         """
         Return position and its first three derivatives by arc length.
 
@@ -151,7 +152,7 @@ class CartesianPath:
         ----------
         s : array_like, shape (m,) or ()
             Places along the path [m].
-        left : bool
+        left : bool or ndarray of bool, shape (m,)
             At a join, the values of the piece that ends there instead of the one that begins.
 
         Returns
@@ -168,7 +169,9 @@ class CartesianPath:
         places = np.asarray(s, dtype=float)
         flat = self._on_path(np.atleast_1d(places))
         # Of pieces without length none is found: from the left and from the right alike.
-        piece = np.searchsorted(self._bounds[1:-1], flat, side='left' if left else 'right')
+        inner = self._bounds[1:-1]
+        piece = np.where(left, np.searchsorted(inner, flat, side='left'),
+                         np.searchsorted(inner, flat, side='right'))
         values = np.zeros((4, len(flat), 3))
         self._fill_lines(values, flat, piece)
         self._fill_zones(values, flat, piece)

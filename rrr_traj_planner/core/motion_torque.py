@@ -32,13 +32,17 @@ STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s
 
-# Each round narrows the bracket of a peak to a quarter; a smooth peak's value then stands to
-# the square of that.
-ZOOM_ROUNDS = 6
-ZOOM_POINTS = 9
+# A peak is looked for around the top of a parabola through three points, at these parts of the way
+# to the outer two: a bracket narrows to a 64th where the parabola is good, at worst to a half. The
+# value of a smooth peak stands to the square of that.
+ZOOM_ROUNDS = 12
+OFFSETS = np.array([-32.0, -8.0, -1.0, 0.0, 1.0, 8.0, 32.0]) / 64.0
 # A local maximum is followed where it might be the highest of all by more than this part: between
-# points a smooth quantity rises by an eighth of its second difference, one with corners by half.
-RISE, NEGLIGIBLE = 1.0, 1e-10
+# equal steps a smooth quantity rises by an eighth of its second difference, one with corners by
+# half; beside a step of a seventh of the other's size, by seven quarters.
+RISE, ZOOMED_RISE, NEGLIGIBLE = 0.5, 2.0, 1e-9
+# Points no further apart are the two sides of a knot: there is nothing between them.
+SAME_TIME = 1e-8  # s
 
 TORQUE_TOLERANCE = 1e-9  # relative, for the rounding of a torque that is just at its limit
 
@@ -143,8 +147,10 @@ def squared_stretch(model: RobotModel, limits: JointLimits, q: Array, qd: Array,
         For each joint, 0 where it has no effort limit.
 
     """
-    gravity = gravity_torque(model, q)
-    motion = inverse_dynamics(model, q, qd, qdd) - gravity
+    rest = np.zeros_like(q)
+    gravity, torque = inverse_dynamics(  # of terms at q that are there once
+        model, q, np.stack((rest, qd)), np.stack((rest, qdd)))
+    motion = torque - gravity
     room = limits.max_effort - np.sign(motion) * gravity
     holds = np.abs(gravity) <= limits.max_effort * (1.0 + TORQUE_TOLERANCE)
     with np.errstate(divide='ignore', invalid='ignore'):
@@ -170,40 +176,55 @@ def maximum_over_time(quantity: Callable[[Array], Array], grid: Array) -> Extrem
 
     """
     values = quantity(grid)
-    columns, best = range(values.shape[1]), values.argmax(axis=0)
-    value, time = values[best, columns], grid[best]
-    low, high, column = _brackets(values, grid)
+    best = values.argmax(axis=0)
+    value, time = values[best, np.arange(len(best))], grid[best]
+    t, f, column = _brackets(values, grid)
+    at_end = np.zeros(len(column), bool)
     for _ in range(ZOOM_ROUNDS if np.isfinite(value).all() else 0):
         if not len(column):
             break
-        width = (high - low) / (ZOOM_POINTS - 1)
-        t = low[:, np.newaxis] + width[:, np.newaxis] * np.arange(ZOOM_POINTS)
-        at = quantity(t.ravel()).reshape(*t.shape, -1)
-        own = at[np.arange(len(t))[:, np.newaxis], np.arange(ZOOM_POINTS), column[:, np.newaxis]]
-        top = own.argmax(axis=1)
-        highest = own[np.arange(len(t)), top]
-        for j in columns:
-            rows = np.flatnonzero(column == j)
-            if len(rows) and highest[rows].max() > value[j]:
-                row = rows[highest[rows].argmax()]
-                value[j], time[j] = highest[row], t[row, top[row]]
-        centre = t[np.arange(len(t)), top]
-        low, high = np.maximum(centre - width, low), np.minimum(centre + width, high)
-        bend = _bends(own.T)[top, np.arange(len(t))]
-        promising = highest + RISE * bend > value[column] * (1.0 + NEGLIGIBLE)
-        low, high, column = low[promising], high[promising], column[promising]
+        inner = _around_tops(t, f)
+        at = quantity(inner.ravel()).reshape(*inner.shape, -1)
+        own = np.take_along_axis(at, column[:, np.newaxis, np.newaxis], axis=2)[..., 0]
+        t = np.concatenate((t[:, :1], inner, t[:, 2:]), axis=1)
+        f = np.concatenate((f[:, :1], own, f[:, 2:]), axis=1)
+        rows, top = np.arange(len(t)), f.argmax(axis=1)
+        highest = f[rows, top]
+        rising = np.argsort(highest)  # the last of a column is its highest
+        rising = rising[highest[rising] > value[column[rising]]]
+        value[column[rising]], time[column[rising]] = highest[rising], t[rising, top[rising]]
+        beside = np.clip(top[:, np.newaxis] + (-1, 0, 1), 0, t.shape[1] - 1)
+        t, f = t[rows[:, np.newaxis], beside], f[rows[:, np.newaxis], beside]
+        fall = 2.0 * highest - f[:, 0] - f[:, 2]
+        promising = highest + ZOOMED_RISE * fall > value[column] * (1.0 + NEGLIGIBLE)
+        was, at_end = at_end, (t[:, 1] == t[:, 0]) | (t[:, 1] == t[:, 2])
+        promising &= ~(was & at_end)  # twice the highest: the top is the bracket's end
+        t, f, column, at_end = t[promising], f[promising], column[promising], at_end[promising]
     return Extreme(value, time)
 
 
 def _brackets(values: Array, grid: Array) -> tuple[Array, Array, IntArray]:
-    """Return the intervals around local maxima of each column that may hide its highest value."""
-    padded = np.pad(values, ((1, 1), (0, 0)), constant_values=-np.inf)
-    local = (padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:])
+    """Return points around local maxima that may hide a column's highest value: t, f, column."""
+    local = values > 0.0
+    local[1:] &= values[1:] >= values[:-1]
+    local[:-1] &= values[:-1] >= values[1:]
     with np.errstate(invalid='ignore'):
         local &= values + RISE * _bends(values) > values.max(axis=0) * (1.0 + NEGLIGIBLE)
-    column, row = np.nonzero((local & (values > 0.0)).T)
-    last = len(grid) - 1
-    return grid[np.maximum(row - 1, 0)], grid[np.minimum(row + 1, last)], column
+    column, row = np.nonzero(local.T)
+    apart = np.diff(grid, prepend=grid[0], append=grid[-1]) > SAME_TIME
+    beside = np.stack((row - apart[row], row, row + apart[row + 1]), axis=1)
+    return grid[beside], values[beside, column[:, np.newaxis]], column
+
+
+def _around_tops(t: Array, f: Array) -> Array:
+    """Return times around the tops of parabolas through three points each, (k, len(OFFSETS))."""
+    before, after = t[:, 1] - t[:, 0], t[:, 2] - t[:, 1]
+    rise, fall = f[:, 1] - f[:, 0], f[:, 1] - f[:, 2]
+    with np.errstate(divide='ignore', invalid='ignore'):
+        shift = 0.5 * (rise * after ** 2 - fall * before ** 2) / (rise * after + fall * before)
+    top = np.clip(t[:, 1] + np.where(np.isfinite(shift), shift, 0.0), t[:, 0], t[:, 2])
+    reach = np.maximum(top - t[:, 0], t[:, 2] - top)
+    return np.clip(top[:, np.newaxis] + reach[:, np.newaxis] * OFFSETS, t[:, :1], t[:, 2:])
 
 
 def _bends(values: Array) -> Array:

@@ -17,15 +17,12 @@
 from __future__ import annotations
 
 from math import pi
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.inverse_kinematics import Elbow
 from rrr_traj_planner.core.model import RobotModel
-
-Complex: TypeAlias = NDArray[np.complex128]
 
 
 class JointPath(NamedTuple):
@@ -65,19 +62,42 @@ def unlimited_joint_path(model: RobotModel, points: PathPoints, elbow: Elbow) ->
         Joint positions and derivatives.
 
     """
+    found = joint_path_but_turns(model, points, elbow)
+    return found._replace(q=np.unwrap(found.q, axis=0))
+
+
+def joint_path_but_turns(model: RobotModel, points: PathPoints, elbow: Elbow) -> JointPath:
+    """
+    Return joint positions along a path, of each as many whole turns as it happens.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    points : PathPoints
+        In any order, none singular.
+    elbow : {'up', 'down'}
+        The branch.
+
+    Returns
+    -------
+    JointPath
+        Joint positions and derivatives.
+
+    """
     turn, radial = _about_axis(points)
-    height = points.p[:, 2] - model.d1, points.dp[:, 2], points.ddp[:, 2], points.dddp[:, 2]
-    upper, fore = _in_plane(model, [r + 1j * h for r, h in zip(radial, height)], elbow)
+    z = np.array(radial), np.stack([x[:, 2] for x in points])
+    z[1][0] -= model.d1
+    upper, fore = _in_plane(model, np.stack(z, axis=1), elbow)
     # The forearm's direction in the plane is theta_2 + theta_3 - 90 deg.
     third = [f - u for f, u in zip(fore, upper)]
     third[0] = third[0] + pi / 2
-    orders = [np.stack(joints, axis=-1) for joints in zip(turn, upper, third)]
-    return JointPath(*orders)
+    return JointPath(*(np.stack(joints, axis=-1) for joints in zip(turn, upper, third)))
 
 
 def _about_axis(points: PathPoints) -> tuple[list[Array], list[Array]]:
     """Return theta_1 and the distance from joint axis 1, each with three derivatives."""
-    theta = np.unwrap(np.arctan2(points.p[:, 1], points.p[:, 0]))
+    theta = np.arctan2(points.p[:, 1], points.p[:, 0])
     r = np.hypot(points.p[:, 0], points.p[:, 1])
     c, s = points.p[:, 0] / r, points.p[:, 1] / r
     # Each derivative in the axes that turn with joint 1: outward and around.
@@ -87,39 +107,35 @@ def _about_axis(points: PathPoints) -> tuple[list[Array], list[Array]]:
     r1 = u1
     w1 = (t2 - 2.0 * r1 * w) / r
     r2 = u2 + r * w ** 2
-    w2 = (t3 - 3.0 * r2 * w - 3.0 * r1 * w1 + r * w ** 3) / r
+    w2 = (t3 + w * (r * w ** 2 - 3.0 * r2) - 3.0 * r1 * w1) / r
     r3 = u3 + 3.0 * r1 * w ** 2 + 3.0 * r * w * w1
     return [theta, w, w1, w2], [r, r1, r2, r3]
 
 
-def _in_plane(model: RobotModel, z: list[Complex],
-              elbow: Elbow) -> tuple[list[Array], list[Array]]:
+def _in_plane(model: RobotModel, z: Array, elbow: Elbow) -> tuple[list[Array], list[Array]]:
     """
     Return the directions of both links in the arm's plane, each with three derivatives.
 
-    The plane is the complex one: z = a2 exp(iA) + d4 exp(iB), its derivatives solved for those
-    of A and B in turn.
+    With z outward and up, shape (4, 2, n): z = a + b, links a2 long at A and d4 long at B; its
+    derivatives are solved for those of A and B in turn.
     """
     a2, d4 = model.a2, model.d4
-    W = np.abs(z[0])
+    W = np.hypot(*z[0])
     least, most = model.reach
     gamma = 2.0 * np.arctan2(np.sqrt((W - least) * (W + least)), np.sqrt((most - W) * (most + W)))
     lift = np.arctan2(d4 * np.sin(gamma), a2 - d4 * np.cos(gamma))
-    side = 1.0 if elbow == 'up' else -1.0
-    A = np.angle(z[0]) + side * lift
+    A = np.arctan2(z[0, 1], z[0, 0]) + (lift if elbow == 'up' else -lift)
     theta_3 = gamma - pi / 2 if elbow == 'up' else 1.5 * pi - gamma
-    A = np.unwrap(A)
     B = A + theta_3 - pi / 2
-    a, b = a2 * np.exp(1j * A), d4 * np.exp(1j * B)
+    a, b = (length * np.array([np.cos(x), np.sin(x)]) for length, x in ((a2, A), (d4, B)))
+    area = a[1] * b[0] - a[0] * b[1]
 
-    A1, B1 = _solved(a, b, -1j * z[1])
-    A2, B2 = _solved(a, b, -1j * (z[2] + A1 ** 2 * a + B1 ** 2 * b))
-    A3, B3 = _solved(a, b, -1j * (z[3] + 3.0 * (A1 * A2 * a + B1 * B2 * b)
-                                  + 1j * (A1 ** 3 * a + B1 ** 3 * b)))
+    def rates(w: Array) -> tuple[Array, Array]:
+        """Return x and y of x a + y b, turned by 90 deg, = w."""
+        return -(w * b).sum(axis=0) / area, (w * a).sum(axis=0) / area
+
+    A1, B1 = rates(z[1])
+    A2, B2 = rates(z[2] + A1 ** 2 * a + B1 ** 2 * b)
+    bent = A1 * A1 ** 2 * a + B1 * B1 ** 2 * b
+    A3, B3 = rates(z[3] + 3.0 * (A1 * A2 * a + B1 * B2 * b) + np.array([-bent[1], bent[0]]))
     return [A, A1, A2, A3], [B, B1, B2, B3]
-
-
-def _solved(a: Complex, b: Complex, w: Complex) -> tuple[Array, Array]:
-    """Return real x and y with x a + y b = w."""
-    area = (a * b.conj()).imag
-    return (w * b.conj()).imag / area, -(w * a.conj()).imag / area

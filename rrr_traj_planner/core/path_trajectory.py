@@ -23,20 +23,25 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.cartesian_path import CartesianPath
 from rrr_traj_planner.core.inverse_kinematics import Elbow
 from rrr_traj_planner.core.joint_path import whole_turns
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_torque import maximum_over_time
-from rrr_traj_planner.core.path_kinematics import JointPath, PathPoints, unlimited_joint_path
+from rrr_traj_planner.core.path_kinematics import (
+    joint_path_but_turns,
+    JointPath,
+    PathPoints,
+    unlimited_joint_path,
+)
 from rrr_traj_planner.core.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory import Peaks, times_within, Trajectory
 
 STEPS_PER_PIECE = 24   # of the path, at which whole turns of the joints are remembered
 STEPS_PER_KNOT = 6     # of the time between knots, at which extremes are looked for
-FAR = 1e3              # rad: makes positions positive, as what maxima are looked for must be
+FAR = 1e2              # rad: makes positions positive, as what maxima are looked for must be
 LEAST_STEP = 1e-6      # rad/s^2: what is less is rounding
 BEFORE = 1e-9          # s before a knot, where what steps there still has its old value
 
@@ -77,7 +82,7 @@ class ArmPath:
         q = unlimited_joint_path(self.model, PathPoints(*self.path(s)), self.elbow).q
         return s, q + whole_turns(q, self.limits, self.previous)
 
-    def __call__(self, s: Array, left: bool = False) -> JointPath:
+    def __call__(self, s: Array, left: bool | BoolArray = False) -> JointPath:
         """
         Return joint positions and their derivatives by arc length.
 
@@ -85,7 +90,7 @@ class ArmPath:
         ----------
         s : ndarray, shape (m,)
             Places along the path [m], in any order.
-        left : bool
+        left : bool or ndarray of bool, shape (m,)
             At a join, the values of the piece that ends there.
 
         Returns
@@ -94,7 +99,7 @@ class ArmPath:
             Of shape (m, 3) each.
 
         """
-        found = unlimited_joint_path(self.model, PathPoints(*self.path(s, left)), self.elbow)
+        found = joint_path_but_turns(self.model, PathPoints(*self.path(s, left)), self.elbow)
         places, known = self._turning
         near = np.stack([np.interp(s, places, known[:, j]) for j in range(3)], axis=1)
         turns = np.round((near - found.q) / (2.0 * np.pi))
@@ -129,17 +134,22 @@ class PathTrajectory(Trajectory):
     def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
         """Return position, velocity, acceleration and jerk; see `Trajectory`."""
         times = np.asarray(t, dtype=float)
-        flat = np.clip(np.atleast_1d(times), 0.0, self.duration)
-        resting = (np.atleast_1d(times) < 0.0) | (np.atleast_1d(times) >= self.duration)
-        s, sd, sdd, sddd = (f[:, np.newaxis] for f in self.progress(flat))
+        found = self._with_speed(np.atleast_1d(times))[1:]
+        return tuple(v[0] for v in found) if times.ndim == 0 else found
+
+    def _with_speed(self, t: Array) -> tuple[Array, Array, Array, Array, Array]:
+        """Return the tip's speed [m/s], (n, 1), then what a call returns, at n times."""
+        s, sd, sdd, sddd = (
+            f[:, np.newaxis] for f in self.progress(np.clip(t, 0.0, self.duration)))
         length = self.arm_path.path.length
         q, dq, ddq, dddq = self.arm_path(np.clip(s[:, 0], 0.0, length))
         qd = dq * sd
         qdd = ddq * sd ** 2 + dq * sdd
-        qddd = dddq * sd ** 3 + 3.0 * ddq * sd * sdd + dq * sddd
+        qddd = sd * (dddq * sd ** 2 + 3.0 * ddq * sdd) + dq * sddd
+        resting = (t < 0.0) | (t >= self.duration)
         for derivative in (qd, qdd, qddd):
             derivative[resting] = 0.0
-        return tuple(v[0] for v in (q, qd, qdd, qddd)) if times.ndim == 0 else (q, qd, qdd, qddd)
+        return sd, q, qd, qdd, qddd
 
     @property
     def knots(self) -> Array:
@@ -158,7 +168,7 @@ class PathTrajectory(Trajectory):
 
     @cached_property
     def _peaks(self) -> Peaks:
-        return self._measured(lambda t, q, qd, qdd: np.zeros((len(t), 0)))[0]
+        return self._measured(lambda sd, q, qd, qdd: np.zeros((len(sd), 0)))[0]
 
     def maxima(self, quantities: Callable[[Array, Array, Array, Array], Array]) -> Array:
         """
@@ -167,7 +177,8 @@ class PathTrajectory(Trajectory):
         Parameters
         ----------
         quantities : callable
-            Of times, positions, velocities and accelerations: values of shape (n, K).
+            Of the tip's speed, (n, 1), positions, velocities and accelerations, (n, 3): values
+            of shape (n, K).
 
         Returns
         -------
@@ -184,9 +195,9 @@ class PathTrajectory(Trajectory):
         grid = np.unique(np.concatenate((grid, self.knots[1:] - BEFORE)))
 
         def values(t: Array) -> Array:
-            q, qd, qdd, qddd = self(t)
+            sd, q, qd, qdd, qddd = self._with_speed(t)
             return np.concatenate((np.abs(qd), np.abs(qdd), np.abs(qddd), FAR - q, FAR + q,
-                                   quantities(t, q, qd, qdd)), axis=1)
+                                   quantities(sd, q, qd, qdd)), axis=1)
 
         found = maximum_over_time(values, grid).value
         velocity, acceleration, jerk, least, most = found[:15].reshape(5, 3)

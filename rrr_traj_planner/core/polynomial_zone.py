@@ -43,9 +43,9 @@ ALONG = np.array([[5.0, 10.0, 1.0], [15.0, -10.0, -5.0], [10.0, -20.0, 10.0]]) /
 ACROSS = np.array([[10.0, 5.0], [10.0, -15.0], [-20.0, 10.0]]) / 16.0
 
 # Terms of the series of the zone's length: exact to rounding up to turns of 179 degrees.
-LENGTH_TERMS = 40
+LENGTH_TERMS = 30
 INVERSIONS = 30
-LENGTH_TOLERANCE = 1e-14  # in radii, times the zone's length
+LAST_STEP = 1e-5  # of the parameter, whose cube is what is left after it
 
 
 class _Quintic(NamedTuple):
@@ -133,24 +133,25 @@ class PolynomialZones:
         rate2 = ((r2 * r2).sum(axis=0) + (r1 * r3).sum(axis=0) - rate1 ** 2) / rate
         first = r1 / rate
         second = (r2 - first * rate1) / rate ** 2
-        third = (r3 - 3.0 * second * rate * rate1 - first * rate2) / rate ** 3
+        third = (r3 - 3.0 * second * rate * rate1 - first * rate2) / (rate * rate ** 2)
         return np.array([r0, first, second, third])
 
     def _parameter(self, zone: IntArray, quintic: _Quintic, sigma: Array) -> Array:
-        """Return u at lengths that are not negative: Newton's method."""
+        """Return u at lengths that are not negative: Halley's method."""
         length, whole = self._length[:, zone], self.after[zone]
         u = np.minimum(sigma / whole, 1.0)
         for _ in range(INVERSIONS):
             miss = chebyshev.chebval(2.0 * u - 1.0, length, tensor=False) - sigma
-            if (np.abs(miss) <= LENGTH_TOLERANCE * whole).all():
+            (x1, y1), (x2, y2) = (_derivative(quintic, order, u) for order in (1, 2))
+            squared = x1 * x1 + y1 * y1  # of the rate of length
+            part = miss / np.sqrt(squared)
+            step = part / (1.0 - 0.5 * part * (x1 * x2 + y1 * y2) / squared)
+            u = np.clip(u - step, 0.0, 1.0)
+            if (np.abs(step) <= LAST_STEP).all():
                 return u
-            u = np.clip(u - miss / np.hypot(*_derivative(quintic, 1, u)), 0.0, 1.0)
         worst = float(np.abs(miss / whole).max())
-        if worst > 10.0 * LENGTH_TOLERANCE:
-            raise ConvergenceError(
-                f'length along a polynomial zone is off by {worst:.3g} of it after '
-                f'{INVERSIONS} steps')
-        return u
+        raise ConvergenceError(f'length along a polynomial zone is off by {worst:.3g} of it after '
+                               f'{INVERSIONS} steps')
 
 
 def _quintic(angle: Array) -> _Quintic:

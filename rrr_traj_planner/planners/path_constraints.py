@@ -79,7 +79,7 @@ def limited(demand: Demand, at: Progress) -> Array:
     _, v, a, j = (f[..., np.newaxis] for f in at)
     return np.concatenate((
         demand.dq * v, demand.ddq * v ** 2 + demand.dq * a,
-        demand.dddq * v ** 3 + 3.0 * demand.ddq * v * a + demand.dq * j,
+        v * (demand.dddq * v ** 2 + 3.0 * demand.ddq * a) + demand.dq * j,
         demand.m * a + demand.c * v ** 2 + demand.g, v, a), axis=-1)
 
 
@@ -303,7 +303,7 @@ def _gradient(demands: list[Demand], at: Progress) -> Array:
     kinds = (
         (by_s.dq * v, d.dq, none, none),
         (by_s.ddq * v ** 2 + by_s.dq * a, 2.0 * d.ddq * v, d.dq, none),
-        (by_s.dddq * v ** 3 + 3.0 * by_s.ddq * v * a + by_s.dq * j,
+        (v * (by_s.dddq * v ** 2 + 3.0 * by_s.ddq * a) + by_s.dq * j,
          3.0 * d.dddq * v ** 2 + 3.0 * d.ddq * a, 3.0 * d.ddq * v, d.dq),
         (by_s.m * a + by_s.c * v ** 2 + by_s.g, 2.0 * d.c * v, d.m, none),
         (0.0 * one, one, 0.0 * one, 0.0 * one), (0.0 * one, 0.0 * one, one, 0.0 * one))
@@ -318,7 +318,7 @@ def _second(demands: list[Demand], at: Progress, weights: Array) -> Array:
     H = np.zeros((*at.s.shape, 4, 4))
     H[..., 0, 0] = (
         lv * ss.dq * v + la * (ss.ddq * v ** 2 + ss.dq * a)
-        + lj * (ss.dddq * v ** 3 + 3.0 * ss.ddq * v * a + ss.dq * j)
+        + lj * (v * (ss.dddq * v ** 2 + 3.0 * ss.ddq * a) + ss.dq * j)
         + lt * (ss.m * a + ss.c * v ** 2 + ss.g)).sum(axis=-1)
     H[..., 0, 1] = (lv * s.dq + 2.0 * v * (la * s.ddq + lt * s.c)
                     + 3.0 * lj * (s.dddq * v ** 2 + s.ddq * a)).sum(axis=-1)

@@ -42,7 +42,7 @@ def paces(table: PathTable, bounds: Array) -> Array:
         [m/s]; 0 at both ends, positive between them.
 
     """
-    d = table(table.places)[0]
+    d = table.values
     velocity, acceleration, jerk = (PART * bounds[k] for k in (VELOCITY, ACCELERATION, JERK))
     torque = PART * np.maximum(bounds[TORQUE] - np.abs(d.g), 0.0)
     with np.errstate(divide='ignore', invalid='ignore'):

@@ -16,11 +16,12 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.path_trajectory import ArmPath
 from scipy.interpolate import CubicSpline
 
@@ -61,8 +62,8 @@ class PathTable:
         Which of these are the via points.
     places : ndarray, shape (N, INTERVALS + 1)
         Where the table has its values [m].
-    holding : ndarray, shape (N, INTERVALS + 1, 3)
-        Gravity's torques there [N m].
+    values : Demand
+        What is demanded there, one-sided at the pieces' ends, shape (N, INTERVALS + 1, 3) each.
     coefficients : ndarray, shape (N, 4, INTERVALS, 18)
         Cubic ones, highest first, of all columns of `Demand` by the part of its interval.
     steps : ndarray, shape (N, 3)
@@ -78,27 +79,24 @@ class PathTable:
         u = np.linspace(0.0, 1.0, INTERVALS + 1)
         self.places = self.ends[:-1, np.newaxis] + self._lengths[:, np.newaxis] * u
         self.places[:, -1] = self.ends[1:]
-        values = self._demanded(arm_path)
-        self.holding = values[..., 15:]
-        ddq = values[..., 3:6]
+        self.values = self._demanded(arm_path)
+        ddq = self.values.ddq
         steps = np.where(np.isin(self.ends[1:-1], path.joins)[:, np.newaxis],
                          ddq[1:, 0] - ddq[:-1, -1], 0.0)
         self.steps = np.concatenate((steps, np.zeros((1, 3))))
-        spline = CubicSpline(u, np.moveaxis(values, 1, 0))
-        self.coefficients = np.ascontiguousarray(np.moveaxis(spline.c, 2, 0))
+        self.coefficients = (_spline() @ np.concatenate(self.values, axis=-1)).reshape(
+            len(self.places), 4, INTERVALS, -1)
 
-    def _demanded(self, arm_path: ArmPath) -> Array:
-        """Return all columns at the table's places, one-sided at the pieces' ends, (N, u, 18)."""
-        s, model = self.places.ravel(), arm_path.model
-        right, left = (np.concatenate(arm_path(s, side), axis=1) for side in (False, True))
-        joints = right.reshape(*self.places.shape, 12).copy()
-        joints[:, -1] = left.reshape(*self.places.shape, 12)[:, -1]
-        q, dq, ddq, dddq = np.split(joints, 4, axis=-1)
-        g = gravity_torque(model, q)
+    def _demanded(self, arm_path: ArmPath) -> Demand:
+        """Return all columns at the table's places, one-sided at the pieces' ends."""
+        ending = np.zeros(self.places.shape, bool)
+        ending[:, -1] = True
+        q, dq, ddq, dddq = (f.reshape(*self.places.shape, 3) for f in arm_path(
+            self.places.ravel(), left=ending.ravel()))
         still = np.zeros_like(q)
-        m = inverse_dynamics(model, q, still, dq) - g
-        c = inverse_dynamics(model, q, dq, ddq) - g
-        return np.concatenate((dq, ddq, dddq, m, c, g), axis=-1)
+        g, by_sdd, by_sd = inverse_dynamics(  # of terms at q that are there once
+            arm_path.model, q, np.stack((still, still, dq)), np.stack((still, dq, ddq)))
+        return Demand(dq, ddq, dddq, by_sdd - g, by_sd - g, g)
 
     def __call__(self, s: Array, order: int = 0) -> list[Demand]:
         """
@@ -129,6 +127,13 @@ class PathTable:
         if order > 1:
             found.append((6.0 * c3 * x + 2.0 * c2) / L ** 2)
         return [Demand(*np.split(f, 6, axis=-1)) for f in found]
+
+
+@cache
+def _spline() -> Array:
+    """Return the matrix from values to the coefficients of a cubic spline through them."""
+    unit = CubicSpline(np.linspace(0.0, 1.0, INTERVALS + 1), np.eye(INTERVALS + 1)).c
+    return np.ascontiguousarray(unit.reshape(4 * INTERVALS, INTERVALS + 1))
 
 
 def _parted(ends: Array) -> Array:

@@ -33,34 +33,25 @@ from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.workspace_check import place_on_path
 from rrr_traj_planner.planners.interior_point import Centre, is_within, minimise, Outcome
 from rrr_traj_planner.planners.path_constraints import (
-    ACCELERATION,
     all_bounds,
-    JERK,
-    limited,
     PathConstraints,
-    Progress,
     progress_at,
     QUANTITIES,
-    SPEED,
-    TORQUE,
-    VELOCITY,
 )
+from rrr_traj_planner.planners.path_look import least_stretch, look, Seen
 from rrr_traj_planner.planners.path_pace import paces
 from rrr_traj_planner.planners.path_start import paced_along, uniform_along
-from rrr_traj_planner.planners.path_table import Demand, PathTable
+from rrr_traj_planner.planners.path_table import PathTable
 from rrr_traj_planner.planners.ramp_chain import Grid, grid_of, Motion
-from rrr_traj_planner.planners.ramp_look import near_points
 from rrr_traj_planner.planners.ramp_moves import stretched
 from rrr_traj_planner.planners.ramp_newton import Freedom
 
 RAMPS = 16         # in a piece of the path
-LOOKS = 8          # between two points
 ROOM = 1.02        # durations of the start over the least that fit
 HOLDING_ROOM = 1e-6
 REPAIRS = 8
 LARGER = 1.2       # room than what was exceeded
 WORTH_IT = 1e-3    # a longer stretch than this is better mended by planning again
-BACKWARD = 1e-12    # of the largest speed, that is rounding
 
 
 class PathTask(NamedTuple):
@@ -125,6 +116,7 @@ def nearly_fastest_along(task: PathTask) -> Timed:
 
     """
     table, grid = PathTable(task.arm_path), grid_of(RAMPS, task.cruise)
+    bounds = all_bounds(task.limits, task.max_tip_speed)
     _refuse_heavy(task, table)
     N = len(table.ends) - 1
     freedom = Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 1), bool))
@@ -132,23 +124,26 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
     centres: list[Centre] = []
     found: list[tuple[float, Motion, float]] = []  # durations, motions, what could be saved
+    least = 0.0
     for _ in range(REPAIRS):
         constraints = PathConstraints(table, task.limits, task.max_tip_speed, grid, margins,
                                       steady)
-        start = next((c for c in reversed(centres) if is_within(constraints, c.motion)), None)
+        start = next((c for c in reversed(centres) if c.motion.T.sum() >= least
+                      and is_within(constraints, c.motion)), None)
         if start is None:
             start = Centre(_slow_start(task, table, constraints, steady), None)
-        if not is_within(constraints, start.motion):
-            found.append((float(start.motion.T.sum()), start.motion, np.inf))
-            break
-        outcome = _onward(minimise(constraints, start, freedom, task.should_stop), start, table,
-                          grid)
+            if not is_within(constraints, start.motion):
+                found.append((float(start.motion.T.sum()), start.motion, np.inf))
+                break
+        outcome, seen = _onward(minimise(constraints, start, freedom, task.should_stop), start,
+                                table, grid, bounds)
         centres += outcome.centres
-        excess, stretch = _excess(task, table, grid, outcome.motion)
-        found.append(_slowed(outcome, stretch))
-        if stretch <= 1.0 + WORTH_IT or task.should_stop():
+        found.append(_slowed(outcome, seen.stretch))
+        if seen.stretch <= 1.0 + WORTH_IT or task.should_stop():
             break
-        margins = margins + LARGER * excess
+        margins = margins + LARGER * seen.excess
+        if np.isfinite(seen.stretch):  # faster ones than this slowed leave too little room
+            least = found[-1][0]
     _, motion, gap = min(found, key=lambda f: f[0])
     return Timed(_trajectory(task, table, grid, motion), gap)
 
@@ -183,17 +178,16 @@ def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
     return np.asarray(inside)
 
 
-def _onward(outcome: Outcome, start: Centre, table: PathTable, grid: Grid) -> Outcome:
+def _onward(outcome: Outcome, start: Centre, table: PathTable, grid: Grid,
+            bounds: Array) -> tuple[Outcome, Seen]:
     """Return the last motion on which the tip never goes back: one cut short may."""
-    passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)))
-    motion = next((m for m in passed if _goes_on(table, grid, m)), start.motion)
+    passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion)
+    for motion in passed:
+        seen = look(table, grid, motion, bounds)
+        if seen.goes_on:
+            break
     lost = float(motion.T.sum() - outcome.motion.T.sum())
-    return outcome._replace(motion=motion, gap=outcome.gap + lost)
-
-
-def _goes_on(table: PathTable, grid: Grid, m: Motion) -> bool:
-    speed = _between(table, grid, m).sd
-    return bool(speed.min() >= -BACKWARD * speed.max())
+    return outcome._replace(motion=motion, gap=outcome.gap + lost), seen
 
 
 def _slowed(outcome: Outcome, stretch: float) -> tuple[float, Motion, float]:
@@ -204,12 +198,12 @@ def _slowed(outcome: Outcome, stretch: float) -> tuple[float, Motion, float]:
 
 def _refuse_heavy(task: PathTask, table: PathTable) -> None:
     """Refuse a path on which gravity takes more than a motor has."""
-    share = np.abs(table.holding) / task.limits.max_effort
+    share = np.abs(table.values.g) / task.limits.max_effort
     piece, place, joint = map(int, np.unravel_index(int(share.argmax()), share.shape))
     if share.max() < 1.0 - HOLDING_ROOM:
         return
     needed, limit = (float(f) for f in (
-        abs(table.holding[piece, place, joint]), task.limits.max_effort[joint]))
+        abs(table.values.g[piece, place, joint]), task.limits.max_effort[joint]))
     where, nearest = place_on_path(task.arm_path.path, float(table.places[piece, place]))
     name = task.arm_path.model.joint_names[joint]
     raise LimitViolationError(f'{where}: {name} needs {needed:.1f} N m to hold, limit {limit:g} '
@@ -219,65 +213,28 @@ def _refuse_heavy(task: PathTask, table: PathTable) -> None:
 def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
                 steady: BoolArray) -> Motion:
     """Return a motion as slow as the limits ask for, of constant speed where pieces ask for it."""
-    grid = constraints.grid
+    grid, bounds = constraints.grid, all_bounds(task.limits, task.max_tip_speed)
     if steady.any():
         m = uniform_along(grid, table.ends)
     else:
-        m = paced_along(grid, table.ends, paces(
-            table, all_bounds(task.limits, task.max_tip_speed)))
+        m = paced_along(grid, table.ends, paces(table, bounds))
     at = progress_at(grid, constraints.points, m)
-    return stretched(m, ROOM * _stretch(
-        task, constraints.demands(at.s)[0], at, constraints.margins))
-
-
-def _stretch(task: PathTask, demand: Demand, at: Progress, room: Array | float = 0.0) -> float:
-    """Return by how much a motion must be slowed for its limits, less room, at given points."""
-    x = limited(demand, at)
-    bounds = all_bounds(task.limits, task.max_tip_speed) - room
-    share = np.abs(x) / bounds
-    moving = x[..., TORQUE] - demand.g
-    spare = bounds[..., TORQUE] - np.sign(moving) * demand.g
-    with np.errstate(divide='ignore', invalid='ignore'):
-        by_torque = np.where(moving != 0.0, np.abs(moving) / spare, 0.0)
-    by_torque = np.where((spare <= 0.0) & (moving != 0.0), np.inf, by_torque)
-    return float(max(share[..., VELOCITY].max(), share[..., SPEED].max(),
-                     np.sqrt(share[..., ACCELERATION].max()),
-                     np.cbrt(share[..., JERK].max()), np.sqrt(by_torque.max())))
-
-
-def _excess(task: PathTask, table: PathTable, grid: Grid, m: Motion) -> tuple[Array, float]:
-    """Return by how much limits are exceeded near each point, and the stretch that mends it."""
-    at = _between(table, grid, m)
-    demand = table(at.s)[0]
-    x = np.abs(limited(demand, at))
-    bounds = all_bounds(task.limits, task.max_tip_speed)
-    return near_points(x, bounds, LOOKS), _stretch(task, demand, at)
+    return stretched(m, ROOM * least_stretch(
+        constraints.demands(at.s)[0], at, bounds - constraints.margins))
 
 
 def _exact_stretch(task: PathTask, trajectory: PathTrajectory) -> float:
     """Return by how much a motion must be slowed, by its own values."""
     limits, model = task.limits, task.arm_path.model
 
-    def quantities(t: Array, q: Array, qd: Array, qdd: Array) -> Array:
-        speed = trajectory.progress(t)[1][:, np.newaxis]
-        return np.concatenate((squared_stretch(model, limits, q, qd, qdd), speed), axis=1)
+    def quantities(sd: Array, q: Array, qd: Array, qdd: Array) -> Array:
+        return np.concatenate((squared_stretch(model, limits, q, qd, qdd), sd), axis=1)
 
     *squared, speed = trajectory.maxima(quantities)
     peaks = trajectory.peaks()
     return float(max((peaks.velocity / limits.max_velocity).max(), speed / task.max_tip_speed,
                      np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
                      np.cbrt((peaks.jerk / limits.max_jerk).max()), np.sqrt(max(squared))))
-
-
-def _between(table: PathTable, grid: Grid, m: Motion) -> Progress:
-    """Return a motion's progress at many times of each piece, in order, (N, 2 n LOOKS + 1)."""
-    profile = grid.profiles(table.ends[:, np.newaxis], m)[0]
-    starts = np.concatenate(([0.0], np.cumsum(m.T)[:-1]))
-    share = np.linspace(0.0, 1.0, 2 * grid.n * LOOKS + 1)
-    t = starts[:, np.newaxis] + m.T[:, np.newaxis] * share
-    s, sd, sdd, sddd = (f.reshape(t.shape) for f in profile(t.ravel()))
-    return Progress(np.clip(s, table.ends[:-1, np.newaxis], table.ends[1:, np.newaxis]),
-                    sd, sdd, sddd)
 
 
 def _trajectory(task: PathTask, table: PathTable, grid: Grid, m: Motion) -> PathTrajectory:

@@ -196,3 +196,42 @@ def test_highest_of_several_maxima_counts_even_if_the_grid_shows_another_as_high
     found = maximum_over_time(bumps, np.linspace(0.0, 1.0, 11))
     assert found.value == pytest.approx([1.02, 1.0, 1.0], abs=1e-6)
     assert found.time == pytest.approx([0.75, 1.0, 0.0], abs=1e-4)
+
+
+def test_peaks_that_fall_less_steeply_than_they_rise_are_found():
+    # t exp(1 - t) is 1 at t = 1; the grid is coarse and meets none of these tops.
+    tops = np.array([0.2137, 0.35, 0.52713])
+
+    def bumps(t):
+        x = t[:, np.newaxis] / tops
+        return x * np.exp(1.0 - x)
+
+    found = maximum_over_time(bumps, np.linspace(0.0, 2.0, 21))
+    assert found.value == pytest.approx([1.0] * 3, rel=1e-9)
+    assert found.time == pytest.approx(tops, abs=1e-4)
+
+
+def test_both_sides_of_a_step_count_and_so_does_what_is_beside_it():
+    # Before 0.5 t rises to it; after it, a parabola whose top is between two points of the grid.
+    def stepping(t):
+        before = t < 0.5
+        return np.stack([np.where(before, 4.0 * t, 1.0 - t),
+                         np.where(before, 4.0 * t, 2.1 - 30.0 * (t - 0.537) ** 2)], axis=-1)
+
+    grid = np.union1d(np.linspace(0.0, 1.0, 11), [0.5 - 1e-9])
+    found = maximum_over_time(stepping, grid)
+    assert found.value == pytest.approx([2.0, 2.1], abs=1e-8)
+    assert found.time == pytest.approx([0.5, 0.537], abs=1e-4)
+
+
+def test_tops_beside_which_curvature_jumps_are_found():
+    # Up to c a line rises slowly, after it a parabola is taken away: as jerk does in a ramp.
+    c, slope, k = 0.443, 0.1, np.array([5.0, 50.0, 500.0])
+
+    def bent(t):
+        late = np.maximum(t[:, np.newaxis] - c, 0.0)
+        return slope * t[:, np.newaxis] + 1.0 - k * late ** 2
+
+    found = maximum_over_time(bent, np.linspace(0.0, 1.0, 11))
+    assert found.value == pytest.approx(slope * c + 1.0 + slope ** 2 / (4.0 * k), rel=1e-9)
+    assert found.time == pytest.approx(c + slope / (2.0 * k), abs=1e-4)

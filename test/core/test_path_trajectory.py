@@ -108,6 +108,15 @@ def test_places_may_be_asked_for_in_any_order_and_one_by_one():
         assert together == pytest.approx(alone, abs=1e-12)
 
 
+@pytest.mark.parametrize('seed', SEEDS)
+def test_sides_of_joins_may_be_asked_for_one_by_one(seed):
+    arm_path = random_motion(seed).arm_path
+    joins = arm_path.path.joins
+    mixed = arm_path(np.repeat(joins, 2), left=np.tile([True, False], len(joins)))
+    for ours, before, after in zip(mixed, arm_path(joins, left=True), arm_path(joins)):
+        assert ours == pytest.approx(np.stack((before, after), axis=1).reshape(-1, 3), abs=1e-12)
+
+
 def test_whole_turns_are_kept_along_the_path():
     # A path around joint axis 1 by more than half a turn, in a range that lies a turn further.
     angle = np.linspace(0.5, 4.0, 8)

@@ -63,7 +63,7 @@ def test_table_is_exact_at_its_own_places(seed):
     s = table.places[:, 1:-1]
     for ours, wanted in zip(table(s)[0], exact(arm_path, s)):
         assert ours == pytest.approx(wanted, abs=AT_PLACES * (1.0 + np.abs(wanted).max()))
-    assert table.holding[:, 1:-1] == pytest.approx(table(s)[0].g, abs=1e-9)
+    assert table.values.g[:, 1:-1] == pytest.approx(table(s)[0].g, abs=1e-9)
 
 
 @pytest.mark.parametrize('seed', SEEDS)

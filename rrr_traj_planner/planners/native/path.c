@@ -15,29 +15,27 @@
 /* What joints and motors do along a path, by place, speed, acceleration and jerk along it
  * (path_constraints.py). */
 #include "chain.h"
+#include "path.h"
 
-enum { DQ, DDQ, DDDQ, M, C, G };
-
-/* Columns of the table and their first two derivatives at a place of a segment; see PathTable. */
+/* Columns of the table at a place of a segment, and derivatives up to an order. */
 static void demanded(const Problem *p, int segment, int point, double s, int order,
-                     double found[3][6][3])
+                     double found[3][KINDS][3])
 {
     const double begin = p->points[segment], length = p->points[segment + 1] - begin;
-    const double u = (s - begin) / length * p->intervals;
-    /* compared before it becomes an integer: a step that is far too long leads anywhere */
-    const int i = !(u > 0.0) ? 0 : u < p->intervals - 1 ? (int)u : p->intervals - 1;
-    const double x = (u - i) / p->intervals;
-    const size_t row = (size_t)p->intervals * 18;
-    const double *c = p->table + (size_t)segment * 4 * row + (size_t)i * 18;
-    const double *c3 = c, *c2 = c + row, *c1 = c + 2 * row, *c0 = c + 3 * row;
-    double *value = &found[0][0][0], *first = &found[1][0][0], *second = &found[2][0][0];
-    for (int k = 0; k < 18; ++k)
-        value[k] = ((c3[k] * x + c2[k]) * x + c1[k]) * x + c0[k];
+    double x;
+    size_t apart;
+    const double *c3 = path_interval(p->table + (size_t)segment * 4 * p->intervals * COLUMNS,
+                                     p->intervals, (s - begin) / length, &apart, &x);
+    const double *c2 = c3 + apart, *c1 = c2 + apart;
+    const double per = 1.0 / length;
+    double *first = &found[1][0][0], *second = &found[2][0][0];
+    path_columns(c3, apart, x, &found[0][0][0]);
     if (order > 0)
-        for (int k = 0; k < 18; ++k) {
-            first[k] = ((3.0 * c3[k] * x + 2.0 * c2[k]) * x + c1[k]) / length;
-            second[k] = (6.0 * c3[k] * x + 2.0 * c2[k]) / (length * length);
-        }
+        for (int k = 0; k < COLUMNS; ++k)
+            first[k] = ((3.0 * c3[k] * x + 2.0 * c2[k]) * x + c1[k]) * per;
+    if (order > 1)
+        for (int k = 0; k < COLUMNS; ++k)
+            second[k] = (6.0 * c3[k] * x + 2.0 * c2[k]) * per * per;
     if (point == p->n)  /* where a controller's quintic overshoots */
         for (int j = 0; j < 3; ++j)
             found[0][DDQ][j] -= p->overshoot * p->steps[3 * segment + j];
@@ -46,17 +44,13 @@ static void demanded(const Problem *p, int segment, int point, double s, int ord
 void path_at(const Problem *p, int segment, int point, const double *z, double *x,
              double *gradient, const double *weights, double *second)
 {
-    double found[3][6][3];
+    double found[3][KINDS][3];
     const double v = z[1], a = z[2], jerk = z[3];
-    demanded(p, segment, point, z[0], gradient || second, found);
+    demanded(p, segment, point, z[0], second ? 2 : gradient ? 1 : 0, found);
     const double (*d)[3] = (const double (*)[3])found[0], (*s)[3] = (const double (*)[3])found[1],
         (*ss)[3] = (const double (*)[3])found[2];
-    for (int j = 0; x && j < 3; ++j) {
-        x[j] = d[DQ][j] * v;
-        x[3 + j] = d[DDQ][j] * v * v + d[DQ][j] * a;
-        x[6 + j] = d[DDDQ][j] * v * v * v + 3.0 * d[DDQ][j] * v * a + d[DQ][j] * jerk;
-        x[9 + j] = d[M][j] * a + d[C][j] * v * v + d[G][j];
-    }
+    if (x)
+        path_limited(d, v, a, jerk, x);
     for (int j = 0; gradient && j < 3; ++j) {
         double *g = gradient + 4 * j;
         g[0] = s[DQ][j] * v, g[1] = d[DQ][j], g[2] = 0.0, g[3] = 0.0;
