@@ -100,12 +100,14 @@ def quickest_motion(task: JointTask, chain: Chain) -> tuple[ChainMotion | None, 
         None where it overshoots. Its note says where planning was stopped before it converged.
 
     """
-    found = least_time(chain, should_stop=task.should_stop)
+    v, T, gap = least_time(chain, should_stop=task.should_stop)
+    stops = chain.rest_to_rest_times()
+    if stops.sum() < T.sum():  # it was stopped early
+        v, T, gap = np.zeros_like(v), stops, gap - float(T.sum() - stops.sum())
     slower = 1.0 + DURATION_ROOM
-    durations = found.durations * slower
-    motion, overshoot = _moved(task, chain, found.velocities / slower, durations, durations)
+    motion, overshoot = _moved(task, chain, v / slower, T * slower, T * slower)
     if motion is not None:
-        motion.trajectory.note = unconverged_note(found.gap, motion.trajectory.duration)
+        motion.trajectory.note = unconverged_note(gap, motion.trajectory.duration)
     return motion, overshoot
 
 

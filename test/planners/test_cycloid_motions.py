@@ -19,6 +19,7 @@ from dataclasses import replace
 from measured_plans import outcomes
 import numpy as np
 import pytest
+from random_tasks import random_task
 from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.planners.planning import plan
 
@@ -112,3 +113,17 @@ def test_cycloid_is_hardly_ever_slower_than_approach_a_whose_structure_it_contai
     a, free = outcomes('cycloid_approach_a')[0], outcomes('cycloid')[0]
     ratios = {seed: float(free[seed].t[-1] / a[seed].t[-1]) for seed in set(a) & set(free)}
     assert {seed: ratio for seed, ratio in ratios.items() if ratio > 1.1} == {}
+
+
+@pytest.mark.parametrize('seed', range(12))
+def test_stopped_at_once_it_is_no_slower_than_with_stops_and_says_what_could_be_saved(seed):
+    task = random_task(seed)
+    request, limits = task.asked_of('cycloid'), replace(
+        task.limits, max_effort=np.full(3, np.inf))
+    stopped = plan(task.model, limits, replace(request, should_stop=lambda: True))
+    stops = plan(task.model, limits, replace(request, planner_id='cycloid_approach_c'))
+    best = plan(task.model, limits, request)
+    duration = stopped.trajectory.duration
+    assert best.trajectory.duration <= duration * (1.0 + 1e-9)
+    assert duration == pytest.approx(stops.trajectory.duration, rel=1e-5)
+    assert stopped.note.startswith('planning ended before it converged: at most ')
