@@ -22,7 +22,7 @@ from pathlib import Path
 import re
 import signal
 import subprocess
-from threading import Thread
+from threading import Event, Thread
 import time
 from typing import Any
 
@@ -102,17 +102,24 @@ class Client:
         self._executor = SingleThreadedExecutor(context=self._context)
         self.node = Node('bench', context=self._context)
         self._executor.add_node(self.node)
-        self._thread = Thread(target=self._executor.spin, daemon=True)
+        self._closing = Event()
+        self._thread = Thread(target=self._spin, daemon=True)
         self._thread.start()
 
     def __enter__(self) -> Client:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._closing.set()
+        self._executor.wake()
+        self._thread.join(GRACE)  # an executor that is shut down while it spins may raise
         self._executor.shutdown(timeout_sec=GRACE)
-        self._thread.join(GRACE)
         self.node.destroy_node()
         self._context.try_shutdown()
+
+    def _spin(self) -> None:
+        while not self._closing.is_set():
+            self._executor.spin_once()
 
     def service(self, process: Process, name: str = 'plan_trajectory') -> Callable[..., Any]:
         """Return a function that calls a PlanTrajectory service, as soon as that is there."""

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from threading import Thread
+from threading import Event, Thread
 from time import monotonic, sleep
 from typing import Any
 
@@ -97,11 +97,12 @@ def run_on_arm(task: Task, ros_arguments: list[str],
     """
     start_ros(ros_arguments)
     client = executor = thread = None
+    closing = Event()
     try:
         client = made(lambda: _Client(ended))
         executor = SingleThreadedExecutor()
         executor.add_node(client)
-        thread = Thread(target=_spin, args=(executor,), daemon=True)
+        thread = Thread(target=_spin, args=(executor, closing), daemon=True)
         thread.start()
         return client.run(task, bag)
     except rclpy_implementation.RCLError:
@@ -109,17 +110,20 @@ def run_on_arm(task: Task, ros_arguments: list[str],
             raise
         raise KeyboardInterrupt from None
     finally:
+        closing.set()
         if executor is not None and thread is not None:
+            executor.wake()
+            thread.join(1.0)  # an executor that is shut down while it spins may raise
             executor.shutdown(timeout_sec=1.0)
-            thread.join(1.0)
         if client is not None:
             client.destroy_node()
         end_ros()
 
 
-def _spin(executor: SingleThreadedExecutor) -> None:
+def _spin(executor: SingleThreadedExecutor, closing: Event) -> None:
     try:
-        executor.spin()
+        while rclpy.ok() and not closing.is_set():
+            executor.spin_once()
     except ExternalShutdownException:
         pass
     except rclpy_implementation.RCLError:

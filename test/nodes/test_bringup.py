@@ -132,7 +132,7 @@ def test_nothing_is_left_where_the_second_node_cannot_be_started(monkeypatch):
 
 
 def test_signal_is_held_back_until_the_end_and_then_delivered():
-    process = None
+    process, before = None, signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):
             with signals_held():
@@ -147,4 +147,6 @@ def test_signal_is_held_back_until_the_end_and_then_delivered():
         if process is not None:
             process.kill()
             process.communicate(timeout=DEADLINE)
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        # a shell has its background jobs ignore it
+        after = signal.signal(signal.SIGINT, before)
+    assert after is signal.default_int_handler
