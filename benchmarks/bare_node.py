@@ -16,12 +16,24 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-
 import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
+
+
+def spin_until_signal(executor: SingleThreadedExecutor) -> None:
+    """Spin until SIGINT, which may shut the context down under the executor."""
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except rclpy_implementation.RCLError:
+        if rclpy.ok():
+            raise
+    finally:
+        rclpy.try_shutdown()  # and its thread for signals, which must not outlive Python
 
 
 def main() -> None:
@@ -31,8 +43,7 @@ def main() -> None:
     answer = PlanTrajectory.Response(error_code=PlanTrajectory.Response.SUCCESS)
     node.create_service(PlanTrajectory, 'plan_trajectory', lambda request, response: answer)
     executor.add_node(node)
-    with suppress(KeyboardInterrupt, ExternalShutdownException):
-        executor.spin()
+    spin_until_signal(executor)
 
 
 if __name__ == '__main__':

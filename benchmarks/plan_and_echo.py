@@ -23,11 +23,11 @@ to table 6.1 with that sample period [s], prepared before the first request.
 
 from __future__ import annotations
 
-from contextlib import suppress
 import sys
 
+from bare_node import spin_until_signal
 import rclpy
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
@@ -56,8 +56,7 @@ def main() -> None:
     executor = SingleThreadedExecutor()
     for node in (TrajectoryPlanner(), echo):
         executor.add_node(node)
-    with suppress(KeyboardInterrupt, ExternalShutdownException):
-        executor.spin()
+    spin_until_signal(executor)
 
 
 if __name__ == '__main__':
