@@ -28,6 +28,7 @@ from rrr_traj_planner.core.path_design import check_points
 # A turn so slight that its radius would be more than this many times the polyline's length.
 MOST_LENGTHS = 10.0
 ROUNDS = 30
+MOST_POWER = 4.0  # of the radius that a deviation is thought to grow with
 TOLERANCE = 1e-4  # relative, by which the deviation may stay below the one allowed
 
 
@@ -77,13 +78,16 @@ def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: A
 def _adjusted(family: Callable[[Array, ArrayLike], CartesianPath], points: Array, radii: Array,
               most: Array, max_deviation: float) -> CartesianPath:
     """Return the path after its radii are scaled until they use the deviation up."""
+    power, before = np.ones(len(radii)), None
     for round_ in range(2 * ROUNDS):
         path = family(points, radii)
+        power = power if before is None else _power(before, path, power)
+        before = path
         # What was shrunk stays so: from here it can only become smaller.
         most = np.where(path.radii < path.radii_asked, path.radii, most)
         with np.errstate(divide='ignore'):
             factor = max_deviation * (1.0 - 0.5 * TOLERANCE) / path.deviation
-        wanted = np.minimum(path.radii * np.clip(factor, 0.5, 2.0), most)
+        wanted = np.minimum(path.radii * np.clip(factor, 0.5, 2.0) ** (1.0 / power), most)
         kept = path.deviation <= max_deviation
         settled = round_ >= ROUNDS  # neighbours that rob each other of room: only shrink now
         if kept.all() and (settled or (wanted <= path.radii * (1.0 + TOLERANCE)).all()):
@@ -92,3 +96,12 @@ def _adjusted(family: Callable[[Array, ArrayLike], CartesianPath], points: Array
     raise ConvergenceError(
         f'largest radii not found: deviation is {path.deviation.tolist()} m after {2 * ROUNDS} '
         f'rounds, {max_deviation:.6g} m wanted')
+
+
+def _power(before: CartesianPath, path: CartesianPath, known: Array) -> Array:
+    """Return the powers of the radii that deviations grow with, from two paths."""
+    with np.errstate(divide='ignore', invalid='ignore'):
+        larger = np.log(path.radii / before.radii)
+        found = np.log(path.deviation / before.deviation) / larger
+    told = np.isfinite(found) & (np.abs(larger) > TOLERANCE)
+    return np.where(told, np.clip(found, 1.0, MOST_POWER), known)
