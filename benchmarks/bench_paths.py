@@ -40,8 +40,9 @@ from toppra.interpolator import AbstractGeometricPath
 
 PATHS = 24                    # random ones for each planner
 RANDOM_REPETITIONS = 3        # of planning each of them
-MOTION, PLANNING = 1.08, 2.0  # the most that is asked for, of plan()
-TIMING = {'line_arc': 1.0, 'line_polynomial': None}  # likewise, of timing a path that is ready
+MOTION = 1.08                 # the most that is asked for
+TIMING = {'line_arc': 1.0, 'line_polynomial': 2.0}  # of timing a path that is ready,
+RANDOM_TIMING = 2.0                                 # and a random one
 PLAIN = 20                    # from the seed of one plain task to the next
 
 Pair = tuple[float, float]    # of ours and theirs
@@ -104,7 +105,7 @@ def _table(planner_id: str, name: str, effort: object, repetitions: int) -> list
         lambda: _own(task), repetitions=repetitions)
     return [compared(label, MOTION, _own(task), toppra_duration(task, arm_path)),
             timed(f'planning, {label}, the path ready', TIMING[planner_id], medians),
-            timed(f'planning, {label}, plan()', PLANNING, medians, ours=2)]
+            timed(f'planning, {label}, plan()', None, medians, ours=2)]
 
 
 def random(paths: int = PATHS, repetitions: int = RANDOM_REPETITIONS,
@@ -113,9 +114,11 @@ def random(paths: int = PATHS, repetitions: int = RANDOM_REPETITIONS,
     rows = []
     for first, planner_id in enumerate(PLANNERS):
         found = [_both(task, repetitions, say) for task in islice(_random_tasks(first), paths)]
+        motions, timings, plans = zip(*found)
         for what, target, scale, unit, pairs in (
-                ('', MOTION, 1.0, 's', [motion for motion, _ in found]),
-                ('planning, plan(), ', PLANNING, 1e3, 'ms', [times for _, times in found])):
+                ('', MOTION, 1.0, 's', motions),
+                ('planning, the path ready, ', RANDOM_TIMING, 1e3, 'ms', timings),
+                ('planning, plan(), ', None, 1e3, 'ms', plans)):
             pairs = sorted(pairs, key=lambda pair: pair[0] / pair[1])
             for label, pair in (('median', pairs[len(pairs) // 2]), ('worst', pairs[-1])):
                 rows.append(compared(
@@ -124,17 +127,18 @@ def random(paths: int = PATHS, repetitions: int = RANDOM_REPETITIONS,
     return rows
 
 
-def _both(task: Task, repetitions: int, say: bool) -> tuple[Pair, Pair]:
-    """Return our and TOPP-RA's durations of motions, and of planning them [s]."""
+def _both(task: Task, repetitions: int, say: bool) -> tuple[Pair, Pair, Pair]:
+    """Return durations, ours and TOPP-RA's: of motions, of timing and of planning them [s]."""
     arm_path = _arm_path(task)
     motion = _own(task), toppra_duration(task, arm_path)
-    planning = in_turns(lambda: _own(task), lambda: toppra_duration(task, arm_path),
-                        repetitions=repetitions).times
+    timing, planning, theirs = in_turns(
+        lambda: _timed(task, arm_path), lambda: _own(task),
+        lambda: toppra_duration(task, arm_path), repetitions=repetitions).times
     if say:
         print(f'{task.request.planner_id}, {task.name}: {len(task.request.via_points)} points, '
-              f'{motion[0]:.4f} s / {motion[1]:.4f} s = {motion[0] / motion[1]:.4f}; '
-              f'planning {planning[0]:.3f} s / {planning[1]:.3f} s', flush=True)
-    return motion, planning
+              f'{motion[0]:.4f} s / {motion[1]:.4f} s = {motion[0] / motion[1]:.4f}; timing '
+              f'{timing:.3f} s, plan() {planning:.3f} s / {theirs:.3f} s', flush=True)
+    return motion, (timing, theirs), (planning, theirs)
 
 
 def _random_tasks(first: int) -> Iterator[Task]:
