@@ -25,6 +25,8 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.task import Future
 
+PATIENCE = 1.0  # s
+
 
 class BackgroundThread:
     """
@@ -44,7 +46,8 @@ class BackgroundThread:
         self._calls = SimpleQueue()
         self._returned = node.create_guard_condition(lambda: None)  # wakes the executor
         self._ending, self._ended = Lock(), False
-        Thread(target=self._run, name=name, daemon=True).start()
+        self._thread = Thread(target=self._run, name=name, daemon=True)
+        self._thread.start()
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Future:
         """
@@ -67,11 +70,20 @@ class BackgroundThread:
         self._calls.put((function, arguments, done))
         return done
 
+    def is_ending(self) -> bool:
+        """Return whether the thread is told to end: what it is at may as well be given up."""
+        return self._ended
+
     def end(self) -> None:
-        """End the thread; what it is at is not waited for."""
+        """
+        End the thread; what it is at is waited for, but not for long.
+
+        Compiled code that Python's end cuts short may abort the process.
+        """
         with self._ending:
             self._ended = True
         self._calls.put(None)
+        self._thread.join(PATIENCE)
 
     def _run(self) -> None:
         for function, arguments, done in iter(self._calls.get, None):

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from contextlib import suppress
 from time import perf_counter
 import traceback
@@ -122,7 +123,7 @@ class TrajectoryPlanner(Node):
         """Answer a request; the executor goes on with other work until the plan is there."""
         config, stamp = self._parameters_declared.config, self.get_clock().now().to_msg()
         self._begun = perf_counter()
-        answer = await self._thread.call(_answer, request, config)
+        answer = await self._thread.call(_answer, request, config, self._thread.is_ending)
         self._begun = None
         name = quoted(request.planner_id or config.default_planner_id)[1:-1]
         self._statistics.add(answer.response, self.get_clock().now().to_msg())
@@ -172,19 +173,20 @@ class TrajectoryPlanner(Node):
             log.warning(f'{name} refused {took} ({response.error_code}): {response.message}')
 
     def destroy_node(self) -> None:
-        """End the planning thread with the node; what it is at is not waited for."""
+        """End the planning thread with the node."""
         self._thread.end()
         super().destroy_node()
 
 
-def _answer(request: PlanTrajectory.Request, config: PlannerConfig) -> _Answer:
+def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
+            is_ending: Callable[[], bool]) -> _Answer:
     """Plan; whatever goes wrong is an answer too."""
     started = perf_counter()
     found, trace = None, ''
     try:
         deadline = started + config.planning_time_limit
         found = plan(config.model, config.limits, planning_request(
-            request, config, lambda: perf_counter() > deadline))
+            request, config, lambda: is_ending() or perf_counter() > deadline))
         seconds = perf_counter() - started
         response = success(found, config)
     except Exception as error:

@@ -37,6 +37,9 @@ from rrr_traj_planner.planners.ramp_newton import Freedom
 
 CENTRES = 40  # at most; as in chain.h
 
+# What the library must have; other modules wrap all but the first.
+FUNCTIONS = 'chain_minimised', 'cruise_covering', 'path_looked', 'velocities_minimised'
+
 _Doubles = ctypes.POINTER(ctypes.c_double)
 _Bytes = ctypes.POINTER(ctypes.c_uint8)
 _ShouldStop = ctypes.CFUNCTYPE(ctypes.c_int32)
@@ -96,8 +99,8 @@ def _library() -> Any:
         path = Path(__file__).parent / 'native' / f'chain{suffix}'
         if path.exists():
             library = ctypes.CDLL(str(path))
-            library.chain_minimised.restype = ctypes.c_int
-            return library
+            if all(hasattr(library, name) for name in FUNCTIONS):  # else it was built of others
+                return library
     return None
 
 

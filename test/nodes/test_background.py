@@ -1,0 +1,88 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A node's background thread: calls in order, what they return or raise, and how it ends."""
+
+from threading import Event
+from time import perf_counter, sleep
+
+import pytest
+from rrr_traj_planner.nodes import background
+from rrr_traj_planner.nodes.background import BackgroundThread
+
+DEADLINE = 10.0  # s
+
+
+@pytest.fixture
+def thread(ros):
+    made = BackgroundThread(ros.node, 'test')
+    yield made
+    made.end()
+
+
+def until_done(*futures):
+    """Return results or errors of futures, in the order in which they came."""
+    came, all_done = [], Event()
+
+    def done(future):
+        came.append(str(future.exception()) if future.exception() else future.result())
+        if len(came) == len(futures):
+            all_done.set()
+
+    for future in futures:
+        future.add_done_callback(done)
+    assert all_done.wait(DEADLINE)
+    return came
+
+
+def failing():
+    raise ValueError('no number')
+
+
+def test_calls_are_made_in_order_and_return_or_raise(thread):
+    calls = [thread.call(sum, [1, 2]), thread.call(failing), thread.call(sum, [3, 4])]
+    assert until_done(*calls) == [3, 'no number', 7]
+
+
+def test_end_waits_for_what_is_called(thread):
+    begun, ended = Event(), []
+
+    def slow():
+        begun.set()
+        sleep(0.2)
+        ended.append(True)
+
+    future = thread.call(slow)
+    assert begun.wait(DEADLINE)
+    assert not thread.is_ending()
+    thread.end()
+    assert ended
+    assert thread.is_ending()
+    assert not future.done()  # nobody is there to be told
+
+
+def test_end_does_not_wait_for_ever(thread, monkeypatch):
+    monkeypatch.setattr(background, 'PATIENCE', 0.05)
+    begun, release = Event(), Event()
+
+    def endless():
+        begun.set()
+        release.wait()
+
+    thread.call(endless)
+    assert begun.wait(DEADLINE)
+    started = perf_counter()
+    thread.end()
+    assert perf_counter() - started < DEADLINE
+    release.set()
