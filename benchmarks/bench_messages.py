@@ -33,7 +33,7 @@ if not MISSING:
     from builtin_interfaces.msg import Duration
     from plan_and_echo import default_config
     from rclpy.serialization import deserialize_message, serialize_message
-    from rrr_traj_planner.nodes.planning_messages import joint_trajectory
+    from rrr_traj_planner.nodes.planning_answer import joint_trajectory
     from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 POINTS = 5000

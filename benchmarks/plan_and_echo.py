@@ -32,7 +32,7 @@ from rclpy.node import Node
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
 from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
-from rrr_traj_planner.nodes.planning_messages import success
+from rrr_traj_planner.nodes.planning_answer import success
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory

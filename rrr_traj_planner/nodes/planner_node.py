@@ -37,13 +37,8 @@ from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
 from rrr_traj_planner.nodes.marker_messages import no_plan_markers, plan_markers
 from rrr_traj_planner.nodes.parameters import PLANNER
-from rrr_traj_planner.nodes.planning_messages import (
-    failure,
-    planning_request,
-    refusal,
-    success,
-    tip_path,
-)
+from rrr_traj_planner.nodes.planning_answer import failure, refusal, success, tip_path
+from rrr_traj_planner.nodes.planning_request import planning_request
 from rrr_traj_planner.nodes.request_statistics import RequestStatistics
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import Plan

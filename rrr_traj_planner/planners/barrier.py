@@ -123,41 +123,16 @@ def local(chain: Chain, floor: Array | None, v: Array, T: Array) -> Local:
                  np.stack((high - low, low ** 2 + high ** 2)), np.stack((-spare, spare ** 2)))
 
 
-def derivatives(at: Local, damping: Parts) -> Derivatives:
-    """
-    Return the barrier's derivatives.
-
-    Parameters
-    ----------
-    at : Local
-        Those of its parts.
-    damping : Parts
-        By how much of it each part's curvature is raised.
-
-    Returns
-    -------
-    Derivatives
-        The Hessian is positive definite.
-
-    """
-    at = damped(at, damping)
-    slope, block = at.slope, at.block
-    (g_v, v_v), (g_T, T_T) = at.velocities, at.durations
-    return Derivatives(
-        g_v=slope[:-1, :, 1] + slope[1:, :, 0] + g_v, g_T=slope[..., 2].sum(axis=1) + g_T,
-        v_v=block[:-1, :, 1, 1] + block[1:, :, 0, 0] + v_v,
-        v_next=block[1:-1, :, 0, 1], v0_T=block[..., 0, 2], v1_T=block[..., 1, 2],
-        T_T=block[..., 2, 2].sum(axis=1) + T_T)
-
-
 def damped(at: Local, damping: Parts) -> Local:
     """
     Return parts whose curvature is raised.
 
     Parameters
     ----------
-    at, damping
-        As in `derivatives`.
+    at : Local
+        The parts.
+    damping : Parts
+        By how much of it the curvature of each is raised.
 
     Returns
     -------
@@ -169,6 +144,30 @@ def damped(at: Local, damping: Parts) -> Local:
     return Local(at.slope, at.block * (1.0 + damping.segments)[..., np.newaxis, np.newaxis],
                  np.stack((g_v, v_v * (1.0 + damping.velocities))),
                  np.stack((g_T, T_T * (1.0 + damping.durations))))
+
+
+def derivatives(at: Local) -> Derivatives:
+    """
+    Return the barrier's derivatives.
+
+    Parameters
+    ----------
+    at : Local
+        Those of its parts.
+
+    Returns
+    -------
+    Derivatives
+        The Hessian is positive definite.
+
+    """
+    slope, block = at.slope, at.block
+    (g_v, v_v), (g_T, T_T) = at.velocities, at.durations
+    return Derivatives(
+        g_v=slope[:-1, :, 1] + slope[1:, :, 0] + g_v, g_T=slope[..., 2].sum(axis=1) + g_T,
+        v_v=block[:-1, :, 1, 1] + block[1:, :, 0, 0] + v_v,
+        v_next=block[1:-1, :, 0, 1], v0_T=block[..., 0, 2], v1_T=block[..., 1, 2],
+        T_T=block[..., 2, 2].sum(axis=1) + T_T)
 
 
 def misjudged(at: Local, dv: Array, dT: Array, change: Parts) -> list[BoolArray]:

@@ -161,8 +161,9 @@ def _centre(problem: Problem, v: Array, T: Array, weight: float, centred: float,
         at = local(chain, floor, v, T)
         cost = weight * problem.objective(T)
         for _ in range(TRIES):
+            stiff = damped(at, damping)
             try:
-                dv, dT, decrement = problem.newton_step(derivatives(at, damping), weight)
+                dv, dT, decrement = problem.newton_step(derivatives(stiff), weight)
             except np.linalg.LinAlgError:
                 return v, T, damping, False  # rounding leaves no step to be found
             after = values(chain, floor, v + dv, T + dT)
@@ -170,7 +171,7 @@ def _centre(problem: Problem, v: Array, T: Array, weight: float, centred: float,
             if weight * problem.objective(T + dT) - cost + sum(
                     float(c.sum()) for c in change) <= -SUFFICIENT_DECREASE * decrement:
                 break
-            wrong = misjudged(damped(at, damping), dv, dT, change)
+            wrong = misjudged(stiff, dv, dT, change)
             damping = Parts(*(np.where(w, d * MORE_DAMPING + 1.0, d)
                               for w, d in zip(wrong, damping)))
         else:

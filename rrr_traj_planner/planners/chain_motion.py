@@ -89,10 +89,8 @@ def quickest_motion(task: JointTask, chain: Chain) -> tuple[ChainMotion | None, 
 
     Parameters
     ----------
-    task : JointTask
-        The arm and its limits.
-    chain : Chain
-        The via points.
+    task, chain
+        As in `timed_motion`.
 
     Returns
     -------
@@ -121,10 +119,8 @@ def motion_with_floor(task: JointTask, chain: Chain,
 
     Parameters
     ----------
-    task : JointTask
-        The arm and its limits.
-    chain : Chain
-        The via points.
+    task, chain
+        As in `timed_motion`.
     floor : ndarray, shape (n,)
         Durations [s] that no segment may fall below.
 

@@ -21,7 +21,8 @@ or RRR_TRAJ_PLANNER_COMPILED is 0 in the environment, NumPy does the same.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 import ctypes
 from importlib.machinery import EXTENSION_SUFFIXES
 import os
@@ -107,6 +108,36 @@ def _library() -> Any:
 LIBRARY = _library()
 
 
+@contextmanager
+def asked(should_stop: Callable[[], bool]) -> Iterator[Any]:
+    """
+    Give a question as C asks it; what it raises goes on where C has returned.
+
+    Parameters
+    ----------
+    should_stop : callable
+        The question.
+
+    Yields
+    ------
+    object
+        A function pointer; its answer is 1 to stop.
+
+    """
+    raised: list[BaseException] = []
+
+    def stop() -> int:
+        try:
+            return int(should_stop())
+        except BaseException as error:
+            raised.append(error)
+            return 1
+
+    yield _ShouldStop(stop)
+    if raised:
+        raise raised[0]
+
+
 class Compiled:
     """
     A problem as the compiled code sees it.
@@ -170,21 +201,12 @@ class Compiled:
         flat = np.concatenate([f.ravel() for f in start])
         centres, barriers = np.empty((CENTRES, len(flat))), np.empty(CENTRES)
         gap, iterations = ctypes.c_double(), ctypes.c_int32()
-        raised: list[BaseException] = []
-
-        def stop() -> int:
-            try:
-                return int(should_stop())
-            except BaseException as error:  # goes on where C has returned
-                raised.append(error)
-                return 1
-
-        count = LIBRARY.chain_minimised(
-            ctypes.byref(self._problem), ctypes.byref(self._settings), _pointer(flat),
-            ctypes.c_double(barrier or 0.0), ctypes.c_double(least_barrier), _ShouldStop(stop),
-            ctypes.byref(gap), _pointer(centres), _pointer(barriers), ctypes.byref(iterations))
-        if raised:
-            raise raised[0]
+        with asked(should_stop) as stop:
+            count = LIBRARY.chain_minimised(
+                ctypes.byref(self._problem), ctypes.byref(self._settings), _pointer(flat),
+                ctypes.c_double(barrier or 0.0), ctypes.c_double(least_barrier), stop,
+                ctypes.byref(gap), _pointer(centres), _pointer(barriers),
+                ctypes.byref(iterations))
         if count < 0:
             raise MemoryError('no memory for the interior-point method')
         return Found(self._motion(flat), gap.value, [

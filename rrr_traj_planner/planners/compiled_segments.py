@@ -27,8 +27,6 @@ from rrr_traj_planner.planners.barrier import LEAST_EIGENVALUE, TOLERATED
 from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.segment import TransitionLaw
 
-_ShouldStop = ctypes.CFUNCTYPE(ctypes.c_int32)
-
 
 class VelocitySettings(NamedTuple):
     """Constants of the method, in the order of velocities.c."""
@@ -86,27 +84,17 @@ def followed(chain: Chain, floor: Array | None, proportions: Array | None, v: Ar
         Via velocities (n - 1, 3), durations (n,) and the gap.
 
     """
-    raised: list[BaseException] = []
-
-    def stop() -> int:
-        try:
-            return int(should_stop())
-        except BaseException as error:  # goes on where C has returned
-            raised.append(error)
-            return 1
-
     kept = [None if a is None else np.ascontiguousarray(a, dtype=float) for a in (
         chain.displacements, chain.law.slope, chain.law.root, chain.max_velocity, chain.lowest,
         chain.highest, floor, proportions)]
     place = np.concatenate((v.ravel(), T))
     gap = ctypes.c_double()
-    out_of_memory = compiled.LIBRARY.velocities_minimised(
-        ctypes.byref(_Chain(len(T), *(None if a is None else a.ctypes.data for a in kept),
-                            LEAST_EIGENVALUE, TOLERATED)),
-        ctypes.byref(_Settings(*settings)), ctypes.c_void_p(place.ctypes.data),
-        _ShouldStop(stop), ctypes.byref(gap))
-    if raised:
-        raise raised[0]
+    with compiled.asked(should_stop) as stop:
+        out_of_memory = compiled.LIBRARY.velocities_minimised(
+            ctypes.byref(_Chain(len(T), *(None if a is None else a.ctypes.data for a in kept),
+                                LEAST_EIGENVALUE, TOLERATED)),
+            ctypes.byref(_Settings(*settings)), ctypes.c_void_p(place.ctypes.data), stop,
+            ctypes.byref(gap))
     if out_of_memory:
         raise MemoryError('no memory for the interior-point method')
     return place[:v.size].reshape(v.shape), place[v.size:], gap.value

@@ -29,7 +29,8 @@ from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.model import JOINT_NAMES, RobotModel
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
-from rrr_traj_planner.nodes.planning_messages import planning_request, refusal, success
+from rrr_traj_planner.nodes.planning_answer import refusal, success
+from rrr_traj_planner.nodes.planning_request import planning_request
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner_interfaces.srv import PlanTrajectory

@@ -30,7 +30,7 @@ from rrr_traj_planner.nodes.demo_client import Run
 from rrr_traj_planner.nodes.demo_plot import draw
 from rrr_traj_planner.nodes.demo_table import figures, table
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
-from rrr_traj_planner.nodes.planning_messages import success
+from rrr_traj_planner.nodes.planning_answer import success
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 

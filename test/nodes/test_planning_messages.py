@@ -33,15 +33,14 @@ from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.model import JOINT_NAMES
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
-from rrr_traj_planner.nodes.planning_messages import (
+from rrr_traj_planner.nodes.planning_answer import (
     failure,
-    FrameError,
     joint_trajectory,
-    planning_request,
     refusal,
     success,
     tip_path,
 )
+from rrr_traj_planner.nodes.planning_request import FrameError, planning_request
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 

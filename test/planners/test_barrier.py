@@ -102,7 +102,7 @@ def test_value_is_the_sum_of_logarithms_of_what_is_left_of_each_limit(seed):
 def test_gradient_is_the_finite_difference_of_the_value(seed):
     chain, floor, v, T = chain_and_point(seed)
     assert np.isfinite(value(chain, floor, v, T))
-    ours = derivatives(local(chain, floor, v, T), undamped(chain))
+    ours = derivatives(local(chain, floor, v, T))
     for index in np.ndindex(v.shape):
         step = np.zeros_like(v)
         step[index] = 1.0
@@ -120,7 +120,7 @@ def test_gradient_is_the_finite_difference_of_the_value(seed):
 def test_hessian_is_positive_definite(seed, spare):
     chain, floor, v, T = chain_and_point(seed)
     T = spare * T  # much time to spare: there the barrier itself is not convex
-    d = derivatives(local(chain, floor, v, T), undamped(chain))
+    d = derivatives(local(chain, floor, v, T))
     assert np.linalg.eigvalsh(dense_hessian(d)).min() > 0.0
 
 
@@ -128,7 +128,8 @@ def test_hessian_is_positive_definite(seed, spare):
 def test_damping_of_all_parts_alike_scales_the_hessian_and_no_gradient(seed):
     chain, floor, v, T = chain_and_point(seed)
     at, none = local(chain, floor, v, T), undamped(chain)
-    plain, twice = derivatives(at, none), derivatives(at, Parts(*(p + 1.0 for p in none)))
+    plain = derivatives(at)
+    twice = derivatives(damped(at, Parts(*(p + 1.0 for p in none))))
     assert dense_hessian(twice) == pytest.approx(2.0 * dense_hessian(plain), rel=1e-12)
     assert (twice.g_v == plain.g_v).all() and (twice.g_T == plain.g_T).all()
 
