@@ -16,10 +16,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
+from rclpy.signals import uninstall_signal_handlers
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
 
@@ -33,7 +36,9 @@ def spin_until_signal(executor: SingleThreadedExecutor) -> None:
         if rclpy.ok():
             raise
     finally:
-        rclpy.try_shutdown()  # and its thread for signals, which must not outlive Python
+        with suppress(rclpy_implementation.RCLError):  # the signal's own is quicker
+            rclpy.try_shutdown()
+        uninstall_signal_handlers()  # their thread must not outlive Python
 
 
 def main() -> None:

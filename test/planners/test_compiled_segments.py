@@ -15,6 +15,7 @@
 """The compiled search for via velocities, and for cruises, against the same in NumPy."""
 
 import numpy as np
+from numpy_alone import by_numpy
 import pytest
 from rrr_traj_planner.planners import compiled
 from rrr_traj_planner.planners.chain import Chain
@@ -26,15 +27,6 @@ pytestmark = pytest.mark.skipif(compiled.LIBRARY is None, reason='no compiled co
 
 SEEDS = range(12)
 SAME = 1e-6  # relative: rounding adds up from step to step
-
-
-def by_numpy(function, *arguments, **named):
-    """Return what a function does without the compiled code."""
-    library, compiled.LIBRARY = compiled.LIBRARY, None
-    try:
-        return function(*arguments, **named)
-    finally:
-        compiled.LIBRARY = library
 
 
 def random_chain(seed):

@@ -14,7 +14,10 @@
 
 """Looks at a motion along a path: against a dense evaluation, by laws, and compiled or not."""
 
+from functools import partial
+
 import numpy as np
+from numpy_alone import by_numpy
 import pytest
 from random_paths import random_case
 from rrr_traj_planner.planners import compiled
@@ -71,14 +74,6 @@ def exceeded_bounds(x, part=0.8):
     return bounds
 
 
-def by_numpy(*args):
-    library, compiled.LIBRARY = compiled.LIBRARY, None
-    try:
-        return look(*args)
-    finally:
-        compiled.LIBRARY = library
-
-
 @pytest.mark.parametrize('seed', SEEDS)
 def test_excess_is_that_of_a_dense_evaluation_of_each_piece(seed):
     table, grid, m = random_look(seed)
@@ -111,7 +106,7 @@ def test_excess_is_told_of_the_points_it_is_near_to(seed):
         assert (found[:, point][wide < (1.0 - ALLOWED) * bounds] == 0.0).all()
 
 
-@pytest.mark.parametrize('look', [look, by_numpy])
+@pytest.mark.parametrize('look', [look, partial(by_numpy, look)], ids=['as it is', 'NumPy'])
 @pytest.mark.parametrize('kind', [VELOCITY, ACCELERATION, JERK, TORQUE, SPEED])
 @pytest.mark.parametrize('seed', SEEDS[:4])
 def test_a_motion_stretched_as_it_says_just_keeps_its_limits(seed, kind, look):
@@ -148,7 +143,7 @@ def test_a_tip_that_goes_back_is_seen():
 def test_compiled_code_sees_the_same(seed):
     table, grid, m = random_look(seed, ramps=(6, 16)[seed % 2])
     bounds = exceeded_bounds(dense(table, grid, m), part=0.5)
-    found, plain = look(table, grid, m, bounds), by_numpy(table, grid, m, bounds)
+    found, plain = look(table, grid, m, bounds), by_numpy(look, table, grid, m, bounds)
     finite = np.isfinite(bounds)
     assert found.excess[..., finite] == pytest.approx(
         plain.excess[..., finite], abs=ROUNDING * bounds[finite].max())
