@@ -107,6 +107,38 @@ class JointProfile:
             array.setflags(write=False)
         return least, most
 
+    def passed(self, positions: Array) -> Array:
+        """
+        Return when positions are passed, where the motion never goes back.
+
+        Parameters
+        ----------
+        positions : ndarray, shape (n,)
+            Between the first and the last [rad].
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Times [s].
+
+        """
+        ends = np.append(self.begins, self.pieces.at(1.0)[0][-1])
+        index = np.clip(np.searchsorted(ends, positions) - 1, 0, len(ends) - 2)
+        piece, share = self._at(index), np.diff(ends)[index]
+        s = np.clip((positions - ends[index]) / np.where(share > 0.0, share, 1.0), 0.0, 1.0)
+        low, high = np.zeros_like(s), np.ones_like(s)
+        for _ in range(MOST_STEPS):
+            position, velocity, _, _ = piece.at(s)
+            low = np.where(position <= positions, s, low)
+            high = np.where(position >= positions, s, high)
+            with np.errstate(divide='ignore', invalid='ignore'):
+                found = s - (position - positions) / (velocity * piece.duration)
+            found = np.where((found >= low) & (found <= high), found, 0.5 * (low + high))
+            moved, s = float(np.abs(found - s).max(initial=0.0)), found
+            if moved < PLACE_TOLERANCE:
+                break
+        return np.asarray(self.knots[index] + s * piece.duration)
+
     def stretched(self, factor: float) -> JointProfile:
         """
         Return the same positions run through at another rate.

@@ -61,6 +61,8 @@ class Settings(NamedTuple):
     least_bend: float
     to_boundary: float
     least_room_kept: float
+    room_aimed_at: float
+    longest_retry: float
     patience: int
     raises: int
     iterations: int
@@ -77,8 +79,8 @@ class Found(NamedTuple):
 
 
 class _Settings(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_double) for name in Settings._fields[:12]] + [
-        (name, ctypes.c_int32) for name in Settings._fields[12:]]
+    _fields_ = [(name, ctypes.c_double) for name in Settings._fields[:14]] + [
+        (name, ctypes.c_int32) for name in Settings._fields[14:]]
 
 
 class _Problem(ctypes.Structure):

@@ -36,6 +36,8 @@ from rrr_traj_planner.planners.interior_step import (
     LEAST_ROOM_KEPT,
     Local,
     log_of,
+    LONGEST_RETRY,
+    ROOM_AIMED_AT,
     SHORT,
     SUFFICIENT_GAIN,
     TO_BOUNDARY,
@@ -159,8 +161,8 @@ def _minimised_by_compiled(constraints: Constraints, start: Centre, freedom: Fre
                            should_stop: Callable[[], bool], least_barrier: float) -> Outcome:
     settings = compiled.Settings(
         RELATIVE_GAP, BARRIER_REDUCTION, CENTRED, STALL, START, FAR_FROM_CENTRE,
-        DUAL_CORRIDOR, SUFFICIENT_GAIN, SHORT, LEAST_BEND, TO_BOUNDARY, LEAST_ROOM_KEPT, PATIENCE,
-        RAISES, ITERATIONS, BACKTRACKS)
+        DUAL_CORRIDOR, SUFFICIENT_GAIN, SHORT, LEAST_BEND, TO_BOUNDARY, LEAST_ROOM_KEPT,
+        ROOM_AIMED_AT, LONGEST_RETRY, PATIENCE, RAISES, ITERATIONS, BACKTRACKS)
     found = compiled.Compiled(
         constraints.grid, constraints.points, constraints.tables(), freedom, settings).minimised(
             *start, least_barrier, should_stop)

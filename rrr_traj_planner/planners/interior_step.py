@@ -39,6 +39,8 @@ SHORT = 0.05                 # a step of less than this part of it is tried agai
 LEAST_BEND = 1e-3            # size of step at which it is found out how slacks leave their rates
 TO_BOUNDARY = 0.995          # part of the way to the boundary that a step may go
 LEAST_ROOM_KEPT = 0.004      # part of its room that a constraint keeps in a step, and less
+ROOM_AIMED_AT = 0.05         # part that it is to keep where a step was too long for it
+LONGEST_RETRY = 0.95         # of a step that was too long
 
 
 class Constraints(Protocol):
@@ -274,14 +276,32 @@ def _line_search(constraints: Constraints, freedom: Freedom, motion: Motion,
         towards = step.motion if bend is None else Motion(
             *(x + size * b for x, b in zip(step.motion, bend)))
         moved = stepped(constraints.grid, constraints.points, motion, towards, size)
-        if (moved.T > 0.0).all():
-            room = constraints.slacks(moved)
-            if all((r >= LEAST_ROOM_KEPT * s).all() for r, s in zip(room, slacks)) and (
-                    freedom.cost(moved.T) - barrier * log_of(room)
-                    <= merit - SUFFICIENT_GAIN * size * step.gain):
-                return size, (moved, room)
-        size *= 0.5
+        if not (moved.T > 0.0).all():
+            size *= 0.5
+            continue
+        room = constraints.slacks(moved)
+        kept = all((r >= LEAST_ROOM_KEPT * s).all() for r, s in zip(room, slacks))
+        if kept and (freedom.cost(moved.T) - barrier * log_of(room)
+                     <= merit - SUFFICIENT_GAIN * size * step.gain):
+            return size, (moved, room)
+        size = 0.5 * size if kept else _shorter(size, slacks, rates, room)
     return 0.0, None
+
+
+def _shorter(size: float, slacks: list[Array], rates: list[Array], moved: list[Array]) -> float:
+    """Return where parabolas through what slacks do keep enough of them; at least half-way."""
+    best = LONGEST_RETRY * size
+    for s, rate, to in zip(slacks, rates, moved):
+        if not np.isfinite(to).all():
+            return 0.5 * size
+        short = to < ROOM_AIMED_AT * s
+        if not short.any():
+            continue
+        s, rate, to = s[short], rate[short], to[short]
+        bend, fall = (to - s - size * rate) / size ** 2, (1.0 - ROOM_AIMED_AT) * s
+        roots = 2.0 * fall / (np.sqrt(rate ** 2 - 4.0 * bend * fall) - rate)
+        best = min(best, float(roots.min()))
+    return max(best, 0.5 * size)
 
 
 def log_of(slacks: list[Array]) -> float:

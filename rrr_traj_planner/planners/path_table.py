@@ -25,7 +25,7 @@ from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.path_trajectory import ArmPath
 from scipy.interpolate import CubicSpline
 
-INTERVALS = 48  # of each piece
+INTERVALS = 64  # of each piece
 PARTS = 8       # of the whole length: no piece is longer than one
 
 
@@ -57,9 +57,7 @@ class PathTable:
     Attributes
     ----------
     ends : ndarray, shape (N + 1,)
-        Places where the pieces meet [m]: via points, joins, and what parts long pieces.
-    vias : ndarray of int, shape (n,)
-        Which of these are the via points.
+        Places where the pieces meet [m]: joins, and what parts long pieces.
     places : ndarray, shape (N, INTERVALS + 1)
         Where the table has its values [m].
     values : Demand
@@ -73,8 +71,7 @@ class PathTable:
 
     def __init__(self, arm_path: ArmPath) -> None:
         path = arm_path.path
-        self.ends = _parted(np.unique(np.concatenate((path.via_s, path.joins))))
-        self.vias = np.searchsorted(self.ends, path.via_s)
+        self.ends = _parted(np.concatenate(([0.0], path.joins, [path.length])))
         self._lengths = np.diff(self.ends)
         u = np.linspace(0.0, 1.0, INTERVALS + 1)
         self.places = self.ends[:-1, np.newaxis] + self._lengths[:, np.newaxis] * u

@@ -241,4 +241,6 @@ def _trajectory(task: PathTask, table: PathTable, grid: Grid, m: Motion) -> Path
     times = np.concatenate(([0.0], np.cumsum(m.T)))
     joins = np.searchsorted(table.ends, task.arm_path.path.joins)
     progress, = grid.profiles(table.ends[:, np.newaxis], m)
-    return PathTrajectory(task.arm_path, progress, times[table.vias], times[joins])
+    via_times = np.concatenate((
+        [0.0], progress.passed(task.arm_path.path.via_s[1:-1]), [progress.duration]))
+    return PathTrajectory(task.arm_path, progress, via_times, times[joins])

@@ -137,6 +137,30 @@ def test_peaks_of_a_swing_there_and_back_are_what_a_hand_calculation_gives():
     assert peaks.min_position == pytest.approx([0.0] * 3, abs=ROUNDING)
 
 
+@pytest.mark.parametrize('seed', CASES)
+def test_positions_are_passed_when_the_profile_is_there(seed):
+    rng = np.random.default_rng(seed)
+    speeds = np.concatenate(([0.0], 10.0 ** rng.uniform(-4.0, 1.0, 5), [0.0]))
+    pieces, way = [], rng.normal()
+    for begin, end in zip(speeds, speeds[1:]):
+        pieces.append(transition(10.0 ** rng.uniform(-3.0, 1.0), way, begin, end))
+        way = float(pieces[-1].at(1.0)[0])
+    profile = JointProfile(joined(pieces))
+    times = np.sort(np.append(rng.uniform(0.0, profile.duration, 20), profile.knots[1:-1]))
+    positions = profile(times)[0]
+    found = profile.passed(positions)
+    assert (found >= 0.0).all() and (found <= profile.duration).all()
+    size = np.abs(positions).max() + profile.duration * speeds.max()
+    assert profile(found)[0] == pytest.approx(positions, abs=1e-14 * size)
+
+
+def test_rest_is_passed_at_the_start_and_the_same_position_twice():
+    profile = JointProfile(joined([transition(2.0, 1.0, 0.0, 3.0)]))  # 3 rad on the way
+    assert profile.passed(np.array([1.0, 2.5, 2.5])) == pytest.approx(
+        [0.0, *[profile.passed(np.array([2.5]))[0]] * 2], abs=ROUNDING)
+    assert profile.passed(np.array([])).shape == (0,)
+
+
 def test_a_joint_that_stands_still_has_no_peaks():
     peaks = single(cruise(1.5, 0.7, 0.0)).peaks()
     for peak in (peaks.velocity, peaks.acceleration, peaks.jerk):

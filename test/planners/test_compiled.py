@@ -40,7 +40,7 @@ KINDS = {
 
 # Derivatives by differences of 1e-7 differ by rounding over that; steps add it up. Along a path
 # whose limits all but touch, more of it.
-SAME, SAME_ALONG_PATHS = 1e-6, 2e-3
+SAME, SAME_ALONG_PATHS = 1e-6, 5e-3
 
 
 def both(constraints, start, freedom, should_stop=lambda: never, least_barrier=0.0):

@@ -22,9 +22,9 @@ from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.planners.path_table import PARTS, PathTable
 
 SEEDS = range(16)
-# Of each quantity's largest value on the path: dq, ddq, dddq, m, c, g. Cubics through 49 places
+# Of each quantity's largest value on the path: dq, ddq, dddq, m, c, g. Cubics through 65 places
 # of a piece follow third derivatives least well.
-ACCURACY = (1e-5, 1e-4, 3e-4, 1e-5, 1e-4, 1e-6)
+ACCURACY = (1e-5, 1e-4, 4e-4, 1e-5, 1e-4, 1e-6)
 TORQUE = 1e-4      # likewise, of the sum
 AT_PLACES = 1e-12
 
@@ -111,10 +111,10 @@ def test_torque_of_a_motion_is_what_the_table_says(seed):
     assert d.m * a + d.c * v ** 2 + d.g == pytest.approx(tau, abs=TORQUE * size)
 
 
-def test_pieces_meet_at_via_points_and_joins_and_where_long_ones_are_parted_equally():
+def test_pieces_meet_at_joins_and_where_long_ones_are_parted_equally():
     for seed in SEEDS:
         arm_path, table = random_table(seed)
-        wanted = np.unique(np.concatenate((arm_path.path.via_s, arm_path.path.joins)))
+        wanted = np.array([0.0, *arm_path.path.joins, arm_path.path.length])
         whole, lengths = wanted[-1], np.diff(table.ends)
         assert set(wanted.tolist()) <= set(table.ends.tolist())
         assert lengths.max() <= whole / PARTS * (1.0 + 1e-12)
@@ -122,6 +122,5 @@ def test_pieces_meet_at_via_points_and_joins_and_where_long_ones_are_parted_equa
             parts = lengths[(table.ends[:-1] >= begin) & (table.ends[1:] <= end)]
             assert parts == pytest.approx((end - begin) / len(parts), rel=1e-9)
             assert len(parts) == 1 or (end - begin) / (len(parts) - 1) > whole / PARTS
-        assert table.ends[table.vias].tolist() == arm_path.path.via_s.tolist()
         assert table.places[:, 0].tolist() == table.ends[:-1].tolist()
         assert table.places[:, -1].tolist() == table.ends[1:].tolist()

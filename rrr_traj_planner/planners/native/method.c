@@ -33,6 +33,25 @@ typedef struct {
     int known;
 } Tried;
 
+/* A shorter size for a step on which some slacks fell too far; see _shorter. */
+static double shorter(const Work *w, const Tried *t, double size)
+{
+    const size_t all = limits_size(w);
+    double best = w->set->longest_retry * size;
+    for (size_t i = 0; i < all; ++i) {
+        const double slack = w->slack[i], moved = t->to.slack[i], rate = t->rate[i];
+        const double fall = (1.0 - w->set->room_aimed_at) * slack;
+        if (moved >= slack - fall)
+            continue;
+        if (!isfinite(moved))
+            return 0.5 * size;
+        const double bend = (moved - slack - size * rate) / (size * size);
+        const double root = sqrt(rate * rate - 4.0 * bend * fall);
+        best = fmin(best, 2.0 * fall / (root - rate));
+    }
+    return fmax(best, 0.5 * size);
+}
+
 /* Find a step's size and what it leads to; see _line_search. */
 static void searched(Work *w, Motion m, Tried *t, const Motion *bend, double barrier, double *z,
                      double *x, Motion towards)
@@ -49,11 +68,13 @@ static void searched(Work *w, Motion m, Tried *t, const Motion *bend, double bar
     }
     double size = worst > set->to_boundary ? set->to_boundary / worst : 1.0;
     t->known = 0;
-    for (int trial = 0; trial < set->backtracks; ++trial, size *= 0.5) {
+    for (int trial = 0; trial < set->backtracks; ++trial) {
         for (size_t i = 0; i < unknowns; ++i)
             towards.inner[i] = t->step.inner[i] + (bend ? size * bend->inner[i] : 0.0);
-        if (!motion_stepped(p, m, towards, size, t->to.motion))
+        if (!motion_stepped(p, m, towards, size, t->to.motion)) {
+            size *= 0.5;
             continue;
+        }
         motion_states(p, t->to.motion, z);
         room(w, t->to.motion.T, z, x, NULL, t->to.slack);
         int kept = 1;
@@ -65,6 +86,7 @@ static void searched(Work *w, Motion m, Tried *t, const Motion *bend, double bar
             t->known = 1;
             return;
         }
+        size = kept ? 0.5 * size : shorter(w, t, size);
     }
     t->size = 0.0;
 }
