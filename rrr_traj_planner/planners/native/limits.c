@@ -118,63 +118,115 @@ void pulled(const Work *w, const double *pull, double *r, double *r_T)
     }
 }
 
-/* The problem near a motion: room, derivatives, and the Gauss-Newton Hessian of the barrier. */
-void localised(Work *w, Motion m, const double *dual, double barrier, double *scratch)
+/* Enter a limit of gradient g, zero but for columns from first to end, that pulls with f and has a
+ * weight: r += f g, and the lower half of Q += weight g g'. */
+static inline void entered(const double *g, int first, int end, int Z, double f, double weight,
+                           double *r, double *Q)
 {
-    const Problem *p = w->p;
-    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
-    motion_states(p, m, w->z);
-    room(w, m.T, w->z, w->x, w->gradient, w->slack);
-    const size_t all = limits_size(w);
-    for (size_t i = 0; i < all; ++i) {
-        w->inverse[i] = 1.0 / w->slack[i];
-        scratch[i] = barrier * w->inverse[i];
-    }
-    pulled(w, scratch, w->r, w->r_T);
-    memset(w->Q, 0, p->N * hessian_size(p) * sizeof(double));
-    for (int k = 0; k < p->N; ++k) {
-        const double *s = w->inverse + 2 * (size_t)k * w->M, *d = dual + 2 * (size_t)k * w->M;
-        double *Qk = w->Q + k * hessian_size(p);
-        for (int c = 0; c < w->boxes; ++c, s += 2, d += 2) {
-            const int i = w->box_at[c];
-            Qk[p->kind == BOXES_ALONE ? i : i * Z + i % Z] += d[0] * s[0] + d[1] * s[1];
-        }
-        for (int c = 0; c < w->general; ++c, s += 2, d += 2) {
-            const int i = w->general_at[c];
-            const double *g = w->gradient + ((size_t)k * P * E + i) * Z;
-            const double weight = d[0] * s[0] + d[1] * s[1];
-            double *to = Qk + (size_t)(i / E) * Z * Z;
-            for (int a = 0; a < Z; ++a) {
-                const double f = weight * g[a];
-                if (f != 0.0)
-                    for (int b = 0; b < Z; ++b)
-                        to[a * Z + b] += f * g[b];
-            }
-        }
-        const double *sf = floors(w, w->slack) + 2 * k;
-        const double *df = dual + 2 * (size_t)p->N * w->M + 2 * k;
-        w->Q_T[k] = p->floor ? FLOOR_WEIGHT * (df[0] / sf[0] + df[1] / sf[1]) : 0.0;
+    for (int a = first; a < end; ++a) {
+        const double scaled = weight * g[a];
+        r[a] += f * g[a];
+        for (int b = first; b <= a; ++b)
+            Q[a * Z + b] += scaled * g[b];
     }
 }
 
-/* Add the general limits' own curvature to the Hessian. */
-void bend_added(Work *w, const double *dual)
+/* The same for general limit e. */
+static inline void general_entered(const Problem *p, int e, const double *g, double f,
+                                   double weight, double *r, double *Q)
+{
+    if (p->kind == TORQUE)
+        entered(g, 1, 9, 12, f, weight, r, Q);  /* of two positions, velocities, accelerations */
+    else if (e < 3)
+        entered(g, 0, 2, 4, f, weight, r, Q);
+    else if (e < 6 || e >= 9)
+        entered(g, 0, 3, 4, f, weight, r, Q);
+    else
+        entered(g, 0, 4, 4, f, weight, r, Q);
+}
+
+/* Room on both sides of a value: slacks and their inverses; what both pull with, and weigh. */
+static inline void side(double lower, double upper, double value, const double *dual,
+                        double barrier, double *slack, double *inverse, double *f, double *weight)
+{
+    slack[0] = upper - value, slack[1] = value - lower;
+    inverse[0] = 1.0 / slack[0], inverse[1] = 1.0 / slack[1];
+    *f = barrier * inverse[0] - barrier * inverse[1];
+    *weight = dual[0] * inverse[0] + dual[1] * inverse[1];
+}
+
+/* The general limits of a segment at its states; see localised. */
+static void general_localised(Work *w, int k, const double *dual, double barrier, double *slack,
+                              double *inverse)
 {
     const Problem *p = w->p;
     const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
-    double weights[MOST_GENERAL];
-    memcpy(w->Q_full, w->Q, p->N * hessian_size(p) * sizeof(double));
+    const double *lower = p->general_lower + (size_t)k * P * E,
+        *upper = p->general_upper + (size_t)k * P * E;
+    const int *at = w->general_at, *end = at + w->general;
+    for (int i = 0; i < P; ++i) {
+        const size_t point = (size_t)k * P + i, block = point * Z * Z;
+        double *x = w->x + point * E, *g = w->gradient + point * E * Z, *r = w->r + point * Z,
+            *Q = w->Q + block, *full = w->Q_full + block;
+        if (w->looked[i]) {
+            double weights[MOST_GENERAL] = {0.0};
+            const int *first = at;
+            for (int c = 0; at < end && *at < (i + 1) * E; ++at, c += 2)
+                weights[*at - i * E] = dual[c] - dual[c + 1];
+            general_at(p, k, i, w->z + point * Z, x, g, weights, full);
+            for (; first < at; ++first, dual += 2, slack += 2, inverse += 2) {
+                const int e = *first - i * E;
+                double f, weight;
+                side(lower[*first], upper[*first], x[e], dual, barrier, slack, inverse, &f,
+                     &weight);
+                general_entered(p, e, g + (size_t)e * Z, f, weight, r, Q);
+            }
+        }
+        for (int a = 0; a < Z; ++a)
+            for (int b = 0; b < a; ++b)
+                Q[b * Z + a] = Q[a * Z + b];
+        for (int c = 0; c < Z * Z; ++c)
+            full[c] += Q[c];
+    }
+}
+
+/* The problem near a motion: room, derivatives, and the Hessian of the barrier: of Gauss and Newton,
+ * and with the general limits' own curvature. */
+void localised(Work *w, Motion m, const double *dual, double barrier)
+{
+    const Problem *p = w->p;
+    const int Z = 4 * p->J, P = 2 * p->n + 1, whole = p->kind != BOXES_ALONE;
+    motion_states(p, m, w->z);
+    memset(w->r, 0, (size_t)p->N * P * Z * sizeof(double));
+    memset(w->Q, 0, p->N * hessian_size(p) * sizeof(double));
+    if (whole)
+        memset(w->Q_full, 0, p->N * hessian_size(p) * sizeof(double));
     for (int k = 0; k < p->N; ++k) {
-        const double *d = dual + 2 * ((size_t)k * w->M + w->boxes);
-        int c = 0;
-        for (int i = 0; i < P; ++i) {
-            if (!w->looked[i])
-                continue;
-            memset(weights, 0, sizeof weights);
-            for (; c < w->general && w->general_at[c] < (i + 1) * E; ++c)
-                weights[w->general_at[c] - i * E] = d[2 * c] - d[2 * c + 1];
-            general_at(p, k, i, w->z + ((size_t)k * P + i) * Z, NULL, NULL, weights,
-                       w->Q_full + ((size_t)k * P + i) * Z * Z);
+        const size_t first = 2 * (size_t)k * w->M, part = (size_t)k * P * Z;
+        const double *z = w->z + part, *lower = p->lower + part, *upper = p->upper + part;
+        double *r = w->r + part, *Q = w->Q + k * hessian_size(p);
+        for (int c = 0; c < w->boxes; ++c) {
+            const int i = w->box_at[c];
+            const size_t at = first + 2 * c;
+            double f, weight;
+            side(lower[i], upper[i], z[i], dual + at, barrier, w->slack + at, w->inverse + at, &f,
+                 &weight);
+            r[i] += f;
+            Q[whole ? i * Z + i % Z : i] += weight;
+        }
+        if (whole) {
+            const size_t at = first + 2 * (size_t)w->boxes;
+            general_localised(w, k, dual + at, barrier, w->slack + at, w->inverse + at);
+        }
+        w->r_T[k] = w->Q_T[k] = 0.0;
+        const size_t at = 2 * ((size_t)p->N * w->M + k);
+        double *spare = w->slack + at, *inverse = w->inverse + at;
+        spare[1] = p->floor ? m.T[k] - p->floor[k] : 1.0;
+        spare[0] = p->floor ? FAR - spare[1] : 1.0;
+        inverse[0] = 1.0 / spare[0], inverse[1] = 1.0 / spare[1];
+        if (p->floor) {
+            w->r_T[k] = FLOOR_WEIGHT * barrier * (inverse[0] - inverse[1]);
+            w->Q_T[k] = FLOOR_WEIGHT * (dual[at] * inverse[0] + dual[at + 1] * inverse[1]);
         }
     }
 }

@@ -42,10 +42,9 @@ double log_of(const Work *w, const double *slack);
 size_t limits_count(const Work *w);
 /* First derivatives of a sum of limited quantities, pulled below by pull[1], above by pull[0]. */
 void pulled(const Work *w, const double *pull, double *r, double *r_T);
-/* The problem near a motion: room, derivatives, and the Gauss-Newton Hessian of the barrier. */
-void localised(Work *w, Motion m, const double *dual, double barrier, double *scratch);
-/* Add the general limits' own curvature to the Hessian. */
-void bend_added(Work *w, const double *dual);
+/* The problem near a motion: room, derivatives, and the Hessian of the barrier: of Gauss and Newton,
+ * and with the general limits' own curvature, Q_full. */
+void localised(Work *w, Motion m, const double *dual, double barrier);
 /* How slacks change along a step. */
 void rates_of(const Work *w, Motion step, const double *dz, double *rate);
 

@@ -184,8 +184,6 @@ static int prepared(Run *run, const Problem *p, const Settings *set)
 static int suggested(Run *run, Motion m, int full, Tried *t)
 {
     Work *w = &run->w;
-    if (full)
-        bend_added(w, w->dual);
     if (newton_step(w->p, m, w->z, full ? w->Q_full : w->Q, w->r, w->Q_T, w->r_T, t->step,
                     run->dz, &t->gain, w->newton) || !isfinite(t->gain))
         return 0;
@@ -283,7 +281,7 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
     for (int i = 0; i < set->raises; ++i) {
         for (size_t c = 0; c < all; ++c)
             w->dual[c] = barrier / w->slack[c];
-        localised(w, m, w->dual, barrier, w->aside);
+        localised(w, m, w->dual, barrier);
         Tried *t = &run.tried[0];
         if (!(p->kind != BOXES_ALONE && suggested(&run, m, 1, t)) && !suggested(&run, m, 0, t))
             break;
@@ -298,7 +296,7 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
         if (cancelled(should_stop))
             break;
         ++*iterations;
-        localised(w, m, w->dual, barrier, w->aside);
+        localised(w, m, w->dual, barrier);
         Tried *t = best_step(&run, m, barrier);
         if (!t)
             break;
