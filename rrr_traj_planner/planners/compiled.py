@@ -63,6 +63,7 @@ class Settings(NamedTuple):
     least_room_kept: float
     room_aimed_at: float
     longest_retry: float
+    small_relief: float
     patience: int
     raises: int
     iterations: int
@@ -76,11 +77,12 @@ class Found(NamedTuple):
     gap: float
     centres: list[tuple[Motion, float]]
     iterations: int
+    within: bool           # whether all relief could be taken away
 
 
 class _Settings(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_double) for name in Settings._fields[:14]] + [
-        (name, ctypes.c_int32) for name in Settings._fields[14:]]
+    _fields_ = [(name, ctypes.c_double) for name in Settings._fields[:15]] + [
+        (name, ctypes.c_int32) for name in Settings._fields[15:]]
 
 
 class _Problem(ctypes.Structure):
@@ -179,18 +181,20 @@ class Compiled:
         self._settings = _Settings(*settings)
 
     def minimised(self, start: Motion, barrier: float | None, least_barrier: float,
-                  should_stop: Callable[[], bool]) -> Found:
+                  relief: Array | None, should_stop: Callable[[], bool]) -> Found:
         """
         Return the fastest motion; see `interior_point.minimise`.
 
         Parameters
         ----------
         start : Motion
-            Strictly within the limits.
+            Strictly within the limits, relieved.
         barrier : float or None
             That keeps it there, where that is known.
         least_barrier : float
             The method ends at its centre.
+        relief : ndarray or None
+            See `relief.relief_in_tables`.
         should_stop : callable
             Asked before every iteration.
 
@@ -202,18 +206,18 @@ class Compiled:
         """
         flat = np.concatenate([f.ravel() for f in start])
         centres, barriers = np.empty((CENTRES, len(flat))), np.empty(CENTRES)
-        gap, iterations = ctypes.c_double(), ctypes.c_int32()
+        gap, iterations, within = ctypes.c_double(), ctypes.c_int32(), ctypes.c_int32()
         with asked(should_stop) as stop:
             count = LIBRARY.chain_minimised(
                 ctypes.byref(self._problem), ctypes.byref(self._settings), _pointer(flat),
-                ctypes.c_double(barrier or 0.0), ctypes.c_double(least_barrier), stop,
-                ctypes.byref(gap), _pointer(centres), _pointer(barriers),
-                ctypes.byref(iterations))
+                ctypes.c_double(barrier or 0.0), ctypes.c_double(least_barrier),
+                self._doubles(relief), stop, ctypes.byref(gap), _pointer(centres),
+                _pointer(barriers), ctypes.byref(iterations), ctypes.byref(within))
         if count < 0:
             raise MemoryError('no memory for the interior-point method')
         return Found(self._motion(flat), gap.value, [
             (self._motion(centres[i].copy()), float(barriers[i])) for i in range(count)],
-            iterations.value)
+            iterations.value, bool(within.value))
 
     def _motion(self, flat: Array) -> Motion:
         N, n, J = self._shape

@@ -44,6 +44,7 @@ from rrr_traj_planner.planners.interior_step import (
 )
 from rrr_traj_planner.planners.ramp_chain import Motion
 from rrr_traj_planner.planners.ramp_newton import Freedom
+from rrr_traj_planner.planners.relief import less, relief_in_tables, relief_of, SMALL
 
 RELATIVE_GAP = 1e-3          # of the total time
 BARRIER_REDUCTION = 0.1
@@ -71,6 +72,7 @@ class Outcome(NamedTuple):
     gap: float             # what a better motion could save at most, by duality [s]
     converged: bool
     centres: list[Centre]  # that it passed, slowest first
+    within: bool = True    # False where it did not get within the limits from former ones
 
 
 def is_within(constraints: Constraints, m: Motion) -> bool:
@@ -94,7 +96,8 @@ def is_within(constraints: Constraints, m: Motion) -> bool:
 
 
 def minimise(constraints: Constraints, start: Centre, freedom: Freedom,
-             should_stop: Callable[[], bool], least_barrier: float = 0.0) -> Outcome:
+             should_stop: Callable[[], bool], least_barrier: float = 0.0,
+             relative_gap: float = RELATIVE_GAP, former: Constraints | None = None) -> Outcome:
     """
     Return the fastest motion.
 
@@ -103,33 +106,42 @@ def minimise(constraints: Constraints, start: Centre, freedom: Freedom,
     constraints : Constraints
         The limits.
     start : Centre
-        Strictly within them.
+        Strictly within them, or within the former ones.
     freedom : Freedom
         What may change.
     should_stop : callable
         Asked before every iteration; True ends the method with what it has.
     least_barrier : float
-        The method ends at its centre.
+        The method ends at its centre,
+    relative_gap : float
+        or where so much of the total time may be left to gain.
+    former : Constraints, optional
+        Limits that the start keeps where it does not keep these yet.
 
     Returns
     -------
     Outcome
-        Never slower than the start.
+        Never slower than a start that is within the limits.
 
     """
     if compiled.LIBRARY is not None:
-        return _minimised_by_compiled(constraints, start, freedom, should_stop, least_barrier)
+        return _minimised_by_compiled(constraints, start, freedom, should_stop, least_barrier,
+                                      relative_gap, former)
     motion, known = start
     slacks = constraints.slacks(motion)
     count = sum(s.size for s in slacks)
-    barrier, duals = _first_barrier(
-        constraints, motion, freedom, known or START * freedom.cost(motion.T) / count)
+    barrier, reliefs = known or START * freedom.cost(motion.T) / count, None
+    if former is None:
+        barrier, duals = _first_barrier(constraints, motion, freedom, barrier)
+    else:
+        reliefs = relief_of(constraints, former, motion)
+        duals = [barrier / (s + h) for s, h in zip(slacks, reliefs)]
     best, gap, centres = motion, np.inf, []
     merits: list[float] = []  # at this barrier
     for _ in range(ITERATIONS):
         if should_stop():
             break
-        local = Local(constraints, motion, duals, freedom, barrier)
+        local, closing = Local(constraints, motion, duals, freedom, barrier, reliefs), reliefs
         tried = best_step(constraints, freedom, motion, local, barrier)
         if tried is None:
             break
@@ -139,47 +151,59 @@ def minimise(constraints: Constraints, start: Centre, freedom: Freedom,
         slacks = local.slacks
         if moved is not None:
             motion, slacks = moved
-            if freedom.cost(motion.T) < freedom.cost(best.T):
+            if closing is not None:
+                reliefs, slacks = less(closing, slacks, size)
+                reliefs = reliefs if any(h.any() for h in reliefs) else None
+            if reliefs is None and (closing is not None
+                                    or freedom.cost(motion.T) < freedom.cost(best.T)):
                 best = motion
         duals = _moved_duals(duals, dual_steps, slacks, barrier)
+        if closing is not None:
+            if moved is None:
+                break
+            continue
         merits.append(freedom.cost(motion.T) - barrier * log_of(slacks))
         # what is left to gain at this barrier, and below it
         gap = min(gap, step.gain * (1.0 - 0.5 * size) + count * barrier)
         stalled = moved is None or len(merits) > PATIENCE and (
             merits[-1 - PATIENCE] - merits[-1] < STALL * freedom.cost(motion.T))
         if stalled or step.gain < CENTRED * count * barrier:
-            if count * barrier < RELATIVE_GAP * freedom.cost(motion.T):
-                break
             centres.append(Centre(motion, barrier))
-            if barrier <= least_barrier:
+            if barrier <= least_barrier or (
+                    count * barrier < relative_gap * freedom.cost(motion.T)):
                 break
             barrier, merits = barrier * BARRIER_REDUCTION, []
-    return Outcome(best, gap, gap < CONVERGED * freedom.cost(best.T), centres)
+    return Outcome(best, gap, gap < CONVERGED * freedom.cost(best.T), centres,
+                   reliefs is None)
 
 
 def _minimised_by_compiled(constraints: Constraints, start: Centre, freedom: Freedom,
-                           should_stop: Callable[[], bool], least_barrier: float) -> Outcome:
+                           should_stop: Callable[[], bool], least_barrier: float,
+                           relative_gap: float, former: Constraints | None) -> Outcome:
     settings = compiled.Settings(
-        RELATIVE_GAP, BARRIER_REDUCTION, CENTRED, STALL, START, FAR_FROM_CENTRE,
+        relative_gap, BARRIER_REDUCTION, CENTRED, STALL, START, FAR_FROM_CENTRE,
         DUAL_CORRIDOR, SUFFICIENT_GAIN, SHORT, LEAST_BEND, TO_BOUNDARY, LEAST_ROOM_KEPT,
-        ROOM_AIMED_AT, LONGEST_RETRY, PATIENCE, RAISES, ITERATIONS, BACKTRACKS)
+        ROOM_AIMED_AT, LONGEST_RETRY, SMALL, PATIENCE, RAISES, ITERATIONS, BACKTRACKS)
+    tables = constraints.tables()
+    relief = None if former is None else relief_in_tables(tables, former.tables())
     found = compiled.Compiled(
-        constraints.grid, constraints.points, constraints.tables(), freedom, settings).minimised(
-            *start, least_barrier, should_stop)
+        constraints.grid, constraints.points, tables, freedom, settings).minimised(
+            *start, least_barrier, relief, should_stop)
     return Outcome(found.motion, found.gap,
                    found.gap < CONVERGED * freedom.cost(found.motion.T),
-                   [Centre(*c) for c in found.centres])
+                   [Centre(*c) for c in found.centres], found.within)
 
 
 def _first_barrier(constraints: Constraints, motion: Motion, freedom: Freedom,
                    barrier: float) -> tuple[float, list[Array]]:
     """Return a barrier high enough to lead away from limits that the start is close to."""
+    duals = [barrier / s for s in constraints.slacks(motion)]
     for _ in range(RAISES):
-        duals = [barrier / s for s in constraints.slacks(motion)]
         step = next(Local(constraints, motion, duals, freedom, barrier).steps(), None)
         if step is None or step.gain < FAR_FROM_CENTRE * barrier:
             break
         barrier /= BARRIER_REDUCTION
+        duals = [barrier / s for s in constraints.slacks(motion)]
     return barrier, duals
 
 

@@ -128,23 +128,32 @@ class Local:
         What may change.
     barrier : float
         The barrier's weight.
+    reliefs : list of ndarray, optional
+        As slacks; None: none.
 
     Attributes
     ----------
     slacks : list of ndarray, shape (2, N, p, K)
-        Room to the limits.
+        Room to the limits, with relief.
+    reliefs : list of ndarray
+        As given.
     changes : list of Change
         How the limited quantities change.
 
     """
 
     def __init__(self, constraints: Constraints, motion: Motion, duals: list[Array],
-                 freedom: Freedom, barrier: float) -> None:
+                 freedom: Freedom, barrier: float, reliefs: list[Array] | None = None) -> None:
         self.slacks, self.changes, self._bent = constraints.linear(motion)
+        self.reliefs = reliefs
+        pushes = [barrier / s for s in self.slacks]
+        if reliefs is not None:
+            self.slacks = [s + h for s, h in zip(self.slacks, reliefs)]
+            pushes = [(barrier + d * h) / s for s, d, h in zip(self.slacks, duals, reliefs)]
         self._hessian = constraints.hessian
         self._n, self._ends = constraints.grid.n, constraints.grid.end_changes(motion)
         self._duals, self._freedom = duals, freedom
-        self._simple = curvature(self.slacks, self.changes, duals, barrier, freedom.weights)
+        self._simple = curvature(self.slacks, self.changes, duals, pushes, freedom.weights)
 
     def steps(self) -> Iterator[Step]:
         """Give the step with torque's own curvature, which may lead astray, then one without."""
@@ -189,11 +198,54 @@ class Local:
         if not (moved.T > 0.0).all():
             return None
         aside = [(room - s - size * r) / size ** 2 for room, s, r in zip(
-            constraints.slacks(moved), self.slacks, tried.rates)]
+            self.room(constraints, moved, size), self.slacks, tried.rates)]
         push = [d / s * e for d, s, e in zip(self._duals, self.slacks, aside)]
         y, T = pulled(self.changes, [p[1] - p[0] for p in push])
         step = self._step(self._simple._replace(y=y, T=T))
         return None if step is None else step.motion
+
+    def rates(self, constraints: Constraints, step: Step) -> list[Array]:
+        """
+        Return how slacks change along a step, to first order.
+
+        Parameters
+        ----------
+        constraints : Constraints
+            The limits.
+        step : Step
+            It takes all relief away.
+
+        Returns
+        -------
+        list of ndarray
+            As slacks.
+
+        """
+        rates = [rate_of(constraints, x, step.motion) for x in self.changes]
+        return rates if self.reliefs is None else [r - h for r, h in zip(rates, self.reliefs)]
+
+    def room(self, constraints: Constraints, moved: Motion, size: float) -> list[Array]:
+        """
+        Return the room to the limits after a part of a step.
+
+        Parameters
+        ----------
+        constraints : Constraints
+            The limits.
+        moved : Motion
+            What the part leads to.
+        size : float
+            The part.
+
+        Returns
+        -------
+        list of ndarray
+            As slacks, with what is left of relief.
+
+        """
+        slacks = constraints.slacks(moved)
+        return slacks if self.reliefs is None else [
+            s + (1.0 - size) * h for s, h in zip(slacks, self.reliefs)]
 
 
 def best_step(constraints: Constraints, freedom: Freedom, motion: Motion, local: Local,
@@ -223,9 +275,9 @@ def best_step(constraints: Constraints, freedom: Freedom, motion: Motion, local:
     tried: list[Tried] = []
 
     def attempt(step: Step, bend: Motion | None = None) -> Tried:
-        rates = [rate_of(constraints, x, step.motion) for x in local.changes]
+        rates = local.rates(constraints, step)
         return Tried(step, rates, *_line_search(
-            constraints, freedom, motion, local.slacks, rates, step, bend, barrier))
+            constraints, freedom, motion, local, rates, step, bend, barrier))
 
     for step in local.steps():
         tried.append(attempt(step))
@@ -264,10 +316,11 @@ def rate_of(constraints: Constraints, x: Change, step: Motion) -> Array:
     return np.stack((-rate, rate))
 
 
-def _line_search(constraints: Constraints, freedom: Freedom, motion: Motion,
-                 slacks: list[Array], rates: list[Array], step: Step, bend: Motion | None,
+def _line_search(constraints: Constraints, freedom: Freedom, motion: Motion, local: Local,
+                 rates: list[Array], step: Step, bend: Motion | None,
                  barrier: float) -> tuple[float, tuple[Motion, list[Array]] | None]:
     """Return a step's size and what it leads to, feasible and of less objective + barrier."""
+    slacks = local.slacks
     merit = freedom.cost(motion.T) - barrier * log_of(slacks)
     size = min(1.0, TO_BOUNDARY / max(float((-r / s).max()) for r, s in zip(rates, slacks)))
     if size <= 0.0:
@@ -279,9 +332,10 @@ def _line_search(constraints: Constraints, freedom: Freedom, motion: Motion,
         if not (moved.T > 0.0).all():
             size *= 0.5
             continue
-        room = constraints.slacks(moved)
+        room = local.room(constraints, moved, size)
         kept = all((r >= LEAST_ROOM_KEPT * s).all() for r, s in zip(room, slacks))
-        if kept and (freedom.cost(moved.T) - barrier * log_of(room)
+        # relief is taken away whatever that costs
+        if kept and (local.reliefs is not None or freedom.cost(moved.T) - barrier * log_of(room)
                      <= merit - SUFFICIENT_GAIN * size * step.gain):
             return size, (moved, room)
         size = 0.5 * size if kept else _shorter(size, slacks, rates, room)

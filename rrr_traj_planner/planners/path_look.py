@@ -42,7 +42,7 @@ BACKWARD = 1e-12  # of the largest speed, that is rounding
 class Seen(NamedTuple):
     """What a look at a motion finds."""
 
-    excess: Array   # of every limited quantity near each point, (N, 2 n + 1, QUANTITIES)
+    excess: Array   # of every limited quantity up to the points beside each, (N, 2 n + 1, K)
     stretch: float  # by how much the motion must be slowed; see `least_stretch`
     slowest: float  # speed of the tip [m/s]
     fastest: float
@@ -80,7 +80,7 @@ def look(table: PathTable, grid: Grid, m: Motion, bounds: Array) -> Seen:
             table.ends, table.coefficients, grid, m, bounds, LOOKS, excess))
     at = _between(table, grid, m)
     demand, = table(at.s)
-    excess = near_points(np.abs(limited(demand, at)), bounds, LOOKS)
+    excess = near_points(np.abs(limited(demand, at)), bounds, LOOKS, LOOKS)
     return Seen(excess, least_stretch(demand, at, bounds), float(at.sd.min()),
                 float(at.sd.max()))
 

@@ -31,7 +31,13 @@ from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.motion_torque import squared_stretch
 from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.workspace_check import place_on_path
-from rrr_traj_planner.planners.interior_point import Centre, is_within, minimise, Outcome
+from rrr_traj_planner.planners.interior_point import (
+    Centre,
+    is_within,
+    minimise,
+    Outcome,
+    RELATIVE_GAP,
+)
 from rrr_traj_planner.planners.path_constraints import (
     all_bounds,
     PathConstraints,
@@ -50,8 +56,10 @@ RAMPS = 16         # in a piece of the path
 ROOM = 1.02        # durations of the start over the least that fit
 HOLDING_ROOM = 1e-6
 REPAIRS = 8
-LARGER = 1.2       # room than what was exceeded
-WORTH_IT = 1e-3    # a longer stretch than this is better mended by planning again
+LARGER = 1.2       # room than what was exceeded, and again each time
+WORTH_IT = 2e-3    # a longer stretch than this is better mended by planning again
+ROUGH_GAP = 0.3    # of the total time, at which what the first motion exceeds is looked at
+NEARER = 3         # centres before the last, from which limits are approached that are closer
 
 
 class PathTask(NamedTuple):
@@ -120,32 +128,34 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     _refuse_heavy(task, table)
     N = len(table.ends) - 1
     freedom = Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 1), bool))
-    margins: Array = np.zeros((N, 2 * grid.n + 1, QUANTITIES))
     steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
-    centres: list[Centre] = []
-    found: list[tuple[float, Motion, float]] = []  # durations, motions, what could be saved
-    least = 0.0
-    for _ in range(REPAIRS):
-        constraints = PathConstraints(table, task.limits, task.max_tip_speed, grid, margins,
-                                      steady)
-        start = next((c for c in reversed(centres) if c.motion.T.sum() >= least
-                      and is_within(constraints, c.motion)), None)
-        if start is None:
-            start = Centre(_slow_start(task, table, constraints, steady), None)
-            if not is_within(constraints, start.motion):
-                found.append((float(start.motion.T.sum()), start.motion, np.inf))
-                break
-        outcome, seen = _onward(minimise(constraints, start, freedom, task.should_stop), start,
-                                table, grid, bounds)
-        centres += outcome.centres
-        found.append(_slowed(outcome, seen.stretch))
-        if seen.stretch <= 1.0 + WORTH_IT or task.should_stop():
+
+    def limits(margins: Array) -> PathConstraints:
+        return PathConstraints(table, task.limits, task.max_tip_speed, grid, margins, steady)
+
+    margins: Array = np.zeros((N, 2 * grid.n + 1, QUANTITIES))
+    constraints = limits(margins)
+    start, former = Centre(_slow_start(task, table, constraints, steady), None), None
+    found = [(float(start.motion.T.sum()), start.motion, -np.inf)]  # no motion takes less than
+    for repair in range(REPAIRS):
+        if former is None and not is_within(constraints, start.motion):
             break
-        margins = margins + LARGER * seen.excess
-        if np.isfinite(seen.stretch):  # faster ones than this slowed leave too little room
-            least = found[-1][0]
-    _, motion, gap = min(found, key=lambda f: f[0])
-    return Timed(_trajectory(task, table, grid, motion), gap)
+        outcome, seen = _onward(
+            minimise(constraints, start, freedom, task.should_stop, former=former,
+                     relative_gap=RELATIVE_GAP if repair else ROUGH_GAP),
+            start, table, grid, bounds)
+        found.append(_slowed(outcome, seen.stretch))
+        if repair and seen.stretch <= 1.0 + WORTH_IT or task.should_stop():
+            break
+        if outcome.within and outcome.centres:
+            margins = margins + LARGER ** (repair + 1) * seen.excess
+            former, constraints = constraints, limits(margins)
+            start = outcome.centres[-NEARER if repair else -1:][0]
+        else:
+            start, former = Centre(_slow_start(task, table, constraints, steady), None), None
+    T, motion, _ = min(found, key=lambda f: f[0])
+    least = max(least for *_, least in found)
+    return Timed(_trajectory(task, table, grid, motion), max(T - least, 0.0))
 
 
 def kept(task: PathTask, timed: Timed) -> Timed:
@@ -191,9 +201,9 @@ def _onward(outcome: Outcome, start: Centre, table: PathTable, grid: Grid,
 
 
 def _slowed(outcome: Outcome, stretch: float) -> tuple[float, Motion, float]:
-    """Return a motion slowed to keep its limits, its duration and what could be saved."""
+    """Return a motion slowed to keep its limits, its duration and the least of any motion."""
     T, factor = float(outcome.motion.T.sum()), max(stretch, 1.0)
-    return factor * T, stretched(outcome.motion, factor), outcome.gap + (factor - 1.0) * T
+    return factor * T, stretched(outcome.motion, factor), T - outcome.gap
 
 
 def _refuse_heavy(task: PathTask, table: PathTable) -> None:

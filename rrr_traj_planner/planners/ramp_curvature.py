@@ -34,9 +34,9 @@ class Curvature(NamedTuple):
 
 
 def curvature(slacks: list[Array], linear: list[Change], duals: list[Array],
-              barrier: float, weights: Array) -> Curvature:
+              pushes: list[Array], weights: Array) -> Curvature:
     """
-    Return gradient and Hessian of weights . T - barrier * sum log(slack), Gauss-Newton.
+    Return gradient and Hessian of weights . T and limits that push away, Gauss-Newton.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ def curvature(slacks: list[Array], linear: list[Change], duals: list[Array],
         How the limited quantities change.
     duals : list of ndarray
         Multipliers, as slacks.
-    barrier : float
-        The barrier's weight.
+    pushes : list of ndarray
+        What each limit pushes with: barrier / slack. As slacks.
     weights : ndarray, shape (N,)
         Of the durations in the objective.
 
@@ -59,7 +59,7 @@ def curvature(slacks: list[Array], linear: list[Change], duals: list[Array],
     """
     N, J, m = _sizes(linear)
     coupled = any(x.by_y.ndim > 3 for x in linear)
-    y, T = pulled(linear, [barrier * (1.0 / s[0] - 1.0 / s[1]) for s in slacks])
+    y, T = pulled(linear, [push[0] - push[1] for push in pushes])
     T += weights
     yy, yT, TT = np.zeros((N, J, m, m)), np.zeros((N, J, m)), np.zeros(N)
     full = np.zeros((N, J * m, J * m)) if coupled else None

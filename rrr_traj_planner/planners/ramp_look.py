@@ -123,7 +123,7 @@ class Look:
         return velocity, _near_points(np.abs(self.tau), self._task.limits.max_effort)
 
 
-def near_points(x: Array, limit: Array, looks: int) -> Array:
+def near_points(x: Array, limit: Array, looks: int, reach: int) -> Array:
     """
     Return by how much magnitudes, seen in the order of time, exceed a limit near each point.
 
@@ -135,6 +135,8 @@ def near_points(x: Array, limit: Array, looks: int) -> Array:
         Infinite where there is none.
     looks : int
         Between two of a segment's 2 n + 1 points.
+    reach : int
+        How many of them to both sides are near a point.
 
     Returns
     -------
@@ -144,16 +146,15 @@ def near_points(x: Array, limit: Array, looks: int) -> Array:
     """
     peaks = x + _bends(x)
     excess = np.where(peaks > limit, peaks - limit * (1.0 - ROUNDING), 0.0)
-    # within half a half-ramp to both sides of every point
-    half = np.pad(excess, ((0, 0), (looks // 2, looks // 2), (0, 0)), mode='edge')
+    padded = np.pad(excess, ((0, 0), (reach, reach), (0, 0)), mode='edge')
     width = x.shape[1] - 1
-    near = np.max([half[:, k:k + width + 1:looks] for k in range(looks + 1)], axis=0)
+    near = np.max([padded[:, k:k + width + 1:looks] for k in range(2 * reach + 1)], axis=0)
     return np.concatenate((near[:, ::2], near[:, 1::2]), axis=1)
 
 
 def _near_points(x: Array, limit: Array) -> Array:
     """Return the same, what is near a segment's first point told of the points beside it too."""
-    near, n = near_points(x, limit, LOOKS), (x.shape[1] - 1) // (2 * LOOKS)
+    near, n = near_points(x, limit, LOOKS, LOOKS // 2), (x.shape[1] - 1) // (2 * LOOKS)
     near[:-1, n] = np.maximum(near[:-1, n], near[1:, 0])
     near[:, n + 1] = np.maximum(near[:, n + 1], near[:, 0])
     return near

@@ -65,6 +65,12 @@ def bounds(limits, grid, points, floor=None, margin=0.0):
                        np.zeros((N, p, 3)), np.zeros((N, p, 3)), floor)
 
 
+def closer(limits, part):
+    """Return limits of which only a part is left, but for the ranges."""
+    return replace(limits, **{name: part * getattr(limits, name) for name in (
+        'max_velocity', 'max_acceleration', 'max_jerk', 'max_effort')})
+
+
 def all_free(N):
     """Return the freedom of a problem of N segments of free durations."""
     return Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 3), bool))

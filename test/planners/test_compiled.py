@@ -19,7 +19,7 @@ from dataclasses import replace
 import numpy as np
 from numpy_alone import by_numpy
 import pytest
-from ramp_cases import all_free, FREE, LIMITS, NONE, random_motion, slow_start
+from ramp_cases import all_free, bounds, closer, FREE, LIMITS, NONE, random_motion, slow_start
 from random_paths import never, random_case
 from rrr_traj_planner.planners import compiled
 from rrr_traj_planner.planners.interior_point import Centre, minimise
@@ -38,26 +38,30 @@ KINDS = {
     'torque': replace(LIMITS, max_acceleration=NONE, max_jerk=[50.0] * 3),
     'range': replace(FREE, min_position=[-1.05, 0.75, -0.85], max_position=[1.05, 1.85, 0.85])}
 
-# Derivatives by differences of 1e-7 differ by rounding over that; steps add it up. Along a path
-# whose limits all but touch, more of it.
-SAME, SAME_ALONG_PATHS = 1e-6, 5e-3
+# Derivatives by differences of 1e-7 differ by rounding over that; steps add it up. More of it where
+# limits come closer, and along a path whose limits all but touch.
+SAME, SAME_CLOSER, SAME_ALONG_PATHS = 5e-6, 1e-3, 1e-2
 
 
-def both(constraints, start, freedom, should_stop=lambda: never, least_barrier=0.0):
+def both(constraints, start, freedom, should_stop=lambda: never, **options):
     """Return the outcomes of the compiled method and of NumPy's."""
-    found = [minimise(constraints, start, freedom, should_stop(), least_barrier)]
-    found.append(by_numpy(minimise, constraints, start, freedom, should_stop(), least_barrier))
+    found = [minimise(constraints, start, freedom, should_stop(), **options)]
+    found.append(by_numpy(minimise, constraints, start, freedom, should_stop(), **options))
     return found
 
 
 def assert_same(found, plain, same=SAME):
     assert found.motion.T.sum() == pytest.approx(plain.motion.T.sum(), rel=1e-6)
     assert found.motion.T == pytest.approx(plain.motion.T, rel=10.0 * same)
-    assert found.gap == pytest.approx(plain.gap, rel=1e-2)
+    assert found.gap == pytest.approx(plain.gap, rel=5e-2)
     assert found.converged == plain.converged
+    assert found.within == plain.within
     assert len(found.centres) == len(plain.centres)
     for a, b in zip(found.centres, plain.centres):
         assert a.barrier == pytest.approx(b.barrier, rel=1e-12)
+        assert a.motion.T.sum() == pytest.approx(b.motion.T.sum(), rel=1e-6 + 0.1 * same)
+    # the optimum that the last is next to may be flat
+    for a, b in zip(found.centres[:-1], plain.centres):
         for x, y in zip(a.motion, b.motion):
             assert x.shape == y.shape
             assert x == pytest.approx(y, rel=same, abs=same)
@@ -160,3 +164,13 @@ def test_a_start_with_its_barrier_goes_on_from_there():
     constraints, m = slow_start(LIMITS, grid, points)
     centre = minimise(constraints, Centre(m, None), all_free(len(m.T)), never).centres[1]
     assert_same(*both(constraints, centre, all_free(len(m.T))))
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_limits_that_come_closer_are_approached_alike(seed):
+    grid, points, _ = random_motion(seed)
+    wide, m = slow_start(LIMITS, grid, points)
+    close = bounds(closer(LIMITS, 0.97), grid, points)
+    free = all_free(len(m.T))
+    for centre in minimise(wide, Centre(m, None), free, never).centres[1:-2]:
+        assert_same(*both(close, centre, free, former=wide), SAME_CLOSER)

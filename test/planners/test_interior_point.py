@@ -21,6 +21,8 @@ import numpy as np
 import pytest
 from ramp_cases import (
     all_free,
+    bounds,
+    closer,
     FREE,
     LIMITS,
     NONE,
@@ -129,6 +131,41 @@ def test_every_iterate_is_strictly_feasible_and_through_the_via_points(seed, lim
         assert at.q[:, grid.n] == pytest.approx(points[1:], abs=1e-10)
         assert at.qd[:, grid.n] == pytest.approx(grid.nodes(m)[2], abs=1e-10)
     assert outcome.motion.T.sum() <= start.T.sum()
+
+
+@pytest.mark.parametrize('part', [0.99, 0.9])
+@pytest.mark.parametrize('limits', [FREE, LIMITS], ids=['by joint', 'torque'])
+@pytest.mark.parametrize('seed', SEEDS)
+def test_limits_that_come_closer_are_kept_from_the_first_centre_on(seed, limits, part):
+    grid, points, _ = random_motion(seed)
+    wide, _, _, passed = solve(limits, grid, points)
+    close, free = bounds(closer(limits, part), grid, points), all_free(len(points) - 1)
+    anew = solve(closer(limits, part), grid, points)[3].motion.T.sum()
+    assert min(s.min() for s in close.slacks(passed.centres[-3].motion)) <= 0.0 or part > 0.9
+    for centre in passed.centres[:-2]:  # others have next to no room to come from
+        found = minimise(close, centre, free, never, former=wide)
+        assert found.within
+        for m in (found.motion, *(c.motion for c in found.centres)):
+            assert min(s.min() for s in close.slacks(m)) > 0.0
+        assert found.motion.T.sum() == pytest.approx(anew, rel=GAP)
+
+
+def test_limits_that_cannot_be_kept_are_not_said_to_be():
+    grid, points, _ = random_motion(1)
+    wide, _, _, passed = solve(LIMITS, grid, points)
+    weak = replace(LIMITS, max_effort=[0.5] * 3)  # N m: the arm would fall
+    found = minimise(bounds(weak, grid, points), passed.centres[-1], all_free(len(points) - 1),
+                     never, former=wide)
+    assert not found.within and not found.centres and not found.converged
+
+
+def test_stopped_before_closer_limits_are_kept_it_says_so():
+    grid, points, _ = random_motion(2)
+    wide, _, _, passed = solve(LIMITS, grid, points)
+    close = bounds(closer(LIMITS, 0.9), grid, points)
+    found = minimise(close, passed.centres[-1], all_free(len(points) - 1), lambda: True,
+                     former=wide)
+    assert not found.within and not found.centres
 
 
 @pytest.mark.parametrize('seed', SEEDS)

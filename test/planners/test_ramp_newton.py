@@ -34,7 +34,8 @@ def problem(seed, limits, n=None, segments=None):
     slacks, changes, _ = constraints.linear(m)
     duals = [rng.uniform(0.5, 2.0, s.shape) * 1e-3 / s for s in slacks]
     weights = rng.uniform(0.5, 2.0, len(m.T))
-    return grid, m, grid.end_changes(m), (slacks, changes, duals, 1e-3, weights)
+    pushes = [1e-3 / s for s in slacks]
+    return grid, m, grid.end_changes(m), (slacks, changes, duals, pushes, weights)
 
 
 def jointly(c):
@@ -144,7 +145,8 @@ def test_gradient_is_the_difference_of_the_barrier_function(seed):
     constraints, m = slow_start(LIMITS, grid, points)
     slacks, changes, _ = constraints.linear(m)
     barrier, weights = 0.01, np.ones(len(m.T))
-    c = curvature(slacks, changes, [barrier / s for s in slacks], barrier, weights)
+    pushes = [barrier / s for s in slacks]
+    c = curvature(slacks, changes, pushes, pushes, weights)
     rng = np.random.default_rng(seed)
     step = Motion(*(rng.normal(size=f.shape) for f in m))
     y = np.swapaxes(own_unknowns(grid, step), 1, 2)

@@ -35,7 +35,7 @@ enum { BOXES_ALONE, TORQUE, PATH };
 typedef struct {            /* of interior_point.py and interior_step.py */
     double relative_gap, barrier_reduction, centred, stall, start, far_from_centre, dual_corridor,
         sufficient_gain, narrow, least_bend, to_boundary, least_room_kept,
-        room_aimed_at, longest_retry;
+        room_aimed_at, longest_retry, small_relief;
     int32_t patience, raises, iterations, backtracks;
 } Settings;
 

@@ -41,9 +41,7 @@ static void general_at(const Problem *p, int k, int i, const double *z, double *
         path_at(p, k, i, z, x, gradient, weights, second);
 }
 
-/* Room to the limits at a motion's states. */
-void room(const Work *w, const double *T, const double *z, double *x, double *gradient,
-          double *slack)
+void room(const Work *w, const double *T, const double *z, double part, double *x, double *slack)
 {
     const Problem *p = w->p;
     const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
@@ -59,8 +57,7 @@ void room(const Work *w, const double *T, const double *z, double *x, double *gr
         double *xk = x + (size_t)k * P * E;
         for (int i = 0; i < P && w->general; ++i)
             if (w->looked[i])
-                general_at(p, k, i, at + (size_t)i * Z, xk + (size_t)i * E, gradient
-                           ? gradient + ((size_t)k * P + i) * E * Z : NULL, NULL, NULL);
+                general_at(p, k, i, at + (size_t)i * Z, xk + (size_t)i * E, NULL, NULL, NULL);
         lower = p->general_lower + (size_t)k * P * E;
         upper = p->general_upper + (size_t)k * P * E;
         for (int c = 0; c < w->general; ++c, to += 2) {
@@ -72,6 +69,9 @@ void room(const Work *w, const double *T, const double *z, double *x, double *gr
         spare[1] = p->floor ? T[k] - p->floor[k] : 1.0;
         spare[0] = p->floor ? FAR - spare[1] : 1.0;
     }
+    const size_t all = limits_size(w);
+    for (size_t i = 0; i < all && w->relieved; ++i)
+        slack[i] += part * w->relief[i];
 }
 
 double log_of(const Work *w, const double *slack)
@@ -146,24 +146,26 @@ static inline void general_entered(const Problem *p, int e, const double *g, dou
 }
 
 /* Room on both sides of a value: slacks and their inverses; what both pull with, and weigh. */
-static inline void side(double lower, double upper, double value, const double *dual,
-                        double barrier, double *slack, double *inverse, double *f, double *weight)
+static inline void sides(double lower, double upper, double value, const double *dual,
+                         const double *relief, double barrier, double *slack, double *inverse,
+                         double *f, double *weight)
 {
-    slack[0] = upper - value, slack[1] = value - lower;
+    slack[0] = upper - value + relief[0], slack[1] = value - lower + relief[1];
     inverse[0] = 1.0 / slack[0], inverse[1] = 1.0 / slack[1];
-    *f = barrier * inverse[0] - barrier * inverse[1];
+    *f = (barrier + dual[0] * relief[0]) * inverse[0]
+        - (barrier + dual[1] * relief[1]) * inverse[1];
     *weight = dual[0] * inverse[0] + dual[1] * inverse[1];
 }
 
-/* The general limits of a segment at its states; see localised. */
-static void general_localised(Work *w, int k, const double *dual, double barrier, double *slack,
-                              double *inverse)
+/* The general limits of a segment, from an offset on, at its states; see localised. */
+static void general_localised(Work *w, int k, size_t offset, const double *dual, double barrier)
 {
     const Problem *p = w->p;
     const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
     const double *lower = p->general_lower + (size_t)k * P * E,
         *upper = p->general_upper + (size_t)k * P * E;
     const int *at = w->general_at, *end = at + w->general;
+    size_t c = offset;
     for (int i = 0; i < P; ++i) {
         const size_t point = (size_t)k * P + i, block = point * Z * Z;
         double *x = w->x + point * E, *g = w->gradient + point * E * Z, *r = w->r + point * Z,
@@ -171,22 +173,22 @@ static void general_localised(Work *w, int k, const double *dual, double barrier
         if (w->looked[i]) {
             double weights[MOST_GENERAL] = {0.0};
             const int *first = at;
-            for (int c = 0; at < end && *at < (i + 1) * E; ++at, c += 2)
-                weights[*at - i * E] = dual[c] - dual[c + 1];
+            for (size_t d = c; at < end && *at < (i + 1) * E; ++at, d += 2)
+                weights[*at - i * E] = dual[d] - dual[d + 1];
             general_at(p, k, i, w->z + point * Z, x, g, weights, full);
-            for (; first < at; ++first, dual += 2, slack += 2, inverse += 2) {
+            for (; first < at; ++first, c += 2) {
                 const int e = *first - i * E;
                 double f, weight;
-                side(lower[*first], upper[*first], x[e], dual, barrier, slack, inverse, &f,
-                     &weight);
+                sides(lower[*first], upper[*first], x[e], dual + c, w->relief + c, barrier,
+                      w->slack + c, w->inverse + c, &f, &weight);
                 general_entered(p, e, g + (size_t)e * Z, f, weight, r, Q);
             }
         }
         for (int a = 0; a < Z; ++a)
             for (int b = 0; b < a; ++b)
                 Q[b * Z + a] = Q[a * Z + b];
-        for (int c = 0; c < Z * Z; ++c)
-            full[c] += Q[c];
+        for (int q = 0; q < Z * Z; ++q)
+            full[q] += Q[q];
     }
 }
 
@@ -209,15 +211,13 @@ void localised(Work *w, Motion m, const double *dual, double barrier)
             const int i = w->box_at[c];
             const size_t at = first + 2 * c;
             double f, weight;
-            side(lower[i], upper[i], z[i], dual + at, barrier, w->slack + at, w->inverse + at, &f,
-                 &weight);
+            sides(lower[i], upper[i], z[i], dual + at, w->relief + at, barrier, w->slack + at,
+                  w->inverse + at, &f, &weight);
             r[i] += f;
             Q[whole ? i * Z + i % Z : i] += weight;
         }
-        if (whole) {
-            const size_t at = first + 2 * (size_t)w->boxes;
-            general_localised(w, k, dual + at, barrier, w->slack + at, w->inverse + at);
-        }
+        if (whole)
+            general_localised(w, k, first + 2 * (size_t)w->boxes, dual, barrier);
         w->r_T[k] = w->Q_T[k] = 0.0;
         const size_t at = 2 * ((size_t)p->N * w->M + k);
         double *spare = w->slack + at, *inverse = w->inverse + at;
@@ -257,4 +257,7 @@ void rates_of(const Work *w, Motion step, const double *dz, double *rate)
         spare[1] = p->floor ? step.T[k] : 0.0;
         spare[0] = -spare[1];
     }
+    const size_t all = limits_size(w);
+    for (size_t i = 0; i < all && w->relieved; ++i)
+        rate[i] -= w->relief[i];
 }

@@ -30,14 +30,15 @@ typedef struct {
     double *gradient;        /* (N, P, E, 4 J) */
     double *slack, *dual, *aside;  /* (N, M, 2): above and below; (N, 2) for floors after */
     double *inverse;         /* 1 / slack */
+    double *relief;          /* how far beyond each limit a value may still be; in slacks */
+    int relieved;            /* whether there is any */
     double *Q, *r, *Q_full, *r_T, *Q_T, *second;
     double *newton;
 } Work;
 
 size_t limits_size(const Work *w);
-/* Room to the limits at a motion's states. */
-void room(const Work *w, const double *T, const double *z, double *x, double *gradient,
-          double *slack);
+/* Room to the limits at a motion's states, a part of all relief with it. */
+void room(const Work *w, const double *T, const double *z, double part, double *x, double *slack);
 double log_of(const Work *w, const double *slack);
 size_t limits_count(const Work *w);
 /* First derivatives of a sum of limited quantities, pulled below by pull[1], above by pull[0]. */

@@ -102,7 +102,7 @@ static void looked(const Look *p, int k, double v, const double *nodes, double T
 static void exceeded(const Look *p, const double *x, double limit, double *excess, double *near,
                      int apart)
 {
-    const int width = 2 * p->n * p->looks + 1, half = p->looks / 2;
+    const int looks = p->looks, width = 2 * p->n * looks + 1;
     for (int w = 0; w < width; ++w) {
         double bend = 0.0;  /* what it rises by between two looks: an eighth */
         for (int m = w - 1; m <= w + 1; ++m) {
@@ -114,7 +114,7 @@ static void exceeded(const Look *p, const double *x, double limit, double *exces
     }
     for (int point = 0; point <= 2 * p->n; ++point) {
         double *to = near + (size_t)apart * (point % 2 ? p->n + 1 + point / 2 : point / 2);
-        for (int w = point * p->looks - half; w <= point * p->looks - half + p->looks; ++w)
+        for (int w = (point - 1) * looks; w <= (point + 1) * looks; ++w)
             if (w >= 0 && w < width)
                 raised(to, excess[w]);
     }

@@ -76,12 +76,13 @@ static void searched(Work *w, Motion m, Tried *t, const Motion *bend, double bar
             continue;
         }
         motion_states(p, t->to.motion, z);
-        room(w, t->to.motion.T, z, x, NULL, t->to.slack);
+        room(w, t->to.motion.T, z, 1.0 - size, x, t->to.slack);
         int kept = 1;
         for (size_t i = 0; i < all && kept; ++i)
             kept = t->to.slack[i] >= set->least_room_kept * w->slack[i];
-        if (kept && motion_cost(p, t->to.motion) - barrier * log_of(w, t->to.slack)
-                <= merit - set->sufficient_gain * size * t->gain) {
+        /* relief is taken away whatever that costs */
+        if (kept && (w->relieved || motion_cost(p, t->to.motion) - barrier * log_of(
+                w, t->to.slack) <= merit - set->sufficient_gain * size * t->gain)) {
             t->size = size;
             t->known = 1;
             return;
@@ -101,7 +102,7 @@ static int bent(Work *w, Motion m, const Tried *t, Motion bend, Motion moved, do
     if (!motion_stepped(p, m, t->step, size, moved))
         return 0;
     motion_states(p, moved, z);
-    room(w, moved.T, z, x, NULL, pull);
+    room(w, moved.T, z, 1.0 - size, x, pull);
     const size_t all = limits_size(w);
     for (size_t i = 0; i < all; ++i)
         pull[i] = -w->dual[i] * w->inverse[i] * (pull[i] - w->slack[i] - size * t->rate[i])
@@ -151,7 +152,7 @@ static int prepared(Run *run, const Problem *p, const Settings *set)
     w->M = w->boxes + w->general;
     const size_t limits = limits_size(w) + 4, motion = motion_size(p) + 4;
     const size_t states = N * P * Z + 4, values = N * P * E + 4;
-    const size_t size = 14 * limits + 11 * motion + 8 * states + 3 * values
+    const size_t size = 15 * limits + 11 * motion + 8 * states + 3 * values
         + values * Z + 2 * (N * hessian_size(p) + 4) + 4 * (N + 4) + newton_size(p) + 64;
     double *next = run->memory = malloc(size * sizeof(double));
     if (!next)
@@ -160,7 +161,7 @@ static int prepared(Run *run, const Problem *p, const Settings *set)
     w->gradient = taken(&next, (values - 4) * Z);
     w->inverse = taken(&next, limits - 4);
     w->slack = taken(&next, limits - 4), w->dual = taken(&next, limits - 4);
-    w->aside = taken(&next, limits - 4);
+    w->aside = taken(&next, limits - 4), w->relief = taken(&next, limits - 4);
     w->Q = taken(&next, N * hessian_size(p)), w->Q_full = taken(&next, N * hessian_size(p));
     w->r = taken(&next, states - 4), w->r_T = taken(&next, N), w->Q_T = taken(&next, N);
     w->second = taken(&next, states - 4 + N);
@@ -248,6 +249,24 @@ static void duals_moved(Work *w, const double *rate, const double *slack, double
     }
 }
 
+/* Take a step's part of all relief away, and what is small beside the room; see relief.py. */
+static void less_relieved(Work *w, double size, double *slack)
+{
+    const size_t all = limits_size(w);
+    w->relieved = 0;
+    for (size_t i = 0; i < all; ++i) {
+        if (!(w->relief[i] > 0.0))
+            continue;
+        w->relief[i] *= 1.0 - size;
+        if (w->relief[i] > w->set->small_relief * slack[i]) {
+            w->relieved = 1;
+        } else {
+            slack[i] -= w->relief[i];
+            w->relief[i] = 0.0;
+        }
+    }
+}
+
 static int cancelled(int32_t (*should_stop)(void))
 {
     return should_stop && should_stop();
@@ -255,9 +274,9 @@ static int cancelled(int32_t (*should_stop)(void))
 
 /* See Compiled.minimised in compiled.py. Returns the number of centres, or -1 without memory. */
 EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *motion,
-                             double known, double least_barrier,
+                             double known, double least_barrier, const double *relief,
                              int32_t (*should_stop)(void), double *gap, double *centres,
-                             double *barriers, int32_t *iterations)
+                             double *barriers, int32_t *iterations, int32_t *within)
 {
     Run run;
     if (prepared(&run, p, set)) {
@@ -277,10 +296,15 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
         return -1;
     }
     motion_states(p, m, w->z);
-    room(w, m.T, w->z, w->x, NULL, w->slack);
-    for (int i = 0; i < set->raises; ++i) {
-        for (size_t c = 0; c < all; ++c)
-            w->dual[c] = barrier / w->slack[c];
+    w->relieved = relief != NULL;
+    if (relief)
+        memcpy(w->relief, relief, all * sizeof(double));
+    else
+        memset(w->relief, 0, all * sizeof(double));
+    room(w, m.T, w->z, 1.0, w->x, w->slack);
+    for (size_t c = 0; c < all; ++c)
+        w->dual[c] = barrier / w->slack[c];
+    for (int i = 0; i < set->raises && !relief; ++i) {
         localised(w, m, w->dual, barrier);
         Tried *t = &run.tried[0];
         if (!(p->kind != BOXES_ALONE && suggested(&run, m, 1, t)) && !suggested(&run, m, 0, t))
@@ -288,6 +312,8 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
         if (t->gain < set->far_from_centre * barrier)
             break;
         barrier /= set->barrier_reduction;
+        for (size_t c = 0; c < all; ++c)
+            w->dual[c] = barrier / w->slack[c];
     }
     motion_copy(p, run.best, m);
     *gap = INFINITY;
@@ -300,13 +326,20 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
         Tried *t = best_step(&run, m, barrier);
         if (!t)
             break;
-        const double *slack = t->known ? t->to.slack : w->slack;
+        const int closing = w->relieved;
+        double *slack = t->known ? t->to.slack : w->slack;
+        if (closing && t->known)
+            less_relieved(w, t->size, slack);
         duals_moved(w, t->rate, slack, barrier, w->aside);
         if (t->known) {
             motion_copy(p, m, t->to.motion);
-            if (motion_cost(p, m) < motion_cost(p, run.best))
+            if (!w->relieved && (closing || motion_cost(p, m) < motion_cost(p, run.best)))
                 motion_copy(p, run.best, m);
         }
+        if (closing && t->known)
+            continue;
+        if (closing)
+            break;
         const double cost = motion_cost(p, m);
         merit[merits++] = cost - barrier * log_of(w, slack);
         const double left = t->gain * (1.0 - 0.5 * t->size) + count * barrier;
@@ -315,18 +348,17 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
         const int stalled = !t->known || (merits > set->patience
             && merit[merits - 1 - set->patience] - merit[merits - 1] < set->stall * cost);
         if (stalled || t->gain < set->centred * count * barrier) {
-            if (count * barrier < set->relative_gap * cost)
-                break;
             if (found < CENTRES) {
                 memcpy(centres + found * unknowns, m.inner, unknowns * sizeof(double));
                 barriers[found++] = barrier;
             }
-            if (barrier <= least_barrier)
+            if (barrier <= least_barrier || count * barrier < set->relative_gap * cost)
                 break;
             barrier *= set->barrier_reduction;
             merits = 0;
         }
     }
+    *within = !w->relieved;
     motion_copy(p, m, run.best);
     free(merit);
     free(run.w.box_at);
