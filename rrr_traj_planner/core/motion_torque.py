@@ -40,7 +40,7 @@ OFFSETS = np.array([-32.0, -8.0, -1.0, 0.0, 1.0, 8.0, 32.0]) / 64.0
 # A local maximum is followed where it might be the highest of all by more than this part: between
 # equal steps a smooth quantity rises by an eighth of its second difference, one with corners by
 # half; beside a step of a seventh of the other's size, by seven quarters.
-RISE, ZOOMED_RISE, NEGLIGIBLE = 0.5, 2.0, 1e-9
+RISE, ZOOMED_RISE, NEGLIGIBLE = 0.5, 2.0, 1e-8
 # Points no further apart are the two sides of a knot: there is nothing between them.
 SAME_TIME = 1e-8  # s
 

@@ -52,12 +52,14 @@ from rrr_traj_planner.planners.ramp_chain import Grid, grid_of, Motion
 from rrr_traj_planner.planners.ramp_moves import stretched
 from rrr_traj_planner.planners.ramp_newton import Freedom
 
-RAMPS = 16         # in a piece of the path
+RAMPS = 160        # in all pieces of a path together,
+FEWEST, MOST = 10, 16  # in each: of a long path's many pieces fewer
 ROOM = 1.02        # durations of the start over the least that fit
 HOLDING_ROOM = 1e-6
 REPAIRS = 8
 LARGER = 1.2       # room than what was exceeded, and again each time
 WORTH_IT = 2e-3    # a longer stretch than this is better mended by planning again
+PATIENCE = 1       # times after which it is worth less
 ROUGH_GAP = 0.3    # of the total time, at which what the first motion exceeds is looked at
 NEARER = 3         # centres before the last, from which limits are approached that are closer
 
@@ -123,36 +125,34 @@ def nearly_fastest_along(task: PathTask) -> Timed:
         If the motors cannot hold the arm somewhere on the path; with the place.
 
     """
-    table, grid = PathTable(task.arm_path), grid_of(RAMPS, task.cruise)
+    table = PathTable(task.arm_path)
+    N = len(table.ends) - 1
+    grid = grid_of(min(max(RAMPS // N, FEWEST), MOST), task.cruise)
     bounds = all_bounds(task.limits, task.max_tip_speed)
     _refuse_heavy(task, table)
-    N = len(table.ends) - 1
     freedom = Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 1), bool))
     steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
 
     def limits(margins: Array) -> PathConstraints:
         return PathConstraints(table, task.limits, task.max_tip_speed, grid, margins, steady)
 
-    margins: Array = np.zeros((N, 2 * grid.n + 1, QUANTITIES))
-    constraints = limits(margins)
-    start, former = Centre(_slow_start(task, table, constraints, steady), None), None
+    constraints, former = limits(np.zeros((N, 2 * grid.n + 1, QUANTITIES))), None
+    start = Centre(_slow_start(task, table, constraints, steady), None)
     found = [(float(start.motion.T.sum()), start.motion, -np.inf)]  # no motion takes less than
-    for repair in range(REPAIRS):
-        if former is None and not is_within(constraints, start.motion):
-            break
-        outcome, seen = _onward(
-            minimise(constraints, start, freedom, task.should_stop, former=former,
-                     relative_gap=RELATIVE_GAP if repair else ROUGH_GAP),
-            start, table, grid, bounds)
+    for repair in range(REPAIRS if is_within(constraints, start.motion) else 0):
+        outcome = minimise(constraints, start, freedom, task.should_stop, former=former,
+                           relative_gap=RELATIVE_GAP if former else ROUGH_GAP)
+        if former and not outcome.within:  # it was too much at once
+            constraints = limits(0.5 * (former.margins + constraints.margins))
+            continue
+        outcome, seen = _onward(outcome, start, table, grid, bounds)
         found.append(_slowed(outcome, seen.stretch))
-        if repair and seen.stretch <= 1.0 + WORTH_IT or task.should_stop():
+        worth_it = WORTH_IT * LARGER ** max(2 * (repair - PATIENCE), 0)
+        if former and seen.stretch <= 1.0 + worth_it or task.should_stop() or not outcome.centres:
             break
-        if outcome.within and outcome.centres:
-            margins = margins + LARGER ** (repair + 1) * seen.excess
-            former, constraints = constraints, limits(margins)
-            start = outcome.centres[-NEARER if repair else -1:][0]
-        else:
-            start, former = Centre(_slow_start(task, table, constraints, steady), None), None
+        start = outcome.centres[-NEARER if former else -1:][0]
+        former, constraints = constraints, limits(
+            constraints.margins + LARGER ** (repair + 1) * seen.excess)
     T, motion, _ = min(found, key=lambda f: f[0])
     least = max(least for *_, least in found)
     return Timed(_trajectory(task, table, grid, motion), max(T - least, 0.0))

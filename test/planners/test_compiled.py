@@ -38,8 +38,8 @@ KINDS = {
     'torque': replace(LIMITS, max_acceleration=NONE, max_jerk=[50.0] * 3),
     'range': replace(FREE, min_position=[-1.05, 0.75, -0.85], max_position=[1.05, 1.85, 0.85])}
 
-# Derivatives by differences of 1e-7 differ by rounding over that; steps add it up. More of it where
-# limits come closer, and along a path whose limits all but touch.
+# Derivatives by differences of 1e-7 differ by rounding over that; steps add it up. More of it
+# where limits come closer, and along a path whose limits all but touch.
 SAME, SAME_CLOSER, SAME_ALONG_PATHS = 5e-6, 1e-3, 1e-2
 
 

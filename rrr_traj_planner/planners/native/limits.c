@@ -77,13 +77,19 @@ void room(const Work *w, const double *T, const double *z, double part, double *
 double log_of(const Work *w, const double *slack)
 {
     const size_t all = 2 * (size_t)w->p->N * w->M;
-    double sum = 0.0;
+    double sum = 0.0, product = 1.0;
     size_t i = 0;
-    for (; i + 8 <= all; i += 8)
-        sum += log(slack[i] * slack[i + 1] * slack[i + 2] * slack[i + 3]
-                   * slack[i + 4] * slack[i + 5] * slack[i + 6] * slack[i + 7]);
+    for (; i + 8 <= all; i += 8) {
+        product *= (slack[i] * slack[i + 1]) * (slack[i + 2] * slack[i + 3])
+            * ((slack[i + 4] * slack[i + 5]) * (slack[i + 6] * slack[i + 7]));
+        if (!(product > 1e-100 && product < 1e100)) {
+            sum += log(product);
+            product = 1.0;
+        }
+    }
     for (; i < all; ++i)
         sum += log(slack[i]);
+    sum += log(product);
     const double *spare = slack + all;
     for (int k = 0; w->p->floor && k < 2 * w->p->N; ++k)
         sum += FLOOR_WEIGHT * log(spare[k]);

@@ -32,6 +32,7 @@ typedef struct {
     double *inverse;         /* 1 / slack */
     double *relief;          /* how far beyond each limit a value may still be; in slacks */
     int relieved;            /* whether there is any */
+    double log;              /* log_of(slack), where there is none */
     double *Q, *r, *Q_full, *r_T, *Q_T, *second;
     double *newton;
 } Work;

@@ -28,7 +28,7 @@ typedef struct {
 typedef struct {
     Motion step;
     double *rate;
-    double size, gain;
+    double size, gain, log;  /* log: log_of its slacks, where there is no relief */
     Point to;                /* valid where size > 0 */
     int known;
 } Tried;
@@ -59,7 +59,7 @@ static void searched(Work *w, Motion m, Tried *t, const Motion *bend, double bar
     const Problem *p = w->p;
     const Settings *set = w->set;
     const size_t all = limits_size(w), unknowns = motion_size(p);
-    const double merit = motion_cost(p, m) - barrier * log_of(w, w->slack);
+    const double merit = motion_cost(p, m) - barrier * w->log;
     double worst = 0.0;
     for (size_t i = 0; i < all; ++i) {
         const double towards_limit = -t->rate[i] * w->inverse[i];
@@ -80,9 +80,10 @@ static void searched(Work *w, Motion m, Tried *t, const Motion *bend, double bar
         int kept = 1;
         for (size_t i = 0; i < all && kept; ++i)
             kept = t->to.slack[i] >= set->least_room_kept * w->slack[i];
+        t->log = kept && !w->relieved ? log_of(w, t->to.slack) : 0.0;
         /* relief is taken away whatever that costs */
-        if (kept && (w->relieved || motion_cost(p, t->to.motion) - barrier * log_of(
-                w, t->to.slack) <= merit - set->sufficient_gain * size * t->gain)) {
+        if (kept && (w->relieved || motion_cost(p, t->to.motion) - barrier * t->log
+                     <= merit - set->sufficient_gain * size * t->gain)) {
             t->size = size;
             t->known = 1;
             return;
@@ -288,7 +289,7 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
     const size_t all = limits_size(w), unknowns = motion_size(p);
     const double count = (double)limits_count(w);
     double barrier = known > 0.0 ? known : set->start * motion_cost(p, m) / count;
-    int found = 0, merits = 0;
+    int found = 0, merits = 0, known_log = 0;
     double *merit = malloc((set->iterations + 1) * sizeof(double));
     if (!merit) {
         free(run.w.box_at);
@@ -323,6 +324,8 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
             break;
         ++*iterations;
         localised(w, m, w->dual, barrier);
+        if (!w->relieved && !known_log)
+            w->log = log_of(w, w->slack);
         Tried *t = best_step(&run, m, barrier);
         if (!t)
             break;
@@ -341,7 +344,9 @@ EXPORTED int chain_minimised(const Problem *p, const Settings *set, double *moti
         if (closing)
             break;
         const double cost = motion_cost(p, m);
-        merit[merits++] = cost - barrier * log_of(w, slack);
+        w->log = t->known ? t->log : w->log;
+        known_log = 1;
+        merit[merits++] = cost - barrier * w->log;
         const double left = t->gain * (1.0 - 0.5 * t->size) + count * barrier;
         if (left < *gap)
             *gap = left;
