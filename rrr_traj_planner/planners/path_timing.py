@@ -52,14 +52,14 @@ from rrr_traj_planner.planners.ramp_chain import Grid, grid_of, Motion
 from rrr_traj_planner.planners.ramp_moves import stretched
 from rrr_traj_planner.planners.ramp_newton import Freedom
 
-RAMPS = 160        # in all pieces of a path together,
-FEWEST, MOST = 10, 16  # in each: of a long path's many pieces fewer
+MOST_RAMPS, FEWEST_RAMPS = 16, 8  # in a piece of the path: the most up to so many pieces,
+PIECES, SPARING = 11, 2.0         # and for more fewer, by this power of their number
 ROOM = 1.02        # durations of the start over the least that fit
 HOLDING_ROOM = 1e-6
 REPAIRS = 8
-LARGER = 1.2       # room than what was exceeded, and again each time
 WORTH_IT = 2e-3    # a longer stretch than this is better mended by planning again
-PATIENCE = 1       # times after which it is worth less
+PATIENCE = 1       # times after which it is worth less, again each time:
+LESS_WORTH = 1.7   # so many times a longer stretch is left as it is
 ROUGH_GAP = 0.3    # of the total time, at which what the first motion exceeds is looked at
 NEARER = 3         # centres before the last, from which limits are approached that are closer
 
@@ -127,7 +127,7 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     """
     table = PathTable(task.arm_path)
     N = len(table.ends) - 1
-    grid = grid_of(min(max(RAMPS // N, FEWEST), MOST), task.cruise)
+    grid = grid_of(_ramps(N), task.cruise)
     bounds = all_bounds(task.limits, task.max_tip_speed)
     _refuse_heavy(task, table)
     freedom = Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 1), bool))
@@ -147,15 +147,19 @@ def nearly_fastest_along(task: PathTask) -> Timed:
             continue
         outcome, seen = _onward(outcome, start, table, grid, bounds)
         found.append(_slowed(outcome, seen.stretch))
-        worth_it = WORTH_IT * LARGER ** max(2 * (repair - PATIENCE), 0)
+        worth_it = WORTH_IT * LESS_WORTH ** max(repair - PATIENCE, 0)
         if former and seen.stretch <= 1.0 + worth_it or task.should_stop() or not outcome.centres:
             break
         start = outcome.centres[-NEARER if former else -1:][0]
-        former, constraints = constraints, limits(
-            constraints.margins + LARGER ** (repair + 1) * seen.excess)
+        former, constraints = constraints, limits(constraints.margins + seen.excess)
     T, motion, _ = min(found, key=lambda f: f[0])
     least = max(least for *_, least in found)
     return Timed(_trajectory(task, table, grid, motion), max(T - least, 0.0))
+
+
+def _ramps(pieces: int) -> int:
+    """Return in how many ramps a piece is run through."""
+    return max(int(MOST_RAMPS * min(PIECES / pieces, 1.0) ** SPARING), FEWEST_RAMPS)
 
 
 def kept(task: PathTask, timed: Timed) -> Timed:

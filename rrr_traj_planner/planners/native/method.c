@@ -236,9 +236,8 @@ static void duals_moved(Work *w, const double *rate, const double *slack, double
     double worst = 0.0;
     for (size_t i = 0; i < all; ++i) {
         change[i] = (barrier - w->dual[i] * rate[i]) * w->inverse[i] - w->dual[i];
-        const double towards_zero = -change[i] / w->dual[i];
-        if (towards_zero > worst)
-            worst = towards_zero;
+        if (-change[i] > worst * w->dual[i])  /* divided seldom */
+            worst = -change[i] / w->dual[i];
     }
     const double size = worst > w->set->to_boundary ? w->set->to_boundary / worst : 1.0;
     const double corridor = w->set->dual_corridor, part = 1.0 / corridor;
