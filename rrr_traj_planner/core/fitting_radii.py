@@ -24,7 +24,8 @@ from rrr_traj_planner.core.errors import ConvergenceError
 from rrr_traj_planner.core.tangent_lines import tangent_lines, Tangents, ZoneEnds
 
 # Zones grow together by steps of at most FASTEST until two touch, which then keep their radius;
-# how near they come to touching is a matter of the last step, SLOWEST.
+# how near they come to touching is a matter of the last step, SLOWEST. Steps that fail are
+# followed by shorter ones, others by longer ones.
 FASTEST = 1.5
 SLOWEST = 1.005
 THAWED = 1.05
@@ -99,6 +100,7 @@ def _grown(points: Array, radii: Array, ends: ZoneEnds, share: Array, lines: Tan
         if tried is not None:
             share, lines = larger, tried
             growing = growing & (share < 1.0)
+            factor = min(factor ** 2, FASTEST)  # whatever slowed it may lie behind
         elif factor > SLOWEST:
             factor = max(np.sqrt(factor), SLOWEST)
         else:
