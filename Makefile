@@ -16,7 +16,7 @@ demo: setup  ## plan a motion through via points and run it on the simulated arm
 	@$(in_env) demo $(ARGS)
 
 test: lint  ## linters and every test; options for pytest in ARGS
-	@$(in_env) python -m pytest $(ARGS)
+	@$(in_env) python -m pytest -n auto --maxprocesses 4 --dist loadfile $(ARGS)
 
 lint: setup  ## ruff, flake8 with ament_flake8's rules, mypy on the core and the planners
 	@$(in_env) ruff check && python -m flake8 && mypy
