@@ -15,9 +15,12 @@
 """Installs the package; its version stands in package.xml alone."""
 
 from glob import glob
+from subprocess import DEVNULL, run
 from xml.etree import ElementTree
 
 from setuptools import Extension, find_packages, setup
+from setuptools.command.develop import develop
+from setuptools.command.install_scripts import install_scripts
 
 NAME = 'rrr_traj_planner'
 NATIVE = f'{NAME}/planners/native'
@@ -29,6 +32,41 @@ CHAIN = Extension(
     extra_compile_args=['-std=c99', '-O3', '-fno-math-errno', '-fno-trapping-math',
                         '-fvisibility=hidden'], optional=True)
 
+# SIGINT and SIGTERM wait until a script can answer them (nodes/signals.py): Python's own start
+# loses them, or shows a traceback.
+BLOCKED = ['/usr/bin/env', '--block-signal=INT,TERM']
+LONGEST = 255  # characters of a script's first line that the kernel reads
+
+
+class SignalsBlocked:
+    """Writes scripts that start Python with both signals blocked, where env can do that."""
+
+    def write_script(self, name, contents, *rest):
+        """Write a script, its first line replaced."""
+        first, _, others = contents.partition('\n')
+        command, options = BLOCKED
+        line = f'#!{command} -S {options} {first[2:]}'
+        if len(line) < LONGEST and can_block_signals():
+            contents = f'{line}\n{others}'
+        super().write_script(name, contents, *rest)
+
+
+def can_block_signals():
+    """Return whether this machine's env has the option, as that of coreutils since 8.31."""
+    try:
+        return not run([*BLOCKED, 'true'], stdout=DEVNULL, stderr=DEVNULL).returncode
+    except OSError:
+        return False
+
+
+class Develop(SignalsBlocked, develop):
+    """Installs links, with such scripts."""
+
+
+class InstallScripts(SignalsBlocked, install_scripts):
+    """Installs such scripts."""
+
+
 setup(
     name=NAME,
     version=ElementTree.parse('package.xml').findtext('version'),
@@ -39,6 +77,7 @@ setup(
     packages=find_packages(include=[NAME, f'{NAME}.*']),
     package_data={f'{NAME}.report': ['*.css', '*.js']},
     ext_modules=[CHAIN],
+    cmdclass={'develop': Develop, 'install_scripts': InstallScripts},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),

@@ -111,7 +111,7 @@ class Client:
 
     def __exit__(self, *_: object) -> None:
         self._closing.set()
-        self._executor.wake()
+        self._executor.create_task(lambda: None)  # wakes it
         self._thread.join(GRACE)  # an executor that is shut down while it spins may raise
         self._executor.shutdown(timeout_sec=GRACE)
         self.node.destroy_node()

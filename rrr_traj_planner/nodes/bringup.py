@@ -21,9 +21,9 @@ from collections.abc import Sequence
 from pathlib import Path
 import sys
 
-from rrr_traj_planner.nodes.configuration_files import arm_file
 from rrr_traj_planner.nodes.entry import guarded, parse
 from rrr_traj_planner.nodes.processes import ending, NodeProcesses
+from rrr_traj_planner.nodes.signals import defer_signals
 
 DESCRIPTION = 'Run the trajectory planner and the simulated arm, until Ctrl-C.'
 
@@ -58,8 +58,15 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _run(arm: str, ros_arguments: list[str]) -> int:
-    with NodeProcesses(node_arguments(arm_file(arm, Path.cwd()), ros_arguments)) as processes:
-        name, code = processes.wait()
+    from rrr_traj_planner.nodes.configuration_files import arm_file
+
+    nodes = NodeProcesses(node_arguments(arm_file(arm, Path.cwd()), ros_arguments))
+    defer_signals()
+    with nodes:
+        ended = nodes.wait()
+    if ended is None:
+        return 0
+    name, code = ended
     print(f'bringup: {ending(name, code)}', file=sys.stderr)
     return code if code >= 0 else 128 - code
 

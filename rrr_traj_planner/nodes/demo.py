@@ -71,20 +71,21 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.bag import Bag
     from rrr_traj_planner.nodes.bringup import node_arguments
     from rrr_traj_planner.nodes.configuration_files import read_task
-    from rrr_traj_planner.nodes.demo_client import run_on_arm
+    from rrr_traj_planner.nodes.demo_client import connected
     from rrr_traj_planner.nodes.demo_table import figures, table
     from rrr_traj_planner.nodes.processes import NodeProcesses
 
     task = read_task(options.task)
     task = replace(task, planner_id=options.planner or task.planner_id)
     with ExitStack() as stack:
+        client = stack.enter_context(connected(ros_arguments))
         bag = None if options.record is None else stack.enter_context(Bag(options.record))
-        processes = stack.enter_context(NodeProcesses(node_arguments(task.arm, ros_arguments)))
-        run = run_on_arm(task, ros_arguments, processes.ended, bag)
+        nodes = stack.enter_context(NodeProcesses(node_arguments(task.arm, ros_arguments)))
+        run = client.run(task, nodes.ended, bag)
     found = figures(run)
-    print(table(run, found))
+    print(table(run, found), flush=True)
     if bag is not None:
-        print(f'recording: {bag.file}, {bag.count} messages')
+        print(f'recording: {bag.file}, {bag.count} messages', flush=True)
     plot = Path(f'demo_{task.name}.png') if options.plot is None else options.plot
     if str(plot) not in ('', '.'):
         _plot(run, plot)

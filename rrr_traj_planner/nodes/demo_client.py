@@ -16,7 +16,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from threading import Event, Thread
 from time import monotonic, sleep
@@ -25,9 +26,8 @@ from typing import Any
 import numpy as np
 from rcl_interfaces.srv import GetParameters
 import rclpy
-from rclpy.client import Client
+from rclpy.client import Client as ServiceClient
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 from rclpy.time import Time
@@ -43,6 +43,7 @@ from rrr_traj_planner.nodes.entry import StartError
 from rrr_traj_planner.nodes.node_life import end_ros, made, start_ros
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
 from rrr_traj_planner.nodes.processes import ending
+from rrr_traj_planner.nodes.signals import signal_arrived
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
@@ -66,53 +67,47 @@ class Run:
     torque: Array             # of the motors, at the recorded points [N m]
 
 
-def run_on_arm(task: Task, ros_arguments: list[str],
-               ended: Callable[[], tuple[str, int] | None], bag: Bag | None = None) -> Run:
+@contextmanager
+def connected(ros_arguments: list[str]) -> Iterator[Client]:
     """
-    Plan a task and run it on the arm.
+    Start ROS and the client's node; end both.
 
     Parameters
     ----------
-    task : Task
-        The via points.
     ros_arguments : list of str
-        For the client's own node.
-    ended : callable
-        Tells which node's process has ended, if one has.
-    bag : Bag, optional
-        Records what comes by.
+        For the node.
 
-    Returns
-    -------
-    Run
-        The whole story.
+    Yields
+    ------
+    Client
+        The node, which an executor spins.
 
     Raises
     ------
     StartError
-        If a node does not appear or ends, or the plan is refused.
+        If ROS refuses to start.
     KeyboardInterrupt
-        After SIGINT or SIGTERM.
+        After SIGINT or SIGTERM, whatever the client was at.
 
     """
     start_ros(ros_arguments)
     client = executor = thread = None
     closing = Event()
     try:
-        client = made(lambda: _Client(ended))
+        client = made(Client)
         executor = SingleThreadedExecutor()
         executor.add_node(client)
         thread = Thread(target=_spin, args=(executor, closing), daemon=True)
         thread.start()
-        return client.run(task, bag)
-    except rclpy_implementation.RCLError:
-        if rclpy.ok():  # else a signal has shut ROS down under the client's feet
+        yield client
+    except Exception:
+        if not signal_arrived():  # else ROS was shut down under the client's feet
             raise
         raise KeyboardInterrupt from None
     finally:
         closing.set()
         if executor is not None and thread is not None:
-            executor.wake()
+            executor.create_task(lambda: None)  # wakes it
             thread.join(1.0)  # an executor that is shut down while it spins may raise
             executor.shutdown(timeout_sec=1.0)
         if client is not None:
@@ -126,25 +121,51 @@ def _spin(executor: SingleThreadedExecutor, closing: Event) -> None:
             executor.spin_once()
     except ExternalShutdownException:
         pass
-    except rclpy_implementation.RCLError:
-        if rclpy.ok():
+    except Exception:
+        if not signal_arrived():
             raise
 
 
-class _Client(Node):
+class Client(Node):
     """Talks to both nodes."""
 
-    def __init__(self, ended: Callable[[], tuple[str, int] | None]) -> None:
+    def __init__(self) -> None:
         super().__init__('demo')
-        self._ended = ended
+        self._ended: Callable[[], tuple[str, int] | None] = lambda: None
         self._states: list[JointState] = []
         self.create_subscription(JointState, 'joint_states', self._states.append, 100)
         self._send = self.create_publisher(JointTrajectory, 'joint_trajectory', 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
         self._ask = self.create_client(GetParameters, 'trajectory_planner/get_parameters')
 
-    def run(self, task: Task, bag: Bag | None = None) -> Run:
-        """Do the whole story."""
+    def run(self, task: Task, ended: Callable[[], tuple[str, int] | None],
+            bag: Bag | None = None) -> Run:
+        """
+        Plan a task and run it on the arm.
+
+        Parameters
+        ----------
+        task : Task
+            The via points.
+        ended : callable
+            Tells which node's process has ended, if one has.
+        bag : Bag, optional
+            Records what comes by.
+
+        Returns
+        -------
+        Run
+            The whole story.
+
+        Raises
+        ------
+        StartError
+            If a node does not appear or ends, or the plan is refused.
+        KeyboardInterrupt
+            After SIGINT or SIGTERM.
+
+        """
+        self._ended = ended
         print('waiting for planner and arm ...', flush=True)
         self._wait(self._plan.service_is_ready, 'the planner')
         self._wait(lambda: self._states and self._send.get_subscription_count(), 'the arm')
@@ -196,7 +217,7 @@ class _Client(Node):
             raise StartError(f'the planner refuses ({response.error_code}): {response.message}')
         return response
 
-    def _answer(self, client: Client, request: Any) -> Any:
+    def _answer(self, client: ServiceClient, request: Any) -> Any:
         """Return a service's answer."""
         self._wait(client.service_is_ready, client.srv_name)
         future = client.call_async(request)

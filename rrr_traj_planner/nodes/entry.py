@@ -16,7 +16,8 @@
 How every script begins and ends: its arguments, what goes wrong, its exit code.
 
 `--help` is answered before ROS is touched; a start that fails says why in one line and ends with
-exit code 1; SIGINT and SIGTERM end the script with exit code 0, from its first lines on.
+exit code 1; SIGINT and SIGTERM end the script with exit code 0, from its first lines on. What is
+imported here is light, so that those lines come early.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ import os
 import sys
 
 from rrr_traj_planner.core.errors import RrrPlannerError
-from rrr_traj_planner.nodes.signals import ignore_signals, interrupt_on_signals
+from rrr_traj_planner.nodes.signals import end_at_signals, end_if_signalled
 
 NO_ROS = (
     'ROS 2 is not in this environment ({error}): source /opt/ros/jazzy/setup.bash and the '
@@ -122,14 +123,13 @@ def guarded(name: str, work: Callable[[], int]) -> int:
         has a text for users. Other exceptions are bugs and pass.
 
     """
+    end_at_signals()
     # The planners' matrices are small: more threads only wait for each other. Told before NumPy
     # is loaded, and to the children too.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     try:
-        interrupt_on_signals()
         return work()
     except KeyboardInterrupt:
-        ignore_signals()  # nothing is left to be ended
         return 0
     except RrrPlannerError as error:
         text = str(error)
@@ -141,5 +141,7 @@ def guarded(name: str, work: Callable[[], int]) -> int:
             text = NO_ROS.format(error=error)
         else:
             raise
+    finally:
+        end_if_signalled()
     print(f'{name}: {text}', file=sys.stderr)
     return 1

@@ -21,7 +21,7 @@ from typing import Any
 import warnings
 
 from rrr_traj_planner.nodes.entry import guarded, parse, StartError
-from rrr_traj_planner.nodes.signals import ignore_signals, interrupt_again, interrupt_no_longer
+from rrr_traj_planner.nodes.signals import defer_signals, end_if_signalled, signal_arrived
 
 WATCH_PERIOD = 0.25  # s
 
@@ -66,10 +66,8 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
         Exit code.
 
     """
-    import rclpy
     from rclpy.clock import Clock, ClockType
     from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-    from rclpy.impl.implementation_singleton import rclpy_implementation
 
     make_node = load()
     executor = node = None
@@ -83,10 +81,10 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
             clock_type=ClockType.STEADY_TIME))
         executor.add_node(node)
         executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
+    except ExternalShutdownException:
         pass
-    except rclpy_implementation.RCLError:
-        if rclpy.ok():  # else the context was shut down under a callback, by SIGTERM
+    except Exception:
+        if not signal_arrived():  # else ROS was shut down under what is running
             raise
     finally:
         _clean_up(executor, node)
@@ -95,7 +93,7 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
 
 def start_ros(ros_arguments: list[str]) -> None:
     """
-    Start ROS; from then on SIGINT and SIGTERM shut its context down and raise nothing.
+    Start ROS; from then on SIGINT and SIGTERM shut its context down, and the script ends in order.
 
     Parameters
     ----------
@@ -111,16 +109,16 @@ def start_ros(ros_arguments: list[str]) -> None:
     import rclpy
     try:
         rclpy.init(args=ros_arguments)
-        interrupt_no_longer()
+        defer_signals()
     except Exception as error:
         raise StartError(f'ROS refuses to start: {_one_line(error)}') from error
 
 
 def end_ros() -> None:
-    """End ROS; from then on SIGINT and SIGTERM interrupt the script again."""
+    """End ROS, and the process if a signal has arrived."""
     import rclpy
     rclpy.try_shutdown()
-    interrupt_again()
+    end_if_signalled()
 
 
 def made(make_node: Callable[[], Any]) -> Any:
@@ -143,21 +141,19 @@ def made(make_node: Callable[[], Any]) -> Any:
         If ROS refuses.
 
     """
-    import rclpy
     from rclpy.exceptions import NameValidationException, ParameterException
     from rclpy.impl.implementation_singleton import rclpy_implementation
     try:
         return make_node()
     except (ParameterException, NameValidationException, rclpy_implementation.RCLError) as error:
-        if not rclpy.ok():  # shut down meanwhile: no fault of the node
+        if signal_arrived():  # ROS was shut down meanwhile: no fault of the node
             raise
         raise StartError(_one_line(error)) from error
 
 
 def _clean_up(executor: Any, node: Any) -> None:
-    """End what was started, also when a second signal comes meanwhile."""
+    """End what was started."""
     import rclpy
-    ignore_signals()
     # What a signal has kept the executor from starting is no news.
     warnings.filterwarnings('ignore', 'coroutine .* was never awaited', RuntimeWarning)
     if executor is not None:

@@ -16,15 +16,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 import signal
 import subprocess
 import sys
-from time import monotonic
+from time import monotonic, sleep
 from types import TracebackType
 
-from rrr_traj_planner.nodes.signals import SIGNALS
+from rrr_traj_planner.nodes.signals import signal_arrived, signals_blocked
 
 MODULES = {'planner': 'rrr_traj_planner.nodes.planner',
            'simulated_arm': 'rrr_traj_planner.nodes.simulated_arm'}
@@ -36,6 +35,8 @@ PATIENCE = 1.5      # s that a process is given to end by itself
 class NodeProcesses:
     """
     The planner and the simulated arm; a context that ends them.
+
+    Signals must be deferred while it is open (`signals.py`).
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ class NodeProcesses:
     def __enter__(self) -> NodeProcesses:
         """Start both, or none."""
         try:
-            with signals_held():
+            with signals_blocked():
                 for name, module in MODULES.items():
                     self._processes[name] = subprocess.Popen(
                         [sys.executable, '-m', module, *self._ros_arguments])
@@ -80,39 +81,35 @@ class NodeProcesses:
                 return name, process.returncode
         return None
 
-    def wait(self) -> tuple[str, int]:
+    def wait(self) -> tuple[str, int] | None:
         """
-        Wait until one of them ends.
+        Wait until one of them ends, or SIGINT or SIGTERM arrives.
 
         Returns
         -------
-        tuple of str and int
-            Its name and exit code.
+        tuple of str and int, or None
+            Its name and exit code; None after a signal.
 
         """
-        while True:
-            for process in self._processes.values():
-                try:
-                    process.wait(POLL_PERIOD)
-                except subprocess.TimeoutExpired:
-                    continue
-                ended = self.ended()
-                if ended is not None:
-                    return ended
+        while not signal_arrived():
+            ended = self.ended()
+            if ended is not None:
+                return ended
+            sleep(POLL_PERIOD)
+        return None
 
     def stop(self) -> None:
         """End both: SIGINT, and SIGKILL for what does not heed it."""
-        with signals_held():
-            deadline = monotonic() + PATIENCE
-            for process in self._processes.values():
-                if process.poll() is None:
-                    process.send_signal(signal.SIGINT)
-            for process in self._processes.values():
-                try:
-                    process.wait(max(deadline - monotonic(), 0.0))
-                except subprocess.TimeoutExpired:
-                    process.kill()
-                    process.wait()
+        deadline = monotonic() + PATIENCE
+        for process in self._processes.values():
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+        for process in self._processes.values():
+            try:
+                process.wait(max(deadline - monotonic(), 0.0))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
 
 
 def ending(name: str, code: int) -> str:
@@ -135,25 +132,3 @@ def ending(name: str, code: int) -> str:
     if code < 0:
         return f'{name} was killed by {signal.Signals(-code).name}'
     return f'{name} ended with exit code {code}'
-
-
-@contextmanager
-def signals_held() -> Iterator[None]:
-    """
-    Hold SIGINT and SIGTERM back until the end: half done, processes would be left behind.
-
-    Processes that are started meanwhile begin with both blocked; `entry.guarded` lets them in
-    when it can answer them.
-    """
-    arrived: list[int] = []
-    handlers = {number: signal.signal(number, lambda n, _: arrived.append(n))
-                for number in SIGNALS}
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        for number, handler in handlers.items():
-            signal.signal(number, handler)
-        if arrived:
-            signal.raise_signal(arrived[0])

@@ -12,54 +12,81 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""SIGINT and SIGTERM: they interrupt a script, until ROS takes over or all is about to end."""
+"""
+SIGINT and SIGTERM: at once the end of the process, or a note of which its end is made in order.
+
+No exception leaves the handler: it would hit whatever code is running, imports, destructors and
+compiled modules included. A script has nothing to put in order until it has started ROS or other
+processes; from then on signals are deferred.
+"""
 
 from __future__ import annotations
 
+import atexit
+from collections.abc import Iterator
+from contextlib import contextmanager
+import os
 import signal
+import sys
 from types import FrameType
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class Interrupt:
-    """
-    The handler of SIGINT and SIGTERM: Ctrl-C for both, until ROS takes over.
+class _Handler:
+    """The handler of both signals; rclpy's own, which shuts its context down, calls it too."""
 
-    rclpy's own handlers shut its context down, which ends a spin in order, and call this one
-    afterwards. An exception would then hit whatever code is running, destructors included.
-    """
-
-    raises = True
+    deferred = False
+    arrived = False
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
-        """Interrupt the script, if that is still wanted."""
-        if self.raises:
-            raise KeyboardInterrupt
+        """End the process, or note that it is to end."""
+        self.arrived = True
+        if not self.deferred:
+            os._exit(0)
 
 
-_interrupt = Interrupt()  # one for the process, as signals are
+_handler = _Handler()  # one for the process, as signals are
 
 
-def interrupt_on_signals() -> None:
-    """Let both signals interrupt the script, also where they have been held back so far."""
-    interrupt_again()
+def end_at_signals() -> None:
+    """Let both signals end the process with exit code 0, also one that was blocked so far."""
+    _handler.deferred = _handler.arrived = False
     for number in SIGNALS:
-        signal.signal(number, _interrupt)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)  # see processes.py
+        signal.signal(number, _handler)
+    # Python's own end takes handlers away before it is through.
+    atexit.register(signal.pthread_sigmask, signal.SIG_BLOCK, SIGNALS)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)  # see setup.py and processes.py
 
 
-def interrupt_again() -> None:
-    """Let both signals interrupt the script: ROS answers them no longer."""
-    _interrupt.raises = True
+def defer_signals() -> None:
+    """Only take note of both signals: ROS runs, or other processes, and must be ended first."""
+    _handler.deferred = True
 
 
-def interrupt_no_longer() -> None:
-    """Raise nothing at either signal: ROS answers them."""
-    _interrupt.raises = False
+def end_if_signalled() -> None:
+    """End the process if a signal has arrived; else let the next one end it."""
+    _handler.deferred = False
+    if _handler.arrived:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
 
 
-def ignore_signals() -> None:
-    """Let no further SIGINT or SIGTERM disturb the end of the process."""
-    for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)
+def signal_arrived() -> bool:
+    """Return whether SIGINT or SIGTERM has arrived."""
+    return _handler.arrived
+
+
+@contextmanager
+def signals_blocked() -> Iterator[None]:
+    """
+    Keep both signals waiting, and from what is started meanwhile.
+
+    A process that begins with both blocked takes them when it calls `end_at_signals`.
+    """
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)

@@ -23,6 +23,7 @@ import signal
 import subprocess
 import sys
 from threading import Timer
+from time import monotonic
 
 from ament_index_python.packages import get_package_prefix
 
@@ -75,6 +76,13 @@ class Script:
         self.children = children_of(self.process.pid)
         assert len(self.children) == count
         return self.children
+
+    def wait_for_children(self, count):
+        """Return the processes that it starts, as soon as they are as many as expected."""
+        deadline = monotonic() + DEADLINE
+        while len(self.children) < count and monotonic() < deadline:
+            self.children = children_of(self.process.pid)
+        return self.started(count)
 
     def ended(self):
         """Return exit code, output and errors."""
