@@ -16,13 +16,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.pieces import TransitionFunction
 from rrr_traj_planner.planners.segment import TransitionLaw
+
+LEAST_VELOCITY = 1e-9  # rad/s: bounds of a via velocity that must be zero
+OVERSHOOT_REDUCTION = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,3 +65,66 @@ class Chain:
             u = np.minimum(np.minimum(np.sqrt(D / slope), by_jerk), self.max_velocity)
             total = np.where(D > 0.0, self.law.least_time(u) + D / u, 0.0)
         return np.asarray(total.max(axis=1))
+
+
+def slower_at(chain: Chain, segments: BoolArray) -> Chain:
+    """
+    Return the chain with lower velocities at the ends of some segments.
+
+    Parameters
+    ----------
+    chain : Chain
+        The via points.
+    segments : ndarray of bool, shape (n, 3)
+        Which segments of which joints.
+
+    Returns
+    -------
+    Chain
+        Bounds of the via velocities halved there.
+
+    """
+    at_ends = segments[:-1] | segments[1:]
+    factor = np.where(at_ends, OVERSHOOT_REDUCTION, 1.0)
+    return replace(chain, lowest=np.minimum(chain.lowest * factor, -LEAST_VELOCITY),
+                   highest=np.maximum(chain.highest * factor, LEAST_VELOCITY))
+
+
+def at_rest(chain: Chain) -> Chain:
+    """
+    Return the chain with a stop at every via point: its motions never overshoot.
+
+    Parameters
+    ----------
+    chain : Chain
+        The via points.
+
+    Returns
+    -------
+    Chain
+        Via velocities bounded to next to nothing; see `rests_everywhere`.
+
+    """
+    still = np.full_like(chain.highest, LEAST_VELOCITY)
+    return replace(chain, lowest=-still, highest=still)
+
+
+def rests_everywhere(chain: Chain) -> bool:
+    """
+    Return whether every via velocity is to be zero: its times are then known in closed form.
+
+    A search within bounds of next to nothing would leave velocities of that size, and in a long
+    transition even they overshoot a range.
+
+    Parameters
+    ----------
+    chain : Chain
+        The via points.
+
+    Returns
+    -------
+    bool
+        Also where there are no via points between the first and the last.
+
+    """
+    return bool((np.maximum(-chain.lowest, chain.highest) <= LEAST_VELOCITY).all())

@@ -27,14 +27,12 @@ from collections.abc import Iterator
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError
-from rrr_traj_planner.planners.chain import Chain
+from rrr_traj_planner.planners.chain import at_rest, Chain, slower_at
 from rrr_traj_planner.planners.chain_motion import (
-    at_rest,
     ChainMotion,
     motion_with_floor,
     quickest_motion,
     segment_stretch,
-    slower_at,
     stretched_for_torque,
 )
 from rrr_traj_planner.planners.request import JointTask

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -25,9 +24,9 @@ from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.core.motion_torque import squared_stretch, torque_grid
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners import segment_motion
-from rrr_traj_planner.planners.chain import Chain
+from rrr_traj_planner.planners.chain import Chain, rests_everywhere
 from rrr_traj_planner.planners.convergence import unconverged_note
-from rrr_traj_planner.planners.motion_law import cannot_hold, LEAST_VELOCITY, torque_stretch
+from rrr_traj_planner.planners.motion_law import cannot_hold, torque_stretch
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.via_velocities import least_stretch, least_time
 
@@ -36,8 +35,6 @@ TORQUE_TOLERANCE = 5e-7    # of the stretch that torque asks for
 
 # Durations are longer than the least by this part, so that they can be prescribed again.
 DURATION_ROOM = 1e-6
-
-OVERSHOOT_REDUCTION = 0.5
 
 
 class ChainMotion(NamedTuple):
@@ -71,8 +68,12 @@ def timed_motion(task: JointTask, chain: Chain, durations: Array,
         None where it overshoots, or the kinematic limits leave no such motion.
 
     """
-    factor, solution = least_stretch(chain, durations)
-    v, T = solution.velocities, solution.durations
+    if rests_everywhere(chain):
+        factor = float((chain.rest_to_rest_times() / durations).max())
+        v, T = np.zeros_like(chain.highest), durations * factor
+    else:
+        factor, solution = least_stretch(chain, durations)
+        v, T = solution.velocities, solution.durations
     if factor > 1.0 + STRETCH_TOLERANCE:
         return None, np.zeros_like(chain.displacements, dtype=bool)
     if factor <= 1.0 and gently:
@@ -98,10 +99,13 @@ def quickest_motion(task: JointTask, chain: Chain) -> tuple[ChainMotion | None, 
         None where it overshoots. Its note says where planning was stopped before it converged.
 
     """
-    v, T, gap = least_time(chain, should_stop=task.should_stop)
     stops = chain.rest_to_rest_times()
-    if stops.sum() < T.sum():  # it was stopped early
-        v, T, gap = np.zeros_like(v), stops, gap - float(T.sum() - stops.sum())
+    v, T, gap = np.zeros_like(chain.highest), stops, 0.0
+    if not rests_everywhere(chain):
+        found = least_time(chain, should_stop=task.should_stop)
+        gap = found.gap - float(max(found.durations.sum() - stops.sum(), 0.0))
+        if found.durations.sum() <= stops.sum():  # it was not stopped early
+            v, T = found.velocities, found.durations
     slower = 1.0 + DURATION_ROOM
     motion, overshoot = _moved(task, chain, v / slower, T * slower, T * slower)
     if motion is not None:
@@ -130,50 +134,9 @@ def motion_with_floor(task: JointTask, chain: Chain,
         As of `timed_motion`.
 
     """
-    found = least_time(chain, floor, task.should_stop)
-    return timed_motion(task, chain, found.durations * (1.0 + DURATION_ROOM))
-
-
-def slower_at(chain: Chain, segments: BoolArray) -> Chain:
-    """
-    Return the chain with lower velocities at the ends of some segments.
-
-    Parameters
-    ----------
-    chain : Chain
-        The via points.
-    segments : ndarray of bool, shape (n, 3)
-        Which segments of which joints.
-
-    Returns
-    -------
-    Chain
-        Bounds of the via velocities halved there.
-
-    """
-    at_ends = segments[:-1] | segments[1:]
-    factor = np.where(at_ends, OVERSHOOT_REDUCTION, 1.0)
-    return replace(chain, lowest=np.minimum(chain.lowest * factor, -LEAST_VELOCITY),
-                   highest=np.maximum(chain.highest * factor, LEAST_VELOCITY))
-
-
-def at_rest(chain: Chain) -> Chain:
-    """
-    Return the chain with a stop at every via point: its motions never overshoot.
-
-    Parameters
-    ----------
-    chain : Chain
-        The via points.
-
-    Returns
-    -------
-    Chain
-        Via velocities bounded to next to nothing.
-
-    """
-    still = np.full_like(chain.highest, LEAST_VELOCITY)
-    return replace(chain, lowest=-still, highest=still)
+    durations = (np.maximum(chain.rest_to_rest_times(), floor) if rests_everywhere(chain)
+                 else least_time(chain, floor, task.should_stop).durations)
+    return timed_motion(task, chain, durations * (1.0 + DURATION_ROOM))
 
 
 def segment_stretch(task: JointTask, motion: ChainMotion) -> Array:

@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
-from rrr_traj_planner.planners.chain import Chain
+from rrr_traj_planner.planners.chain import at_rest, Chain, slower_at
 from rrr_traj_planner.planners.chain_fastest import (
     fastest,
     fastest_with_stops,
@@ -27,11 +27,9 @@ from rrr_traj_planner.planners.chain_fastest import (
     STRAIGHTENING_ROUNDS,
 )
 from rrr_traj_planner.planners.chain_motion import (
-    at_rest,
     ChainMotion,
     DURATION_ROOM,
     segment_stretch,
-    slower_at,
     STRETCH_TOLERANCE,
     timed_motion,
     TORQUE_TOLERANCE,
@@ -98,6 +96,8 @@ def _within_limits(task: JointTask, chain: Chain, durations: Array) -> ChainMoti
 
 def _slowed_fastest(task: JointTask, chain: Chain, durations: Array) -> ChainMotion | None:
     """Return the fastest motion, slowed, if that gives the durations; else None."""
+    if (chain.displacements == 0.0).all(axis=1).any():
+        return None  # the fastest motion does not stay anywhere
     quickest = fastest(task, chain, None)
     slower = float(np.mean(durations / quickest.durations))
     if slower < 1.0 - STRETCH_TOLERANCE or (

@@ -22,15 +22,13 @@ from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
 from rrr_traj_planner.core.motion_torque import peak_holding_torque, stretch_for_torque
 from rrr_traj_planner.core.pieces import TransitionFunction
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.chain import Chain
+from rrr_traj_planner.planners.chain import Chain, LEAST_VELOCITY
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.segment import TransitionLaw
 
 # A transition at full acceleration lasts at least so many samples, so that the quintic through
 # them keeps the limits: it is a limit on jerk, of a cycloid's pi / 5 of acceleration / period.
 SAMPLES_PER_TRANSITION = 5.0
-
-LEAST_VELOCITY = 1e-9  # rad/s: bounds of a via velocity that must be zero
 
 
 def chain_of(task: JointTask, function: TransitionFunction = CYCLOID) -> Chain:

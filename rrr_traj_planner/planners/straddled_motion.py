@@ -36,6 +36,11 @@ from rrr_traj_planner.planners.segment_motion import joint_profiles
 
 KEPT = 1e-9  # relative room for rounding, of limits that durations must keep
 
+# Between two lines of nearly the same velocity, what remains of their difference is rounding. It
+# may be off by this part of the slower one's velocity (much more than 2^-52), and a transition is
+# long enough for that too: nearly none would be, and its jerk whatever rounding makes it.
+VELOCITY_UNCERTAINTY = 1e-9
+
 
 class Straddling(NamedTuple):
     """Times of a straddled motion [s]."""
@@ -69,6 +74,8 @@ def shortest_transitions(law: TransitionLaw, displacements: Array, lines: Array)
     """
     Return the shortest transitions that the limits allow, common to all joints.
 
+    They keep the limits for changes of velocity that are larger by `VELOCITY_UNCERTAINTY`, too.
+
     Parameters
     ----------
     law : TransitionLaw
@@ -84,7 +91,9 @@ def shortest_transitions(law: TransitionLaw, displacements: Array, lines: Array)
         [s].
 
     """
-    changes = changes_of_velocity(displacements, lines)
+    changes = np.abs(changes_of_velocity(displacements, lines))
+    speeds = np.abs(displacements) / lines[:, np.newaxis]
+    changes[1:-1] += VELOCITY_UNCERTAINTY * np.minimum(speeds[:-1], speeds[1:])
     return np.asarray(law.least_time(changes).max(axis=1))
 
 

@@ -38,6 +38,10 @@ ROUNDS = 40
 GAIN = 1e-5                                # relative, below which a round is the last
 FIRST_TANGENTS = np.geomspace(1.0, 30.0, 12)  # over the first rates
 STRETCHES = 60                             # of the rest that rounding in a program leaves
+# The tangent of jerk's bound, a root, would be infinitely steep at a transition of no length, as
+# between lines of one velocity, and keep them at it for good: it is taken at no less than this
+# part of the shorter line.
+LEAST_TANGENT = 0.05
 ROOM = 1e-6                                # durations are longer than the least by this part
 
 
@@ -142,7 +146,7 @@ class _Program:
         self.tangents.append(rates)
         rows = [self._fitting(rates), *self._times_above_tangents()]
         rows += self._bounded_changes() if self.transitions is not None else (
-            self._long_transitions(at.transitions / unit))
+            self._long_transitions(rates, at.transitions / unit))
         with np.errstate(divide='ignore'):
             fastest_rates = unit * (self.chain.max_velocity / np.abs(
                 self.chain.displacements)).min(axis=1)
@@ -181,11 +185,13 @@ class _Program:
         most = self.chain.law.largest_change(self.transitions[:, np.newaxis]).ravel()
         return [self._row(side * self.changes, None, None, most) for side in (1.0, -1.0)]
 
-    def _long_transitions(self, transitions: Array) -> list[_Rows]:
+    def _long_transitions(self, rates: Array, transitions: Array) -> list[_Rows]:
         """Return that transitions last as long as acceleration and jerk ask for."""
         slope = np.tile(self.chain.law.slope / self.unit, self.n + 1)
         squared = np.tile((self.chain.law.root / self.unit) ** 2, self.n + 1)
-        now = np.repeat(transitions, 3)
+        lines = np.append(np.append(np.inf, 1.0 / rates), np.inf)
+        now = np.repeat(np.maximum(
+            transitions, LEAST_TANGENT * np.minimum(lines[:-1], lines[1:])), 3)
         rows = []
         for side in (1.0, -1.0):
             by_rate = side * sparse.diags(slope) @ self.changes

@@ -40,6 +40,29 @@ def through(q, **request):
                            planner_id='cycloid_approach_b', **request)
 
 
+@pytest.mark.parametrize('joint', range(3))
+@pytest.mark.parametrize('steps', [
+    [0.2, 0.2, 0.3], [0.1, 0.1, 0.1, 0.2, 0.2, 0.05], [0.3, 0.3, -0.2], [1e-3, 1e-3, 0.4, 0.4],
+    [0.15, 0.15, 0.15, 0.15]])
+def test_equal_steps_take_no_more_time_than_steps_that_differ_by_next_to_nothing(joint, steps):
+    # At equal steps velocity need not change at all: what is left of the change is rounding, and
+    # so would be the jerk of a transition that is as short as that allows.
+    q = np.tile([0.3, 1.3, 0.1], (len(steps) + 1, 1))
+    q[1:, joint] += np.cumsum(steps)
+    exact, nearly = (plan(ARM, FREE, through(p)) for p in (
+        q, q + 1e-6 * np.random.default_rng(5).normal(size=q.shape)))
+    assert (exact.peaks.jerk <= FREE.max_jerk * (1.0 + 1e-6)).all()
+    assert (exact.peaks.acceleration <= FREE.max_acceleration * (1.0 + 1e-6)).all()
+    assert exact.trajectory.duration <= nearly.trajectory.duration * 1.01
+
+
+def test_via_points_at_equal_angles_about_the_base_are_planned():
+    angles = np.array([0.3, 0.5, 0.7, 1.0])
+    tips = np.stack((np.cos(angles), np.sin(angles), np.full(4, 0.8)), axis=1)
+    answer = plan(ARM, LIMITS, PlanningRequest(tips, planner_id='cycloid_approach_b'))
+    assert (answer.peaks.jerk <= LIMITS.max_jerk * (1.0 + 1e-6)).all()
+
+
 def test_every_piece_is_a_full_period_cycloid_or_a_cruise_and_joints_share_them():
     trajectory = plan(ARM, FREE, table('6.1')).trajectory
     for profile in trajectory.profiles:

@@ -126,4 +126,5 @@ def test_stopped_at_once_it_is_no_slower_than_with_stops_and_says_what_could_be_
     duration = stopped.trajectory.duration
     assert best.trajectory.duration <= duration * (1.0 + 1e-9)
     assert duration == pytest.approx(stops.trajectory.duration, rel=1e-5)
-    assert stopped.note.startswith('planning ended before it converged: at most ')
+    one_way = np.diff(task.q, axis=0).any(axis=1).sum() == 1  # its time is known in closed form
+    assert stopped.note.startswith('planning ended before it converged: at most ') == (not one_way)

@@ -21,6 +21,7 @@ import pytest
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, TimingError
 from rrr_traj_planner.core.gauss import gauss
+from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.septic import SEPTIC
@@ -135,3 +136,25 @@ def test_series_of_order_9_takes_the_time_of_the_closed_form_to_a_thousandth():
     closed, series = (planner_with(gauss(order=order))(task).duration for order in (None, 9))
     assert series == pytest.approx(closed, rel=1e-3)
     assert series != closed
+
+
+@pytest.mark.parametrize('planner_id', ['cycloid', *PLANNERS])
+def test_a_joint_that_is_to_stay_at_the_end_of_its_range_stays_there_however_slow_the_arm(
+        planner_id):
+    # Joint 1 is at 0, where its range ends, twice in a row, and segments last for minutes: a via
+    # velocity of 1e-9 rad/s, which a search might leave, would take it beyond in the meantime.
+    q = np.array([[0.9, 0.8, 0.3], [0.0, 1.5, 0.1], [0.0, 0.7, 0.5], [0.0, 1.6, -0.1],
+                  [1.2, 0.9, 0.2]])
+    slow = replace(LIMITS, max_acceleration=np.full(3, 1e-5), max_jerk=np.full(3, 1e-5))
+    answer = plan(ARM, slow, PlanningRequest(
+        forward_kinematics(ARM, q), planner_id=planner_id, sample_period=5.0))
+    assert answer.peaks.min_position[0] >= -1e-9
+    assert answer.trajectory(answer.via_times)[0] == pytest.approx(q, abs=1e-9)
+
+
+def test_durations_too_short_beside_a_stay_are_refused_without_arithmetic_on_zeros():
+    q = [[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [1.0, 1.8, 0.3], [0.2, 1.3, -0.5]]
+    with np.errstate(all='raise'), pytest.raises(TimingError, match='for segments 0, 2: ') as no:
+        plan(ARM, LIMITS, PlanningRequest(
+            forward_kinematics(ARM, np.array(q)), segment_durations=[0.5, 2.0, 0.5]))
+    assert no.value.least_durations[1] == pytest.approx(2.0, abs=1e-5)
