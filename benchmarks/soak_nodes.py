@@ -35,7 +35,7 @@ import signal
 import subprocess
 import sys
 from threading import Thread
-from time import monotonic
+from time import monotonic, sleep
 
 os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
 os.environ.setdefault('ROS_DOMAIN_ID', str(1 + os.getpid() % 101))
@@ -81,6 +81,8 @@ class Client:
         for name, client in self._services.items():
             if not client.wait_for_service(60.0):
                 raise SystemExit(f'no {name}')
+        while not self._arm.get_subscription_count():  # what is published before is lost
+            sleep(0.1)
 
     def close(self) -> None:
         """End the client."""

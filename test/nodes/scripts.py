@@ -64,10 +64,17 @@ class Script:
 
     def read_until(self, text):
         """Read its output up to a line that holds a text."""
+        self._read_until(text, self.process.stdout)
+
+    def read_errors_until(self, text):
+        """Read its errors, the log among them, up to a line that holds a text."""
+        self._read_until(text, self.process.stderr)
+
+    def _read_until(self, text, stream):
         deadline = Timer(DEADLINE, self.process.kill)  # then there is nothing more to read
         deadline.start()
         try:
-            assert any(text in line for line in self.process.stdout), f'no {text!r}'
+            assert any(text in line for line in stream), f'no {text!r}'
         finally:
             deadline.cancel()
 
