@@ -53,7 +53,7 @@ def rows(repetitions: int = REPETITIONS) -> list[Row]:
 
     def run(arm: ControlledArm) -> None:
         arm.reset(points.positions[0])
-        arm.follow(motion, arm.time)
+        arm.follow(motion, arm.now)
         arm.advance(steps)
 
     medians = in_turns(*(lambda arm=arm: run(arm) for arm in arms), repetitions=repetitions)

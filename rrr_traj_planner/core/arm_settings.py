@@ -25,6 +25,7 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.friction import Friction
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.nanoseconds import nanoseconds, SECOND
 from rrr_traj_planner.core.payload import Payload, with_payload
 from rrr_traj_planner.core.soft_stops import SoftStops
 from rrr_traj_planner.core.step_stability import check_step
@@ -46,7 +47,7 @@ class ArmSettings:
     gains : ControllerGains
         Of the computed-torque law.
     step : float
-        Of the physics and of the controller [s], positive.
+        Of the physics and of the controller [s], positive; taken to the nearest nanosecond.
     payload : Payload
         At the tip.
     friction : Friction
@@ -79,7 +80,13 @@ class ArmSettings:
         """Check the step."""
         if not 0.0 < self.step < np.inf:
             raise InvalidInputError(f'physics_step is {self.step} s, must be positive')
+        object.__setattr__(self, 'step', max(self.step_ns, 1) / SECOND)
         check_step(self.loaded_model, self.friction, self.soft_stops, self.step)
+
+    @property
+    def step_ns(self) -> int:
+        """Return the step in nanoseconds."""
+        return nanoseconds(self.step)
 
     @property
     def loaded_model(self) -> RobotModel:

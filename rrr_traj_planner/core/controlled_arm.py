@@ -26,6 +26,7 @@ from rrr_traj_planner.core.encoder import Encoder
 from rrr_traj_planner.core.energy import EnergyLedger, work
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.motion_points import MotionPoints
+from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.replacement import replacement, Takeover
 from rrr_traj_planner.core.simulation import ArmPhysics
 from rrr_traj_planner.core.stopping import stopping
@@ -66,7 +67,7 @@ class ControlledArm:
     """
 
     def __init__(self, settings: ArmSettings, q: ArrayLike) -> None:
-        self.steps = 0
+        self.steps, self._step_ns = 0, settings.step_ns
         self.settings, self.ledger = settings, EnergyLedger()
         self.disturbance: Triple = NO_DISTURBANCE
         self.state: State = (*_triple(finite_array('q', q, (3,))), 0.0, 0.0, 0.0)
@@ -75,14 +76,19 @@ class ControlledArm:
         self.reset(q)
 
     @property
+    def now(self) -> int:
+        """How long the arm has been simulated [ns]."""
+        return self.steps * self._step_ns
+
+    @property
     def time(self) -> float:
         """How long the arm has been simulated [s]."""
-        return self.steps * self.settings.step
+        return self.now / SECOND
 
     @property
     def desired(self) -> Desired:
         """Positions [rad], velocities [rad/s], accelerations [rad/s^2] commanded now."""
-        return self.motion(self.time)
+        return self.motion.command(self.now)
 
     @property
     def seen(self) -> State:
@@ -140,11 +146,11 @@ class ControlledArm:
         if self._encoder is not None:
             self._encoder.restart(self.state)
         self.ledger.clear()
-        self._stay(holding(q, self.time))
+        self._stay(holding(q, self.now))
         self.violation: tuple[str, ...] = ()
         self.torque = self._control()
 
-    def follow(self, points: MotionPoints, origin: float) -> None:
+    def follow(self, points: MotionPoints, origin_ns: int) -> None:
         """
         Take over a new trajectory, without a jump in what is commanded.
 
@@ -152,13 +158,13 @@ class ControlledArm:
         ----------
         points : MotionPoints
             The trajectory.
-        origin : float
-            What its times are counted from, on the arm's own time [s].
+        origin_ns : int
+            What its times are counted from, on the arm's own time [ns].
 
         """
         takeover = Takeover(self.time, self.desired, self.settings.limits,
                             self.settings.controller_model)
-        self.motion = replacement(takeover, points, origin, self.settings.step)
+        self.motion = replacement(takeover, points, origin_ns, self.settings.step)
         self.violation = ()
         self._watched = self._first_check = True
 
@@ -187,14 +193,16 @@ class ControlledArm:
     def _advance_plainly(self, steps: int) -> None:
         """Simulate an arm that its controller knows and sees exactly, undisturbed, unwatched."""
         # The inner loop of nearly everything that runs an arm: local names, floats, no numpy.
-        physics, motion, limit = self._physics, self.motion, self._max_effort
+        physics, desired, limit = self._physics, self.motion.elapsed, self._max_effort
         h, gains = self.settings.step, self.settings.gains
         stiffness, damping = gains.stiffness, gains.damping
         state, torque, motors = self.state, self.torque, 0.0
-        for n in range(self.steps, self.steps + steps):
+        step_ns = self._step_ns
+        first = self.steps * step_ns - self.motion.origin_ns
+        for n in range(first, first + steps * step_ns, step_ns):
             t = physics.terms(state)
             torque = saturated(
-                computed_torque(t, stiffness, damping, state, motion(n * h)), limit)
+                computed_torque(t, stiffness, damping, state, desired(n, n / 1e9)), limit)
             after = physics.step(t, state, torque, h)
             motors += work(torque, state, after)
             state = after
@@ -224,7 +232,7 @@ class ControlledArm:
                 self.seen, self.desired, self.time - self.motion.end, self._first_check)
             self._first_check = False
             if lines:
-                self._stay(holding(self.seen[:3], self.time))
+                self._stay(holding(self.seen[:3], self.now))
                 self.violation = lines
 
     def _stay(self, motion: DesiredMotion) -> None:

@@ -23,11 +23,15 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.control import Desired
 from rrr_traj_planner.core.motion_points import MotionPoints, segment_coefficients, segment_orders
+from rrr_traj_planner.core.nanoseconds import nanoseconds, SECOND
 
 
 class DesiredMotion:
     """
     A motion of polynomials, one after another, that rests where it ends.
+
+    Which of them is in force is decided in whole nanoseconds, as in joint_trajectory_controller:
+    exactly at a knot it is the one that begins there.
 
     Parameters
     ----------
@@ -37,20 +41,28 @@ class DesiredMotion:
         For each interval and joint, of 1, x, ..., x^5 with x the time since its knot [s].
     final : ndarray, shape (3,)
         Position at the last knot [rad], which is held.
-    origin : float
-        What the knots are counted from [s].
+    origin_ns : int
+        What the knots are counted from [ns].
 
     """
 
     def __init__(self, knots: Array, coefficients: Array, final: Array,
-                 origin: float = 0.0) -> None:
+                 origin_ns: int = 0) -> None:
         self.knots, self.coefficients, self.final = knots, coefficients, final
-        self.origin = origin
+        self.origin_ns = origin_ns
+        self._knots_ns = [nanoseconds(knot) for knot in knots.tolist()]
         # One knot alone is a rest that has no beginning.
-        self._rests_from = float(knots[-1]) if len(knots) > 1 else -np.inf
+        self._rests_from = self._knots_ns[-1] if len(knots) > 1 else -np.inf
         self._rest = rest(final)
-        self._low = self._high = -np.inf  # the interval found last, and its coefficients
+        # The interval found last [ns], its beginning [s], and its coefficients.
+        self._low = self._high = 0
+        self._begin = 0.0
         self._current: list[float] = []
+
+    @property
+    def origin(self) -> float:
+        """What the knots are counted from [s]."""
+        return self.origin_ns / SECOND
 
     @property
     def start(self) -> float:
@@ -78,11 +90,48 @@ class DesiredMotion:
 
         """
         t -= self.origin
-        if t >= self._rests_from:
+        return self.elapsed(nanoseconds(t), t)
+
+    def command(self, now: int) -> Desired:
+        """
+        Return the desired state at a time of a clock.
+
+        Parameters
+        ----------
+        now : int
+            [ns].
+
+        Returns
+        -------
+        tuple of 9 floats
+            As `__call__`.
+
+        """
+        n = now - self.origin_ns
+        return self.elapsed(n, n / SECOND)
+
+    def elapsed(self, n: int, t: float) -> Desired:
+        """
+        Return the desired state after a time since the origin.
+
+        Parameters
+        ----------
+        n : int
+            The time, to choose a polynomial by [ns].
+        t : float
+            The same time, to evaluate it at [s].
+
+        Returns
+        -------
+        tuple of 9 floats
+            As `__call__`.
+
+        """
+        if n >= self._rests_from:
             return self._rest
-        if not self._low <= t < self._high:
-            t = self._find(t)
-        x = t - self._low
+        if not self._low <= n < self._high:
+            t = self._find(n, t)
+        x = t - self._begin
         a0, a1, a2, a3, a4, a5, b0, b1, b2, b3, b4, b5, c0, c1, c2, c3, c4, c5 = self._current
         return (
             a0 + x * (a1 + x * (a2 + x * (a3 + x * (a4 + x * a5)))),
@@ -109,16 +158,17 @@ class DesiredMotion:
         return (np.vstack((c[:, :, 0], self.final)), np.vstack((c[:, :, 1], zero)),
                 np.vstack((2.0 * c[:, :, 2], zero)))
 
-    def _find(self, t: float) -> float:
-        """Make the interval around a time the current one, and return the time, not before it."""
-        t = max(t, float(self.knots[0]))
-        i = bisect_right(self.knots, t) - 1
-        self._low, self._high = float(self.knots[i]), float(self.knots[i + 1])
+    def _find(self, n: int, t: float) -> float:
+        """Make the interval around a time the current one, and return the time, not before all."""
+        knots = self._knots_ns
+        i = max(bisect_right(knots, n) - 1, 0)
+        self._low, self._high = knots[i], knots[i + 1]
+        self._begin = float(self.knots[i])
         self._current = self.coefficients[i].ravel().tolist()
-        return t
+        return max(t, float(self.knots[0]))
 
 
-def through(points: MotionPoints, origin: float = 0.0) -> DesiredMotion:
+def through(points: MotionPoints, origin_ns: int = 0) -> DesiredMotion:
     """
     Return the motion through points.
 
@@ -126,8 +176,8 @@ def through(points: MotionPoints, origin: float = 0.0) -> DesiredMotion:
     ----------
     points : MotionPoints
         The points.
-    origin : float
-        What their times are counted from [s].
+    origin_ns : int
+        What their times are counted from [ns].
 
     Returns
     -------
@@ -136,10 +186,10 @@ def through(points: MotionPoints, origin: float = 0.0) -> DesiredMotion:
 
     """
     coefficients = segment_coefficients(points, segment_orders(points))
-    return DesiredMotion(points.times, coefficients, points.positions[-1], origin)
+    return DesiredMotion(points.times, coefficients, points.positions[-1], origin_ns)
 
 
-def holding(q: ArrayLike, time: float = 0.0) -> DesiredMotion:
+def holding(q: ArrayLike, now: int = 0) -> DesiredMotion:
     """
     Return the motion that stays where it is.
 
@@ -147,8 +197,8 @@ def holding(q: ArrayLike, time: float = 0.0) -> DesiredMotion:
     ----------
     q : array_like, shape (3,)
         Positions [rad].
-    time : float
-        When it begins [s].
+    now : int
+        When it begins [ns].
 
     Returns
     -------
@@ -156,7 +206,7 @@ def holding(q: ArrayLike, time: float = 0.0) -> DesiredMotion:
         A motion of one knot.
 
     """
-    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), np.array(q, dtype=float), time)
+    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), np.array(q, dtype=float), now)
 
 
 def rest(q: ArrayLike) -> Desired:

@@ -30,8 +30,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.motion_points import MotionPoints
-
-NANOSECOND = 1e-9
+from rrr_traj_planner.core.nanoseconds import SECOND
 
 # std::numeric_limits<float>::epsilon(), below which the controller takes a velocity for zero.
 FLOAT_EPSILON = float(np.finfo(np.float32).eps)
@@ -126,7 +125,7 @@ def motion_points(trajectory: IncomingTrajectory, joint_names: Sequence[str],
     columns = [list(joint_names).index(name) for name in trajectory.joint_names]
     points, still = trajectory.points, (0.0,) * len(joint_names)
     return MotionPoints(
-        np.array([p.time * NANOSECOND for p in points]),
+        np.array([p.time / SECOND for p in points]),
         _rows([p.positions for p in points], columns, held),
         _rows([p.velocities for p in points], columns, still),
         _rows([p.accelerations for p in points], columns, still),
@@ -173,17 +172,17 @@ def _check_end(trajectory: IncomingTrajectory, now: int) -> None:
     end = trajectory.stamp + trajectory.points[-1].time
     if trajectory.stamp != 0 and end < now:
         raise InvalidInputError(
-            f'Received trajectory with non-zero start time ({trajectory.stamp * NANOSECOND:f}) '
-            f'that ends in the past ({end * NANOSECOND:f})')
+            f'Received trajectory with non-zero start time ({trajectory.stamp / SECOND:f}) '
+            f'that ends in the past ({end / SECOND:f})')
 
 
 def _check_time(i: int, before: int, time: int) -> None:
     if i > 0 and time <= before:
         raise InvalidInputError(
             f'Time between points {i - 1} and {i} is not strictly increasing, '
-            f'it is {before * NANOSECOND:f} and {time * NANOSECOND:f} respectively')
+            f'it is {before / SECOND:f} and {time / SECOND:f} respectively')
     if time < 0:
-        raise InvalidInputError(f'Time of point #{i} is negative: {time * NANOSECOND:f}')
+        raise InvalidInputError(f'Time of point #{i} is negative: {time / SECOND:f}')
 
 
 def _check_point(i: int, point: IncomingPoint, names: Sequence[str]) -> None:

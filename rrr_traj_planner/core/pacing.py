@@ -16,8 +16,6 @@
 
 from __future__ import annotations
 
-SECOND = 1_000_000_000  # ns
-
 
 class Pace:
     """

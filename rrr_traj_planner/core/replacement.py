@@ -79,7 +79,7 @@ class Takeover:
         return q, qd, qdd
 
 
-def replacement(takeover: Takeover, points: MotionPoints, origin: float,
+def replacement(takeover: Takeover, points: MotionPoints, origin_ns: int,
                 least_lead: float) -> DesiredMotion:
     """
     Return what the arm follows from now on.
@@ -90,8 +90,8 @@ def replacement(takeover: Takeover, points: MotionPoints, origin: float,
         The present.
     points : MotionPoints
         The new trajectory.
-    origin : float
-        What the points' times are counted from [s].
+    origin_ns : int
+        What the points' times are counted from [ns].
     least_lead : float
         A first point no further ahead than this is due now [s].
 
@@ -101,9 +101,9 @@ def replacement(takeover: Takeover, points: MotionPoints, origin: float,
         Starting from the command, or already under way where the command is on it.
 
     """
-    motion = through(points, origin)
+    motion = through(points, origin_ns)
     if motion.start > takeover.now + least_lead:
-        return through(_led_in(takeover, points, takeover.now - origin), origin)
+        return through(_led_in(takeover, points, takeover.now - motion.origin), origin_ns)
     if _is_on(takeover, motion, points):
         return motion
     i = _first_in_reach(takeover, motion)
@@ -180,7 +180,7 @@ def _joined(takeover: Takeover, motion: DesiredMotion, i: int) -> DesiredMotion:
     return DesiredMotion(
         np.append(time, motion.knots[i:]),
         np.concatenate((np.stack(join, axis=-1)[np.newaxis], motion.coefficients[i:])),
-        motion.final, motion.origin)
+        motion.final, motion.origin_ns)
 
 
 def _gone_to(takeover: Takeover, target: Array) -> DesiredMotion:
@@ -197,4 +197,4 @@ def _gone_to(takeover: Takeover, target: Array) -> DesiredMotion:
     move = np.stack(hermite(T, (stop.final, zero, zero), (target, zero, zero)), axis=-1)
     return DesiredMotion(np.append(stop.knots, stop.knots[-1] + T),
                          np.concatenate((stop.coefficients, move[np.newaxis])),
-                         target, stop.origin)
+                         target, stop.origin_ns)

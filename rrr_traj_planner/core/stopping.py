@@ -26,6 +26,7 @@ from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_points import MotionPoints
+from rrr_traj_planner.core.nanoseconds import nanoseconds
 
 # No stop is quicker than this, however wide the limits [s].
 LEAST_TIME = 0.01
@@ -142,7 +143,7 @@ def _stop(q: Array, qd: Array, qdd: Array, times: Array, now: float) -> DesiredM
                  + qdd * T * (s ** 2 / 2.0 - 2.0 / 3.0 * s ** 3 + s ** 4 / 4.0)),
         qd * (1.0 - 3.0 * s ** 2 + 2.0 * s ** 3) + qdd * T * (s - 2.0 * s ** 2 + s ** 3),
         6.0 * qd / T * (s ** 2 - s) + qdd * (1.0 - 4.0 * s + 3.0 * s ** 2), known, known)
-    return through(points, now)
+    return through(points, nanoseconds(now))
 
 
 def _torque_excess(motion: DesiredMotion, limits: JointLimits, model: RobotModel) -> float:

@@ -22,10 +22,9 @@ from collections.abc import Sequence
 from builtin_interfaces.msg import Duration, Time
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.incoming_trajectory import IncomingPoint, IncomingTrajectory
+from rrr_traj_planner.core.nanoseconds import SECOND
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
-
-SECOND = 1_000_000_000  # ns
 
 # No disturbance is larger: more only serves to blow up the simulation [N m].
 LARGEST_DISTURBANCE = 1e5

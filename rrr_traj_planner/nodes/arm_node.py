@@ -24,13 +24,13 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rrr_traj_planner.core.controlled_arm import ControlledArm
 from rrr_traj_planner.core.errors import RrrPlannerError
-from rrr_traj_planner.core.incoming_trajectory import check_trajectory, motion_points, NANOSECOND
+from rrr_traj_planner.core.incoming_trajectory import check_trajectory, motion_points
+from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.tolerances import TIMED_OUT
 from rrr_traj_planner.nodes.arm_messages import (
     disturbance_torque,
     incoming_trajectory,
     JointStateMessage,
-    SECOND,
 )
 from rrr_traj_planner.nodes.arm_time import FollowedClock, OwnClock
 from rrr_traj_planner.nodes.arm_view import ArmView
@@ -124,8 +124,7 @@ class SimulatedArm(Node):
             self.get_logger().error(str(error))
             return
         started = trajectory.stamp != 0
-        origin = (trajectory.stamp - self._time.epoch) * NANOSECOND if started else arm.time
-        arm.follow(points, origin)
+        arm.follow(points, trajectory.stamp - self._time.epoch if started else arm.now)
         self.get_logger().info(
             f'following {len(trajectory.points)} points, until '
             f'{arm.motion.end - arm.time:.3f} s from now')
@@ -167,7 +166,7 @@ class SimulatedArm(Node):
         pace.restart(monotonic_ns(), self._time.now(), paused=request.data)
         response.success = True
         response.message = (f'time {"stands" if request.data else "goes on"} at '
-                            f'{self._time.now() * NANOSECOND:.3f} s')
+                            f'{self._time.now() / SECOND:.3f} s')
         return response
 
     def _single_step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -175,7 +174,7 @@ class SimulatedArm(Node):
         if isinstance(self._time, OwnClock) and self._time.pace.paused:
             self._time.advance(1)
             response.success = True
-            response.message = f'stepped to {self._time.now() * NANOSECOND:.3f} s'
+            response.message = f'stepped to {self._time.now() / SECOND:.3f} s'
         else:
             response.success = False
             response.message = (NOT_THE_CLOCK if self._time.pace is None

@@ -22,8 +22,8 @@ from time import monotonic_ns
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from rrr_traj_planner.core.controlled_arm import ControlledArm
-from rrr_traj_planner.core.incoming_trajectory import NANOSECOND
-from rrr_traj_planner.core.pacing import Pace, SECOND
+from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.core.pacing import Pace
 
 # A tick simulates at most this much time, or takes so long where the arm is the clock, so that
 # services are answered meanwhile [ns].
@@ -60,7 +60,7 @@ class FollowedClock:
 
     def __init__(self, node: Node, arm: ControlledArm, publish: Callable[[], None]) -> None:
         self._node, self._arm, self._publish = node, arm, publish
-        self._step = round(arm.settings.step * SECOND)  # ns
+        self._step = arm.settings.step_ns
         self.epoch = self.now()  # when the arm's own time began [ns]
         self._published = -1     # the time that was published last [ns]
 
@@ -70,7 +70,7 @@ class FollowedClock:
 
     def reached(self) -> int:
         """Return the time of the arm's last step [ns]."""
-        return self.epoch + self._arm.steps * self._step
+        return self.epoch + self._arm.now
 
     def tick(self) -> None:
         """Bring the arm up to now, and publish how it is, once for each time."""
@@ -88,14 +88,14 @@ class FollowedClock:
         behind = self.now() - self.reached()
         if not -JUMP_BACK <= behind <= JUMP_AHEAD:
             self._node.get_logger().warning(
-                f'the clock jumped by {behind * NANOSECOND:+.3f} s; the arm and what it follows '
+                f'the clock jumped by {behind / SECOND:+.3f} s; the arm and what it follows '
                 'go on from there', throttle_duration_sec=WARNING_PERIOD)
             self.epoch += behind
             return
         self._arm.advance(max(min(behind, MOST_AT_ONCE) // self._step, 0))
         if behind > MOST_AT_ONCE + LATE:
             self._node.get_logger().warning(
-                f'simulated time is {(behind - MOST_AT_ONCE) * NANOSECOND:.3f} s behind the '
+                f'simulated time is {(behind - MOST_AT_ONCE) / SECOND:.3f} s behind the '
                 'clock: this machine is busy or too slow', throttle_duration_sec=WARNING_PERIOD)
 
 
@@ -119,7 +119,7 @@ class OwnClock:
     def __init__(self, node: Node, arm: ControlledArm, publish: Callable[[], None],
                  factor: float) -> None:
         self._node, self._arm, self._publish = node, arm, publish
-        self._step = round(arm.settings.step * SECOND)  # ns
+        self._step = arm.settings.step_ns
         self._slice = 1  # steps from publication to publication
         self.epoch = 0
         self.pace = Pace(factor, monotonic_ns())
@@ -127,7 +127,7 @@ class OwnClock:
 
     def now(self) -> int:
         """Return simulated time [ns]."""
-        return self._arm.steps * self._step
+        return self._arm.now
 
     reached = now
 

@@ -24,7 +24,8 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.event_search import event, PAST
 from rrr_traj_planner.core.friction import Friction
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.pacing import Pace, SECOND
+from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.core.pacing import Pace
 from rrr_traj_planner.core.soft_stops import SoftStops
 from rrr_traj_planner.core.step_stability import check_step
 

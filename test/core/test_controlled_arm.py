@@ -62,16 +62,40 @@ def test_arm_holds_its_position_without_sag():
 
 def test_trajectory_is_followed_and_its_end_held():
     arm, end = ControlledArm(SETTINGS, Q), Q + (0.3, -0.3, 0.4)
-    arm.follow(quintic(Q, end, 2.0), arm.time)
+    arm.follow(quintic(Q, end, 2.0), arm.now)
     # A torque held for a step lags by half of one: jerk * step / 2 / wn^2 = 5e-6 rad.
     assert followed(arm, 2.5) < 1e-5
     np.testing.assert_allclose(arm.state, (*end, 0.0, 0.0, 0.0), atol=1e-6)
 
 
+@pytest.mark.parametrize('step', [0.001, 0.0005, 0.0001])
+def test_arm_is_on_the_new_segment_exactly_at_every_point(step):
+    """The velocity of a line is that of the segment that begins, from its first nanosecond on."""
+    arm = ControlledArm(replace(SETTINGS, step=step), Q)
+    arm.advance(137)
+    n, slopes = 100, np.tile([0.1, -0.1], 50)[:, np.newaxis] * np.ones(3)
+    q = Q + 0.01 * np.vstack((np.zeros(3), np.cumsum(slopes, axis=0)))
+    arm.follow(MotionPoints(0.01 * np.arange(n + 1), q, *np.zeros((2, n + 1, 3)),
+                            *np.zeros((2, n + 1))), arm.now)
+    for slope in slopes:
+        np.testing.assert_allclose(arm.desired[3:6], slope, rtol=1e-9)
+        arm.advance(round(0.01 / step))
+    assert arm.desired[3:6] == (0.0,) * 3
+
+
+def test_acceleration_at_the_end_is_not_held():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(MotionPoints([1.0], [Q + 0.1], np.zeros((1, 3)), np.full((1, 3), -2.0),
+                            [True], [True]), 0)
+    arm.advance(2000)
+    # held, it would leave the arm 2 / 30^2 = 2.2 mrad off
+    np.testing.assert_allclose(arm.state, (*(Q + 0.1), 0.0, 0.0, 0.0), atol=1e-6)
+
+
 def test_time_in_one_go_equals_time_in_steps():
     arms = [ControlledArm(SETTINGS, Q) for _ in range(2)]
     for arm in arms:
-        arm.follow(quintic(Q, Q + 0.2, 1.0), 0.0)
+        arm.follow(quintic(Q, Q + 0.2, 1.0), 0)
     arms[0].advance(700)
     for _ in range(70):
         arms[1].advance(10)
@@ -88,7 +112,7 @@ def test_tracking_error_decays():
 
 def test_torques_saturate_at_the_effort_limits():
     arm = ControlledArm(SETTINGS, Q)
-    arm.follow(quintic(Q, Q + 0.5, 0.2), 0.0)
+    arm.follow(quintic(Q, Q + 0.5, 0.2), 0)
     limit = SETTINGS.limits.max_effort
     peak = np.zeros(3)
     for _ in range(200):
@@ -100,7 +124,7 @@ def test_torques_saturate_at_the_effort_limits():
 
 def test_hold_stops_the_arm_and_keeps_it_there():
     arm = ControlledArm(SETTINGS, Q)
-    arm.follow(quintic(Q, Q + (0.3, -0.3, 0.4), 2.0), 0.0)
+    arm.follow(quintic(Q, Q + (0.3, -0.3, 0.4), 2.0), 0)
     arm.advance(1000)
     arm.hold()
     assert arm.motion.end - arm.time < 1.0
@@ -110,7 +134,7 @@ def test_hold_stops_the_arm_and_keeps_it_there():
 
 def test_reset_puts_the_arm_back_at_rest():
     arm = ControlledArm(SETTINGS, Q)
-    arm.follow(quintic(Q, Q + 0.3, 2.0), 0.0)
+    arm.follow(quintic(Q, Q + 0.3, 2.0), 0)
     arm.advance(1000)
     arm.reset(Q)
     assert arm.state == (*Q, 0.0, 0.0, 0.0)
@@ -121,10 +145,10 @@ def test_reset_puts_the_arm_back_at_rest():
 
 def test_replacement_mid_way_does_not_jump():
     arm = ControlledArm(SETTINGS, Q)
-    arm.follow(quintic(Q, Q + (0.3, -0.3, 0.4), 2.0), 0.0)
+    arm.follow(quintic(Q, Q + (0.3, -0.3, 0.4), 2.0), 0)
     arm.advance(900)
     before = np.array(arm.desired)
-    arm.follow(quintic(Q, Q + (-0.1, 0.2, 0.1), 3.0), arm.time)
+    arm.follow(quintic(Q, Q + (-0.1, 0.2, 0.1), 3.0), arm.now)
     np.testing.assert_allclose(arm.desired[:6], before[:6], atol=1e-9)
     assert followed(arm, 4.5) < 1e-4
     np.testing.assert_allclose(arm.state[:3], Q + (-0.1, 0.2, 0.1), atol=1e-6)
@@ -132,7 +156,7 @@ def test_replacement_mid_way_does_not_jump():
 
 def test_stops_bound_an_arm_that_is_sent_beyond_them():
     arm = ControlledArm(SETTINGS, Q)
-    arm.follow(quintic(Q, (-0.2, 1.1, 0.2), 2.0), 0.0)
+    arm.follow(quintic(Q, (-0.2, 1.1, 0.2), 2.0), 0)
     arm.advance(3000)
     assert (arm.state[0], arm.state[3]) == (0.0, 0.0)
 

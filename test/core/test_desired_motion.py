@@ -22,6 +22,7 @@ from rrr_traj_planner.core.desired_motion import holding, through
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
 from rrr_traj_planner.core.motion_points import MotionPoints, segment_orders
+from rrr_traj_planner.core.nanoseconds import SECOND
 
 N = 6
 
@@ -85,15 +86,35 @@ def test_any_order_of_times_gives_the_same_states():
 def test_origin_moves_the_motion_and_keeps_its_precision():
     # Points a nanosecond apart, 1e9 s ahead: absolute times would coincide.
     points = MotionPoints([0.0, 1e-9, 2e-9], np.eye(3), *np.zeros((2, 3, 3)), *([[False] * 3] * 2))
-    motion = through(points, origin=1e9)
+    motion = through(points, origin_ns=10 ** 18)
     assert motion.start == 1e9
     assert motion(1e9 + 1.0)[:3] == (0.0, 0.0, 1.0)
     points = random_points(True, True)
-    np.testing.assert_allclose(through(points, 2.0)(3.5), through(points)(1.5), atol=1e-12)
+    np.testing.assert_allclose(through(points, 2 * SECOND)(3.5), through(points)(1.5), atol=1e-12)
+
+
+def test_exactly_at_a_point_the_segment_that_begins_there_is_in_force():
+    """As joint_trajectory_controller compares: times in nanoseconds, t0 <= now < t1."""
+    rng = np.random.default_rng(11)
+    for origin in (0, 123456789, 1_764_000_000_123_456_789):
+        gaps = rng.integers(1, 20_000_000, 500)
+        times = np.cumsum(gaps).tolist()
+        q = rng.uniform(-1.0, 1.0, (500, 3))
+        motion = through(MotionPoints(np.array([n / SECOND for n in times]), q,
+                                      *np.zeros((2, 500, 3)), *([[False] * 500] * 2)), origin)
+        slopes = np.diff(q, axis=0) / (gaps[1:, np.newaxis] / SECOND)
+        for i, n in enumerate(times[:-1]):
+            at = motion.command(origin + n)
+            assert at[:3] == tuple(q[i])
+            np.testing.assert_allclose(at[3:6], slopes[i], rtol=1e-6)
+            if i and gaps[i] > 1:
+                before = motion.command(origin + n - 1)
+                np.testing.assert_allclose(before[3:6], slopes[i - 1], rtol=1e-6)
+        assert motion.command(origin + times[-1]) == (*q[-1], *(0.0,) * 6)
 
 
 def test_one_point_is_held():
-    motion = holding((1.0, 2.0, 3.0), time=4.0)
+    motion = holding((1.0, 2.0, 3.0), now=4 * SECOND)
     assert motion.start == motion.end == 4.0
     assert motion(0.0) == motion(9.0) == (1.0, 2.0, 3.0, *(0.0,) * 6)
 

@@ -24,10 +24,12 @@ from rrr_traj_planner.core.desired_motion import through
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_points import MotionPoints
+from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.replacement import replacement, Takeover
 
 LIMITS = JointLimits(max_effort=np.full(3, inf))
 NOW, LEAD = 50.0, 0.001
+NOW_NS = nanoseconds(NOW)
 Q = np.array([0.5, 1.0, 0.2])
 REST = (*Q, *(0.0,) * 6)
 MOVING = (*Q, 0.3, -0.4, 0.5, 0.2, 0.1, -0.3)
@@ -76,27 +78,27 @@ def assert_smooth(command, motion, limits=LIMITS):
 
 def test_trajectory_that_begins_at_the_command_is_followed_exactly():
     points = smooth_points(Q)
-    motion, expected = replacement(takeover(), points, NOW, LEAD), through(points, NOW)
+    motion, expected = replacement(takeover(), points, NOW_NS, LEAD), through(points, NOW_NS)
     for t in np.linspace(NOW, NOW + 3.1, 777):
         assert motion(t) == expected(t)
 
 
 def test_line_that_begins_at_the_command_is_followed_as_a_line():
     points = positions_only((0.0, Q), (2.0, Q + 0.4))
-    motion = replacement(takeover(), points, NOW, LEAD)
+    motion = replacement(takeover(), points, NOW_NS, LEAD)
     np.testing.assert_allclose(motion(NOW + 0.5)[:3], Q + 0.1, atol=1e-12)
 
 
 def test_first_point_ahead_is_led_into_by_what_it_carries():
     ahead = Q + 0.1
-    linear = replacement(takeover(MOVING), single(ahead, 1.0), NOW, LEAD)
+    linear = replacement(takeover(MOVING), single(ahead, 1.0), NOW_NS, LEAD)
     np.testing.assert_allclose(linear(NOW + 0.5)[:3], Q + 0.05, atol=1e-12)
     known = MotionPoints([1.0], [ahead], *np.zeros((2, 1, 3)), [True], [True])
-    quintic = replacement(takeover(MOVING), known, NOW, LEAD)
+    quintic = replacement(takeover(MOVING), known, NOW_NS, LEAD)
     np.testing.assert_allclose(quintic(NOW), MOVING, atol=1e-12)
     np.testing.assert_allclose(quintic(NOW + 1.0 - 1e-12), (*ahead, *(0.0,) * 6), atol=1e-9)
     cubic = replacement(takeover(MOVING), MotionPoints(
-        [1.0], [ahead], *np.zeros((2, 1, 3)), [True], [False]), NOW, LEAD)
+        [1.0], [ahead], *np.zeros((2, 1, 3)), [True], [False]), NOW_NS, LEAD)
     np.testing.assert_allclose(cubic(NOW)[:6], MOVING[:6], atol=1e-12)
     np.testing.assert_allclose(cubic(NOW + 0.5)[:3], 0.5 * (Q + ahead) + np.array(
         MOVING[3:6]) / 8.0, atol=1e-12)  # Hermite's cubic at its middle
@@ -105,7 +107,7 @@ def test_first_point_ahead_is_led_into_by_what_it_carries():
 @pytest.mark.parametrize('command', [REST, MOVING])
 def test_trajectory_elsewhere_is_joined_on_schedule(command):
     points = smooth_points(Q + 0.02)
-    motion, target = replacement(takeover(command), points, NOW, LEAD), through(points, NOW)
+    motion, target = replacement(takeover(command), points, NOW_NS, LEAD), through(points, NOW_NS)
     assert_smooth(command, motion)
     assert motion.end == target.end
     joined = NOW + float(motion.knots[1])
@@ -116,19 +118,19 @@ def test_trajectory_elsewhere_is_joined_on_schedule(command):
 
 def test_join_is_the_earliest_within_limits():
     points = smooth_points(Q + 0.02)
-    motion = replacement(takeover(), points, NOW, LEAD)
+    motion = replacement(takeover(), points, NOW_NS, LEAD)
     i = len(points.times) - len(motion.knots) + 1  # the point that is joined
     early = MotionPoints(*(getattr(points, f)[i - 1:] for f in (
         'times', 'positions', 'velocities', 'accelerations', 'has_velocity',
         'has_acceleration')))
-    earlier = replacement(takeover(), early, NOW, LEAD)  # led into, whatever the limits
+    earlier = replacement(takeover(), early, NOW_NS, LEAD)  # led into, whatever the limits
     _, states = commands(earlier, NOW + float(points.times[i - 1]))
     assert np.abs(states[:, 6:]).max() > 1.0
 
 
 def test_trajectory_under_way_is_joined_where_it_is_now():
     points = smooth_points(Q)
-    motion = replacement(takeover(), points, NOW - 0.5, LEAD)
+    motion = replacement(takeover(), points, nanoseconds(NOW - 0.5), LEAD)
     assert_smooth(REST, motion)
     assert motion.end == NOW + 2.5
     assert motion.knots[1] > 0.5
@@ -137,7 +139,7 @@ def test_trajectory_under_way_is_joined_where_it_is_now():
 def test_single_point_due_now_is_gone_to_at_a_rate_within_the_limits():
     target = Q + np.array([0.4, -0.3, 0.2])
     for command in (REST, MOVING):
-        motion = replacement(takeover(command), single(target, 0.0), NOW, LEAD)
+        motion = replacement(takeover(command), single(target, 0.0), NOW_NS, LEAD)
         assert_smooth(command, motion)
         np.testing.assert_allclose(motion(motion.end + 0.1), (*target, *(0.0,) * 6), atol=1e-12)
         assert motion.end - NOW < 4.0
@@ -145,20 +147,20 @@ def test_single_point_due_now_is_gone_to_at_a_rate_within_the_limits():
 
 def test_trajectory_out_of_reach_on_schedule_ends_at_its_last_point_late():
     points = positions_only((0.0, Q + 1.0), (0.1, Q + 0.9))
-    motion = replacement(takeover(), points, NOW, LEAD)
+    motion = replacement(takeover(), points, NOW_NS, LEAD)
     assert_smooth(REST, motion)
     assert motion.end > NOW + 0.1
     assert motion(motion.end + 0.1)[:3] == tuple(Q + 0.9)
 
 
 def test_first_point_within_a_step_is_due_now():
-    motion = replacement(takeover(), single(Q + 0.4, 1e-9), NOW, LEAD)
+    motion = replacement(takeover(), single(Q + 0.4, 1e-9), NOW_NS, LEAD)
     assert_smooth(REST, motion)
 
 
 def test_arm_without_limits_still_does_not_jump():
     free = JointLimits(*(np.full(3, x) for x in (-inf, inf, inf, inf, inf, inf)))
-    motion = replacement(takeover(limits=free), single(Q + 0.4, 0.0), NOW, LEAD)
+    motion = replacement(takeover(limits=free), single(Q + 0.4, 0.0), NOW_NS, LEAD)
     np.testing.assert_allclose(motion(NOW), REST, atol=1e-12)
     assert motion(motion.end + 1.0)[:3] == tuple(Q + 0.4)
 
@@ -168,5 +170,6 @@ def test_random_replacements_never_jump():
     for _ in range(100):
         command = (*Q, *rng.uniform(-0.8, 0.8, 6))
         points = smooth_points(Q + rng.uniform(-0.3, 0.3, 3), n=31)
-        motion = replacement(takeover(command), points, NOW - rng.uniform(0.0, 2.5), LEAD)
+        origin_ns = nanoseconds(NOW - rng.uniform(0.0, 2.5))
+        motion = replacement(takeover(command), points, origin_ns, LEAD)
         assert_smooth(command, motion)

@@ -76,7 +76,7 @@ def test_payload_that_it_does_not_know_sags_by_its_weight_over_the_stiffness():
 
 def test_payload_changes_while_the_arm_moves_and_its_energy_is_entered():
     arm = arm_with()
-    arm.follow(line(Q + 0.3, 1.0), 0.0)
+    arm.follow(line(Q + 0.3, 1.0), 0)
     arm.advance(500)
     state, before = arm.state, arm.energy
     arm.configure(replace(arm.settings, payload=Payload(3.0)))
@@ -93,7 +93,7 @@ def test_payload_changes_while_the_arm_moves_and_its_energy_is_entered():
 def test_friction_holds_the_arm_within_the_error_that_it_leaves():
     coulomb = np.array([10.0, 20.0, 15.0])
     arm = arm_with(friction=Friction(np.zeros(3), coulomb))
-    arm.follow(line(Q + 0.3, 1.0), 0.0)
+    arm.follow(line(Q + 0.3, 1.0), 0)
     arm.advance(3000)
     rest = arm.state
     assert rest[3:] == (0.0, 0.0, 0.0)
@@ -118,7 +118,7 @@ def test_disturbance_deflects_the_arm_by_its_torque_over_the_stiffness_until_it_
 
 def test_controller_sees_what_the_encoders_tell():
     arm = arm_with(encoder=EncoderSettings(resolution=1e-3))
-    arm.follow(line(Q + 0.3, 1.0), 0.0)
+    arm.follow(line(Q + 0.3, 1.0), 0)
     seen = []
     for _ in range(1500):
         arm.advance(1)
@@ -143,7 +143,7 @@ def test_encoder_noise_is_the_same_again_with_its_seed():
 
 def test_blocked_arm_gives_its_trajectory_up_and_holds_where_it_is():
     arm = arm_with(tolerances=Tolerances(trajectory=(0.1, 0.1, 0.1)))
-    arm.follow(line(Q + (0.6, 0.0, 0.0), 1.0), 0.0)
+    arm.follow(line(Q + (0.6, 0.0, 0.0), 1.0), 0)
     arm.disturbance = PUSH
     while not arm.violation:
         assert arm.time < 2.0
@@ -158,7 +158,7 @@ def test_blocked_arm_gives_its_trajectory_up_and_holds_where_it_is():
 
 def test_hold_after_a_violation_is_where_the_arm_was_measured():
     arm = arm_with(tolerances=Tolerances(trajectory=(0.05, 0.0, 0.0)))
-    arm.follow(line(Q + (0.6, 0.0, 0.0), 1.0), 0.0)
+    arm.follow(line(Q + (0.6, 0.0, 0.0), 1.0), 0)
     arm.disturbance = PUSH
     for _ in range(1000):
         before = arm.state
@@ -179,7 +179,7 @@ def test_tolerance_is_not_watched_while_the_arm_holds():
 
 def test_goal_that_is_missed_is_given_up_after_its_time():
     arm = arm_with(tolerances=Tolerances(goal=(1e-3, 0.0, 0.0), goal_time=0.5))
-    arm.follow(line(Q + (0.3, 0.0, 0.0), 1.0), 0.0)
+    arm.follow(line(Q + (0.3, 0.0, 0.0), 1.0), 0)
     arm.disturbance = (60.0, 0.0, 0.0)
     arm.advance(1500)
     assert arm.violation == ()
@@ -189,7 +189,7 @@ def test_goal_that_is_missed_is_given_up_after_its_time():
 
 def test_goal_that_is_met_is_kept():
     arm = arm_with(tolerances=Tolerances((0.01,) * 3, (1e-3,) * 3, goal_time=0.2))
-    arm.follow(line(Q + (0.3, 0.0, 0.0), 1.0), 0.0)
+    arm.follow(line(Q + (0.3, 0.0, 0.0), 1.0), 0)
     arm.advance(3000)
     assert arm.violation == ()
     np.testing.assert_allclose(arm.state[:3], Q + (0.3, 0.0, 0.0), atol=1e-6)
@@ -204,7 +204,7 @@ def test_features_that_are_off_change_no_bit():
         payload=Payload(0.0, True), tolerances=Tolerances(trajectory=(9.0,) * 3),
         encoder=EncoderSettings(seed=3, bandwidth=50.0), soft_stops=SoftStops(0.0, 1.0, 1.0))]
     for arm in arms:
-        arm.follow(points, 0.0)
+        arm.follow(points, 0)
         arm.advance(1500)  # the second one's every step is watched: it takes the long way
     assert arms[0].state == arms[1].state
     assert arms[0].torque == arms[1].torque
@@ -227,7 +227,7 @@ def test_energy_balance_closes_over_ten_seconds_with_everything_on(seed, width):
             arm.configure(replace(settings, payload=Payload(rng.uniform(4.0, 8.0))))
         if n % 4 == 0:
             goal = rng.uniform((-0.3, -0.3, -3.3), (1.9, 3.4, 6.5))  # some beyond the stops
-            arm.follow(line(goal, 1.7), arm.time)
+            arm.follow(line(goal, 1.7), arm.now)
         arm.disturbance = tuple(rng.uniform(-40.0, 40.0, 3).tolist())
         arm.advance(500)
         saturated |= bool((np.abs(arm.torque) == settings.limits.max_effort).any())
@@ -242,12 +242,12 @@ def test_energy_balance_closes_over_ten_seconds_with_everything_on(seed, width):
 
 def test_reset_opens_a_new_account():
     arm = arm_with(friction=Friction([1.0] * 3, [1.0] * 3))
-    arm.follow(line(Q + 0.3, 1.0), 0.0)
+    arm.follow(line(Q + 0.3, 1.0), 0)
     arm.advance(500)
     assert arm.ledger.dissipated > 0.0
     arm.reset(Q)
     assert arm.ledger.supplied == arm.ledger.dissipated == 0.0
-    arm.follow(line(Q + 0.3, 1.0), arm.time)
+    arm.follow(line(Q + 0.3, 1.0), arm.now)
     before = arm.energy
     arm.advance(500)
     assert arm.ledger.supplied - arm.ledger.dissipated == pytest.approx(
