@@ -61,7 +61,7 @@ class DesiredMotion:
 
     @property
     def origin(self) -> float:
-        """What the knots are counted from [s]."""
+        """Return what the knots are counted from [s]."""
         return self.origin_ns / SECOND
 
     @property

@@ -93,11 +93,20 @@ class SimulatedArm(Node):
         ) if config.publish_clock else FollowedClock(self, self._arm, self._publish)
         # The timer runs on steady time, whatever the clock does.
         self._timer = self.create_timer(
-            self._time.period(config.publish_rate, config.real_time_factor), self._time.tick,
-            clock=Clock(clock_type=ClockType.STEADY_TIME))
+            self._period(config), self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _tick(self) -> None:
+        """Let time go on, and say what has gone wrong meanwhile."""
+        self._time.tick()
+        self._view.moved(self._arm.seen[:3])
+        if self._arm.violation:
+            log = self.get_logger()
+            for line in self._arm.violation:
+                (log.warning if line == TIMED_OUT else log.error)(line)
+            self._arm.violation = ()
 
     def _publish(self) -> None:
-        """Publish how the arm is, and say what has gone wrong."""
+        """Publish how the arm is."""
         stamp, arm = self._time.reached(), self._arm
         q, w = arm.seen[:3], arm.seen[3:]
         self._view.moved(q)
@@ -106,11 +115,6 @@ class SimulatedArm(Node):
             [a - b for a, b in zip(desired, q)], [a - b for a, b in zip(desired[3:6], w)]))
         for (message, publish), values in zip(self._publishers_of_states, fields):
             publish(message.filled(stamp, *values))
-        if arm.violation:
-            log = self.get_logger()
-            for line in arm.violation:
-                (log.warning if line == TIMED_OUT else log.error)(line)
-            arm.violation = ()
 
     def _follow(self, message: JointTrajectory) -> None:
         """Take over a trajectory, or say why not and go on as before."""
@@ -172,7 +176,7 @@ class SimulatedArm(Node):
     def _single_step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Simulate one step while time stands."""
         if isinstance(self._time, OwnClock) and self._time.pace.paused:
-            self._time.advance(1)
+            self._time.single_step()
             response.success = True
             response.message = f'stepped to {self._time.now() / SECOND:.3f} s'
         else:
@@ -185,8 +189,16 @@ class SimulatedArm(Node):
         """Put changed parameters in force."""
         self._arm.configure(config.settings)
         self._view.configure(config)
-        self._timer.timer_period_ns = round(
-            SECOND * self._time.period(config.publish_rate, config.real_time_factor))
+        self._timer.timer_period_ns = round(SECOND * self._period(config))
+
+    def _period(self, config: ArmConfig) -> float:
+        """Put rates in force, and return the wall time between ticks [s]."""
+        step, rate = config.settings.step, config.publish_rate
+        if rate * step > 1.0 + 1e-9:
+            self.get_logger().warning(
+                f'publish_rate is {rate:g} Hz, but the arm has a new state every physics_step, '
+                f'{step:g} s: states are published at {1.0 / step:g} Hz')
+        return self._time.period(rate, config.real_time_factor)
 
 
 def _positions(q: Any) -> str:

@@ -25,7 +25,7 @@ from rrr_traj_planner.core.event_search import event, PAST
 from rrr_traj_planner.core.friction import Friction
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.nanoseconds import SECOND
-from rrr_traj_planner.core.pacing import Pace
+from rrr_traj_planner.core.pacing import Pace, Schedule
 from rrr_traj_planner.core.soft_stops import SoftStops
 from rrr_traj_planner.core.step_stability import check_step
 
@@ -115,6 +115,27 @@ def test_pause_is_not_made_up_for():
     assert pace.due(50 * SECOND, 3 * SECOND, SECOND) == 3 * SECOND
     pace.restart(60 * SECOND, 3 * SECOND, paused=False)
     assert pace.due(61 * SECOND, 3 * SECOND, SECOND) == 4 * SECOND
+
+
+# Schedule
+
+
+@pytest.mark.parametrize('rate', [1.0, 5.0, 29.97, 200.0, 333.3, 1000.0])
+def test_instants_come_at_the_rate_that_is_asked_for(rate):
+    schedule, came = Schedule(rate, 7 * SECOND), []
+    for now in range(7 * SECOND, 17 * SECOND, SECOND // 1000):  # steps of 1 ms
+        if schedule.passed(now):
+            came.append(now - 7 * SECOND)
+    assert came[0] == 0
+    assert abs(len(came) - 10.0 * rate) <= 1.0
+    late = np.array(came) - np.arange(len(came)) * SECOND / rate
+    assert ((late > -1.0) & (late <= SECOND // 1000)).all()
+
+
+def test_instants_between_two_looks_come_as_one():
+    schedule = Schedule(100.0, 0)
+    assert schedule.passed(SECOND) and schedule.next == SECOND + SECOND // 100
+    assert not schedule.passed(SECOND)
 
 
 # Step

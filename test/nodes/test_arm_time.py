@@ -19,6 +19,8 @@ from __future__ import annotations
 from arm_in_ros import Arm, at, GOAL, rest_to_rest, SECOND, stamp
 from builtin_interfaces.msg import Time
 import numpy as np
+import pytest
+from rcl_interfaces.msg import Log
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool
 
@@ -57,6 +59,50 @@ def test_arm_runs_as_fast_as_it_can_and_answers_meanwhile(ros):
     assert arm.trigger('hold').success
     last = clock_time(clock.wait_for(lambda m: clock_time(m) >= first + 20 * SECOND))
     assert ros.node.get_clock().now().nanoseconds - begun < last - first
+
+
+@pytest.mark.parametrize(('rate', 'spread'), [(1.0, 0), (5.0, 0), (333.3, STEP), (1000.0, 0)])
+def test_any_rate_keeps_an_outside_clock_s_time(ros, rate, spread):
+    """At 20 times real time: 4 s of the clock take 0.2 s."""
+    publisher = ros.node.create_publisher(Clock, '/clock', 10)
+    arm = Arm(ros, use_sim_time=True, publish_rate=rate)
+    now = [100 * SECOND]
+
+    def joined():
+        return arm.actual.messages and stamp(arm.actual.messages[-1]) >= 100 * SECOND
+
+    def advance():
+        if joined():
+            now[0] = min(now[0] + SECOND // 10, 104 * SECOND)
+        publisher.publish(Clock(clock=Time(sec=now[0] // SECOND, nanosec=now[0] % SECOND)))
+
+    ros.node.create_timer(0.005, advance)
+    arm.actual.wait_for(lambda m: stamp(m) > 103 * SECOND - SECOND // 10)
+    gaps = np.diff([stamp(m) for m in arm.actual.messages[1:]])
+    assert np.abs(gaps[gaps < 2.0 * SECOND / rate] - SECOND / rate).max(initial=0.0) <= spread + 1
+
+
+def test_seldom_published_states_are_on_time(ros):
+    arm = Arm(ros, publish_rate=5.0)
+    first = stamp(arm.actual.wait_for())
+    arm.actual.wait_for(lambda m: stamp(m) >= first + SECOND // 2)
+    gaps = np.diff([stamp(m) for m in arm.actual.messages])
+    assert gaps.tolist() == [SECOND // 5] * 3
+
+
+def test_clock_is_published_often_however_seldom_states_are(ros):
+    clock = ros.listen(Clock, '/clock')
+    Arm(ros, publish_clock=True, publish_rate=1.0, real_time_factor=4.0)
+    clock.wait_for(lambda m: clock_time(m) >= SECOND)
+    gaps = np.diff([clock_time(m) for m in clock.messages])
+    assert np.median(gaps) == SECOND // 100
+
+
+def test_rate_that_no_step_can_keep_is_told(ros):
+    log = ros.listen(Log, '/rosout')
+    Arm(ros, publish_rate=200.0, physics_step=0.01)
+    text = log.wait_for(lambda m: 'publish_rate' in m.msg).msg
+    assert 'publish_rate is 200 Hz' in text and 'at 100 Hz' in text
 
 
 def test_time_stands_and_goes_in_single_steps(ros):
