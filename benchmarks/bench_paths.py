@@ -28,6 +28,7 @@ from path_tasks import path_task, PLANNERS, task_path
 from peers import both, GRID_POINTS, torque_of
 from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.path_trajectory import ArmPath
+from rrr_traj_planner.core.postures import Posture
 from rrr_traj_planner.core.workspace_check import check_workspace
 from rrr_traj_planner.planners.followable import followable
 from rrr_traj_planner.planners.path_timing import fastest_along, PathTask
@@ -155,8 +156,8 @@ def _arm_path(task: Task) -> ArmPath:
         return plan(task.model, task.limits, task.request).trajectory.arm_path
     except RrrPlannerError:
         path = task_path(task, task.request.via_points)
-        joints = check_workspace(task.model, task.limits, path, task.request.elbow)
-        return ArmPath(task.model, task.limits, path, task.request.elbow, joints.start)
+        joints = check_workspace(task.model, task.limits, path, Posture(task.request.elbow))
+        return ArmPath(task.model, task.limits, path, Posture(task.request.elbow), joints.start)
 
 
 def _timed(task: Task, arm_path: ArmPath) -> float:

@@ -28,11 +28,13 @@ from rrr_traj_planner.core.errors import (
     LimitViolationError,
     UnreachableError,
 )
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics, wrap_into_limits
+from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
 from rrr_traj_planner.core.joint_path import joint_path
+from rrr_traj_planner.core.joint_ranges import whole_turns
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.largest_radii import largest_radii
 from rrr_traj_planner.core.path_trajectory import ArmPath
+from rrr_traj_planner.core.postures import Posture
 from rrr_traj_planner.core.workspace_check import check_workspace
 from rrr_traj_planner.planners.request import PlanningRequest
 from soak_tasks import random_arm, random_limits
@@ -83,8 +85,8 @@ def gravity_share(task: Task, tips: np.ndarray) -> float:
     UnreachableError or LimitViolationError is raised where the arm cannot follow it.
     """
     path = task_path(task, tips)
-    joints = check_workspace(task.model, task.limits, path, task.request.elbow)
-    arm_path = ArmPath(task.model, task.limits, path, task.request.elbow, joints.start)
+    joints = check_workspace(task.model, task.limits, path, Posture(task.request.elbow))
+    arm_path = ArmPath(task.model, task.limits, path, Posture(task.request.elbow), joints.start)
     knots = np.concatenate((path.via_s, path.joins))
     q = arm_path(np.union1d(np.linspace(0.0, path.length, PLACES), knots)).q
     return float((np.abs(gravity_torque(task.model, q)) / task.limits.max_effort).max())
@@ -116,8 +118,8 @@ def _finished(kind: str, task: Task, tips: np.ndarray) -> Task | None:
     if kind == 'repeated point':
         request = replace(request, via_points=tips[np.sort(np.append(np.arange(len(tips)), 1))])
     if kind == 'start state':
-        start = wrap_into_limits(
-            inverse_kinematics(task.model, tips[0], request.elbow), limits)
+        start = inverse_kinematics(task.model, tips[0], request.elbow)
+        start = start + whole_turns(start[np.newaxis], limits)
         request = replace(request, start=start, via_points=tips[1:])
     return replace(task, limits=limits, request=request)
 
@@ -173,7 +175,8 @@ def _is_free(task: Task, a: np.ndarray, b: np.ndarray) -> bool:
     p = np.linspace(a, b, LOOKS)
     rest = np.zeros_like(p)
     try:
-        q = joint_path(task.model, task.limits, (p, rest, rest, rest), task.request.elbow).q
+        q = joint_path(task.model, task.limits, (p, rest, rest, rest),
+                       Posture(task.request.elbow)).q
     except (UnreachableError, LimitViolationError):
         return False
     return bool((np.abs(gravity_torque(task.model, q)) <= HELD * task.limits.max_effort).all())

@@ -20,7 +20,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from rrr_traj_planner.core.dynamics import gravity_torque
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics, wrap_into_limits
+from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
+from rrr_traj_planner.core.joint_ranges import whole_turns
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
@@ -114,8 +115,8 @@ def is_usable(model: RobotModel, limits: JointLimits, q: np.ndarray, elbow: str,
     """Return whether a pose can be held, and its tip's position gives it back."""
     if not (np.abs(gravity_torque(model, q)) <= HOLDABLE * np.asarray(effort)).all():
         return False
-    back = wrap_into_limits(inverse_kinematics(
-        model, forward_kinematics(model, q), elbow, q), limits, q)
+    back = inverse_kinematics(model, forward_kinematics(model, q), elbow, q)
+    back = back + whole_turns(back[np.newaxis], limits, q)
     return bool(np.abs(back - q).max() < SAME_POSE)
 
 

@@ -19,6 +19,8 @@ from reprlib import Repr
 _shortened = Repr()
 _shortened.maxstring = 60
 
+MOST_DIGITS = 17  # tell any two floats apart
+
 
 class RrrPlannerError(Exception):
     """
@@ -91,6 +93,10 @@ class LimitViolationError(RrrPlannerError):
         self.limit = limit
 
 
+class JointRangeError(LimitViolationError):
+    """A joint that would be out of its range of positions."""
+
+
 class TimingError(RrrPlannerError):
     """
     No timing within the limits, for the durations that were asked for.
@@ -132,3 +138,30 @@ def quoted(text: str) -> str:
 
     """
     return _shortened.repr(str(text))
+
+
+def told_apart(value: float, *bounds: float, digits: int = 6) -> tuple[str, ...]:
+    """
+    Return a value and its bounds for an error's message, with digits enough to see them differ.
+
+    Parameters
+    ----------
+    value : float
+        The value.
+    *bounds : float
+        What it is compared with.
+    digits : int
+        Significant digits where they suffice.
+
+    Returns
+    -------
+    tuple of str
+        The value and each bound, all with the same number of significant digits.
+
+    """
+    numbers = (value, *bounds)
+    for count in range(digits, MOST_DIGITS):
+        texts = tuple(f'{float(x):.{count}g}' for x in numbers)
+        if all(text != texts[0] for text, x in zip(texts[1:], bounds) if x != value):
+            return texts
+    return tuple(f'{float(x):.{MOST_DIGITS}g}' for x in numbers)

@@ -49,6 +49,31 @@ def forward_kinematics(model: RobotModel, q: ArrayLike) -> Array:
     return np.stack((np.cos(q[..., 0]) * r, np.sin(q[..., 0]) * r, model.d1 + h), axis=-1)
 
 
+def radial_distance(model: RobotModel, q: ArrayLike) -> Array:
+    """
+    Return how far the tip is from joint axis 1, in the direction to which joint 1 turns the arm.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q : array_like, shape (..., 3)
+        Joint positions [rad].
+
+    Returns
+    -------
+    ndarray, shape (...)
+        Distance [m], negative where the arm reaches over its shoulder.
+
+    Raises
+    ------
+    InvalidInputError
+        If the shape is wrong.
+
+    """
+    return _reach_and_height(model, joint_values('q', q))[0]
+
+
 def jacobian(model: RobotModel, q: ArrayLike) -> Array:
     """
     Return the matrix that maps joint velocities to the tip's velocity (5.18).

@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.inverse_kinematics import Elbow
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.postures import Elbow, Posture
 
 
 class JointPath(NamedTuple):
@@ -35,15 +35,21 @@ class JointPath(NamedTuple):
 
 
 class PathPoints(NamedTuple):
-    """Positions of the tip and their first three derivatives by arc length, shape (n, 3)."""
+    """
+    Positions of the tip and their first three derivatives by arc length, shape (n, 3).
+
+    Where a piece of the path lies in a vertical plane through joint axis 1, the plane's azimuth is
+    given too: joint 1 stands still on it, whether or not it meets the axis.
+    """
 
     p: Array     # [m]
     dp: Array    # [1]
     ddp: Array   # [1/m]
     dddp: Array  # [1/m^2]
+    plane: Array | None = None  # [rad], shape (n,); NaN elsewhere
 
 
-def unlimited_joint_path(model: RobotModel, points: PathPoints, elbow: Elbow) -> JointPath:
+def unlimited_joint_path(model: RobotModel, points: PathPoints, posture: Posture) -> JointPath:
     """
     Return joint positions along a path wherever joint 1 begins, in no range.
 
@@ -53,8 +59,8 @@ def unlimited_joint_path(model: RobotModel, points: PathPoints, elbow: Elbow) ->
         The arm.
     points : PathPoints
         In the path's order, none singular.
-    elbow : {'up', 'down'}
-        The branch.
+    posture : Posture
+        The posture; where the path crosses joint axis 1, at its beginning.
 
     Returns
     -------
@@ -62,11 +68,11 @@ def unlimited_joint_path(model: RobotModel, points: PathPoints, elbow: Elbow) ->
         Joint positions and derivatives.
 
     """
-    found = joint_path_but_turns(model, points, elbow)
+    found = joint_path_but_turns(model, points, posture)
     return found._replace(q=np.unwrap(found.q, axis=0))
 
 
-def joint_path_but_turns(model: RobotModel, points: PathPoints, elbow: Elbow) -> JointPath:
+def joint_path_but_turns(model: RobotModel, points: PathPoints, posture: Posture) -> JointPath:
     """
     Return joint positions along a path, of each as many whole turns as it happens.
 
@@ -76,8 +82,8 @@ def joint_path_but_turns(model: RobotModel, points: PathPoints, elbow: Elbow) ->
         The arm.
     points : PathPoints
         In any order, none singular.
-    elbow : {'up', 'down'}
-        The branch.
+    posture : Posture
+        The posture; where the path crosses joint axis 1, at its beginning.
 
     Returns
     -------
@@ -86,9 +92,13 @@ def joint_path_but_turns(model: RobotModel, points: PathPoints, elbow: Elbow) ->
 
     """
     turn, radial = _about_axis(points)
-    z = np.array(radial), np.stack([x[:, 2] for x in points])
+    if points.plane is not None:
+        _stand_still(points, points.plane, turn, radial)
+    if posture.shoulder == 'back':
+        turn[0], radial = turn[0] + pi, [-x for x in radial]
+    z = np.array(radial), np.stack([x[:, 2] for x in points[:4]])
     z[1][0] -= model.d1
-    upper, fore = _in_plane(model, np.stack(z, axis=1), elbow)
+    upper, fore = _in_plane(model, np.stack(z, axis=1), posture.elbow)
     # The forearm's direction in the plane is theta_2 + theta_3 - 90 deg.
     third = [f - u for f, u in zip(fore, upper)]
     third[0] = third[0] + pi / 2
@@ -99,10 +109,12 @@ def _about_axis(points: PathPoints) -> tuple[list[Array], list[Array]]:
     """Return theta_1 and the distance from joint axis 1, each with three derivatives."""
     theta = np.arctan2(points.p[:, 1], points.p[:, 0])
     r = np.hypot(points.p[:, 0], points.p[:, 1])
+    if points.plane is not None:  # which is used instead, on the axis itself too
+        r = np.where(np.isfinite(points.plane), 1.0, r)
     c, s = points.p[:, 0] / r, points.p[:, 1] / r
     # Each derivative in the axes that turn with joint 1: outward and around.
     (u1, t1), (u2, t2), (u3, t3) = (
-        (c * d[:, 0] + s * d[:, 1], c * d[:, 1] - s * d[:, 0]) for d in points[1:])
+        (c * d[:, 0] + s * d[:, 1], c * d[:, 1] - s * d[:, 0]) for d in points[1:4])
     w = t1 / r
     r1 = u1
     w1 = (t2 - 2.0 * r1 * w) / r
@@ -110,6 +122,19 @@ def _about_axis(points: PathPoints) -> tuple[list[Array], list[Array]]:
     w2 = (t3 + w * (r * w ** 2 - 3.0 * r2) - 3.0 * r1 * w1) / r
     r3 = u3 + 3.0 * r1 * w ** 2 + 3.0 * r * w * w1
     return [theta, w, w1, w2], [r, r1, r2, r3]
+
+
+def _stand_still(points: PathPoints, plane: Array, turn: list[Array],
+                 radial: list[Array]) -> None:
+    """Enter theta_1 and the signed distance from joint axis 1 where joint 1 stands still."""
+    at = np.flatnonzero(np.isfinite(plane))
+    theta = plane[at]
+    turn[0][at] = theta
+    for rate in turn[1:]:
+        rate[at] = 0.0
+    for r, x in zip(radial, points[:4]):
+        assert x is not None
+        r[at] = np.cos(theta) * x[at, 0] + np.sin(theta) * x[at, 1]
 
 
 def _in_plane(model: RobotModel, z: Array, elbow: Elbow) -> tuple[list[Array], list[Array]]:

@@ -24,19 +24,19 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.cartesian_path import CartesianPath
-from rrr_traj_planner.core.inverse_kinematics import Elbow
-from rrr_traj_planner.core.joint_path import whole_turns
+from rrr_traj_planner.core.joint_ranges import whole_turns
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_torque import maximum_over_time
 from rrr_traj_planner.core.path_kinematics import (
     joint_path_but_turns,
     JointPath,
-    PathPoints,
     unlimited_joint_path,
 )
 from rrr_traj_planner.core.piecewise import JointProfile
+from rrr_traj_planner.core.postures import Posture
 from rrr_traj_planner.core.trajectory import Peaks, times_within, Trajectory
 
 STEPS_PER_PIECE = 24   # of the path, at which whole turns of the joints are remembered
@@ -49,7 +49,7 @@ BEFORE = 1e-9          # s before a knot, where what steps there still has its o
 @dataclass(frozen=True, eq=False)
 class ArmPath:
     """
-    A path of the tip as one arm follows it, on one elbow branch.
+    A path of the tip as one arm follows it, in one posture.
 
     Parameters
     ----------
@@ -59,18 +59,24 @@ class ArmPath:
         Whose ranges say how many whole turns each joint has made.
     path : CartesianPath
         The path, within the workspace and the ranges.
-    elbow : {'up', 'down'}
-        The branch.
-    previous : ndarray, shape (3,), optional
-        Joint positions [rad] that the start is to be near to, where several turns fit.
+    posture : Posture
+        The posture.
+    start : ndarray, shape (3,), optional
+        As in `whole_turns`.
 
     """
 
     model: RobotModel
     limits: JointLimits
     path: CartesianPath
-    elbow: Elbow
-    previous: Array | None = None
+    posture: Posture
+    start: Array | None = None
+
+    @cached_property
+    def _planes(self) -> AxisPlanes:
+        """Where joint 1 stands still in a plane with its axis."""
+        return axis_planes(
+            self.path, self.posture, 0.0 if self.start is None else float(self.start[0]))
 
     @cached_property
     def _turning(self) -> tuple[Array, Array]:
@@ -79,8 +85,8 @@ class ArmPath:
         share = np.arange(STEPS_PER_PIECE) / STEPS_PER_PIECE
         s = (knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * share).ravel()
         s = np.concatenate((s, knots[-1:]))
-        q = unlimited_joint_path(self.model, PathPoints(*self.path(s)), self.elbow).q
-        return s, q + whole_turns(q, self.limits, self.previous)
+        q = unlimited_joint_path(self.model, self._planes.points(self.path, s), self.posture).q
+        return s, q + whole_turns(q, self.limits, self.start)
 
     def __call__(self, s: Array, left: bool | BoolArray = False) -> JointPath:
         """
@@ -99,7 +105,8 @@ class ArmPath:
             Of shape (m, 3) each.
 
         """
-        found = joint_path_but_turns(self.model, PathPoints(*self.path(s, left)), self.elbow)
+        found = joint_path_but_turns(
+            self.model, self._planes.points(self.path, s, left), self.posture)
         places, known = self._turning
         near = np.stack([np.interp(s, places, known[:, j]) for j in range(3)], axis=1)
         turns = np.round((near - found.q) / (2.0 * np.pi))

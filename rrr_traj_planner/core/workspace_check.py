@@ -20,20 +20,27 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.cartesian_path import CartesianPath
-from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
-from rrr_traj_planner.core.inverse_kinematics import Elbow, RANGE_TOLERANCE
-from rrr_traj_planner.core.joint_path import LEAST_CLEARANCE, out_of_range, whole_turns
+from rrr_traj_planner.core.errors import (
+    LimitViolationError,
+    StartStateError,
+    told_apart,
+    UnreachableError,
+)
+from rrr_traj_planner.core.joint_path import LEAST_CLEARANCE
+from rrr_traj_planner.core.joint_ranges import out_of_range, range_error, whole_turns
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.path_kinematics import PathPoints, unlimited_joint_path
+from rrr_traj_planner.core.path_kinematics import unlimited_joint_path
+from rrr_traj_planner.core.postures import Posture
 
 STEPS_PER_PIECE = 24
 # The tip may pass joint axis 1 no nearer than this: joint 1 would turn as good as at once.
 AXIS_CLEARANCE = 1e-6   # m
 FINEST = 1e-8           # m^2 or rad: no excursion larger than this is missed
+START_TOLERANCE = 1e-9  # rad, by which a path may begin beside the start state
 ROUNDS = 40
 SHORTEST_STEP = 1e-9    # m
 # A second derivative between two samples is taken to be no more than this times theirs.
@@ -51,8 +58,8 @@ class JointRange(NamedTuple):
     most: Array
 
 
-def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath, elbow: Elbow,
-                    previous: ArrayLike | None = None) -> JointRange:
+def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
+                    posture: Posture, start: Array | None = None) -> JointRange:
     """
     Refuse a path that leaves the workspace or a joint's range anywhere, between points too.
 
@@ -67,10 +74,10 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
         Ranges of the joints.
     path : CartesianPath
         The path.
-    elbow : {'up', 'down'}
-        The branch.
-    previous : array_like, shape (3,), optional
-        Joint positions before the path, for the choice of whole turns [rad].
+    posture : Posture
+        The posture; where the path crosses joint axis 1 in a plane with it, at its beginning.
+    start : ndarray, shape (3,), optional
+        Joint positions in which the path is to begin [rad]; None: in any whole turns.
 
     Returns
     -------
@@ -83,15 +90,19 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
         If the path leaves the workspace: with the worst place, in metres along the path, and
         the nearest via point's number.
     LimitViolationError
-        If the path crosses joint axis 1, or a joint leaves its range; likewise.
+        If the path crosses joint axis 1 where joint 1 would have to turn, or a joint leaves its
+        range; likewise.
+    StartStateError
+        If the path does not begin in the given joint positions.
 
     """
+    planes = axis_planes(path, posture, _free_angle(limits, start))
     _check_reach(model, path)
-    _check_axis(model, path)
+    _check_axis(model, path, planes)
     grid = _grid(path)
     for _ in range(ROUNDS):
-        joints = unlimited_joint_path(model, PathPoints(*path(grid)), elbow)
-        from_left = unlimited_joint_path(model, PathPoints(*path(grid, left=True)), elbow)
+        joints = unlimited_joint_path(model, planes.points(path, grid), posture)
+        from_left = unlimited_joint_path(model, planes.points(path, grid, left=True), posture)
         h = np.diff(grid)[:, np.newaxis]
         bend = np.maximum(np.abs(joints.ddq[:-1]), np.abs(from_left.ddq[1:]))
         room = 0.125 * SAFETY * h ** 2 * bend
@@ -104,8 +115,10 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
         if not open_.any():
             break
         grid = np.sort(np.concatenate((grid, 0.5 * (grid[:-1] + grid[1:])[open_])))
-    q = joints.q + whole_turns(joints.q, limits, previous)
-    _check_ranges(model, limits, path, elbow, grid, q)
+    q = joints.q + whole_turns(joints.q, limits, start)
+    if start is not None:
+        _check_start(model, start, q[0])
+    _check_ranges(model, limits, path, posture, grid, q)
     return JointRange(q[0], q.min(axis=0), q.max(axis=0))
 
 
@@ -131,6 +144,23 @@ def place_on_path(path: CartesianPath, s: float) -> tuple[str, int]:
                          len(path.via_s) - 2))
     return (f'at {s:.6g} m along the path, between via points {before} and {before + 1} '
             f'(nearest: {nearest})', nearest)
+
+
+def _free_angle(limits: JointLimits, start: Array | None) -> float:
+    """Return where joint 1 is if any angle will do [rad]."""
+    low, high = limits.min_position[0], limits.max_position[0]
+    return float(np.clip(0.0, low, high) if start is None else start[0])
+
+
+def _check_start(model: RobotModel, start: Array, q: Array) -> None:
+    """Refuse a path that begins in other joint positions than those of the arm."""
+    gap = np.abs(start - q)
+    if gap.max() > START_TOLERANCE:
+        j = int(gap.argmax())
+        at, wanted = told_apart(start[j], q[j])
+        raise StartStateError(
+            f'start state: {model.joint_names[j]} is at {at} rad with the tip on joint axis 1, '
+            f'and would have to turn at once to {wanted} rad, where the path leaves the axis')
 
 
 def _grid(path: CartesianPath) -> Array:
@@ -185,48 +215,49 @@ def _check_reach(model: RobotModel, path: CartesianPath) -> None:
         squared, bend = _two_sided(path, s, shoulder, slice(3))
         return (least + LEAST_CLEARANCE) ** 2 - squared, bend
 
-    for quantity, what in ((beyond, f"beyond the arm's reach of {most:.6g} m"),
-                           (inside, f'nearer than the arm can fold, {least:.6g} m')):
+    for quantity, bound, what in ((beyond, most, "beyond the arm's reach of"),
+                                  (inside, least, 'nearer than the arm can fold,')):
         excess, s = _peak(quantity, _grid(path))
         if excess > 0.0:
             W = float(np.linalg.norm(path(s)[0] - shoulder))
             place, nearest = place_on_path(path, s)
             miss = max(W - most, least - W)
-            if miss <= 0.0:
-                what = 'on the edge of the workspace, where the arm could not move on'
+            distance, limit = told_apart(W, bound)
+            where = (f'{what} {limit} m' if miss > 0.0 else
+                     'on the edge of the workspace, where the arm could not move on')
             raise UnreachableError(
-                f'{place}: the tip would be {W:.6g} m from the shoulder, {what}',
+                f'{place}: the tip would be {distance} m from the shoulder, {where}',
                 distance=max(miss, 0.0), via_point=nearest)
 
 
-def _check_axis(model: RobotModel, path: CartesianPath) -> None:
-    """Refuse a path that crosses joint axis 1."""
+def _check_axis(model: RobotModel, path: CartesianPath, planes: AxisPlanes) -> None:
+    """Refuse a path that crosses joint axis 1 elsewhere than in planes with it."""
+    grid = _grid(path)
+    grid = grid[(grid >= planes.before) & (grid <= planes.after)]
+    if not len(grid):
+        return
+
     def near(s: Array) -> tuple[Array, Array]:
         squared, bend = _two_sided(path, s, (0.0, 0.0, 0.0), slice(2))
         return AXIS_CLEARANCE ** 2 - squared, bend
 
-    excess, s = _peak(near, _grid(path))
+    excess, s = _peak(near, grid)
     if excess > 0.0:
         place, nearest = place_on_path(path, s)
         distance = float(np.hypot(*path(s)[0][:2]))
+        passed, bound = told_apart(distance, AXIS_CLEARANCE, digits=3)
         raise LimitViolationError(
-            f'{place}: the tip would pass joint axis 1 at {distance:.3g} m, where '
-            f'{model.joint_names[0]} would have to turn at once; least {AXIS_CLEARANCE:.3g} m',
+            f'{place}: the tip would pass joint axis 1 at {passed} m, where '
+            f'{model.joint_names[0]} would have to turn at once; least {bound} m',
             model.joint_names[0], distance, AXIS_CLEARANCE, via_point=nearest)
 
 
-def _check_ranges(model: RobotModel, limits: JointLimits, path: CartesianPath, elbow: Elbow,
-                  s: Array, q: Array) -> None:
+def _check_ranges(model: RobotModel, limits: JointLimits, path: CartesianPath,
+                  posture: Posture, s: Array, q: Array) -> None:
     """Refuse joint positions out of range, told of the worst."""
-    outside = out_of_range(q, limits)
-    if not outside.any():
+    if not out_of_range(q, limits).any():
         return
-    low, high = limits.min_position, limits.max_position
-    excess = np.maximum(low - q, q - high) - RANGE_TOLERANCE
+    excess = np.maximum(limits.min_position - q, q - limits.max_position)
     i, j = (int(k) for k in np.unravel_index(excess.argmax(), excess.shape))
     place, nearest = place_on_path(path, float(s[i]))
-    value = float(q[i, j])
-    raise LimitViolationError(
-        f'{place}: {model.joint_names[j]} would be at {value:.6g} rad (elbow {elbow}), limits '
-        f'{low[j]:.6g} to {high[j]:.6g} rad', model.joint_names[j], value,
-        float(low[j] if value < low[j] else high[j]), via_point=nearest)
+    raise range_error(model, limits, place, j, float(q[i, j]), posture, nearest)

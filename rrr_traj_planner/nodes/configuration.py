@@ -25,7 +25,7 @@ import numpy as np
 from rrr_traj_planner.core.arm_settings import ArmSettings
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.control import ControllerGains
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.incoming_trajectory import Rules
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
@@ -56,6 +56,7 @@ class PlannerConfig:
     default_planner_id: str
     sample_period: float
     max_deviation: float
+    start_state_tolerance: float
     max_tip_speed: float  # 0: none
     steady_zones: bool
     half_transition: float
@@ -93,8 +94,8 @@ class PlannerConfig:
             half_transition=values['poly_414.t_acc'],
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
-                'max_deviation', 'max_tip_speed', 'steady_zones', 'planning_time_limit',
-                'max_points', 'max_via_points')})
+                'max_deviation', 'start_state_tolerance', 'max_tip_speed', 'steady_zones',
+                'planning_time_limit', 'max_points', 'max_via_points')})
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,8 +199,9 @@ def joint_limits(values: Values) -> JointLimits:
     for joint in joints:
         low, high = values[f'{joint}.min_position'], values[f'{joint}.max_position']
         if low >= high:
-            raise InvalidInputError(f'{joint}.min_position is {low:g} rad, must be below '
-                                    f'{joint}.max_position, {high:g} rad')
+            least, most = told_apart(low, high)
+            raise InvalidInputError(f'{joint}.min_position is {least} rad, must be below '
+                                    f'{joint}.max_position, {most} rad')
     largest = {
         f'max_{name}': np.array([
             values[f'{joint}.max_{name}'] if values[f'{joint}.has_{name}_limits'] else inf
@@ -214,7 +216,8 @@ def _initial_positions(values: Values, limits: JointLimits) -> Array:
     q = finite_array('initial_positions', values['initial_positions'], (3,))
     for i, (x, low, high) in enumerate(zip(q, limits.min_position, limits.max_position)):
         if not low <= x <= high:
+            at, least, most = told_apart(x, low, high)
             raise InvalidInputError(
-                f'initial_positions[{i}] is {x:g} rad, must be in [{low:g}, {high:g}] rad, the '
+                f'initial_positions[{i}] is {at} rad, must be in [{least}, {most}] rad, the '
                 f"limits of {values['joint_names'][i]}")
     return q

@@ -33,7 +33,7 @@ from rclpy.parameter import parameter_value_to_python
 from rclpy.time import Time
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
-from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics, wrap_into_limits
+from rrr_traj_planner.core.postures import posture_of
 from rrr_traj_planner.nodes.bag import Bag
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.configuration_files import Task
@@ -205,8 +205,7 @@ class Client(Node):
             return
         request = plan_request(replace(
             task, via_points=task.via_points[:1], segment_durations=np.array([])))
-        request.elbow = min(ELBOWS, key=lambda elbow: np.abs(wrap_into_limits(inverse_kinematics(
-            config.model, task.via_points[0], elbow, q), config.limits, q) - q).max())
+        request.elbow = posture_of(config.model, q).elbow
         request.start_state.name = list(state.name)
         request.start_state.position = list(state.position)
         self._drive(self._planned(request).trajectory, 'moving to the first via point')

@@ -29,6 +29,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.interpolation import Interpolant
 from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.wireframe import skeleton
 from rrr_traj_planner.nodes.demo_client import Run
 
 COLOURS = ('#0072b2', '#d55e00', '#009e73')  # told apart by colour-blind eyes, and in print
@@ -130,8 +131,8 @@ def _space(axes: Any, run: Run) -> None:
     q = Interpolant(run.planned)(np.linspace(0.0, run.planned.duration, STEPS))[0]
     at_via = Interpolant(run.planned)(np.array(run.response.via_times))[0]
     for i, pose in enumerate(at_via):
-        axes.plot(*_links(run, pose).T, color='0.65', linewidth=2.0, marker='o', markersize=3,
-                  label='arm at via points' if i == 0 else None)
+        axes.plot(*zip(*skeleton(run.config.model, pose)), color='0.65', linewidth=2.0, marker='o',
+                  markersize=3, label='arm at via points' if i == 0 else None)
     axes.plot(*forward_kinematics(model, q).T, color='#cc79a7', linewidth=2.0, label='planned')
     driven = run.recorded.positions[run.recorded.times >= 0.0]
     axes.plot(*forward_kinematics(model, driven).T, **DRIVEN, label='driven')
@@ -169,15 +170,6 @@ def _number(axes: Any, points: Array) -> None:
         direction = away[nearest] / distance[nearest] if len(same) < len(seen) else (1.0, 0.0)
         axes.annotate(', '.join(map(str, same)), point, 10.0 * np.array(direction),
                       textcoords='offset points', ha='center', va='center')
-
-
-def _links(run: Run, q: Array) -> Array:
-    """Return base, shoulder, elbow and tip [m]."""
-    model = run.config.model
-    reach = model.a2 * np.cos(q[1])
-    elbow = (reach * np.cos(q[0]), reach * np.sin(q[0]), model.d1 + model.a2 * np.sin(q[1]))
-    return np.array([(0.0, 0.0, 0.0), (0.0, 0.0, model.d1), elbow,
-                     forward_kinematics(model, q)])
 
 
 def _tracking(axes: Any, run: Run) -> None:

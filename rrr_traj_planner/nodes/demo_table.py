@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.interpolation import Interpolant
-from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics, wrap_into_limits
+from rrr_traj_planner.core.inverse_kinematics import nearest_solution
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limit_check import TOLERANCE
 from rrr_traj_planner.core.path_deviation import distance_from_polyline
@@ -198,8 +198,7 @@ def planned_errors(run: Run) -> list[float]:
     errors = []
     for point, t in zip(run.task.via_points, run.response.via_times):
         q = run.planned.positions[np.abs(run.planned.times - t).argmin()]
-        errors.append(min(_distance(run, q, inverse_kinematics(
-            run.config.model, point, elbow, q)) for elbow in ELBOWS))
+        errors.append(float(np.abs(nearest_solution(run.config.model, point, q) - q).max()))
     return errors
 
 
@@ -266,10 +265,6 @@ def _peaks(run: Run) -> list[tuple[str, Array, Array, str]]:
             ('acceleration', np.array(r.peak_acceleration), limits.max_acceleration, 'rad/s^2'),
             ('jerk', np.array(r.peak_jerk), limits.max_jerk, 'rad/s^3'),
             ('torque', np.array(r.peak_effort), limits.max_effort, 'N m')]
-
-
-def _distance(run: Run, q: Array, other: Array) -> float:
-    return float(np.abs(wrap_into_limits(other, run.config.limits, q) - q).max())
 
 
 def _limit(value: float) -> str:

@@ -24,7 +24,7 @@ from collections.abc import Sequence
 from math import inf, isfinite, pi
 from typing import Any, NamedTuple
 
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
 from rrr_traj_planner.core.model import JOINT_NAMES, RobotModel
 from rrr_traj_planner.core.sampling import MOST_POINTS
@@ -111,6 +111,8 @@ TABLE: tuple[Row, ...] = (
         1e-4, 10.0, nodes=(PLANNER,)),
     Row('max_deviation', 0.05, 'how far a Cartesian path may leave the polyline where a request '
         'says nothing', 'm', 1e-6, 100.0, nodes=(PLANNER,)),
+    Row('start_state_tolerance', 0.01, 'a start state no further outside the ranges is on their '
+        'end, one no faster is at rest', 'rad, rad/s', 0.0, 1.0, nodes=(PLANNER,)),
     Row('max_tip_speed', 0.0, 'bound on the speed of the tip along a Cartesian path; 0: none',
         'm/s', 0.0, 100.0, nodes=(PLANNER,)),
     Row('steady_zones', False, 'whether the tip keeps its speed on the curved zones of a '
@@ -237,7 +239,8 @@ def check_value(row: Row, value: Any) -> None:
             index = f'[{i}]' if is_list else ''
             unit = f' {row.unit}' if row.unit else ''
             raise InvalidInputError(
-                f'{row.name}{index} is {x:g}{unit}, must be {row.item_text}')
+                f'{row.name}{index} is {told_apart(x, row.low, row.high)[0]}{unit}, must be '
+                f'{row.item_text}')
 
 
 def _shown(value: Any) -> str:

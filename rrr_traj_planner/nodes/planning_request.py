@@ -27,8 +27,8 @@ from rrr_traj_planner.core.errors import (
     quoted,
     RrrPlannerError,
     StartStateError,
+    told_apart,
 )
-from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.planners.request import never, PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
@@ -39,9 +39,6 @@ LEAST_SAMPLE_PERIOD, LARGEST_SAMPLE_PERIOD = 1e-4, 10.0
 
 # Zones of less cannot be told from corners; more is beyond any arm [m].
 LEAST_DEVIATION, LARGEST_DEVIATION = 1e-6, 100.0
-
-# A start state that moves faster is not at rest [rad/s]; encoders' noise stays below it.
-AT_REST = 0.01
 
 
 class FrameError(RrrPlannerError):
@@ -83,15 +80,15 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
                                 'allowed (max_via_points)')
     period = message.sample_period
     if period != 0.0 and not LEAST_SAMPLE_PERIOD <= period <= LARGEST_SAMPLE_PERIOD:
-        raise InvalidInputError(f'sample_period is {period:g} s, must be 0 or in '
-                                f'[{LEAST_SAMPLE_PERIOD:g}, {LARGEST_SAMPLE_PERIOD:g}] s')
+        raise InvalidInputError('sample_period is {} s, must be 0 or in [{}, {}] s'.format(
+            *told_apart(period, LEAST_SAMPLE_PERIOD, LARGEST_SAMPLE_PERIOD)))
     deviation = message.max_deviation
     if deviation != 0.0 and not LEAST_DEVIATION <= deviation <= LARGEST_DEVIATION:
-        raise InvalidInputError(f'max_deviation is {deviation:g} m, must be 0 or in '
-                                f'[{LEAST_DEVIATION:g}, {LARGEST_DEVIATION:g}] m')
+        raise InvalidInputError('max_deviation is {} m, must be 0 or in [{}, {}] m'.format(
+            *told_apart(deviation, LEAST_DEVIATION, LARGEST_DEVIATION)))
     return PlanningRequest(
         via_points=_tip_positions(message.via_points.poses),
-        start=_start(message.start_state, config.model),
+        start=_start(message.start_state, config),
         planner_id=message.planner_id or config.default_planner_id,
         segment_durations=np.array(message.segment_durations) if len(
             message.segment_durations) else None,
@@ -102,7 +99,8 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
         max_deviation=_unless_zero(deviation, config.max_deviation),
         max_tip_speed=_unless_zero(config.max_tip_speed, inf), steady_zones=config.steady_zones,
         half_transition=config.half_transition,
-        should_stop=should_stop, max_points=config.max_points)
+        should_stop=should_stop, max_points=config.max_points,
+        start_state_tolerance=config.start_state_tolerance)
 
 
 def _unless_zero(value: float, default: float) -> float:
@@ -129,8 +127,9 @@ def _blamed(error: InvalidInputError, via_point: int) -> InvalidInputError:
     return error
 
 
-def _start(state: JointState, model: RobotModel) -> Array | None:
+def _start(state: JointState, config: PlannerConfig) -> Array | None:
     """Return the start's joint positions in the arm's order, None where there is no start."""
+    model, tolerance = config.model, config.start_state_tolerance
     names, position, velocity = list(state.name), list(state.position), list(state.velocity)
     if not (names or position or velocity):
         return None
@@ -149,8 +148,9 @@ def _start(state: JointState, model: RobotModel) -> Array | None:
     for name, x, v in zip(model.joint_names, q, qd):
         if not isfinite(x):
             raise StartStateError(f'start state: {name} is at {x:g} rad, must be finite')
-        if not abs(v) <= AT_REST:
+        if not abs(v) <= tolerance:
+            _, most, speed = told_apart(abs(v), tolerance, v)
             raise StartStateError(
-                f'start state: {name} moves at {v:g} rad/s, must be at rest (no faster than '
-                f'{AT_REST:g} rad/s)')
+                f'start state: {name} moves at {speed} rad/s, must be at rest (no faster than '
+                f'start_state_tolerance, {most} rad/s)')
     return np.array(q)

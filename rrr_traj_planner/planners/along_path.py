@@ -84,8 +84,8 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
 
 def _timing(task: CartesianTask, path: CartesianPath) -> PathTask:
     """Return what is asked of the timing, after a check that the arm can follow the path."""
-    joints = check_workspace(task.model, task.limits, path, task.elbow, task.start)
-    arm_path = ArmPath(task.model, task.limits, path, task.elbow, joints.start)
+    joints = check_workspace(task.model, task.limits, path, task.posture, task.start)
+    arm_path = ArmPath(task.model, task.limits, path, task.posture, joints.start)
     limits, cruise = followable(
         task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
     return PathTask(

@@ -16,34 +16,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.axis_planes import passes_axis
 from rrr_traj_planner.core.errors import (
     ConvergenceError,
     InvalidInputError,
-    LimitViolationError,
     RrrPlannerError,
-    StartStateError,
     TimingError,
-    UnreachableError,
 )
 from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
-from rrr_traj_planner.core.inverse_kinematics import Elbow, elbow_of, ELBOWS
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limit_check import violations
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_torque import peak_torque, stretch_for_torque
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.postures import Posture
 from rrr_traj_planner.core.sampling import sample
 from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.least_time import check_answer_size
 from rrr_traj_planner.planners.missed_via_points import miss_note, misses
-from rrr_traj_planner.planners.registry import CartesianPlanner, planner
+from rrr_traj_planner.planners.posture_choice import (
+    first_possible,
+    joint_postures,
+    path_postures,
+)
+from rrr_traj_planner.planners.registry import CartesianPlanner, planner, Registered
 from rrr_traj_planner.planners.request import CartesianTask, JointTask, Plan, PlanningRequest
 from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 
@@ -89,18 +91,39 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
     """
     method = planner(request.planner_id)
     limits = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
-    start = None if request.start is None else check_start(model, limits, request.start)
+    start = None if request.start is None else check_start(
+        model, limits, request.start, request.start_state_tolerance)
     if method.plan_path is not None:
-        return _planned_path(method.plan_path, model, limits, request, start)
+        answer = _planned_path(method.plan_path, model, limits, request, start)
+    else:
+        answer = _planned_joints(method, model, limits, request, start)
+    if start is not None and np.abs(answer.points.positions[0] - start).max() > SAME_POINT:
+        raise ConvergenceError(
+            f'planner {request.planner_id} began at {answer.points.positions[0].tolist()} rad, '
+            f'not at the start state {start.tolist()} rad')
+    return answer
+
+
+def _planned_joints(method: Registered, model: RobotModel, limits: JointLimits,
+                    request: PlanningRequest, start: Array | None) -> Plan:
+    """Return the plan in joint space, in the first posture that can have it."""
     durations = request.segment_durations
     if durations is not None and np.isnan(durations).any() and not method.some_durations:
         raise InvalidInputError(
             f'segment_durations[{int(np.isnan(durations).argmax())}] is nan: planner '
             f'{request.planner_id} takes every duration or none')
-    q = _joint_points(model, limits, request, start, request.elbow)
+    return first_possible(
+        joint_postures(model, limits, request.via_points, start, request.elbow),
+        lambda posture: _through(method, model, limits, request, _joint_points(
+            model, limits, request, start, posture)))
+
+
+def _through(method: Registered, model: RobotModel, limits: JointLimits,
+             request: PlanningRequest, q: Array) -> Plan:
+    """Return the plan through joint positions."""
     check_answer_size(limits, request, q)
     q = _without_noise(q)
-    same = _repeated(q)
+    same, durations = _repeated(q), request.segment_durations
     if durations is not None:  # where a stay is prescribed, a point counts twice
         same &= np.isnan(durations)
         durations = None if np.isnan(durations[~same]).all() else durations[~same]
@@ -128,43 +151,27 @@ def _planned_path(method: CartesianPlanner, model: RobotModel, limits: JointLimi
     if request.segment_durations is not None:
         raise InvalidInputError(
             f'planner {request.planner_id} takes no segment_durations: its time is the least')
-    failures: list[LimitViolationError | UnreachableError] = []
-    branches: Sequence[Elbow] = (request.elbow,) if request.elbow else ELBOWS
-    if start is not None:
-        branches = (_branch_of(model, start, request.elbow),)
-    for elbow in branches:
-        try:
-            return _path_on(method, model, limits, request, start, elbow)
-        except (LimitViolationError, UnreachableError) as error:
-            failures.append(error)
-    raise failures[0]
+    return first_possible(
+        path_postures(model, request.via_points, start, request.elbow),
+        lambda posture: _path_in(method, model, limits, request, start, posture))
 
 
-def _branch_of(model: RobotModel, start: Array, asked: Elbow | None) -> Elbow:
-    """Return the branch that a start state is on: along a path of the tip there is no other."""
-    elbow = elbow_of(start)
-    if asked not in (None, elbow):
-        raise StartStateError(
-            f'the start state is on elbow branch {elbow} ({model.joint_names[2]} at '
-            f'{start[2]:.6g} rad): along a path of the tip the arm cannot come to {asked}')
-    return elbow
-
-
-def _path_on(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
-             request: PlanningRequest, start: Array | None, elbow: Elbow) -> Plan:
-    """Return the plan along a path of the tip, on one branch."""
-    q = _joint_points(model, limits, request, start, elbow)
-    check_answer_size(limits, request, q)
+def _path_in(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
+             request: PlanningRequest, start: Array | None, posture: Posture) -> Plan:
+    """Return the plan along a path of the tip, in one posture."""
     tips = request.via_points
     if start is not None:
         tips = np.vstack((forward_kinematics(model, start), tips))
     same = np.linalg.norm(np.diff(tips, axis=0), axis=1) <= SAME_TIP
     distinct = tips[np.concatenate(([True], ~same))]
-    if len(distinct) == 1:
-        return _rest(model, limits, request, q)
+    if len(distinct) == 1 or not passes_axis(tips):  # else in two postures
+        q = _joint_points(model, limits, request, start, posture)
+        check_answer_size(limits, request, q)
+        if len(distinct) == 1:
+            return _rest(model, limits, request, q)
     try:
         trajectory = method(CartesianTask(
-            model, limits, distinct, q[0], elbow, request.max_deviation, request.max_tip_speed,
+            model, limits, distinct, start, posture, request.max_deviation, request.max_tip_speed,
             request.steady_zones, request.sample_period, request.should_stop))
     except RrrPlannerError as error:
         raise _as_counted(error, same, start is not None) from error
@@ -183,9 +190,9 @@ def _as_counted(error: RrrPlannerError, same: BoolArray, started: bool) -> RrrPl
 
 
 def _joint_points(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-                  start: Array | None, elbow: Elbow | None) -> Array:
+                  start: Array | None, posture: Posture) -> Array:
     """Return joint positions of the start, if there is one, and of the via points."""
-    q = joint_via_points(model, limits, request.via_points, start, elbow)
+    q = joint_via_points(model, limits, request.via_points, start, posture)
     return q if start is None else np.vstack((start, q))
 
 

@@ -23,9 +23,10 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, number_array
 from rrr_traj_planner.core.errors import InvalidInputError, quoted
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
-from rrr_traj_planner.core.inverse_kinematics import Elbow, ELBOWS
+from rrr_traj_planner.core.joint_ranges import RANGE_TOLERANCE
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.postures import Elbow, ELBOWS, Posture
 from rrr_traj_planner.core.sampling import check_size, MOST_POINTS
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
 
@@ -58,7 +59,8 @@ class PlanningRequest:
     sample_period : float
         Time between the points of the answer [s].
     elbow : {'up', 'down'}, optional
-        Branch; None: the first that keeps the limits.
+        Branch; None: with a start, the one that it is on if the way from it can be had, else the
+        other; without, up if that keeps the limits, else down.
     max_deviation : float
         How far a Cartesian path may leave the polyline [m].
     max_tip_speed : float
@@ -71,6 +73,9 @@ class PlanningRequest:
         Asked now and then; once it answers True, the best motion so far is the answer.
     max_points : int
         How many points the answer may have; one that must have more is not planned.
+    start_state_tolerance : float
+        By how much the start may be outside a joint's range [rad]: it is then taken as on its
+        end, and the motion starts there.
 
     Raises
     ------
@@ -93,6 +98,7 @@ class PlanningRequest:
     half_transition: float = T_ACC
     should_stop: Callable[[], bool] = never
     max_points: int = MOST_POINTS
+    start_state_tolerance: float = RANGE_TOLERANCE
 
     def __post_init__(self) -> None:
         """Check every value and make the arrays read-only."""
@@ -112,6 +118,9 @@ class PlanningRequest:
             value = float(getattr(self, name))
             if not (np.isfinite(value) and value > 0.0):
                 raise InvalidInputError(f'{name} is {value} {unit}, must be positive')
+        if not 0.0 <= self.start_state_tolerance < np.inf:
+            raise InvalidInputError(f'start_state_tolerance is {self.start_state_tolerance} rad, '
+                                    'must be finite and not negative')
         if not self.max_tip_speed > 0.0:
             raise InvalidInputError(
                 f'max_tip_speed is {self.max_tip_speed} m/s, must be positive')
@@ -205,10 +214,11 @@ class CartesianTask:
         Scaled as requested.
     tips : ndarray, shape (n + 1, 3)
         Tip positions [m]; the start's is the first.
-    start : ndarray, shape (3,)
-        Joint positions [rad] at the first of them.
-    elbow : {'up', 'down'}
-        The branch on which the arm follows the path.
+    start : ndarray, shape (3,), optional
+        Joint positions [rad] at the first of them, where the motion begins; None: in the same
+        posture, with any whole turns.
+    posture : Posture
+        In which the arm follows the path.
     max_deviation : float
         How far the path may leave the polyline [m].
     max_tip_speed : float
@@ -225,8 +235,8 @@ class CartesianTask:
     model: RobotModel
     limits: JointLimits
     tips: Array
-    start: Array
-    elbow: Elbow
+    start: Array | None
+    posture: Posture
     max_deviation: float
     max_tip_speed: float
     steady_zones: bool

@@ -12,35 +12,27 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Via points in joint space: the elbow branch that keeps the limits, and holding torques."""
+"""Via points in joint space, in one posture and within the ranges; holding torques."""
 
 from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics import gravity_torque
-from rrr_traj_planner.core.errors import (
-    LimitViolationError,
-    StartStateError,
-    UnreachableError,
-)
-from rrr_traj_planner.core.inverse_kinematics import (
-    Elbow,
-    ELBOWS,
-    inverse_kinematics,
-    RANGE_TOLERANCE,
-    wrap_into_limits,
-)
+from rrr_traj_planner.core.errors import LimitViolationError, StartStateError, told_apart
+from rrr_traj_planner.core.joint_ranges import out_of_range, range_error, RANGE_TOLERANCE
+from rrr_traj_planner.core.joint_sequence import joint_sequence
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.postures import Posture
 
 HOLDING_TOLERANCE = 1e-9  # relative
 
 
 def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
-                     start: Array | None, elbow: Elbow | None) -> Array:
+                     start: Array | None, posture: Posture) -> Array:
     """
-    Return joint positions of via points, all on one elbow branch.
+    Return joint positions of via points, all in one posture.
 
     Parameters
     ----------
@@ -52,8 +44,8 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
         Tip positions [m].
     start : ndarray, shape (3,), optional
         Joint positions [rad] before the first via point.
-    elbow : {'up', 'down'}, optional
-        The branch; None: the first on which every point keeps the limits.
+    posture : Posture
+        The posture.
 
     Returns
     -------
@@ -64,25 +56,23 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
     ------
     UnreachableError
         If a point is outside the workspace.
+    JointRangeError
+        If a joint would be out of its range.
     LimitViolationError
-        If no branch keeps the limits; told of the branch that gets furthest.
+        If the motors cannot hold the arm at a point.
 
     """
-    failures: list[tuple[int, LimitViolationError]] = []
-    for branch in (elbow,) if elbow else ELBOWS:
-        q = _on_branch(model, limits, points, start, branch)
-        failure = _position_failure(model, limits, q, branch)
-        if failure is None:
-            holding = holding_failure(model, limits, q)
-            if holding is None:
-                return q
-            failures.append((0, holding))
-        else:
-            failures.append((1, failure))
-    raise min(failures, key=lambda f: f[0])[1]
+    q = joint_sequence(model, limits, points, posture, start)
+    for i, j in np.argwhere(out_of_range(q, limits)).tolist():
+        raise range_error(model, limits, f'via point {i}', j, float(q[i, j]), posture, i)
+    failure = holding_failure(model, limits, q)
+    if failure is not None:
+        raise failure
+    return q
 
 
-def check_start(model: RobotModel, limits: JointLimits, start: Array) -> Array:
+def check_start(model: RobotModel, limits: JointLimits, start: Array,
+                tolerance: float = RANGE_TOLERANCE) -> Array:
     """
     Return a start state, checked.
 
@@ -94,11 +84,13 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array) -> Array:
         Its limits.
     start : ndarray, shape (3,)
         Joint positions [rad].
+    tolerance : float
+        By how much a joint may be outside its range, for what it was seen with [rad].
 
     Returns
     -------
     ndarray, shape (3,)
-        The same, moved into range where rounding put it outside.
+        The same; a joint outside its range by no more than the tolerance is on its end.
 
     Raises
     ------
@@ -107,12 +99,13 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array) -> Array:
 
     """
     low, high = limits.min_position, limits.max_position
-    outside = (start < low - RANGE_TOLERANCE) | (start > high + RANGE_TOLERANCE)
-    if outside.any():
-        j = int(outside.argmax())
-        raise StartStateError(
-            f'start state: {model.joint_names[j]} is at {start[j]:.6g} rad, '
-            f'limits {low[j]:.6g} to {high[j]:.6g} rad')
+    room = max(tolerance, RANGE_TOLERANCE)
+    for j in np.flatnonzero((start < low - room) | (start > high + room)).tolist():
+        at, lowest, highest, *_ = told_apart(
+            start[j], low[j], high[j], low[j] - room, high[j] + room)
+        allowed = f', start_state_tolerance {room:g} rad' if room > RANGE_TOLERANCE else ''
+        raise StartStateError(f'start state: {model.joint_names[j]} is at {at} rad, limits '
+                              f'{lowest} to {highest} rad{allowed}')
     start = np.clip(start, low, high)
     failure = holding_failure(model, limits, start[np.newaxis])
     if failure is not None:
@@ -145,36 +138,32 @@ def holding_failure(model: RobotModel, limits: JointLimits,
     if not len(broken):
         return None
     i, j = map(int, broken[0])
-    needed, limit = float(torque[i, j]), float(limits.max_effort[j])
-    return LimitViolationError(
-        f'via point {i}: {model.joint_names[j]} needs {needed:.1f} N m to hold, '
-        f'limit {limit:g} N m', model.joint_names[j], needed, limit, via_point=i)
+    return holding_error(f'via point {i}:', model.joint_names[j], float(torque[i, j]),
+                         float(limits.max_effort[j]), i)
 
 
-def _on_branch(model: RobotModel, limits: JointLimits, points: Array, start: Array | None,
-               elbow: Elbow) -> Array:
-    """Return joint positions on a branch, each joint wrapped into its range if it can be."""
-    q, previous = np.empty((len(points), 3)), start
-    for i, point in enumerate(points):
-        try:
-            q[i] = wrap_into_limits(
-                inverse_kinematics(model, point, elbow, previous), limits, previous)
-        except UnreachableError as error:
-            raise UnreachableError(f'via point {i}: {error}', error.distance, i) from None
-        previous = q[i]
-    return q
+def holding_error(where: str, joint: str, torque: float, limit: float,
+                  via_point: int = -1) -> LimitViolationError:
+    """
+    Return the error of a pose in which a motor cannot hold the arm.
 
+    Parameters
+    ----------
+    where : str
+        The place, for people.
+    joint : str
+        Name of the joint.
+    torque, limit : float
+        What is needed and what there is [N m].
+    via_point : int
+        Index of the via point to blame, -1 where none is.
 
-def _position_failure(model: RobotModel, limits: JointLimits, q: Array,
-                      elbow: Elbow) -> LimitViolationError | None:
-    """Return the error of the first via point out of a joint's range."""
-    low, high = limits.min_position, limits.max_position
-    broken = np.argwhere((q < low) | (q > high))
-    if not len(broken):
-        return None
-    i, j = map(int, broken[0])
-    value = float(q[i, j])
-    return LimitViolationError(
-        f'via point {i}: {model.joint_names[j]} would be at {value:.6g} rad (elbow {elbow}), '
-        f'limits {low[j]:.6g} to {high[j]:.6g} rad', model.joint_names[j], value,
-        float(low[j] if value < low[j] else high[j]), via_point=i)
+    Returns
+    -------
+    LimitViolationError
+        To be raised.
+
+    """
+    needed, most = told_apart(torque, limit, digits=4)
+    return LimitViolationError(f'{where} {joint} needs {needed} N m to hold, limit {most} N m',
+                               joint, torque, limit, via_point)

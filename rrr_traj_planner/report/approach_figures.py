@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
+from rrr_traj_planner.core.inverse_kinematics import nearest_solution
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.attempts import Planned
@@ -93,11 +93,8 @@ def via_positions(of: Planned) -> Array:
 
     """
     passed = of.plan.trajectory(of.plan.via_times)[0]
-    found = []
-    for point, q in zip(of.task.via_points, passed):
-        both = [inverse_kinematics(of.task.model, point, elbow, q) for elbow in ('up', 'down')]
-        found.append(min(both, key=lambda x: float(np.abs(x - q).max())))
-    return np.array(found)
+    return np.array([nearest_solution(of.task.model, point, q)
+                     for point, q in zip(of.task.via_points, passed)])
 
 
 def _approach(of: Planned, name: str, title: str, caption: str, corners: bool) -> Picture:

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics, wrap_into_limits
+from rrr_traj_planner.core.inverse_kinematics import nearest_solution
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
@@ -107,11 +107,10 @@ def via_errors(of: Planned) -> tuple[Array, Array]:
         Of the joint that is furthest [rad], and of the tip [m].
 
     """
-    model, limits = of.task.model, of.task.limits
+    model = of.task.model
     passed = of.plan.trajectory(of.plan.via_times)[0]
     tips = forward_kinematics(model, passed)
-    errors = [min(float(np.abs(wrap_into_limits(inverse_kinematics(model, point, elbow, q),
-                                                limits, q) - q).max()) for elbow in ELBOWS)
+    errors = [float(np.abs(nearest_solution(model, point, q) - q).max())
               for point, q in zip(of.task.via_points, passed)]
     return np.array(errors), np.linalg.norm(tips - of.task.via_points, axis=1)
 

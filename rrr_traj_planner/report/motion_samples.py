@@ -26,6 +26,7 @@ from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.trajectory import times_within, Trajectory
+from rrr_traj_planner.core.wireframe import skeleton
 
 STEPS_PER_MOTION = 500
 STEPS_PER_PIECE = 4
@@ -169,9 +170,4 @@ def arm_points(model: RobotModel, q: Array) -> Array:
         Base, shoulder, elbow and tip [m].
 
     """
-    reach = model.a2 * np.cos(q[:, 1])
-    elbow = np.stack((reach * np.cos(q[:, 0]), reach * np.sin(q[:, 0]),
-                      model.d1 + model.a2 * np.sin(q[:, 1])), axis=1)
-    base = np.zeros_like(elbow)
-    shoulder = base + (0.0, 0.0, model.d1)
-    return np.stack((base, shoulder, elbow, forward_kinematics(model, q)), axis=1)
+    return np.array([skeleton(model, one) for one in q.tolist()])

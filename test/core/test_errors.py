@@ -16,8 +16,9 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
-from rrr_traj_planner.core.errors import quoted
+from rrr_traj_planner.core.errors import quoted, told_apart
 
 
 @pytest.mark.parametrize(('text', 'shown'), [
@@ -30,3 +31,27 @@ def test_long_text_loses_its_middle():
     shown = quoted('begin' + 'x' * 10 ** 6 + 'end')
     assert len(shown) <= 60
     assert shown.startswith("'begin") and '...' in shown and shown.endswith("end'")
+
+
+@pytest.mark.parametrize('bound', [1.5707963267948966, 0.0, 1.6, -np.pi, 200.0, 1e-9, 12345.678])
+def test_a_value_just_beyond_its_bound_reads_as_beyond_it(bound):
+    rng = np.random.default_rng(3)
+    for exponent in range(-14, -2):
+        miss = rng.uniform(1.0, 9.9) * 10.0 ** exponent
+        for value in (bound + miss, bound - miss):
+            shown, limit, other = told_apart(value, bound, 7.0)
+            if value == bound:  # too small a miss for a float
+                continue
+            assert (float(shown) > float(limit)) == (value > bound)
+            assert shown != limit
+            assert float(shown) == pytest.approx(value, rel=1e-5)
+            assert float(limit) == pytest.approx(bound, rel=1e-5)
+            assert other == '7'
+
+
+def test_digits_are_few_where_few_suffice_or_there_is_nothing_to_tell():
+    assert told_apart(1.7, 0.0, np.pi / 2) == ('1.7', '0', '1.5708')
+    assert told_apart(218.93, 200.0, digits=4) == ('218.9', '200')
+    assert told_apart(1.0, 1.0, 1.0000001) == ('1', '1', '1.0000001')
+    assert told_apart(1.0, 1.0) == ('1', '1')
+    assert told_apart(np.nan, 0.1, np.inf) == ('nan', '0.1', 'inf')

@@ -20,10 +20,11 @@ import numpy as np
 import pytest
 from random_cases import ARMS
 from rrr_traj_planner.core.errors import InvalidInputError, UnreachableError
-from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics, wrap_into_limits
+from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.postures import ELBOWS
 import thesis_cases as thesis
 
 ROUNDING = 5e-14      # m, of a tip position
@@ -53,7 +54,7 @@ def test_thesis_points_need_the_verified_joint_angles(name):
 @pytest.mark.parametrize('name', thesis.POINTS)
 def test_thesis_points_are_within_the_mirrored_joint_ranges(name):
     limits = JointLimits()
-    q = wrap_into_limits(inverse_kinematics(RobotModel(), thesis.POINTS[name][0]), limits)
+    q = inverse_kinematics(RobotModel(), thesis.POINTS[name][0])
     assert (limits.min_position <= q).all()
     assert (q <= limits.max_position).all()
 
@@ -200,70 +201,3 @@ def test_malformed_point_is_refused(position, text):
 def test_unknown_elbow_is_refused():
     with pytest.raises(InvalidInputError, match="^elbow is 'left', must be 'up' or 'down'$"):
         inverse_kinematics(RobotModel(), (0.5, 0.5, 0.5), 'left')
-
-
-def turns_by_trial(q, low, high, near):
-    """Return, of all whole turns, the best angle in the range, or None."""
-    fitting = [q + k * TURN for k in range(-12, 13) if low <= q + k * TURN <= high]
-    return min(fitting, key=lambda angle: abs(angle - near)) if fitting else None
-
-
-@pytest.mark.parametrize('with_previous', [False, True])
-def test_wrapping_finds_the_turn_that_trial_of_all_turns_finds(with_previous):
-    rng = np.random.default_rng(37)
-    fitted = 0
-    for _ in range(500):
-        q = rng.uniform(-np.pi, np.pi, 3)
-        low = rng.uniform(-10.0, 5.0, 3)
-        high = low + rng.uniform(0.5, 20.0, 3)  # up to more than three turns
-        previous = rng.uniform(-15.0, 15.0, 3) if with_previous else None
-        wrapped = wrap_into_limits(q, JointLimits(low, high), previous)
-        turns = (wrapped - q) / TURN
-        assert turns == pytest.approx(np.round(turns), abs=1e-12)
-        for j, near in enumerate(np.zeros(3) if previous is None else previous):
-            expected = turns_by_trial(q[j], low[j], high[j], near)
-            if expected is not None:
-                fitted += 1
-                assert wrapped[j] == pytest.approx(expected, abs=1e-12)
-    assert fitted > 1000
-
-
-def test_joint_that_fits_with_no_turn_comes_as_near_to_its_range_as_turns_bring_it():
-    rng = np.random.default_rng(38)
-    for _ in range(300):
-        low = rng.uniform(-10.0, 10.0, 3)
-        high = low + rng.uniform(0.1, 1.0, 3)
-        # Outside the range wherever it is turned: on the far side of the circle.
-        q = 0.5 * (low + high) + rng.uniform(1.0, TURN - 1.0, 3) + TURN * rng.integers(-3, 4, 3)
-        outside = wrap_into_limits(q, JointLimits(low, high))
-        for j in range(3):
-            distances = [max(low[j] - a, a - high[j]) for a in q[j] + TURN * np.arange(-9, 10)]
-            distance = max(low[j] - outside[j], outside[j] - high[j])
-            assert distance == pytest.approx(min(distances), abs=1e-12)
-
-
-def test_wrapping_into_a_range_over_a_turn_stays_near_the_previous_pose():
-    limits = JointLimits(min_position=(-7.0, -7.0, -7.0), max_position=(7.0, 7.0, 7.0))
-    wrapped = wrap_into_limits((3.0, -3.0, 0.5), limits, previous=(-3.0, 3.0, 6.0))
-    assert wrapped == pytest.approx((3.0 - TURN, TURN - 3.0, 0.5 + TURN), abs=1e-15)
-
-
-def test_wrapping_into_unlimited_ranges_follows_the_previous_pose():
-    limits = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))
-    wrapped = wrap_into_limits((0.1, 0.2, 0.3), limits, previous=(40.0, -40.0, 0.0))
-    assert wrapped == pytest.approx((0.1 + 6 * TURN, 0.2 - 6 * TURN, 0.3), abs=1e-12)
-    half_open = JointLimits(min_position=(10.0, 10.0, 10.0), max_position=np.full(3, np.inf))
-    assert wrap_into_limits((0.0, 0.0, 4.0), half_open) == pytest.approx(
-        (2 * TURN, 2 * TURN, 4.0 + TURN), abs=1e-12)
-
-
-def test_angle_at_an_end_of_its_range_but_for_rounding_is_put_on_that_end():
-    limits = JointLimits(min_position=(0.0, 0.0, 0.0), max_position=(1.0, 1.0, 1.0))
-    wrapped = wrap_into_limits((-0.9e-9, 1.0 + 0.9e-9, TURN - 0.9e-9), limits)
-    assert wrapped.tolist() == [0.0, 1.0, 0.0]
-
-
-def test_angle_beyond_an_end_by_more_than_rounding_is_left_outside():
-    limits = JointLimits(min_position=(0.0, 0.0, 0.0), max_position=(1.0, 1.0, 1.0))
-    assert wrap_into_limits((-1e-6, 1.000001, 0.5), limits) == pytest.approx(
-        (-1e-6, 1.000001, 0.5), abs=1e-15)

@@ -17,17 +17,14 @@
 import numpy as np
 import pytest
 from random_cases import ARMS
-from rrr_traj_planner.core.errors import (
-    InvalidInputError,
-    LimitViolationError,
-    UnreachableError,
-)
-from rrr_traj_planner.core.inverse_kinematics import ELBOWS, inverse_kinematics
+from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
+from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
 from rrr_traj_planner.core.joint_path import joint_path
 from rrr_traj_planner.core.kinematics import forward_kinematics, jacobian, jacobian_rate
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.path_design import line_arc, line_polynomial
+from rrr_traj_planner.core.postures import ELBOWS, Posture
 
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))
 
@@ -52,7 +49,7 @@ def test_joint_positions_lead_to_the_path_and_equal_the_inverse_of_each_point(ar
     for _ in range(10):
         path = random_path(arm, rng)
         d = path(np.linspace(0.0, path.length, 60))
-        q = joint_path(arm, FREE, d, elbow).q
+        q = joint_path(arm, FREE, d, Posture(elbow)).q
         assert forward_kinematics(arm, q) == pytest.approx(d[0], abs=1e-12)
         one_by_one = np.array([inverse_kinematics(arm, p, elbow) for p in d[0]])
         assert np.exp(1j * q) == pytest.approx(np.exp(1j * one_by_one), abs=1e-10)
@@ -66,7 +63,7 @@ def test_derivatives_satisfy_the_jacobian_and_its_rates(arm, elbow):
     for _ in range(10):
         path = random_path(arm, rng)
         p, dp, ddp, dddp = path(np.linspace(0.0, path.length, 40))
-        q, q1, q2, q3 = joint_path(arm, FREE, (p, dp, ddp, dddp), elbow)
+        q, q1, q2, q3 = joint_path(arm, FREE, (p, dp, ddp, dddp), Posture(elbow))
         J, J1 = jacobian(arm, q), jacobian_rate(arm, q, q1)
         h = 1e-4 * min(1.0, 1.0 / np.abs(q1).max())
         step = [(k * h, jacobian_rate(arm, q + k * h * q1 + 0.5 * (k * h) ** 2 * q2,
@@ -95,10 +92,10 @@ def test_each_derivative_is_that_of_the_one_before(elbow, order):
             # A polynomial through Chebyshev points of one piece, differentiated.
             fit = np.polynomial.Chebyshev.interpolate(
                 lambda s, path=path: joint_path(
-                    RobotModel(), FREE, path(s), elbow)[order][:, 0],
+                    RobotModel(), FREE, path(s), Posture(elbow))[order][:, 0],
                 40, domain=[a, b])
             s = np.linspace(a, b, 30)[3:-3]
-            own = joint_path(RobotModel(), FREE, path(s), elbow)[order + 1][:, 0]
+            own = joint_path(RobotModel(), FREE, path(s), Posture(elbow))[order + 1][:, 0]
             turn = own - fit.deriv()(s)
             assert turn == pytest.approx(0.0, abs=1e-5 * (1.0 + np.abs(own).max()))
 
@@ -112,7 +109,7 @@ def circle(n=200):
 
 
 def test_joint_1_turns_on_past_half_a_turn_without_a_jump():
-    q, q1, q2, q3 = joint_path(RobotModel(), FREE, circle(), 'up')
+    q, q1, q2, q3 = joint_path(RobotModel(), FREE, circle(), Posture('up'))
     assert q[:, 0] == pytest.approx(np.linspace(0.0, 3.0 * np.pi, 200), abs=1e-12)
     assert q1[:, 0] == pytest.approx(np.ones(200), abs=1e-13)
     assert np.abs(np.concatenate((q1[:, 1:], q2, q3), axis=1)).max() < 1e-12
@@ -120,9 +117,9 @@ def test_joint_1_turns_on_past_half_a_turn_without_a_jump():
 
 def test_whole_turns_are_those_for_which_the_whole_path_fits():
     limits = JointLimits(min_position=(-9.0, -4.0, -4.0), max_position=(4.0, 4.0, 4.0))
-    q = joint_path(RobotModel(), limits, circle(), 'up').q[:, 0]
+    q = joint_path(RobotModel(), limits, circle(), Posture('up')).q[:, 0]
     assert q[0] == pytest.approx(-2.0 * np.pi, abs=1e-12)
-    free = joint_path(RobotModel(), FREE, circle(), 'up', previous=(13.0, 0.0, 0.0)).q[:, 0]
+    free = joint_path(RobotModel(), FREE, circle(), Posture('up'), start=(13.0, 0.0, 0.0)).q[:, 0]
     assert free[0] == pytest.approx(4.0 * np.pi, abs=1e-12)
 
 
@@ -130,7 +127,7 @@ def test_joint_that_leaves_its_range_is_refused_with_sample_value_and_limit():
     with pytest.raises(LimitViolationError,
                        match=r'^sample \d+: joint_1 would be at .* rad \(elbow up\), limits 0 to '
                              r'1\.5708 rad$') as caught:
-        joint_path(RobotModel(), JointLimits(), circle(), 'up')
+        joint_path(RobotModel(), JointLimits(), circle(), Posture('up'))
     assert caught.value.joint == 'joint_1'
 
 
@@ -146,9 +143,4 @@ def samples(*points):
     ((0.0, 0.0, 1.5), LimitViolationError, '^sample 1 is on joint axis 1: joint_1 would have')])
 def test_sample_where_the_arm_could_not_move_on_is_refused(point, error, text):
     with pytest.raises(error, match=text):
-        joint_path(RobotModel(), FREE, samples((1.0, 0.0, 0.5), point), 'up')
-
-
-def test_unknown_elbow_is_refused():
-    with pytest.raises(InvalidInputError, match="^elbow is 'left', must be 'up' or 'down'$"):
-        joint_path(RobotModel(), FREE, samples((1.0, 0.0, 0.5)), 'left')
+        joint_path(RobotModel(), FREE, samples((1.0, 0.0, 0.5), point), Posture('up'))

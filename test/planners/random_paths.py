@@ -23,12 +23,12 @@ import numpy as np
 from random_cases import random_model
 from rrr_traj_planner.core import path_design
 from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.inverse_kinematics import ELBOWS
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.largest_radii import largest_radii
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.path_trajectory import ArmPath
+from rrr_traj_planner.core.postures import ELBOWS, Posture
 from rrr_traj_planner.core.workspace_check import check_workspace
 from rrr_traj_planner.planners.followable import followable
 from rrr_traj_planner.planners.path_timing import fastest_along, PathTask
@@ -55,8 +55,8 @@ class PathCase:
         """Return the path as the planner is to find it."""
         r = self.request
         path = largest_radii(getattr(path_design, r.planner_id), r.via_points, r.max_deviation)
-        start = check_workspace(self.model, self.limits, path, r.elbow).start
-        return ArmPath(self.model, self.limits, path, r.elbow, start)
+        start = check_workspace(self.model, self.limits, path, Posture(r.elbow)).start
+        return ArmPath(self.model, self.limits, path, Posture(r.elbow), start)
 
     @property
     def cruise(self):

@@ -20,10 +20,11 @@ import numpy as np
 import pytest
 from random_paths import Measured, measured, PathCase, PLANNERS, random_case
 from rrr_traj_planner.core.interpolation import Interpolant
-from rrr_traj_planner.core.inverse_kinematics import elbow_of, inverse_kinematics
+from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.postures import posture_of
 from rrr_traj_planner.planners.along_path import SMALLER, WORTH_IT
 from rrr_traj_planner.planners.request import PlanningRequest
 
@@ -85,7 +86,7 @@ def test_via_points_are_hit_on_the_branch_that_was_asked_for(seed):
                        for p in request.via_points])
     assert np.exp(1j * q) == pytest.approx(np.exp(1j * wanted), abs=HIT)
     assert np.abs(forward_kinematics(m.case.model, q) - request.via_points).max() <= 10.0 * PLACE
-    assert {elbow_of(p) for p in m.q} == {request.elbow}
+    assert {posture_of(m.case.model, p).elbow for p in m.q} == {request.elbow}
 
 
 @each_seed

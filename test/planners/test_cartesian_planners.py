@@ -26,10 +26,11 @@ from rrr_traj_planner.core.errors import (
     StartStateError,
     UnreachableError,
 )
-from rrr_traj_planner.core.inverse_kinematics import elbow_of, inverse_kinematics
+from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.postures import posture_of
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
@@ -84,7 +85,31 @@ def test_line_across_joint_axis_1_is_refused_with_place_and_nearest_point(planne
     with pytest.raises(LimitViolationError,
                        match=r'^at 1\.\d* m along the path, .*\(nearest: [01]\): the tip would '
                              r'pass joint axis 1'):
-        planned(planner_id, [(0.6, 0.8, 1.0), (-0.6, -0.8, 1.2)])
+        planned(planner_id, [(0.6, 0.8, 1.0), (-0.6, -0.8 + 1e-6, 1.2)])
+
+
+@each_planner
+@pytest.mark.parametrize('tips', [
+    [(0.6, 0.8, 1.0), (-0.6, -0.8, 1.2)],                   # through the axis
+    [(-0.3, 0.4, 1.5), (0.0, 0.0, 1.6)],                    # to it
+    [(0.0, 0.0, 1.6), (3e-10, -2e-10, 1.9)],                # on it
+    [(0.9, -0.1, 0.7), (0.5, 0.8, 1.0), (0.0, 0.0, 1.6)],   # to it, from another plane
+    [(0.0, 1e-16, 1.6), (0.5, 0.8, 1.0), (0.9, -0.1, 0.7)]])
+def test_joint_1_stands_still_on_lines_in_a_plane_with_its_axis(planner_id, tips):
+    found = planned(planner_id, tips, max_deviation=0.01)
+    q = found.trajectory(np.linspace(0.0, found.trajectory.duration, 2001))[0]
+    passed = forward_kinematics(MODEL, found.trajectory(found.via_times)[0])
+    assert passed == pytest.approx(np.array(tips), abs=1e-9)
+    # The path's first or last line, where the tip meets the axis: its azimuth is joint 1's.
+    near = np.hypot(*forward_kinematics(MODEL, q)[:, :2].T) < 0.1
+    assert near.any()
+    assert np.ptp(q[near, 0]) < 1e-9
+    if len(tips) == 2:  # straight: no point is off the line between the two
+        a, b = np.array(tips)
+        along = (forward_kinematics(MODEL, q) - a) @ (b - a) / ((b - a) @ (b - a))
+        line = a + along[:, np.newaxis] * (b - a)
+        assert forward_kinematics(MODEL, q) == pytest.approx(line, abs=1e-9)
+        assert np.ptp(q[:, 0]) < 1e-9
 
 
 @each_planner
@@ -129,7 +154,7 @@ def test_a_start_on_the_other_branch_is_refused(planner_id):
 def test_without_an_elbow_a_start_on_branch_down_stays_on_it(planner_id):
     start = inverse_kinematics(MODEL, (1.0, 0.0, 0.6), 'down')
     found = planned(planner_id, [(1.0, 0.3, 0.7), (0.8, 0.4, 0.9)], start=start)
-    assert elbow_of(found.trajectory(found.trajectory.duration)[0]) == 'down'
+    assert posture_of(MODEL, found.trajectory(found.trajectory.duration)[0]).elbow == 'down'
     with pytest.raises(UnreachableError):  # named for the start's own branch, not the other
         planned(planner_id, [(3.0, 0.3, 0.7)], start=start)
 
@@ -148,8 +173,8 @@ def test_without_an_elbow_the_branch_that_keeps_the_limits_is_taken(planner_id):
     down = np.array([inverse_kinematics(MODEL, p, 'down') for p in tips])
     limits = replace(FREE, min_position=down.min(axis=0) - 0.2,
                      max_position=down.max(axis=0) + 0.2)
-    assert elbow_of(planned(planner_id, tips, limits).trajectory(0.0)[0]) == 'down'
-    assert elbow_of(planned(planner_id, tips).trajectory(0.0)[0]) == 'up'
+    assert posture_of(MODEL, planned(planner_id, tips, limits).trajectory(0.0)[0]).elbow == 'down'
+    assert posture_of(MODEL, planned(planner_id, tips).trajectory(0.0)[0]).elbow == 'up'
 
 
 @each_planner

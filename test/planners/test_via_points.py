@@ -23,6 +23,9 @@ from rrr_traj_planner.core.errors import LimitViolationError, StartStateError, U
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.postures import Posture, posture_of
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.via_points import check_start, holding_failure, joint_via_points
 from thesis_cases import ANGLE_TOLERANCE, POINTS
 
@@ -37,7 +40,7 @@ def tips(*names):
 
 def test_points_of_table_6_1_are_where_the_thesis_s_arm_must_go():
     names = [f'6.1 point {k}' for k in (1, 2, 3)]
-    q = joint_via_points(ARM, LIMITS, tips(*names), None, None)
+    q = joint_via_points(ARM, LIMITS, tips(*names), None, Posture())
     assert np.degrees(q) == pytest.approx(
         np.array([POINTS[name][1] for name in names]), abs=ANGLE_TOLERANCE)
 
@@ -46,21 +49,21 @@ def test_points_of_table_6_1_are_where_the_thesis_s_arm_must_go():
 def test_random_points_come_back_from_their_tips(seed):
     task = random_task(seed)
     q = joint_via_points(task.model, task.limits, forward_kinematics(task.model, task.q), None,
-                         None)
+                         posture_of(task.model, task.q[0]))
     assert q == pytest.approx(task.q, abs=1e-9)
 
 
 @pytest.mark.parametrize('elbow', ['up', 'down'])
 def test_a_branch_that_is_asked_for_is_taken_for_every_point(elbow):
-    q = joint_via_points(ARM, WIDE, tips('6.1 point 1', '6.3 point 1'), None, elbow)
+    q = joint_via_points(ARM, WIDE, tips('6.1 point 1', '6.3 point 1'), None, Posture(elbow))
     assert forward_kinematics(ARM, q) == pytest.approx(tips('6.1 point 1', '6.3 point 1'))
     assert ((q[:, 2] < np.pi / 2) == (elbow == 'up')).all()
 
 
 def test_elbow_goes_down_where_up_breaks_a_range():
     only_down = replace(WIDE, min_position=[-np.pi, -np.pi, 1.7])
-    q = joint_via_points(ARM, only_down, tips('6.1 point 1', '6.1 point 2'), None, None)
-    assert (q[:, 2] > np.pi / 2).all()
+    answer = plan(ARM, only_down, PlanningRequest(tips('6.1 point 1', '6.1 point 2')))
+    assert (answer.points.positions[:, 2] > np.pi / 2).all()
 
 
 def test_point_out_of_range_is_refused_by_joint_value_and_range():
@@ -68,22 +71,23 @@ def test_point_out_of_range_is_refused_by_joint_value_and_range():
     with pytest.raises(LimitViolationError, match=(
             r'^via point 1: joint_1 would be at 0\.874[\d]* rad \(elbow up\), '
             r'limits -3\.14159 to 0\.6 rad$')) as no:
-        joint_via_points(ARM, narrow, tips('6.1 point 1', '6.1 point 2'), None, 'up')
+        joint_via_points(ARM, narrow, tips('6.1 point 1', '6.1 point 2'), None, Posture('up'))
     assert (no.value.via_point, no.value.joint, no.value.limit) == (1, 'joint_1', 0.6)
 
 
 def test_unreachable_point_keeps_its_distance_and_index():
     with pytest.raises(UnreachableError, match='^via point 1: .*misses by 0.4 m$') as no:
-        joint_via_points(ARM, WIDE, np.array([[1.0, 0.0, 0.5], [2.0, 0.0, 0.5]]), None, None)
+        joint_via_points(
+            ARM, WIDE, np.array([[1.0, 0.0, 0.5], [2.0, 0.0, 0.5]]), None, Posture())
     assert no.value.via_point == 1
     assert no.value.distance == pytest.approx(0.4)
 
 
 def test_previous_point_decides_what_the_vertical_axis_leaves_open():
     above = np.array([[0.0, 0.0, 1.7]])
-    q = joint_via_points(ARM, WIDE, above, np.array([0.9, 1.0, 0.0]), 'up')
+    q = joint_via_points(ARM, WIDE, above, np.array([0.9, 1.0, 0.0]), Posture('up'))
     assert q[0, 0] == 0.9
-    assert joint_via_points(ARM, WIDE, above, None, 'up')[0, 0] == 0.0
+    assert joint_via_points(ARM, WIDE, above, None, Posture('up'))[0, 0] == 0.0
 
 
 def test_holding_failure_names_the_first_point_that_gravity_makes_too_heavy():

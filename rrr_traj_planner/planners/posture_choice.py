@@ -1,0 +1,165 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""In which postures a motion is tried: the start's own first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TypeVar
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.axis_planes import passes_axis
+from rrr_traj_planner.core.errors import (
+    JointRangeError,
+    LimitViolationError,
+    RrrPlannerError,
+    StartStateError,
+    UnreachableError,
+)
+from rrr_traj_planner.core.joint_ranges import out_of_range
+from rrr_traj_planner.core.joint_sequence import estimated_time, joint_sequence
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.postures import (
+    EDGE_TOLERANCE,
+    Elbow,
+    ELBOWS,
+    Posture,
+    posture_of,
+    postures_of,
+    Shoulder,
+    SHOULDERS,
+)
+
+# A start this close to where postures meet has them all: noise must not choose between them.
+MEETING = 0.01  # rad
+
+Answer = TypeVar('Answer')
+
+
+def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start: Array | None,
+                   elbow: Elbow | None) -> list[Posture]:
+    """
+    Return the postures in which via points are tried by a motion in joint space.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        For the estimate of time, where the start has several postures.
+    points : ndarray, shape (n, 3)
+        Tip positions [m].
+    start : ndarray, shape (3,), optional
+        Where the motion begins [rad].
+    elbow : {'up', 'down'}, optional
+        What is asked for.
+
+    Returns
+    -------
+    list of Posture
+        The start's first; then the other elbow, then the shoulder's front. Without a start: the
+        shoulder's front, with the elbow up before down.
+
+    """
+    if start is None:
+        return [Posture(e) for e in ELBOWS if elbow in (None, e)]
+    own = postures_of(model, start, MEETING)
+    if len(own) > 1:
+        own.sort(key=lambda p: _time(model, limits, points, start, p))
+    shoulders: tuple[Shoulder, Shoulder] = own[0].shoulder, 'front'
+    others = [Posture(e, s) for s in shoulders for e in ELBOWS]
+    return [p for p in dict.fromkeys((*own, *others)) if elbow in (None, p.elbow)]
+
+
+def path_postures(model: RobotModel, points: Array, start: Array | None,
+                  elbow: Elbow | None) -> list[Posture]:
+    """
+    Return the postures in which a path of the tip is tried.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    points : ndarray, shape (n, 3)
+        Tip positions [m].
+    start : ndarray, shape (3,), optional
+        Where the motion begins [rad]: along a path of the tip its posture is kept.
+    elbow : {'up', 'down'}, optional
+        What is asked for.
+
+    Returns
+    -------
+    list of Posture
+        At least one, in which the path begins: without a start the shoulder's front, or the back
+        too where the path changes from one to the other.
+
+    Raises
+    ------
+    StartStateError
+        If the start has another elbow than what is asked for.
+
+    """
+    if start is None:
+        shoulders = SHOULDERS if passes_axis(points) else SHOULDERS[:1]
+        return [Posture(e, s) for s in shoulders for e in ELBOWS if elbow in (None, e)]
+    own = [p for p in postures_of(model, start, EDGE_TOLERANCE) if elbow in (None, p.elbow)]
+    if not own:
+        raise StartStateError(
+            f'the start state is on elbow branch {posture_of(model, start).elbow} '
+            f'({model.joint_names[2]} at {start[2]:.6g} rad): along a path of the tip the arm '
+            f'cannot come to {elbow}')
+    return own
+
+
+def first_possible(postures: Sequence[Posture], attempt: Callable[[Posture], Answer]) -> Answer:
+    """
+    Return the answer in the first posture that has one.
+
+    Parameters
+    ----------
+    postures : sequence of Posture
+        In the order in which they are tried.
+    attempt : callable
+        Returns the answer in a posture, or raises why there is none.
+
+    Returns
+    -------
+    object
+        The answer.
+
+    Raises
+    ------
+    UnreachableError, LimitViolationError, StartStateError
+        If there is none: of the first posture that keeps the joints' ranges, else of the first.
+
+    """
+    failures: list[RrrPlannerError] = []
+    for posture in postures:
+        try:
+            return attempt(posture)
+        except (UnreachableError, LimitViolationError, StartStateError) as error:
+            failures.append(error)
+    raise next((e for e in failures if not isinstance(e, JointRangeError)), failures[0])
+
+
+def _time(model: RobotModel, limits: JointLimits, points: Array, start: Array,
+          posture: Posture) -> float:
+    """Return the estimated time through via points, infinite where a joint leaves its range."""
+    q = joint_sequence(model, limits, points, posture, start)
+    if out_of_range(q, limits).any():
+        return np.inf
+    return estimated_time(limits, np.vstack((start, q)))
