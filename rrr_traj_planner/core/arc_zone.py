@@ -18,10 +18,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, ReadOnlyArrays
 
 
-class ArcZones:
+class ArcZones(ReadOnlyArrays):
     """
     Arcs of unit radius, each in a plane of its own.
 

@@ -22,7 +22,13 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray
+from rrr_traj_planner.core.arrays import (
+    Array,
+    BoolArray,
+    IntArray,
+    make_read_only,
+    ReadOnlyArrays,
+)
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.path_deviation import polyline_deviation
 from rrr_traj_planner.core.tangent_lines import Tangents
@@ -59,7 +65,7 @@ class Zones(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class CartesianPath:
+class CartesianPath(ReadOnlyArrays):
     """
     Lines and curved zones, one zone at each interior via point, by arc length s.
 
@@ -90,9 +96,8 @@ class CartesianPath:
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        for array in (self.points, self.radii_asked, self.radii, self.tangent, self.normal,
-                      *self.lines, self.via_s, self.zone_ends):
-            array.setflags(write=False)
+        super().__post_init__()
+        make_read_only((self.via_s, self.zone_ends))
 
     @cached_property
     def _bounds(self) -> Array:

@@ -14,6 +14,8 @@
 
 """Errors of the package: each names what was wrong, with values and units."""
 
+from __future__ import annotations
+
 from reprlib import Repr
 
 _shortened = Repr()
@@ -38,6 +40,10 @@ class RrrPlannerError(Exception):
     def __init__(self, message: str, via_point: int = -1) -> None:
         super().__init__(message)
         self.via_point = via_point
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Have copies and pickles made of message and fields, whatever the constructor takes."""
+        return _remade, (type(self), self.args), vars(self)
 
 
 class InvalidInputError(RrrPlannerError, ValueError):
@@ -120,6 +126,11 @@ class TimingError(RrrPlannerError):
 
 class ConvergenceError(RrrPlannerError):
     """An iteration that ended at its limit without a result."""
+
+
+def _remade(kind: type[RrrPlannerError], arguments: tuple[object, ...]) -> RrrPlannerError:
+    """Return an error without fields; its constructor is not called."""
+    return kind.__new__(kind, *arguments)
 
 
 def quoted(text: str) -> str:

@@ -19,14 +19,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
 from rrr_traj_planner.core.errors import InvalidInputError
 
 UNITS = {'viscous': 'N m s/rad', 'coulomb': 'N m'}
 
 
 @dataclass(frozen=True, eq=False)
-class Friction:
+class Friction(ReadOnlyArrays):
     """
     Friction of the three joints: -viscous qd - coulomb sign(qd) while a joint moves.
 

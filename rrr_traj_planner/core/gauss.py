@@ -119,7 +119,7 @@ def gauss(half_width: float = HALF_WIDTH, order: int | None = None) -> Transitio
     if order is None:
         steepest = min(1.0, half_width)
         return _lowered('gauss', half_width, steepest, (
-            _gauss, _first_integral, _second_integral, lambda u: -u * _gauss(u)))
+            _gauss, _first_integral, _second_integral, _slope))
     series = _series(order)
     slope = series.deriv()
     turns = np.concatenate((_inner_zeros(slope.deriv(), half_width), [half_width]))
@@ -135,27 +135,49 @@ def gauss(half_width: float = HALF_WIDTH, order: int | None = None) -> Transitio
 def _lowered(name: str, k: float, steepest: float,
              curves: tuple[Curve, Curve, Curve, Curve]) -> TransitionShape:
     """Return the shape of an even function of u, its odd and even integrals and its slope."""
-    value, first, second, slope = curves
-    end, first_end, second_end = float(value(k)), float(first(k)), float(second(k))
-
-    def gained(u: Any) -> Any:
-        return first(u) + first_end - end * (u + k)
-
-    area = float(gained(k))
-    width = 2.0 * k  # in sigma: u = width (s - 1/2)
+    value, slope = curves[0], curves[3]
+    lowered = _Lowered(k, *curves)
     return TransitionShape(
-        name,
-        acceleration=lambda s: width / area * (value(k * (2.0 * s - 1.0)) - end),
-        velocity=lambda s: gained(k * (2.0 * s - 1.0)) / area,
-        position=lambda s: (second(k * (2.0 * s - 1.0)) - second_end + first_end * width * s
-                            - 0.5 * end * (width * s) ** 2) / (width * area),
-        jerk=lambda s: width ** 2 / area * slope(k * (2.0 * s - 1.0)),
-        peak_acceleration=width / area * (float(value(0.0)) - end),
-        peak_jerk=width ** 2 / area * abs(float(slope(steepest))))
+        name, lowered.acceleration, lowered.velocity, lowered.position, lowered.jerk,
+        peak_acceleration=lowered.width / lowered.area * (float(value(0.0)) - lowered.end),
+        peak_jerk=lowered.width ** 2 / lowered.area * abs(float(slope(steepest))))
+
+
+class _Lowered:
+    """An even function of u, lowered to 0 at u = -k and k, over s in [0, 1]; can be pickled."""
+
+    def __init__(self, k: float, value: Curve, first: Curve, second: Curve,
+                 slope: Curve) -> None:
+        self.k, self.width = k, 2.0 * k  # in sigma: u = width (s - 1/2)
+        self.value, self.first, self.second, self.slope = value, first, second, slope
+        self.end, self.first_end, self.second_end = (
+            float(curve(k)) for curve in (value, first, second))
+        self.area = float(self.gained(k))
+
+    def gained(self, u: Any) -> Any:
+        return self.first(u) + self.first_end - self.end * (u + self.k)
+
+    def acceleration(self, s: Any) -> Any:
+        return self.width / self.area * (self.value(self.k * (2.0 * s - 1.0)) - self.end)
+
+    def velocity(self, s: Any) -> Any:
+        return self.gained(self.k * (2.0 * s - 1.0)) / self.area
+
+    def position(self, s: Any) -> Any:
+        rise = self.second(self.k * (2.0 * s - 1.0)) - self.second_end
+        return (rise + self.first_end * self.width * s
+                - 0.5 * self.end * (self.width * s) ** 2) / (self.width * self.area)
+
+    def jerk(self, s: Any) -> Any:
+        return self.width ** 2 / self.area * self.slope(self.k * (2.0 * s - 1.0))
 
 
 def _gauss(u: Any) -> Array:
     return np.asarray(np.exp(-0.5 * u * u))
+
+
+def _slope(u: Any) -> Array:
+    return np.asarray(-u * _gauss(u))
 
 
 def _first_integral(u: Any) -> Array:

@@ -20,12 +20,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
 from rrr_traj_planner.core.errors import InvalidInputError
 
 
 @dataclass(frozen=True, eq=False)
-class TrajectoryPoints:
+class TrajectoryPoints(ReadOnlyArrays):
     """
     Points of a motion, as a trajectory_msgs/JointTrajectory carries them.
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, bound_array
+from rrr_traj_planner.core.arrays import Array, bound_array, ReadOnlyArrays
 from rrr_traj_planner.core.errors import InvalidInputError
 
 UNITS = {
@@ -32,7 +32,7 @@ def _default(*values: float) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class JointLimits:
+class JointLimits(ReadOnlyArrays):
     """
     Limits of the three joints, symmetric but for position.
 

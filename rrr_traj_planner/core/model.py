@@ -20,7 +20,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
 from rrr_traj_planner.core.errors import InvalidInputError
 
 JOINT_NAMES = ('joint_1', 'joint_2', 'joint_3')
@@ -31,7 +31,7 @@ def _default(*values: object) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class RobotModel:
+class RobotModel(ReadOnlyArrays):
     """
     A three-revolute-joint arm: a vertical joint, then two parallel horizontal ones.
 

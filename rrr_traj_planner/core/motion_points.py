@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.interpolation import hermite
 
@@ -32,7 +32,7 @@ ORDERS = (1, 3, 5)
 
 
 @dataclass(frozen=True, eq=False)
-class MotionPoints:
+class MotionPoints(ReadOnlyArrays):
     """
     Points to move through, each with a velocity and an acceleration or without.
 
@@ -71,8 +71,8 @@ class MotionPoints:
             flags = np.array(getattr(self, name), dtype=bool)
             if flags.shape != (n,):
                 raise InvalidInputError(f'{name} has shape {flags.shape}, must have ({n},)')
-            flags.setflags(write=False)
             object.__setattr__(self, name, flags)
+        super().__post_init__()
 
 
 def segment_orders(points: MotionPoints) -> NDArray[np.int_]:

@@ -23,7 +23,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.arrays import Array, BoolArray, make_read_only, ReadOnlyArrays
 from rrr_traj_planner.core.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.cartesian_path import CartesianPath
 from rrr_traj_planner.core.joint_ranges import whole_turns
@@ -47,7 +47,7 @@ BEFORE = 1e-9          # s before a knot, where what steps there still has its o
 
 
 @dataclass(frozen=True, eq=False)
-class ArmPath:
+class ArmPath(ReadOnlyArrays):
     """
     A path of the tip as one arm follows it, in one posture.
 
@@ -136,6 +136,7 @@ class PathTrajectory(Trajectory):
                  join_times: Array, note: str = '') -> None:
         self.arm_path, self.progress, self.note = arm_path, progress, note
         self.via_times, self.join_times = via_times, _at_knots(progress, join_times)
+        make_read_only((self.via_times, self.join_times))
         self.duration = progress.duration
 
     def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:

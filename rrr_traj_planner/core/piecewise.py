@@ -22,7 +22,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
+from rrr_traj_planner.core.arrays import (
+    Array,
+    finite_array,
+    IntArray,
+    make_read_only,
+    ReadOnlyArrays,
+)
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.pieces import Pieces
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
@@ -33,7 +39,7 @@ MOST_STEPS = 60
 PLACE_TOLERANCE = 1e-9
 
 
-class JointProfile:
+class JointProfile(ReadOnlyArrays):
     """
     One joint's motion: consecutive pieces, all of one function.
 
@@ -59,10 +65,9 @@ class JointProfile:
             raise InvalidInputError(
                 f'piece durations are {fields[0]} s, must not be negative, nor all zero')
         fields = fields[:, lasting]
-        fields.setflags(write=False)
-        self.pieces = pieces.made_of(fields)
         self.knots = np.concatenate(([0.0], np.cumsum(fields[0])))
-        self.knots.setflags(write=False)
+        make_read_only((fields, self.knots))
+        self.pieces = pieces.made_of(fields)
 
     @property
     def duration(self) -> float:
@@ -103,8 +108,7 @@ class JointProfile:
             turning = self._zero_of_velocity(row, s[row, col], s[row, col + 1])
             np.minimum.at(least, row, turning)
             np.maximum.at(most, row, turning)
-        for array in (least, most):
-            array.setflags(write=False)
+        make_read_only((least, most))
         return least, most
 
     def passed(self, positions: Array) -> Array:

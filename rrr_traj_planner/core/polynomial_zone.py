@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, ReadOnlyArrays
 from rrr_traj_planner.core.errors import ConvergenceError
 
 # The zone is a quintic in u, -1 <= u <= 1, symmetric about the via point. Its six control points
@@ -55,7 +55,7 @@ class _Quintic(NamedTuple):
     across: Array  # of u^2, u^4
 
 
-class PolynomialZones:
+class PolynomialZones(ReadOnlyArrays):
     """
     Polynomial zones of least radius 1, each in a plane of its own.
 

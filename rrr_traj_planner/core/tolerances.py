@@ -25,7 +25,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
 from rrr_traj_planner.core.control import Desired, State
 from rrr_traj_planner.core.errors import InvalidInputError
 
@@ -35,7 +35,7 @@ TIMED_OUT = 'Aborted due to command timeout'
 
 
 @dataclass(frozen=True, eq=False)
-class Tolerances:
+class Tolerances(ReadOnlyArrays):
     """
     What is watched while a trajectory is followed.
 

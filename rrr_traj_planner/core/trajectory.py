@@ -21,11 +21,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, ReadOnlyArrays
 
 
 @dataclass(frozen=True, eq=False)
-class Peaks:
+class Peaks(ReadOnlyArrays):
     """Extremes of each joint over a whole motion, shape (3,) each."""
 
     velocity: Array      # largest magnitude [rad/s]
@@ -35,7 +35,7 @@ class Peaks:
     max_position: Array  # [rad]
 
 
-class Trajectory(ABC):
+class Trajectory(ReadOnlyArrays, ABC):
     """
     A motion in joint space that can be evaluated at any time.
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.arrays import Array, BoolArray, ReadOnlyArrays
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.pieces import TransitionFunction
 from rrr_traj_planner.planners.segment import TransitionLaw
@@ -29,7 +29,7 @@ OVERSHOOT_REDUCTION = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Chain:
+class Chain(ReadOnlyArrays):
     """
     Via points of all joints, and what bounds the motion through them.
 

@@ -20,7 +20,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, number_array
+from rrr_traj_planner.core.arrays import (
+    Array,
+    finite_array,
+    IntArray,
+    number_array,
+    ReadOnlyArrays,
+)
 from rrr_traj_planner.core.errors import InvalidInputError, quoted
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.joint_ranges import RANGE_TOLERANCE
@@ -39,7 +45,7 @@ def never() -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class PlanningRequest:
+class PlanningRequest(ReadOnlyArrays):
     """
     Via points and how to pass them.
 
@@ -149,7 +155,7 @@ class PlanningRequest:
 
 
 @dataclass(frozen=True, eq=False)
-class JointTask:
+class JointTask(ReadOnlyArrays):
     """
     What a joint-space planner works on: consecutive points that differ, unless durations say so.
 
@@ -202,7 +208,7 @@ class JointTask:
 
 
 @dataclass(frozen=True, eq=False)
-class CartesianTask:
+class CartesianTask(ReadOnlyArrays):
     """
     What a planner of Cartesian paths works on: consecutive points that differ.
 
@@ -245,7 +251,7 @@ class CartesianTask:
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class Plan(ReadOnlyArrays):
     """
     A motion that keeps its limits, and the figures that show it.
 
