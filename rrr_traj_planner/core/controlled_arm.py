@@ -29,9 +29,12 @@ from rrr_traj_planner.core.motion_points import MotionPoints
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.replacement import replacement, Takeover
 from rrr_traj_planner.core.simulation import ArmPhysics
-from rrr_traj_planner.core.stopping import stopping
+from rrr_traj_planner.core.stop_task import time_inside
+from rrr_traj_planner.core.stopping import from_state, Stop, stop, what_moves
 
 NO_DISTURBANCE = (0.0, 0.0, 0.0)
+
+OUTSIDE_NEW_RANGES = 'The motion leaves the new joint ranges: stopping'
 
 
 class ControlledArm:
@@ -63,6 +66,8 @@ class ControlledArm:
         Work and losses since the last reset.
     violation : tuple of str
         What was wrong when a tolerance was last exceeded; empty where none was.
+    stop_warnings : tuple of str
+        What the last stop could not keep; empty where it kept ranges and limits.
 
     """
 
@@ -70,6 +75,8 @@ class ControlledArm:
         self.steps, self._step_ns = 0, settings.step_ns
         self.settings, self.ledger = settings, EnergyLedger()
         self.disturbance: Triple = NO_DISTURBANCE
+        self.motion: DesiredMotion = holding(q)
+        self.stop_warnings: tuple[str, ...] = ()
         self.state: State = (*_triple(finite_array('q', q, (3,))), 0.0, 0.0, 0.0)
         self._enforce(settings)
         self._encoder = self._new_encoder()
@@ -119,8 +126,11 @@ class ControlledArm:
         """
         if settings.step != self.settings.step:
             raise InvalidInputError('physics_step cannot change while the arm runs')
-        before, encoder = self.energy, self.settings.encoder
+        before, encoder, old = self.energy, self.settings.encoder, self.settings.limits
         self.settings = settings
+        if (settings.limits.min_position > old.min_position).any() or (
+                settings.limits.max_position < old.max_position).any():
+            self._keep_ranges()
         self._enforce(settings)
         if settings.encoder != encoder:
             self._encoder = self._new_encoder()
@@ -163,15 +173,16 @@ class ControlledArm:
 
         """
         takeover = Takeover(self.time, self.desired, self.settings.limits,
-                            self.settings.controller_model)
-        self.motion = replacement(takeover, points, origin_ns, self.settings.step)
+                            self.settings.controller_model, self.motion)
+        self.motion, self.stop_warnings = replacement(
+            takeover, points, origin_ns, self.settings.step)
         self.violation = ()
         self._watched = self._first_check = True
+        self._brake_at_end()
 
     def hold(self) -> None:
-        """Stop as fast as the limits allow, and stay there."""
-        settings = self.settings
-        self._stay(stopping(self.desired, self.time, settings.limits, settings.controller_model))
+        """Stop inside the ranges, as fast as the limits allow, and stay there."""
+        self._stop(what_moves(self.motion, self.now, self.seen, self.settings.limits))
 
     def advance(self, steps: int) -> None:
         """
@@ -183,6 +194,21 @@ class ControlledArm:
             How many steps.
 
         """
+        while self.motion.ends_moving and steps > 0:
+            left = -((self.now - self.motion.end_ns) // self._step_ns)  # rounded up
+            self._advance(min(left, steps))
+            steps -= left
+            self._brake_at_end()
+        self._advance(max(steps, 0))
+
+    def _brake_at_end(self) -> None:
+        """Brake a motion that has come to its end while moving."""
+        motion = self.motion
+        if motion.ends_moving and self.now >= motion.end_ns:
+            self.motion, self.stop_warnings = self._stopped(motion, motion.end)
+
+    def _advance(self, steps: int) -> None:
+        """Simulate control and physics, with a motion that does not end moving meanwhile."""
         if self._plain and self.disturbance == NO_DISTURBANCE and (
                 not self._watched or self.settings.tolerances.are_none):
             self._advance_plainly(steps)
@@ -232,12 +258,33 @@ class ControlledArm:
                 self.seen, self.desired, self.time - self.motion.end, self._first_check)
             self._first_check = False
             if lines:
-                self._stay(holding(self.seen[:3], self.now))
+                self._stop(self._measured())
                 self.violation = lines
+
+    def _keep_ranges(self) -> None:
+        """Stop a motion that leaves the ranges, which have become smaller."""
+        if time_inside(self.motion, self.time, self.settings.limits) < self.motion.end:
+            self._stop(what_moves(self.motion, self.now, self.seen, self.settings.limits))
+            self.stop_warnings = (OUTSIDE_NEW_RANGES, *self.stop_warnings)
+
+    def _stop(self, motion: DesiredMotion) -> None:
+        """Stop what is a motion now."""
+        stopped, warnings = self._stopped(motion, self.time)
+        self._stay(stopped)
+        self.stop_warnings = warnings
+
+    def _stopped(self, motion: DesiredMotion, time: float) -> Stop:
+        """Return a stop from a motion at a time."""
+        return stop(motion, time, self.settings.limits, self.settings.controller_model)
+
+    def _measured(self) -> DesiredMotion:
+        """Return the measured state, as a motion to be stopped."""
+        return from_state((*self.seen, 0.0, 0.0, 0.0), self.now)
 
     def _stay(self, motion: DesiredMotion) -> None:
         """Follow a motion that is no trajectory: nothing is watched."""
         self.motion, self._watched, self._first_check = motion, False, False
+        self.stop_warnings = ()
 
     def _control(self) -> Triple:
         """Return the torques that the controller gives now [N m]."""

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the arm's controller follows: polynomials in time, evaluated one instant at a time."""
+"""What the arm's controller follows: polynomials in time, at one instant or at many."""
 
 from __future__ import annotations
 
@@ -22,13 +22,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.control import Desired
-from rrr_traj_planner.core.motion_points import MotionPoints, segment_coefficients, segment_orders
+from rrr_traj_planner.core.motion_points import (
+    FLOAT_EPSILON,
+    MotionPoints,
+    segment_coefficients,
+    segment_orders,
+)
 from rrr_traj_planner.core.nanoseconds import nanoseconds, SECOND
 
 
 class DesiredMotion:
     """
-    A motion of polynomials, one after another, that rests where it ends.
+    A motion of polynomials, one after another.
+
+    After its last knot it rests; where it has a velocity there, whoever follows it has to brake
+    from `end_state` (`stopping.stop`).
 
     Which of them is in force is decided in whole nanoseconds, as in joint_trajectory_controller:
     exactly at a knot it is the one that begins there.
@@ -43,14 +51,20 @@ class DesiredMotion:
         Position at the last knot [rad], which is held.
     origin_ns : int
         What the knots are counted from [ns].
+    final_velocity, final_acceleration : ndarray, shape (3,), optional
+        With which it arrives at the last knot [rad/s], [rad/s^2]; None: it comes to rest there.
 
     """
 
-    def __init__(self, knots: Array, coefficients: Array, final: Array,
-                 origin_ns: int = 0) -> None:
+    def __init__(self, knots: Array, coefficients: Array, final: Array, origin_ns: int = 0,
+                 final_velocity: Array | None = None,
+                 final_acceleration: Array | None = None) -> None:
         self.knots, self.coefficients, self.final = knots, coefficients, final
         self.origin_ns = origin_ns
         self._knots_ns = [nanoseconds(knot) for knot in knots.tolist()]
+        zero = np.zeros(3)
+        self.final_velocity = zero if final_velocity is None else final_velocity
+        self.final_acceleration = zero if final_acceleration is None else final_acceleration
         # One knot alone is a rest that has no beginning.
         self._rests_from = self._knots_ns[-1] if len(knots) > 1 else -np.inf
         self._rest = rest(final)
@@ -71,8 +85,25 @@ class DesiredMotion:
 
     @property
     def end(self) -> float:
-        """When the motion comes to rest [s]."""
+        """When the motion comes to rest, or ends [s]."""
         return self.origin + float(self.knots[-1])
+
+    @property
+    def end_ns(self) -> int:
+        """The same [ns]."""
+        return self.origin_ns + self._knots_ns[-1]
+
+    @property
+    def ends_moving(self) -> bool:
+        """Whether it has a velocity at its last knot."""
+        return bool(self.final_velocity.any())
+
+    @property
+    def end_state(self) -> Desired:
+        """Position, velocity and acceleration with which it arrives at its last knot."""
+        q1, q2, q3, w1, w2, w3, a1, a2, a3 = np.concatenate(
+            (self.final, self.final_velocity, self.final_acceleration)).tolist()
+        return q1, q2, q3, w1, w2, w3, a1, a2, a3
 
     def __call__(self, t: float) -> Desired:
         """
@@ -144,9 +175,43 @@ class DesiredMotion:
             2.0 * b2 + x * (6.0 * b3 + x * (12.0 * b4 + x * (20.0 * b5))),
             2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5))))
 
+    def at(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """
+        Return the motion at many times.
+
+        Parameters
+        ----------
+        t : array_like, shape (...)
+            Times [s]; before the first knot the motion is as at that knot, from the last one on
+            it is as it arrives there.
+
+        Returns
+        -------
+        tuple of ndarray, shape (..., 3)
+            Position [rad], velocity [rad/s], acceleration [rad/s^2], jerk [rad/s^3].
+
+        """
+        t = np.clip(np.asarray(t, dtype=float) - self.origin, self.knots[0], self.knots[-1])
+        if len(self.coefficients) == 0:
+            still = np.zeros(t.shape + (3,))
+            return (still + self.final, still + self.final_velocity,
+                    still + self.final_acceleration, still)
+        i = np.clip(np.searchsorted(self.knots, t, side='right') - 1, 0,
+                    len(self.coefficients) - 1)
+        c, x = np.moveaxis(self.coefficients[i], -1, 0), (t - self.knots[i])[..., np.newaxis]
+        derivatives = []
+        for _ in range(4):
+            value = np.zeros(c.shape[1:])
+            for coefficient in c[::-1]:
+                value = value * x + coefficient
+            derivatives.append(value)
+            c = c[1:] * np.arange(1, len(c)).reshape((-1,) + (1,) * (c.ndim - 1))
+        q, qd, qdd, qddd = derivatives
+        return q, qd, qdd, qddd
+
     def states(self) -> tuple[Array, Array, Array]:
         """
-        Return the state with which the motion goes on from each knot, and rests at the last.
+        Return the state with which the motion goes on from each knot, and arrives at the last.
 
         Returns
         -------
@@ -154,9 +219,10 @@ class DesiredMotion:
             Positions [rad], velocities [rad/s], accelerations [rad/s^2].
 
         """
-        c, zero = self.coefficients, np.zeros((1, 3))
-        return (np.vstack((c[:, :, 0], self.final)), np.vstack((c[:, :, 1], zero)),
-                np.vstack((2.0 * c[:, :, 2], zero)))
+        c = self.coefficients
+        return (np.vstack((c[:, :, 0], self.final)),
+                np.vstack((c[:, :, 1], self.final_velocity)),
+                np.vstack((2.0 * c[:, :, 2], self.final_acceleration)))
 
     def _find(self, n: int, t: float) -> float:
         """Make the interval around a time the current one, and return the time, not before all."""
@@ -186,7 +252,13 @@ def through(points: MotionPoints, origin_ns: int = 0) -> DesiredMotion:
 
     """
     coefficients = segment_coefficients(points, segment_orders(points))
-    return DesiredMotion(points.times, coefficients, points.positions[-1], origin_ns)
+    motion = DesiredMotion(points.times, coefficients, points.positions[-1], origin_ns)
+    moving = np.abs(points.velocities[-1]) > FLOAT_EPSILON
+    if moving.any():  # joints without a velocity stand, as where all do
+        acceleration = motion.at(motion.end)[2] if len(coefficients) else points.accelerations[-1]
+        motion.final_velocity = np.where(moving, points.velocities[-1], 0.0)
+        motion.final_acceleration = np.where(moving, acceleration, 0.0)
+    return motion
 
 
 def holding(q: ArrayLike, now: int = 0) -> DesiredMotion:

@@ -29,11 +29,8 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.motion_points import MotionPoints
+from rrr_traj_planner.core.motion_points import FLOAT_EPSILON, MotionPoints
 from rrr_traj_planner.core.nanoseconds import SECOND
-
-# std::numeric_limits<float>::epsilon(), below which the controller takes a velocity for zero.
-FLOAT_EPSILON = float(np.finfo(np.float32).eps)
 
 # Larger values only serve to make numbers overflow [rad], [rad/s], [rad/s^2].
 LARGEST = 1e6

@@ -30,6 +30,9 @@ from rrr_traj_planner.core.interpolation import hermite
 
 ORDERS = (1, 3, 5)
 
+# std::numeric_limits<float>::epsilon(), below which the controller takes a velocity for zero.
+FLOAT_EPSILON = float(np.finfo(np.float32).eps)
+
 
 @dataclass(frozen=True, eq=False)
 class MotionPoints(ReadOnlyArrays):

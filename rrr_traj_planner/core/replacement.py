@@ -16,25 +16,31 @@
 How a new trajectory takes over from the running one without a jump in what is commanded.
 
 Where its first point lies ahead, one segment leads there from the present command, as in
-joint_trajectory_controller. Where its first point is due or past, that controller jumps onto the
-trajectory; here, and here alone, we are gentler: the command joins it by a quintic at the
-earliest later point that can be met on schedule within the joints' velocity and acceleration
-limits. Where none can, the arm stops and goes to the last point as fast as its limits allow.
+joint_trajectory_controller, if it keeps the limits. Where it does not, or the first point is due
+or past (that controller then jumps onto the trajectory), we are gentler, here and here alone: the
+command joins by a quintic the earliest later point that can be met on schedule within the ranges
+and the velocity, acceleration and torque limits. Where none can, it goes to the last point as soon
+as the limits allow, by one quintic or by a stop and a move.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.control import Desired
 from rrr_traj_planner.core.desired_motion import DesiredMotion, through
+from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.interpolation import hermite
+from rrr_traj_planner.core.joint_brake import LEAST_TIME
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_points import MotionPoints, segment_orders
-from rrr_traj_planner.core.stopping import LEAST_TIME, stopping
+from rrr_traj_planner.core.nanoseconds import nanoseconds
+from rrr_traj_planner.core.point_to_point import moved_on
+from rrr_traj_planner.core.stopping import from_state, stop
 
 # A command this near to a trajectory is on it [rad], [rad/s].
 POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
@@ -45,8 +51,8 @@ STEPS, LIMIT_TOLERANCE = 32, 1e-6
 # Points that are tried at once.
 BATCH = 256
 
-# Peaks of the quintic from rest to rest over distance d and time T: 1.875 d/T, 5.7735 d/T^2.
-PEAK_VELOCITY, PEAK_ACCELERATION = 15.0 / 8.0, 10.0 / 3.0 ** 0.5
+# Times in which the last point is gone to late, from the time on that it has [s].
+LATER = 1.15 ** np.arange(64.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +70,8 @@ class Takeover:
         Kept where a trajectory has to be joined.
     model : RobotModel
         The arm.
+    running : DesiredMotion, optional
+        What is followed now; None: only the command is known.
 
     """
 
@@ -71,6 +79,7 @@ class Takeover:
     command: Desired
     limits: JointLimits
     model: RobotModel
+    running: DesiredMotion | None = None
 
     @property
     def states(self) -> tuple[Array, Array, Array]:
@@ -79,8 +88,25 @@ class Takeover:
         return q, qd, qdd
 
 
+class Replacement(NamedTuple):
+    """
+    What the arm follows from now on.
+
+    Attributes
+    ----------
+    motion : DesiredMotion
+        Starting from the command, or already under way where the command is on it.
+    warnings : tuple of str
+        What a stop on the way could not keep.
+
+    """
+
+    motion: DesiredMotion
+    warnings: tuple[str, ...] = ()
+
+
 def replacement(takeover: Takeover, points: MotionPoints, origin_ns: int,
-                least_lead: float) -> DesiredMotion:
+                least_lead: float) -> Replacement:
     """
     Return what the arm follows from now on.
 
@@ -97,17 +123,19 @@ def replacement(takeover: Takeover, points: MotionPoints, origin_ns: int,
 
     Returns
     -------
-    DesiredMotion
-        Starting from the command, or already under way where the command is on it.
+    Replacement
+        The motion, and what it breaks.
 
     """
     motion = through(points, origin_ns)
     if motion.start > takeover.now + least_lead:
-        return through(_led_in(takeover, points, takeover.now - motion.origin), origin_ns)
-    if _is_on(takeover, motion, points):
-        return motion
+        led_in = _led_in(takeover, points, takeover.now - motion.origin)
+        if _lead_keeps_limits(takeover, led_in):
+            return Replacement(through(led_in, origin_ns))
+    elif _is_on(takeover, motion, points):
+        return Replacement(motion)
     i = _first_in_reach(takeover, motion)
-    return _joined(takeover, motion, i) if i >= 0 else _gone_to(takeover, motion.final)
+    return Replacement(_joined(takeover, motion, i)) if i >= 0 else _gone_to(takeover, motion)
 
 
 def _led_in(takeover: Takeover, points: MotionPoints, time: float) -> MotionPoints:
@@ -119,9 +147,28 @@ def _led_in(takeover: Takeover, points: MotionPoints, time: float) -> MotionPoin
         np.append(True, points.has_velocity), np.append(True, points.has_acceleration))
 
 
+def _lead_keeps_limits(takeover: Takeover, led_in: MotionPoints) -> bool:
+    """
+    Return whether the segment that leads in does.
+
+    Lines step in velocity by their nature, those of a stream of single points all the time;
+    others must not step by more than the acceleration limit gives in the segment's time.
+    """
+    T = np.diff(led_in.times[:2])
+    known = int(segment_orders(led_in)[0] + 1) // 2
+    if known == 1 and len(led_in.times) > 2:
+        rate = (led_in.positions[1] - led_in.positions[0]) / T
+        step = np.abs(rate - led_in.velocities[0])
+        if (step > takeover.limits.max_acceleration * T).any():
+            return False
+    ends = (led_in.positions, led_in.velocities, led_in.accelerations)[:known]
+    return bool(_within_limits(takeover, T, tuple(x[1:2] for x in ends))[0])
+
+
 def _is_on(takeover: Takeover, motion: DesiredMotion, points: MotionPoints) -> bool:
     """Return whether the command is on the motion now; on a line, its velocity may differ."""
-    gap = np.abs(np.subtract(motion(takeover.now), takeover.command))
+    state = motion.end_state if motion.end <= takeover.now else motion(takeover.now)
+    gap = np.abs(np.subtract(state, takeover.command))
     if gap[:3].max() > POSITION_TOLERANCE:
         return False
     i = int(np.searchsorted(points.times, takeover.now - motion.origin, side='right')) - 1
@@ -144,32 +191,46 @@ def _first_in_reach(takeover: Takeover, motion: DesiredMotion) -> int:
     return -1
 
 
-def _within_limits(takeover: Takeover, T: Array, ends: tuple[Array, ...]) -> Array:
+def _within_limits(takeover: Takeover, T: Array, ends: tuple[Array, ...]) -> BoolArray:
     """
-    Return which ends can be met after times T (n,), by quintics within the limits.
+    Return which ends can be met after times T (n,) within the limits.
 
-    Where the command or an end itself exceeds a limit, that much is allowed.
+    By quintics, or by cubics or lines where less is known of the ends. Where the command or an
+    end itself exceeds a limit, that much is allowed.
     """
-    limits, starts = takeover.limits, takeover.states
-    bounds = (limits.max_velocity, limits.max_acceleration)
-    upper = [np.maximum(limits.max_position, np.maximum(starts[0], ends[0]))]
-    lower = [np.minimum(limits.min_position, np.minimum(starts[0], ends[0]))]
-    for n, bound in enumerate(bounds, start=1):
-        upper.append(np.maximum(bound, np.maximum(np.abs(starts[n]), np.abs(ends[n])))
-                     * (1.0 + LIMIT_TOLERANCE))
-        lower.append(-upper[-1])
+    starts = takeover.states[:len(ends)]
     x = (np.linspace(0.0, 1.0, STEPS + 1) * T[:, np.newaxis])[..., np.newaxis]
     c = np.stack(np.broadcast_arrays(*hermite(T[:, np.newaxis], starts, ends)))
-    met = np.ones(len(T), dtype=bool)
-    for low, high in zip(lower, upper):
+    values = []  # position, velocity, acceleration, (n, STEPS + 1, 3) each
+    for _ in range(3):
         value = np.zeros((len(T), STEPS + 1, 3))
         for coefficient in c[::-1]:
             value = value * x + coefficient[:, np.newaxis]
-        room = LIMIT_TOLERANCE
-        met &= ((value >= low[:, np.newaxis] - room)
-                & (value <= high[:, np.newaxis] + room)).all(axis=(1, 2))
+        values.append(value)
         c = c[1:] * np.arange(1, len(c))[:, np.newaxis, np.newaxis]  # the next derivative
+    met = np.ones(len(T), dtype=bool)
+    for value, (low, high) in zip(values, _bounds(takeover, ends)):
+        met &= ((value >= low[:, np.newaxis] - LIMIT_TOLERANCE)
+                & (value <= high[:, np.newaxis] + LIMIT_TOLERANCE)).all(axis=(1, 2))
+    i = np.flatnonzero(met)
+    q, qd, qdd = (v[i] for v in values)
+    torque = np.abs(inverse_dynamics(takeover.model, q, qd, qdd))
+    allowed = np.maximum(torque[:, :1], torque[:, -1:])
+    met[i] = (torque <= np.maximum(takeover.limits.max_effort, allowed)
+              * (1.0 + LIMIT_TOLERANCE)).all(axis=(1, 2))
     return met
+
+
+def _bounds(takeover: Takeover, ends: tuple[Array, ...]) -> list[tuple[Array, Array]]:
+    """Return bounds on position, velocity and acceleration, (n, 3) each."""
+    limits, starts = takeover.limits, takeover.states
+    bounds = [(np.minimum(limits.min_position, np.minimum(starts[0], ends[0])),
+               np.maximum(limits.max_position, np.maximum(starts[0], ends[0])))]
+    for n, limit in enumerate((limits.max_velocity, limits.max_acceleration), start=1):
+        end = np.abs(ends[n]) if n < len(ends) else np.zeros_like(ends[0])
+        most = np.maximum(limit, np.maximum(np.abs(starts[n]), end)) * (1.0 + LIMIT_TOLERANCE)
+        bounds.append((-most, most))
+    return bounds
 
 
 def _joined(takeover: Takeover, motion: DesiredMotion, i: int) -> DesiredMotion:
@@ -180,21 +241,26 @@ def _joined(takeover: Takeover, motion: DesiredMotion, i: int) -> DesiredMotion:
     return DesiredMotion(
         np.append(time, motion.knots[i:]),
         np.concatenate((np.stack(join, axis=-1)[np.newaxis], motion.coefficients[i:])),
-        motion.final, motion.origin_ns)
+        motion.final, motion.origin_ns, motion.final_velocity, motion.final_acceleration)
 
 
-def _gone_to(takeover: Takeover, target: Array) -> DesiredMotion:
-    """Return a stop, then a quintic to rest at the target, as fast as the limits allow."""
-    stop = stopping(takeover.command, takeover.now, takeover.limits, takeover.model)
-    distance = np.abs(target - stop.final)
-    T = float(np.maximum(
-        PEAK_VELOCITY * distance / takeover.limits.max_velocity,
-        np.sqrt(PEAK_ACCELERATION * distance / takeover.limits.max_acceleration)).max())
-    if not distance.any():
-        return stop
-    T = max(T, LEAST_TIME)
-    zero = np.zeros(3)
-    move = np.stack(hermite(T, (stop.final, zero, zero), (target, zero, zero)), axis=-1)
-    return DesiredMotion(np.append(stop.knots, stop.knots[-1] + T),
-                         np.concatenate((stop.coefficients, move[np.newaxis])),
-                         target, stop.origin_ns)
+def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
+    """
+    Return a quintic to the motion's end, later than on schedule, or a stop and a move there.
+
+    Where the motion has a velocity at its end, the quintic leads to where it would be by then.
+    """
+    due = motion.end - takeover.now
+    T = max(due, LEAST_TIME) * LATER
+    q, qd, qdd = np.reshape(motion.end_state, (3, 3))
+    q = q + qd * (T - due)[:, np.newaxis]
+    met = _within_limits(takeover, T, (q, np.tile(qd, (len(T), 1)), np.tile(qdd, (len(T), 1))))
+    if met.any():
+        i = int(np.argmax(met))
+        late = DesiredMotion(T[i:i + 1], np.zeros((0, 3, 6)), q[i], nanoseconds(takeover.now),
+                             qd, qdd)
+        return Replacement(_joined(takeover, late, 0))
+    running = takeover.running or from_state(
+        takeover.command, nanoseconds(takeover.now))
+    stopped, warnings = stop(running, takeover.now, takeover.limits, takeover.model)
+    return Replacement(moved_on(stopped, motion.final, takeover.limits, takeover.model), warnings)

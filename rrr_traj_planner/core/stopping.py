@@ -12,144 +12,290 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Bringing the arm to rest from any commanded state, within its limits."""
+"""
+Bringing the arm to rest from the motion it is in: inside its ranges, as fast as its limits allow.
+
+Candidates are brakes of each joint by itself and the motion itself ever more slowly, either at
+once or after the motion has been followed for a while, down to its own end. Whatever the state of
+a motion that ends at rest inside the ranges, one of them keeps ranges and limits; of those that
+do, the quickest is taken. From other states each joint brakes as hard as its range asks, and what
+that breaks is told.
+"""
 
 from __future__ import annotations
 
 from math import inf
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.control import Desired
-from rrr_traj_planner.core.desired_motion import DesiredMotion, through
-from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.control import Desired, State
+from rrr_traj_planner.core.desired_motion import DesiredMotion
+from rrr_traj_planner.core.joint_brake import greatest_deceleration
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_points import MotionPoints
-from rrr_traj_planner.core.nanoseconds import nanoseconds
+from rrr_traj_planner.core.point_to_point import HARDLY_MORE, moved_on
+from rrr_traj_planner.core.stop_candidates import Indices, JointBrakes, Slowdowns
+from rrr_traj_planner.core.stop_task import POSITION_TOLERANCE, StopTask, time_inside
+from rrr_traj_planner.core.stop_warnings import harder, outside, torques_beyond
 
-# No stop is quicker than this, however wide the limits [s].
-LEAST_TIME = 0.01
+# Slower than this a joint is at rest where a motion ends [rad/s].
+REST = 1e-6
 
-# Nothing takes longer, not even where numbers have overflowed [s].
-LONGEST_TIME = 1e18
+# How long a motion is followed before the brake: from the first of these times on, each so much
+# longer than the one before [s].
+FIRST_DELAY, DELAY_RATIO = 0.005, 1.5
 
-# Slower than this is rest [rad/s], [rad/s^2].
-REST = 1e-12
+# Candidates brake with these parts of the greatest deceleration, where torque asks for less.
+RATES = 1.3 ** -np.arange(22.0)
 
-# A stop that asks too much torque is slowed by this factor, at most so often (to 1/65 of the
-# rate). Where no stop fits, the quickest is taken that asks hardly more than the gentlest.
-SLOWING, SLOWINGS = 1.15, 30
-HARDLY_MORE = 1.1
+# Times that a motion takes to slow down [s].
+SLOWDOWNS = 0.01 * 1.3 ** np.arange(30.0)
 
-BISECTIONS = 30
+# Where keeping the jerk limit would take so many times as long as jerk itself asks for, jerk is
+# allowed to be so many times its limit, and a second then costs so much more.
+PATIENCE = 2.5
+JERK_FACTORS = ((4.0, 1.5), (inf, 2.5))
+
+# Candidates are looked at in groups, at so many instants each, and at more before one is taken.
+GROUP, COARSE, FINE = 48, 25, 241
+LIMIT_TOLERANCE = 1e-4
+
+# A joint that is to stop in less time than this stands at once [s].
+INSTANT = 1e-3
+
+# A command outside the ranges that is so far from the arm is not what has to stop [rad].
+FAR = 1e-3
 
 
-def stopping(command: Desired, now: float, limits: JointLimits,
-             model: RobotModel) -> DesiredMotion:
+class Stop(NamedTuple):
     """
-    Return the quickest motion of its kind that brings the arm to rest.
+    A motion to rest.
 
-    Each joint by itself: its velocity is the cubic that starts with the commanded velocity and
-    acceleration and ends with neither, as short as its acceleration, jerk and torque limits
-    allow. Where the command itself exceeds a limit, that much is allowed.
+    Attributes
+    ----------
+    motion : DesiredMotion
+        Starting now from the state, or already under way; at rest inside every range at last.
+    warnings : tuple of str
+        What could not be kept, a sentence for each joint; empty where all is well.
+
+    """
+
+    motion: DesiredMotion
+    warnings: tuple[str, ...] = ()
+
+
+# A motion to rest, and what it costs.
+Found = tuple[DesiredMotion, float]
+
+
+class Family(Protocol):
+    """Candidates of one kind."""
+
+    cost: Array
+
+    def excess(self, chosen: Indices, samples: int) -> Array:
+        """
+        Return the largest share of a limit that candidates take.
+
+        Parameters
+        ----------
+        chosen : ndarray of int, shape (k,)
+            Which candidates.
+        samples : int
+            At how many instants they are looked at.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+            At most 1 where all limits are kept.
+
+        """
+
+    def motion(self, i: int) -> DesiredMotion:
+        """
+        Return a candidate.
+
+        Parameters
+        ----------
+        i : int
+            Which.
+
+        Returns
+        -------
+        DesiredMotion
+            A motion to rest.
+
+        """
+
+
+def stop(motion: DesiredMotion, now: float, limits: JointLimits, model: RobotModel) -> Stop:
+    """
+    Return the quickest way to rest that keeps every range and limit.
+
+    Position and velocity go on from the motion's without a jump, acceleration too where jerk is
+    limited. A joint outside its range stops and then goes back to its end.
 
     Parameters
     ----------
-    command : tuple of 9 floats
-        Positions [rad], velocities [rad/s], accelerations [rad/s^2] commanded now.
+    motion : DesiredMotion
+        What the arm follows; of a state alone, `from_state`.
     now : float
         When the stop begins [s].
     limits : JointLimits
-        The limits.
+        The limits. Where the motion itself exceeds velocity, acceleration or torque, that much
+        is allowed.
     model : RobotModel
         The arm, for its torques.
 
     Returns
     -------
-    DesiredMotion
-        Starting now from the command.
+    Stop
+        The motion, and what had to be broken where the state left no other way.
 
     """
-    q, qd, qdd = np.reshape(command, (3, 3))
-    times = np.array([
-        stopping_time(*x) for x in zip(qd.tolist(), qdd.tolist(), limits.max_acceleration.tolist(),
-                                       limits.max_jerk.tolist())])
-    stops, excesses = [], []
-    for _ in range(SLOWINGS):
-        stops.append(_stop(q, qd, qdd, times, now))
-        excesses.append(_torque_excess(stops[-1], limits, model))
-        if excesses[-1] <= 1.0 or not times.any():
-            return stops[-1]
-        times *= SLOWING
-    least = min(excesses)
-    return next(s for s, excess in zip(stops, excesses) if excess <= HARDLY_MORE * least)
+    task = StopTask(motion, now, limits, model)
+    found, told = _within_limits(task), outside(task, motion.at(now)[0])
+    if found is None:
+        found, more = _as_hard_as_needed(task)
+        told += more
+    target = np.clip(found.final, limits.min_position, limits.max_position)
+    if np.abs(target - found.final).max() > POSITION_TOLERANCE:
+        found = moved_on(found, target, limits, model)
+    found = DesiredMotion(found.knots, found.coefficients, target, found.origin_ns)
+    return Stop(found, tuple(told))
 
 
-def stopping_time(velocity: float, acceleration: float, max_acceleration: float,
-                  max_jerk: float) -> float:
+def from_state(state: Desired, now: int) -> DesiredMotion:
     """
-    Return how long one joint takes to stop.
+    Return a motion that is over in the state in which it begins.
 
     Parameters
     ----------
-    velocity, acceleration : float
-        With which the stop begins [rad/s], [rad/s^2].
-    max_acceleration, max_jerk : float
-        Bounds on the magnitude [rad/s^2], [rad/s^3]; may be infinite.
+    state : tuple of 9 floats
+        Positions [rad], velocities [rad/s], accelerations [rad/s^2].
+    now : int
+        The time [ns].
 
     Returns
     -------
-    float
-        [s]; 0.0 for a joint at rest.
+    DesiredMotion
+        Of one knot.
 
     """
-    if abs(velocity) <= REST and abs(acceleration) <= REST:
-        return 0.0
-    bound = max(max_acceleration, abs(acceleration)) * (1.0 + 1e-9)
-
-    def fits(T: float) -> bool:
-        # with s = t / T: a(s) = a0 + (-6 v0/T - 4 a0) s + (6 v0/T + 3 a0) s^2
-        slope, bend = -6.0 * velocity / T - 4.0 * acceleration, (
-            6.0 * velocity / T + 3.0 * acceleration)
-        jerk = max(abs(slope), abs(slope + 2.0 * bend)) / T
-        s = -0.5 * slope / bend if bend else inf
-        peak = acceleration + 0.5 * slope * s if 0.0 < s < 1.0 else acceleration
-        return abs(peak) <= bound and jerk <= max_jerk
-
-    long = LEAST_TIME
-    if fits(long):
-        return long
-    while not fits(long) and long < LONGEST_TIME:
-        long *= 2.0
-    short = 0.5 * long
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (short + long)
-        short, long = (short, middle) if fits(middle) else (middle, long)
-    return long
+    q, qd, qdd = np.reshape(state, (3, 3))
+    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), q, now, qd, qdd)
 
 
-def _stop(q: Array, qd: Array, qdd: Array, times: Array, now: float) -> DesiredMotion:
-    """Return the stop of all joints, each in its own time; quintics hold these quartics."""
-    moving = times > 0.0
-    T = np.where(moving, times, 1.0)
-    qd, qdd = qd * moving, qdd * moving
-    knots = np.unique(np.append(0.0, times))
-    s = np.minimum(knots[:, np.newaxis] / T, 1.0)  # (n, 3)
-    known = np.ones(len(knots), dtype=bool)
-    points = MotionPoints(
-        knots,
-        q + T * (qd * (s - s ** 3 + s ** 4 / 2.0)
-                 + qdd * T * (s ** 2 / 2.0 - 2.0 / 3.0 * s ** 3 + s ** 4 / 4.0)),
-        qd * (1.0 - 3.0 * s ** 2 + 2.0 * s ** 3) + qdd * T * (s - 2.0 * s ** 2 + s ** 3),
-        6.0 * qd / T * (s ** 2 - s) + qdd * (1.0 - 4.0 * s + 3.0 * s ** 2), known, known)
-    return through(points, nanoseconds(now))
+def what_moves(motion: DesiredMotion, now: int, seen: State,
+               limits: JointLimits) -> DesiredMotion:
+    """
+    Return what has to stop: a motion, or the state measured where that motion is far off.
+
+    Parameters
+    ----------
+    motion : DesiredMotion
+        What is followed.
+    now : int
+        The time [ns].
+    seen : tuple of 6 floats
+        Measured positions [rad] and velocities [rad/s].
+    limits : JointLimits
+        A command outside their ranges, and the arm not with it, is not what moves.
+
+    Returns
+    -------
+    DesiredMotion
+        For `stop`.
+
+    """
+    q = np.array(motion.command(now)[:3])
+    astray = ((q < limits.min_position) | (q > limits.max_position)).any() and (
+        np.abs(q - seen[:3]).max() > FAR)
+    return from_state((*seen, 0.0, 0.0, 0.0), now) if astray else motion
 
 
-def _torque_excess(motion: DesiredMotion, limits: JointLimits, model: RobotModel) -> float:
-    """Return the largest torque over its limit, or over the command's where that is larger."""
-    states = np.array([
-        motion(motion.origin + t) for t in np.linspace(0.0, float(motion.knots[-1]), 41)])
-    torque = np.abs(inverse_dynamics(model, states[:, :3], states[:, 3:6], states[:, 6:]))
-    bound = np.maximum(limits.max_effort, torque[0])
-    return float((torque / bound).max())
+def _within_limits(task: StopTask) -> DesiredMotion | None:
+    """Return the cheapest candidate that keeps ranges and limits, if there is one."""
+    delays, states = _delays(task)
+    brakes = _joint_brakes(task, delays, states)
+    patience = PATIENCE * float(brakes.cost[0])  # the quickest at once, were there jerk alone
+    best = _cheapest(brakes, None)
+    if best is None or best[1] > brakes.cost[0]:
+        best = _cheapest(_slowdowns(task, delays), best)
+    if (best is None or best[1] > patience) and np.isfinite(task.limits.max_jerk).any():
+        for factor, weight in JERK_FACTORS:
+            best = _cheapest(_joint_brakes(task, delays, states, factor, weight), best)
+    return None if best is None else best[0]
+
+
+def _cheapest(family: Family, best: Found | None) -> Found | None:
+    """Return the cheapest candidate within the limits, or the best so far if that is cheaper."""
+    order = np.argsort(family.cost, kind='stable')
+    if best is not None:
+        order = order[family.cost[order] < best[1]]
+    for first in range(0, len(order), GROUP):
+        group = order[first:first + GROUP]
+        for i in group[family.excess(group, COARSE) <= 1.0 + LIMIT_TOLERANCE]:
+            if family.excess(np.array([i]), FINE)[0] <= 1.0 + LIMIT_TOLERANCE:
+                return family.motion(int(i)), float(family.cost[i])
+    return best
+
+
+def _joint_brakes(task: StopTask, delays: Array, states: tuple[Array, Array, Array],
+                  factor: float = 1.0, weight: float = 1.0) -> JointBrakes:
+    """Return the brakes of every joint by itself: at every rate after every delay."""
+    limits = task.limits
+    max_jerk = factor * limits.max_jerk
+    greatest = greatest_deceleration(*states[1:], limits.max_acceleration, max_jerk)
+    decelerations = (greatest[:, np.newaxis] * RATES[:, np.newaxis]).reshape(-1, 3)
+    return JointBrakes(task, np.repeat(delays, len(RATES)),
+                       tuple(np.repeat(x, len(RATES), axis=0) for x in states),
+                       decelerations, max_jerk, weight)
+
+
+def _slowdowns(task: StopTask, delays: Array) -> Slowdowns:
+    """Return the motion slowed in every time after every delay, where it lasts that long."""
+    delay, duration = (x.ravel() for x in np.meshgrid(delays, SLOWDOWNS))
+    lasts = delay + 0.5 * duration <= delays[-1]
+    return Slowdowns(task, delay[lasts], duration[lasts])
+
+
+def _delays(task: StopTask) -> tuple[Array, tuple[Array, Array, Array]]:
+    """Return how long the motion may be followed, inside the ranges, and its states then."""
+    motion, now = task.motion, task.now
+    left = max(time_inside(motion, now, task.limits) - now, 0.0)
+    n = int(np.log(max(left / FIRST_DELAY, 1.0)) / np.log(DELAY_RATIO))
+    delays = np.unique(np.concatenate((
+        [0.0, left], FIRST_DELAY * DELAY_RATIO ** np.arange(n))))
+    q, qd, qdd, _ = motion.at(now + delays)
+    if now + left >= motion.end:
+        q[-1], qd[-1], qdd[-1] = _end(motion, now, qd[-1], qdd[-1])
+    return delays, (q, qd, qdd)
+
+
+def _end(motion: DesiredMotion, now: float, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
+    """Return the state at a motion's end, at which its last polynomial has a velocity."""
+    if motion.ends_moving:
+        return motion.final, motion.final_velocity, motion.final_acceleration
+    rests = now >= motion.end or bool(np.abs(qd).max() <= REST)
+    return (motion.final, np.zeros(3), np.zeros(3)) if rests else (motion.final, qd, qdd)
+
+
+def _as_hard_as_needed(task: StopTask) -> tuple[DesiredMotion, list[str]]:
+    """Return a brake that ends inside the ranges, whatever it takes, and what that is."""
+    q, qd, qdd = (x[0] for x in _delays(task)[1])
+    low, high = task.ranges(q)
+    room = np.maximum(np.where(qd > 0.0, high - q, q - low), 0.0)
+    at_once = 2.0 * room < np.abs(qd) * INSTANT
+    v, a = np.where(at_once, 0.0, qd), np.where(at_once, 0.0, qdd)
+    needed = 0.5 * v ** 2 / np.where(at_once, 1.0, room)
+    unlimited, n = np.full(3, inf), len(RATES)
+    greatest = greatest_deceleration(v, a, task.limits.max_acceleration, unlimited)
+    brakes = JointBrakes(task, np.zeros(n), tuple(np.tile(x, (n, 1)) for x in (q, v, a)),
+                         np.maximum(greatest * RATES[:, np.newaxis], needed), unlimited)
+    share = brakes.excess(np.arange(n), FINE)
+    found = brakes.motion(int(np.argmax(share <= max(1.0, HARDLY_MORE * share.min()))))
+    needed[at_once] = inf
+    return found, (harder(task, q, qd, np.where(needed > np.abs(a), needed, 0.0))
+                   + torques_beyond(task, found))

@@ -43,6 +43,9 @@ from trajectory_msgs.msg import JointTrajectory
 
 QUEUE_DEPTH = 10
 
+# The same kind of warning is logged no more often than this [s].
+WARNING_PERIOD = 1.0
+
 NOT_THE_CLOCK = 'the arm follows a clock; only with publish_clock is it one that can stand'
 
 
@@ -104,6 +107,10 @@ class SimulatedArm(Node):
             for line in self._arm.violation:
                 (log.warning if line == TIMED_OUT else log.error)(line)
             self._arm.violation = ()
+        if self._arm.stop_warnings:
+            self.get_logger().warning(
+                '; '.join(self._arm.stop_warnings), throttle_duration_sec=WARNING_PERIOD)
+            self._arm.stop_warnings = ()
 
     def _publish(self) -> None:
         """Publish how the arm is."""
@@ -152,7 +159,7 @@ class SimulatedArm(Node):
         return response
 
     def _hold(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Stop the arm as fast as its limits allow."""
+        """Stop the arm inside its ranges, as fast as its limits allow."""
         self._time.catch_up()
         self._arm.hold()
         motion = self._arm.motion

@@ -132,6 +132,73 @@ def test_hold_stops_the_arm_and_keeps_it_there():
     np.testing.assert_allclose(arm.state[:3], arm.motion.final, atol=1e-6)
 
 
+def test_hold_of_an_arm_that_was_sent_out_of_its_ranges_takes_the_torque_off_its_stops():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(quintic(Q, (34.0, 57.0, 17.0), 2.0), 0)  # degrees, taken for radians
+    arm.advance(2500)
+    assert np.abs(arm.torque).tolist() == SETTINGS.limits.max_effort.tolist()
+    arm.hold()
+    assert (arm.motion.final <= SETTINGS.limits.max_position).all()
+    arm.advance(round((arm.motion.end - arm.time + 1.0) / SETTINGS.step))
+    np.testing.assert_allclose(arm.torque, gravity_torque(MODEL, arm.state[:3]), atol=1e-6)
+
+
+def test_end_with_a_velocity_is_braked_within_the_limits():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(MotionPoints([1.0], [Q + 0.15], [[0.3] * 3], np.zeros((1, 3)), [True], [True]), 0)
+    velocities = []
+    for _ in range(2000):
+        arm.advance(1)
+        velocities.append(arm.desired[3:6])
+    assert np.abs(np.diff(velocities, axis=0)).max() <= 1e-3 * 1.001  # 1 rad/s^2
+    assert np.abs(velocities).max() > 0.299
+    assert velocities[-1] == (0.0, 0.0, 0.0)
+    # 0.1 s at full jerk and back, 0.2 s between: 0.3 rad/s * 0.4 s / 2
+    np.testing.assert_allclose(arm.state[:3], Q + 0.15 + 0.06, atol=1e-6)
+
+
+@pytest.mark.parametrize('steps', [1, 250, 999, 1000, 1001])
+def test_brake_at_the_end_does_not_depend_on_how_steps_are_counted(steps):
+    arms = [ControlledArm(SETTINGS, Q) for _ in range(2)]
+    for arm in arms:
+        arm.follow(MotionPoints([1.0], [Q + 0.15], [[0.3] * 3], np.zeros((1, 3)), [True], [True]),
+                   0)
+    arms[0].advance(2002)
+    arms[1].advance(steps)
+    arms[1].advance(2002 - steps)
+    assert arms[0].state == arms[1].state
+
+
+def test_ranges_that_shrink_stop_a_motion_that_would_leave_them():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(quintic(Q, Q + 0.5, 4.0), 0)
+    arm.advance(1500)
+    narrow = replace(SETTINGS.limits, max_position=np.array([0.9, 3.0, 3.0]))
+    arm.configure(replace(SETTINGS, limits=narrow))
+    assert arm.stop_warnings == ('The motion leaves the new joint ranges: stopping',)
+    arm.advance(2000)
+    assert arm.state[0] < 0.9
+    assert arm.state[3:] == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+
+
+def test_ranges_that_shrink_under_a_resting_arm_bring_it_back_inside():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.configure(replace(SETTINGS, limits=replace(
+        SETTINGS.limits, max_position=np.array([0.4, 3.0, 3.0]))))
+    arm.advance(3000)
+    np.testing.assert_allclose(arm.state[:3], (0.4, *Q[1:]), atol=1e-6)
+    np.testing.assert_allclose(arm.torque, gravity_torque(MODEL, arm.state[:3]), atol=1e-3)
+
+
+def test_other_limits_that_change_leave_the_motion_alone():
+    arm = ControlledArm(SETTINGS, Q)
+    arm.follow(quintic(Q, (-0.2, 1.1, 0.2), 2.0), 0)
+    motion = arm.motion
+    arm.configure(replace(SETTINGS, limits=replace(
+        SETTINGS.limits, max_acceleration=np.full(3, 0.5))))
+    assert arm.motion is motion
+
+
 def test_reset_puts_the_arm_back_at_rest():
     arm = ControlledArm(SETTINGS, Q)
     arm.follow(quintic(Q, Q + 0.3, 2.0), 0)

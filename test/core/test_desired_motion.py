@@ -122,8 +122,26 @@ def test_one_point_is_held():
 def test_states_are_those_at_the_knots():
     points = random_points(True, True)
     motion = through(points)
-    expected = [motion(t) for t in points.times]
-    np.testing.assert_allclose(np.hstack(motion.states()), expected, atol=1e-12)
+    expected = [motion(t) for t in points.times[:-1]]
+    np.testing.assert_allclose(np.hstack(motion.states())[:-1], expected, atol=1e-12)
+    end = np.concatenate((points.positions[-1], points.velocities[-1], points.accelerations[-1]))
+    np.testing.assert_allclose(np.hstack(motion.states())[-1], end, atol=1e-12)
+    np.testing.assert_allclose(motion.end_state, end, atol=1e-12)
+    assert motion.ends_moving
+
+
+@pytest.mark.parametrize('carried', [(False, False), (True, False), (True, True)])
+def test_many_instants_are_those_one_by_one(carried):
+    motion = through(random_points(*carried), 3_000_000_000)
+    t = np.linspace(2.0, motion.end - 1e-9, 500)
+    np.testing.assert_allclose(np.hstack(motion.at(t)[:3]), [motion(x) for x in t], atol=1e-12)
+
+
+def test_jerk_is_the_derivative_of_acceleration():
+    motion, h = through(random_points(True, True)), 1e-6
+    t = 0.5 * (motion.knots[1:] + motion.knots[:-1])
+    difference = (motion.at(t + h)[2] - motion.at(t - h)[2]) / (2.0 * h)
+    np.testing.assert_allclose(motion.at(t)[3], difference, rtol=1e-6, atol=1e-6)
 
 
 @pytest.mark.parametrize(('change', 'text'), [

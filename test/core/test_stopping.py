@@ -12,53 +12,80 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Stopping: from the commanded state to rest, within the limits."""
+"""Stopping: from any motion to rest, inside the ranges and within the limits."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.desired_motion import through
+from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.stopping import stopping, stopping_time
+from rrr_traj_planner.core.motion_points import MotionPoints
+from rrr_traj_planner.core.stop_task import time_inside
+from rrr_traj_planner.core.stopping import from_state, stop
 
-MODEL, LIMITS = RobotModel(), JointLimits(max_effort=np.full(3, inf))
-NOW = 7.0
+MODEL, FREE = RobotModel(), np.full(3, inf)
+LIMITS = JointLimits(max_effort=FREE)
+NOW, NOW_NS = 7.0, 7_000_000_000
+ROUNDING = 1e-9
 
 
 def random_commands(count):
     rng = np.random.default_rng(4)
     for _ in range(count):
-        yield tuple(rng.uniform((0.1, 0.1, -1.0) + (-1.0,) * 6, 1.0).tolist())
+        yield tuple(rng.uniform((0.3, 0.8, -1.0) + (-0.5,) * 3 + (-1.0,) * 3,
+                                (1.2, 1.2, 1.0) + (0.5,) * 3 + (1.0,) * 3).tolist())
+
+
+def stopped(state, limits=LIMITS):
+    return stop(from_state(state, NOW_NS), NOW, limits, MODEL)
 
 
 def sampled(motion):
-    times = motion.origin + np.linspace(0.0, float(motion.knots[-1]), 2001)
-    return times, np.array([motion(t) for t in times])
+    """Return times from now to the end, and the states then."""
+    times = np.linspace(NOW, motion.end, 2001)
+    return times, np.array([motion(t) for t in times[:-1]] + [motion(times[-1] - 1e-12)])
+
+
+def parabola(top, acceleration, duration=2.0):
+    """Return a motion that touches `top` half way and comes back; the other joints rest."""
+    t = np.linspace(0.0, duration, 21)
+    q, qd, qdd = np.tile([[0.5, 1.0, 0.2]], (21, 1)), np.zeros((21, 3)), np.zeros((21, 3))
+    x = t - 0.5 * duration
+    q[:, 0], qd[:, 0], qdd[:, 0] = top - 0.5 * acceleration * x ** 2, -acceleration * x, -(
+        acceleration)
+    known = np.ones(21, dtype=bool)
+    return through(MotionPoints(t, q, qd, qdd, known, known), NOW_NS)
 
 
 def test_stop_starts_from_the_command_and_ends_at_rest():
     for command in random_commands(50):
-        motion = stopping(command, NOW, LIMITS, MODEL)
+        motion = stopped(command).motion
         np.testing.assert_allclose(motion(NOW), command, atol=1e-12)
         assert motion(motion.end + 1e-9)[3:] == (0.0,) * 6
         np.testing.assert_allclose(motion(motion.end - 1e-9), motion(motion.end + 1e-9), atol=1e-7)
 
 
-def test_stop_keeps_acceleration_and_jerk_limits():
+def test_stop_keeps_acceleration_and_jerk_limits_and_ranges():
     for command in random_commands(50):
-        times, states = sampled(stopping(command, NOW, LIMITS, MODEL))
+        motion, warnings = stopped(command)
+        times, states = sampled(motion)
+        assert warnings == ()
         assert np.abs(states[:, 6:]).max() <= 1.0 + 1e-6
         jerk = np.abs(np.diff(states[:, 6:], axis=0)) / np.diff(times)[:, np.newaxis]
         assert jerk.max() <= 10.0 + 1e-6
+        assert (states[:, :3] >= LIMITS.min_position - ROUNDING).all()
+        assert (states[:, :3] <= LIMITS.max_position + ROUNDING).all()
 
 
 def test_velocity_is_the_derivative_of_position():
     for command in random_commands(10):
-        times, states = sampled(stopping(command, NOW, LIMITS, MODEL))
+        times, states = sampled(stopped(command).motion)
         for n in (0, 3):
             rate = np.diff(states[:, n:n + 3], axis=0) / np.diff(times)[:, np.newaxis]
             middle = 0.5 * (states[1:, n + 3:n + 6] + states[:-1, n + 3:n + 6])
@@ -66,35 +93,117 @@ def test_velocity_is_the_derivative_of_position():
             np.testing.assert_allclose(rate, middle, atol=room)
 
 
-def test_time_from_a_velocity_alone_is_the_cubic_s():
-    # peak deceleration 1.5 v/T, jerk 6 v/T^2
-    assert stopping_time(1.0, 0.0, 1.0, inf) == pytest.approx(1.5, abs=1e-6)
-    assert stopping_time(-1.0, 0.0, inf, 6.0) == pytest.approx(1.0, abs=1e-6)
-
-
-@pytest.mark.parametrize('command', [(inf, 0.0), (0.0, inf), (np.nan, 0.0), (1e308, 1e308)])
-def test_search_for_a_time_ends_even_without_one(command):
-    assert stopping_time(*command, 1.0, 10.0) > 1e9
+@pytest.mark.parametrize(('max_acceleration', 'max_jerk', 'time', 'way'), [
+    (1.0, inf, 0.4, 0.08),            # v / A, v^2 / 2 A
+    (inf, 10.0, 0.4, 0.08),           # 2 sqrt(v / J), half of it at v
+    (1.0, 10.0, 0.5, 0.1)])           # v / A + A / J
+def test_stop_from_a_velocity_alone_takes_its_closed_form(max_acceleration, max_jerk, time, way):
+    limits = replace(LIMITS, max_acceleration=np.full(3, max_acceleration),
+                     max_jerk=np.full(3, max_jerk))
+    motion = stopped((0.5, 1.0, 0.2, 0.4, 0.0, 0.0, 0.0, 0.0, 0.0), limits).motion
+    assert motion.end - NOW == pytest.approx(time, abs=1e-9)
+    np.testing.assert_allclose(motion.final, (0.5 + way, 1.0, 0.2), atol=1e-9)
 
 
 def test_arm_at_rest_stays():
     q = (0.5, 0.9, 0.2)
-    motion = stopping((*q, *(0.0,) * 6), NOW, LIMITS, MODEL)
+    motion = stopped((*q, *(0.0,) * 6)).motion
     assert motion.end == NOW
     assert motion(NOW) == (*q, *(0.0,) * 6)
 
 
-def test_stop_is_slowed_until_torques_fit():
+def test_torque_binds_where_acceleration_does_not():
     command = (0.5, 1.2, 0.2, 0.0, -1.0, -1.0, 0.0, 0.0, 0.0)  # falling, braked by lifting
     rest = np.abs(inverse_dynamics(MODEL, command[:3], command[3:6], command[6:]))
-    limits = JointLimits(max_acceleration=np.full(3, 50.0), max_jerk=np.full(3, inf),
-                         max_effort=rest + 60.0)
-    _, states = sampled(stopping(command, NOW, limits, MODEL))
+    limits = JointLimits(max_acceleration=FREE, max_jerk=FREE, max_effort=rest + 60.0)
+    _, states = sampled(stopped(command, limits).motion)
     torque = np.abs(inverse_dynamics(MODEL, states[:, :3], states[:, 3:6], states[:, 6:]))
-    assert (torque.max(axis=0) <= limits.max_effort * 1.01).all()
+    assert (torque.max(axis=0) <= limits.max_effort * 1.001).all()
+    assert (torque.max(axis=0) >= limits.max_effort * 0.8).any()
 
 
-def test_arm_that_cannot_be_held_stops_all_the_same():
+def test_arm_that_cannot_be_held_stops_all_the_same_and_says_so():
     limits = JointLimits(max_effort=np.full(3, 1.0))
-    motion = stopping((0.5, 1.0, 0.2, 0.5, 0.5, 0.5, 0.0, 0.0, 0.0), NOW, limits, MODEL)
+    motion, warnings = stopped((0.5, 1.0, 0.2, 0.5, 0.5, 0.5, 0.0, 0.0, 0.0), limits)
     assert motion.end - NOW < 4.0
+    assert [w.split(' for ')[0] for w in warnings] == [
+        'stopping asks joint_1', 'stopping asks joint_2', 'stopping asks joint_3']
+
+
+@pytest.mark.parametrize('max_jerk', [inf, 10.0])
+@pytest.mark.parametrize('t', [0.5, 0.9, 0.999, 1.0, 1.001, 1.2])
+def test_joint_that_turns_at_the_end_of_its_range_is_not_carried_beyond_it(t, max_jerk):
+    # Any jerk towards rest before the turn would carry it beyond: v^2 / 2 A of way is left.
+    limits = replace(LIMITS, max_jerk=np.full(3, max_jerk))
+    motion, warnings = stop(parabola(np.pi / 2, 1.0), NOW + t, limits, MODEL)
+    states = np.array([motion(x) for x in np.linspace(NOW + t, motion.end, 2001)])
+    assert states[:, 0].max() <= np.pi / 2 + ROUNDING
+    assert np.abs(states[:, 6:]).max() <= 1.0 + 1e-6
+    assert warnings == ()
+    assert motion.end - NOW - t < 1.2
+
+
+@pytest.mark.parametrize(('end', 'sign'), [(np.pi / 2, 1.0), (0.0, -1.0)])
+def test_state_that_is_too_fast_for_its_range_brakes_as_hard_as_that_takes(end, sign):
+    q = end - 0.05 * sign
+    motion, warnings = stopped((q, 1.0, 0.2, 0.9 * sign, *(0.0,) * 5))
+    _, states = sampled(motion)
+    assert motion.final[0] == end
+    assert np.abs(states[:, 6]).max() == pytest.approx(0.9 ** 2 / 2.0 / 0.05)  # v^2 / 2 s
+    assert warnings == (
+        f'joint_1 moves at {0.9 * sign:.4g} rad/s at {q:.6g} rad, range [0, 1.5708] rad: it '
+        'brakes with 8.1 rad/s^2, limit 1 rad/s^2, to rest inside it',)
+
+
+def test_joint_that_is_fast_at_the_end_of_its_range_rests_there():
+    motion, warnings = stopped((np.pi / 2, 1.0, 0.2, 0.9, *(0.0,) * 5))
+    assert motion.final[0] == np.pi / 2
+    assert 'range [0, 1.5708] rad: it meets its end' in warnings[0]
+
+
+def test_joint_outside_its_range_stops_and_goes_back():
+    motion, warnings = stopped((1.7, 1.0, 0.2, 0.1, *(0.0,) * 5))
+    _, states = sampled(motion)
+    assert motion.final[0] == np.pi / 2
+    assert np.abs(states[:, 6:]).max() <= 1.0 + 1e-6
+    assert states[:, 0].max() < 1.72  # 0.1 rad/s takes 0.01 rad
+    assert warnings == (
+        'joint_1 is at 1.7 rad, outside its range [0, 1.5708] rad: it goes back inside',)
+
+
+@pytest.mark.parametrize('velocity', [1e-12, 1e3, 1e6])
+@pytest.mark.parametrize('max_acceleration', [1.0, inf])
+def test_any_velocity_ends_inside_the_ranges(velocity, max_acceleration):
+    limits = JointLimits(max_acceleration=np.full(3, max_acceleration))
+    for state in ((0.5, 1.0, 0.2, velocity, -velocity, velocity, 0.0, 0.0, 0.0),
+                  (0.5, 1.0, 0.2, velocity, 0.0, 0.0, -1e6, 1e6, 0.0)):
+        motion = stopped(state, limits).motion
+        assert motion.end - NOW < 60.0
+        assert (motion.final >= limits.min_position).all()
+        assert (motion.final <= limits.max_position).all()
+
+
+def test_pose_that_cannot_be_held_is_flown_through():
+    # Joint 2 at 0 takes 250 N m, at 1.4 rad far less: the motion goes from one side to the other.
+    q = np.array([[0.5, -1.3, 0.0], [0.5, 1.3, 0.0]])
+    limits = JointLimits(min_position=np.full(3, -np.pi), max_position=np.full(3, np.pi),
+                         max_velocity=FREE, max_acceleration=FREE, max_jerk=FREE,
+                         max_effort=np.array([inf, 0.9 * np.abs(gravity_torque(
+                             MODEL, (0.5, 0.0, 0.0)))[1], inf]))
+    t = np.linspace(0.0, 1.2, 61)
+    s = (t / 1.2)[:, np.newaxis]
+    d = (q[1] - q[0])
+    known = np.ones(len(t), dtype=bool)
+    motion = through(MotionPoints(
+        t, q[0] + (10 - 15 * s + 6 * s ** 2) * s ** 3 * d,
+        30 * (s * (1 - s)) ** 2 * d / 1.2, 60 * s * (1 - s) * (1 - 2 * s) * d / 1.2 ** 2, known,
+        known), NOW_NS)
+    final = stop(motion, NOW + 0.6, limits, MODEL).motion.final
+    assert np.abs(gravity_torque(MODEL, final))[1] <= limits.max_effort[1] * 1.001
+
+
+def test_time_inside_is_when_a_motion_leaves_its_ranges():
+    motion = parabola(np.pi / 2 + 0.02, 1.0)  # beyond from 0.2 s before its turn on
+    assert time_inside(motion, NOW, LIMITS) == pytest.approx(NOW + 0.8, abs=0.003)
+    assert time_inside(motion, NOW + 1.0, LIMITS) == -inf
+    assert time_inside(parabola(np.pi / 2, 1.0), NOW, LIMITS) == NOW + 2.0

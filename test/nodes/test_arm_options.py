@@ -168,13 +168,14 @@ def test_partial_goal_moves_its_joint_alone(ros):
     arm.actual.wait_for(at((START[0], START[1], GOAL[2])))
 
 
-def test_end_with_a_velocity_is_rested_at_where_it_is_allowed(ros):
+def test_end_with_a_velocity_is_braked_from_where_it_is_allowed(ros):
     arm = Arm(ros, allow_nonzero_velocity_at_trajectory_end=True)
-    arm.send((0.3, GOAL, (0.1, 0.0, 0.0)))
-    arm.actual.wait_for(at(GOAL))
-    rest = arm.desired.wait_for_next()
-    np.testing.assert_array_equal(rest.position, GOAL)
-    assert not np.any(rest.velocity)
+    arm.send((1.5, GOAL, (0.1, 0.0, 0.0)))
+    arm.desired.wait_for(lambda m: m.position[0] > GOAL[0] and m.velocity[0] > 0.0)
+    rest = arm.desired.wait_for_next(lambda m: not np.any(m.velocity))
+    assert 0.005 < rest.position[0] - GOAL[0] < 0.02  # v^2 / 2 a at least, at 1 rad/s^2
+    np.testing.assert_array_equal(rest.position[1:], GOAL[1:])
+    arm.actual.wait_for_next(at(rest.position))
 
 
 @pytest.mark.parametrize(('name', 'value', 'text'), [
