@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arrays import (
     make_read_only,
     ReadOnlyArrays,
 )
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.path_deviation import polyline_deviation
 from rrr_traj_planner.core.tangent_lines import Tangents
 
@@ -189,8 +189,8 @@ class CartesianPath(ReadOnlyArrays):
         room = ROUNDING * self.length
         bad = ~((s >= -room) & (s <= self.length + room))
         if bad.any():
-            raise InvalidInputError(
-                f's is {s[bad][0]:.6g} m, must be on the path, 0 to {self.length:.6g} m')
+            place, first, last = told_apart(s[bad][0], 0.0, self.length)
+            raise InvalidInputError(f's is {place} m, must be on the path, {first} to {last} m')
         return np.clip(s, 0.0, self.length)
 
     def _fill_lines(self, values: Array, s: Array, piece: IntArray) -> None:

@@ -52,7 +52,7 @@ class EncoderSettings:
     resolution: float = 0.0
     noise: float = 0.0
     seed: int = 0
-    bandwidth: float = 300.0
+    bandwidth: float = 250.0
 
     def __post_init__(self) -> None:
         """Check the values."""

@@ -28,7 +28,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.motion_points import FLOAT_EPSILON, MotionPoints
 from rrr_traj_planner.core.nanoseconds import SECOND
 
@@ -199,6 +199,7 @@ def _check_point(i: int, point: IncomingPoint, names: Sequence[str]) -> None:
                 raise InvalidInputError(
                     f'Value of {field} of joint {name} at point #{i} is not finite: {value:f}')
             if abs(value) > LARGEST:
+                _, most, shown = told_apart(abs(value), LARGEST, value)
                 raise InvalidInputError(
-                    f'Value of {field} of joint {name} at point #{i} is {value:g}, must be within '
-                    f'{LARGEST:g}')
+                    f'Value of {field} of joint {name} at point #{i} is {shown}, must be within '
+                    f'{most}')

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.dynamics import coriolis_torque, gravity_torque, inertia_matrix
-from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
+from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, told_apart
 from rrr_traj_planner.core.kinematics import jacobian, jacobian_rate
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
@@ -183,9 +183,10 @@ def _violation(model: RobotModel, row: _Row, x: float, where: str) -> LimitViola
     """Return the error of a joint that cannot keep its limit."""
     value, limit, unit = abs(row.base + row.slope * x), row.limit, row.unit
     name = model.joint_names[row.joint]
+    needed, most = told_apart(value, limit)
     return LimitViolationError(
-        f'{where} {name} would need {row.quantity} {value:.6g} {unit} at the least, limit '
-        f'{limit:.6g} {unit}', name, value, limit)
+        f'{where} {name} would need {row.quantity} {needed} {unit} at the least, limit '
+        f'{most} {unit}', name, value, limit)
 
 
 def _checked(q: ArrayLike, tangent: ArrayLike, normal: ArrayLike) -> tuple[Array, Array, Array]:

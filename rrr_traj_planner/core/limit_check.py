@@ -21,6 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import told_apart
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.trajectory import Peaks
 
@@ -55,8 +56,9 @@ class Violation(NamedTuple):
             Joint, quantity, value, limit and unit.
 
         """
-        return (f'{joint_names[self.joint]} {self.quantity} reaches {self.value:.6g} {self.unit}, '
-                f'limit {self.limit:.6g} {self.unit}')
+        value, limit = told_apart(self.value, self.limit)
+        return (f'{joint_names[self.joint]} {self.quantity} reaches {value} {self.unit}, '
+                f'limit {limit} {self.unit}')
 
 
 def violations(limits: JointLimits, peaks: Peaks, effort: Array) -> list[Violation]:

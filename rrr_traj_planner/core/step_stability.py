@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics import inertia_matrix
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.friction import Friction
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.soft_stops import SoftStops
@@ -62,12 +62,14 @@ def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
     if decay * step > LARGEST:
         raise InvalidInputError(
             f'friction.viscous is {friction.viscous.tolist()} N m s/rad, too much for '
-            f'physics_step {step:g} s: at most {LARGEST / (decay * step):.3g} times that')
+            f'physics_step {step:g} s: at most '
+            f'{told_apart(LARGEST / (decay * step), 1.0, digits=3)[0]} times that')
     squared = float(np.abs(np.linalg.eigvals(inverse)).max()) * bumper  # [1/s^2]
     if squared * step ** 2 > LARGEST:
+        stiffness, most = told_apart(bumper, bumper * LARGEST / (squared * step ** 2), digits=3)
         raise InvalidInputError(
-            f'soft_stops.stiffness is {bumper:g} N m/rad, must be at most '
-            f'{bumper * LARGEST / (squared * step ** 2):.3g} N m/rad with physics_step {step:g} s')
+            f'soft_stops.stiffness is {stiffness} N m/rad, must be at most {most} N m/rad with '
+            f'physics_step {step:g} s')
 
 
 def _poses() -> Array:

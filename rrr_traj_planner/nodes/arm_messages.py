@@ -20,7 +20,7 @@ from array import array
 from collections.abc import Sequence
 
 from builtin_interfaces.msg import Duration, Time
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.incoming_trajectory import IncomingPoint, IncomingTrajectory
 from rrr_traj_planner.core.nanoseconds import SECOND
 from sensor_msgs.msg import JointState
@@ -65,8 +65,9 @@ def disturbance_torque(message: JointState,
             raise InvalidInputError(f"a disturbance names joint '{name}', must name distinct "
                                     f'joints of {", ".join(joint_names)}')
         if not abs(effort) <= LARGEST_DISTURBANCE:
-            raise InvalidInputError(f'the disturbance of {name} is {effort:g} N m, must be in '
-                                    f'[{-LARGEST_DISTURBANCE:g}, {LARGEST_DISTURBANCE:g}] N m')
+            shown, low, high = told_apart(effort, -LARGEST_DISTURBANCE, LARGEST_DISTURBANCE)
+            raise InvalidInputError(f'the disturbance of {name} is {shown} N m, must be in '
+                                    f'[{low}, {high}] N m')
         torque[name] = float(effort)
     n1, n2, n3 = torque.values()
     return n1, n2, n3

@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 from rrr_traj_planner.core.control import ControllerGains
 from rrr_traj_planner.core.encoder import EncoderSettings
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.friction import Friction
 from rrr_traj_planner.core.incoming_trajectory import Rules
 from rrr_traj_planner.core.payload import Payload
@@ -110,8 +110,9 @@ def encoder(values: Values, gains: ControllerGains) -> EncoderSettings:
     zeta = gains.damping_ratio
     least = STABILITY_MARGIN * 0.5 * (zeta + sqrt(zeta * zeta + 4.0)) * gains.natural_frequency
     if not settings.is_true and settings.bandwidth < least:
+        bandwidth, lowest = told_apart(settings.bandwidth, least)
         raise InvalidInputError(
-            f'encoder.bandwidth is {settings.bandwidth:g} rad/s, must be at least {least:g} rad/s '
+            f'encoder.bandwidth is {bandwidth} rad/s, must be at least {lowest} rad/s '
             f'with controller.natural_frequency {gains.natural_frequency:g} rad/s and '
             f'controller.damping_ratio {zeta:g}')
     return settings

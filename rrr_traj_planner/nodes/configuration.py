@@ -137,10 +137,12 @@ class ArmConfig:
                                 values['controller.damping_ratio'])
         step = values['physics_step']
         if gains.damping * step > MOST_DAMPING_PER_STEP:
+            frequency, most = told_apart(gains.natural_frequency, MOST_DAMPING_PER_STEP / (
+                2.0 * gains.damping_ratio * step))
             raise InvalidInputError(
-                f'controller.natural_frequency is {gains.natural_frequency:g} rad/s, must be at '
-                f'most {MOST_DAMPING_PER_STEP / (2.0 * gains.damping_ratio * step):g} rad/s with '
-                f'controller.damping_ratio {gains.damping_ratio:g} and physics_step {step:g} s')
+                f'controller.natural_frequency is {frequency} rad/s, must be at most {most} rad/s '
+                f'with controller.damping_ratio {gains.damping_ratio:g} and physics_step '
+                f'{step:g} s')
         settings = ArmSettings(robot_model(values), limits, gains, step,
                                encoder=encoder(values, gains), **physical_options(values))
         return cls(settings, values['publish_rate'], _initial_positions(values, limits),

@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import told_apart
 from rrr_traj_planner.core.interpolation import Interpolant
 from rrr_traj_planner.core.inverse_kinematics import nearest_solution
 from rrr_traj_planner.core.kinematics import forward_kinematics
@@ -49,7 +50,8 @@ class Figure(NamedTuple):
     @property
     def text(self) -> str:
         """Return a line for people."""
-        return f'{self.name} is {self.value:.6g} {self.unit}, bound {self.bound:.6g} {self.unit}'
+        value, bound = told_apart(self.value, self.bound)
+        return f'{self.name} is {value} {self.unit}, bound {bound} {self.unit}'
 
 
 def figures(run: Run) -> list[Figure]:

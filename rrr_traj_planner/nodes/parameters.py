@@ -153,7 +153,7 @@ TABLE: tuple[Row, ...] = (
     Row('encoder.noise', 0.0, 'of the positions seen, standard deviation', 'rad', 0.0, 0.1,
         nodes=(ARM,)),
     Row('encoder.seed', 0, 'of the noise', '', 0, LARGEST_SEED, nodes=(ARM,)),
-    Row('encoder.bandwidth', 300.0, 'of the velocities that are made of positions seen, where '
+    Row('encoder.bandwidth', 250.0, 'of the velocities that are made of positions seen, where '
         'they have resolution or noise', 'rad/s', 1.0, 1e4, nodes=(ARM,)),
     Row('allow_partial_joints_goal', False, 'whether a trajectory may leave joints out; they '
         'stay where they are', nodes=(ARM,)),

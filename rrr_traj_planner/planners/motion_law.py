@@ -25,6 +25,7 @@ from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.chain import Chain, LEAST_VELOCITY
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.segment import TransitionLaw
+from rrr_traj_planner.planners.via_points import holding_error
 
 # A transition at full acceleration lasts at least so many samples, so that the quintic through
 # them keeps the limits: it is a limit on jerk, of a cycloid's pi / 5 of acceleration / period.
@@ -143,6 +144,5 @@ def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:
     needed, limit = float(holding.value[joint]), float(task.limits.max_effort[joint])
     name = task.model.joint_names[joint]
     segment = int(np.searchsorted(trajectory.via_times[1:-1], holding.time[joint]))
-    return LimitViolationError(
-        f'segment {task.segment_number(segment)}: on its way {name} needs {needed:.1f} N m '
-        f'to hold, limit {limit:g} N m', name, needed, limit)
+    return holding_error(
+        f'segment {task.segment_number(segment)}: on its way', name, needed, limit)

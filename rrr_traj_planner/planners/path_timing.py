@@ -26,7 +26,6 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.motion_torque import squared_stretch
 from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
@@ -51,6 +50,7 @@ from rrr_traj_planner.planners.path_table import PathTable
 from rrr_traj_planner.planners.ramp_chain import Grid, grid_of, Motion
 from rrr_traj_planner.planners.ramp_moves import stretched
 from rrr_traj_planner.planners.ramp_newton import Freedom
+from rrr_traj_planner.planners.via_points import holding_error
 
 MOST_RAMPS, FEWEST_RAMPS = 16, 8  # in a piece of the path: the most up to so many pieces,
 PIECES, SPARING = 11, 2.0         # and for more fewer, by this power of their number
@@ -220,8 +220,7 @@ def _refuse_heavy(task: PathTask, table: PathTable) -> None:
         abs(table.values.g[piece, place, joint]), task.limits.max_effort[joint]))
     where, nearest = place_on_path(task.arm_path.path, float(table.places[piece, place]))
     name = task.arm_path.model.joint_names[joint]
-    raise LimitViolationError(f'{where}: {name} needs {needed:.1f} N m to hold, limit {limit:g} '
-                              'N m', name, needed, limit, via_point=nearest)
+    raise holding_error(f'{where}:', name, needed, limit, nearest)
 
 
 def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,

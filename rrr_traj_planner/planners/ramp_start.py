@@ -25,6 +25,7 @@ from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
 from rrr_traj_planner.planners.ramp_moves import restored, slowed
 from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.via_points import torque_texts
 
 LEAST_RAMPS = 4         # of a motion from rest to rest
 ROOM = 1.02             # durations over the least that fit
@@ -186,7 +187,8 @@ def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
     joint = int((torque / task.limits.max_effort).argmax())
     name = task.model.joint_names[joint]
     needed, limit = float(torque[joint]), float(task.limits.max_effort[joint])
+    shown, most = torque_texts(needed, limit)
     return LimitViolationError(
         f'segment {task.segment_number(k)}: no way is found on which the motors can hold the '
-        f'arm; straight on {name} needs {needed:.1f} N m, limit {limit:g} N m',
+        f'arm; straight on {name} needs {shown} N m, limit {most} N m',
         name, needed, limit)

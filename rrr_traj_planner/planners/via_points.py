@@ -145,7 +145,7 @@ def holding_failure(model: RobotModel, limits: JointLimits,
 def holding_error(where: str, joint: str, torque: float, limit: float,
                   via_point: int = -1) -> LimitViolationError:
     """
-    Return the error of a pose in which a motor cannot hold the arm.
+    Return the error of a pose in which a motor cannot hold the arm, or with nothing left to move.
 
     Parameters
     ----------
@@ -164,6 +164,26 @@ def holding_error(where: str, joint: str, torque: float, limit: float,
         To be raised.
 
     """
-    needed, most = told_apart(torque, limit, digits=4)
-    return LimitViolationError(f'{where} {joint} needs {needed} N m to hold, limit {most} N m',
-                               joint, torque, limit, via_point)
+    needed, most = torque_texts(torque, limit)
+    left = '' if torque > limit else ', which leaves nothing to move with'
+    return LimitViolationError(
+        f'{where} {joint} needs {needed} N m to hold, limit {most} N m{left}', joint, torque,
+        limit, via_point)
+
+
+def torque_texts(torque: float, limit: float) -> tuple[str, ...]:
+    """
+    Return a torque and its limit for an error's message, to a tenth where that tells them apart.
+
+    Parameters
+    ----------
+    torque, limit : float
+        [N m].
+
+    Returns
+    -------
+    tuple of str
+        Both.
+
+    """
+    return told_apart(torque, limit, digits=len(f'{torque:.1f}') - 1)

@@ -65,6 +65,16 @@ def test_steady_velocity_is_seen_without_bias():
     np.testing.assert_allclose(started[500:, 3], 0.7, atol=1e-8)
 
 
+@pytest.mark.parametrize('bandwidth', [100.0, 250.0])
+def test_a_step_of_the_resolution_is_seen_as_a_velocity_of_that_times_bandwidth_over_e(bandwidth):
+    # The loop's answer to a step r is r b^2 t exp(-b t), largest at t = 1 / b.
+    r = 1e-4
+    states = [(k * r, 0.0, 0.0, 0.0, 0.0, 0.0) for k in [0] * 10 + [1] * 300]
+    seen = readings(EncoderSettings(resolution=r, bandwidth=bandwidth), states)
+    assert np.abs(seen[:, 3]).max() == pytest.approx(r * bandwidth / np.e, rel=0.02)
+    assert EncoderSettings().bandwidth * r / np.e < 0.01  # rad/s: at rest, to the planner
+
+
 def test_velocity_lags_an_acceleration_by_twice_the_inverse_bandwidth():
     a, bandwidth = 2.0, 300.0
     states = [(0.5 * a * (i * STEP) ** 2, 0.0, 0.0, a * i * STEP, 0.0, 0.0) for i in range(1500)]

@@ -16,10 +16,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from builtin_interfaces.msg import Time
 import numpy as np
 from plan_requests import NAMES, plan_request, points_of, stamps, START, TABLE_6_1
 import pytest
+from rrr_traj_planner.core.arm_settings import ArmSettings
+from rrr_traj_planner.core.control import ControllerGains
+from rrr_traj_planner.core.controlled_arm import ControlledArm
+from rrr_traj_planner.core.encoder import EncoderSettings
 from rrr_traj_planner.core.errors import (
     ConvergenceError,
     InvalidInputError,
@@ -88,6 +94,35 @@ def test_start_at_rest_within_noise_and_no_faster(config):
     assert planning_request(start(-0.01), config).start is not None
     with pytest.raises(StartStateError, match='joint_2 moves at -0.011 rad/s, must be at rest '):
         planning_request(start(-0.011), config)
+
+
+def test_speed_a_hair_above_the_tolerance_is_told_from_it(config):
+    with pytest.raises(StartStateError, match=(
+            r'^start state: joint_2 moves at -0\.0100000001 rad/s, must be at rest \(no faster '
+            r'than start_state_tolerance, 0\.01 rad/s\)$')):
+        planning_request(plan_request(
+            start={'position': START, 'velocity': [0.0, -0.0100000001, 0.0]}), config)
+    loose = replace(config, start_state_tolerance=0.2)
+    assert planning_request(plan_request(
+        start={'position': START, 'velocity': [0.0, -0.2, 0.0]}), loose).start is not None
+
+
+@pytest.mark.parametrize('encoder', [
+    {'noise': 1e-6}, {'noise': 1e-5}, {'resolution': 1e-4}, {'resolution': 1e-4, 'seed': 4}])
+def test_an_arm_parked_at_the_end_of_a_range_is_never_refused_for_its_encoders(config, encoder):
+    arm = ControlledArm(ArmSettings(
+        config.model, config.limits, ControllerGains(30.0, 1.0),
+        encoder=EncoderSettings(**encoder)), (0.0, 1.34567, 0.12345))
+    outside = 0
+    for _ in range(60):
+        arm.advance(37)
+        seen = arm.seen
+        outside += seen[0] < 0.0
+        request = planning_request(plan_request(TABLE_6_1, start={
+            'position': seen[:3], 'velocity': seen[3:]}), config)
+        first = plan(config.model, config.limits, request).points.positions[0]
+        assert first.tolist() == [max(seen[0], 0.0), *seen[1:3]]
+    assert outside > 10 or 'resolution' in encoder
 
 
 def test_another_frame_is_refused(config):
