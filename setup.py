@@ -19,18 +19,32 @@ from subprocess import DEVNULL, run
 from xml.etree import ElementTree
 
 from setuptools import Extension, find_packages, setup
+from setuptools.command.build_ext import build_ext
 from setuptools.command.develop import develop
 from setuptools.command.install_scripts import install_scripts
+from setuptools.errors import BaseError, CCompilerError
 
 NAME = 'rrr_traj_planner'
 NATIVE = f'{NAME}/planners/native'
 
-# Without a compiler the package works too: planners/compiled.py says how.
-CHAIN = Extension(
-    f'{NATIVE}/chain'.replace('/', '.'), sorted(glob(f'{NATIVE}/*.c')),
+KERNELS = Extension(
+    f'{NATIVE}/kernels'.replace('/', '.'), sorted(glob(f'{NATIVE}/*.c')),
     depends=sorted(glob(f'{NATIVE}/*.h') + glob(f'{NATIVE}/*.inc')),
     extra_compile_args=['-std=c99', '-O3', '-fno-math-errno', '-fno-trapping-math',
-                        '-fvisibility=hidden'], optional=True)
+                        '-fvisibility=hidden'])
+
+
+class BuildKernels(build_ext):
+    """Builds the kernels, which the planners need, or says in one line what is missing."""
+
+    def build_extension(self, extension):
+        """Compile and link."""
+        try:
+            super().build_extension(extension)
+        except (BaseError, CCompilerError) as error:
+            raise SystemExit(
+                f'{NAME} needs a C compiler for its kernels, {NATIVE}: {error}') from None
+
 
 # SIGINT and SIGTERM wait until a script can answer them (nodes/signals.py): Python's own start
 # loses them, or shows a traceback.
@@ -76,8 +90,8 @@ setup(
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
     package_data={f'{NAME}.report': ['*.css', '*.js']},
-    ext_modules=[CHAIN],
-    cmdclass={'develop': Develop, 'install_scripts': InstallScripts},
+    ext_modules=[KERNELS],
+    cmdclass={'build_ext': BuildKernels, 'develop': Develop, 'install_scripts': InstallScripts},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
@@ -86,7 +100,7 @@ setup(
     python_requires='>=3.10',
     install_requires=['numpy', 'PyYAML', 'scipy', 'setuptools'],
     extras_require={'figures': ['matplotlib'], 'record': ['mcap'], 'test': ['pytest']},
-    zip_safe=True,
+    zip_safe=False,
     entry_points={
         'console_scripts': [
             f'{script} = {NAME}.nodes.{script}:main'

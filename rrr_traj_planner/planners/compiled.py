@@ -39,7 +39,7 @@ from rrr_traj_planner.planners.ramp_newton import Freedom
 CENTRES = 40  # at most; as in chain.h
 
 # What the library must have; other modules wrap all but the first.
-FUNCTIONS = 'chain_minimised', 'cruise_covering', 'path_looked', 'velocities_minimised'
+FUNCTIONS = 'chain_minimised', 'path_looked'
 
 _Doubles = ctypes.POINTER(ctypes.c_double)
 _Bytes = ctypes.POINTER(ctypes.c_uint8)
@@ -101,7 +101,7 @@ def _library() -> Any:
     if os.environ.get('RRR_TRAJ_PLANNER_COMPILED', '1') == '0':
         return None
     for suffix in EXTENSION_SUFFIXES:
-        path = Path(__file__).parent / 'native' / f'chain{suffix}'
+        path = Path(__file__).parent / 'native' / f'kernels{suffix}'
         if path.exists():
             library = ctypes.CDLL(str(path))
             if all(hasattr(library, name) for name in FUNCTIONS):  # else it was built of others

@@ -24,9 +24,9 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.pieces import Pieces, TransitionFunction
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.planners import compiled
-from rrr_traj_planner.planners.compiled_segments import cruise_covering
-from rrr_traj_planner.planners.segment import largest_cruise, TransitionLaw
+from rrr_traj_planner.planners.reach import largest_cruise
+from rrr_traj_planner.planners.segment import TransitionLaw
+from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
 
 BISECTIONS = 60
 
@@ -212,13 +212,10 @@ def _limited(law: TransitionLaw, max_velocity: Array, a: Array, b: Array, T: Arr
 def _cruise_covering(law: TransitionLaw, low: Array, high: Array, a: Array, b: Array, T: Array,
                      D: Array) -> Array:
     """Return the lowest cruise of a range that covers a displacement with shortest transitions."""
-    if compiled.LIBRARY is not None:
-        return cruise_covering(law, low, high, a, b, T, D, BISECTIONS)
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        short = _displacement(law, middle, a, b, T) < D
-        low, high = np.where(short, middle, low), np.where(short, high, middle)
-    return high
+    given = [contiguous(x) for x in (*law, low, a, b, T, D)]
+    found = high.copy()
+    KERNELS.cruise_covering(len(T), BISECTIONS, *(x.ctypes.data for x in (*given, found)))
+    return found
 
 
 def _displacement(law: TransitionLaw, cruise: Array, a: Array, b: Array, T: Array) -> Array:

@@ -18,7 +18,8 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.segment import reach, TransitionLaw
+from rrr_traj_planner.planners.reach import reach
+from rrr_traj_planner.planners.segment import TransitionLaw
 
 NEWTON_STEPS = 12
 ROUNDING = 1e-11  # relative, of a displacement

@@ -16,7 +16,8 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.segment import reach, TransitionLaw
+from rrr_traj_planner.planners.reach import reach
+from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.segment_motion import gentle_parts, Parts, quick_parts, trajectory
 
 ROUNDING = 1e-9

@@ -18,8 +18,9 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Of a block scaled to a unit diagonal: pivots, and what counts as zero beside it. */
-static const double CLEARLY_CONVEX = 1e-10, NOTHING = 1e-17;
+/* Of a block scaled to a unit diagonal: pivots that need no more, the least eigenvalue that is given
+ * to it, and what counts as zero beside its diagonal. */
+static const double CLEARLY_CONVEX = 1e-10, LEAST_EIGENVALUE = 1e-12, NOTHING = 1e-17;
 enum { SWEEPS = 30 };
 
 static int is_clearly_convex(double a[3][3])
@@ -63,7 +64,7 @@ static void diagonalised(double a[3][3], double v[3][3])
     }
 }
 
-void made_convex(double block[3][3], double least)
+void made_convex(double block[3][3])
 {
     double scale[3], a[3][3], v[3][3];
     for (int i = 0; i < 3; ++i)
@@ -78,7 +79,7 @@ void made_convex(double block[3][3], double least)
         for (int k = 0; k <= i; ++k) {
             double sum = 0.0;
             for (int e = 0; e < 3; ++e)
-                sum += v[i][e] * fmax(fabs(a[e][e]), least) * v[k][e];
+                sum += v[i][e] * fmax(fabs(a[e][e]), LEAST_EIGENVALUE) * v[k][e];
             block[i][k] = block[k][i] = sum / (scale[i] * scale[k]);
         }
 }

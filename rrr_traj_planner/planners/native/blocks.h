@@ -16,8 +16,9 @@
 #ifndef RRR_TRAJ_PLANNER_BLOCKS_H
 #define RRR_TRAJ_PLANNER_BLOCKS_H
 
-/* Give a block the magnitudes of its eigenvalues, the least of them relative to its diagonal. */
-void made_convex(double block[3][3], double least);
+/* Give a symmetric block the magnitudes of the eigenvalues that it has when its diagonal is scaled to
+ * 1, none of them next to zero. */
+void made_convex(double block[3][3]);
 /* Solve a symmetric band of m unknowns, w entries from the diagonal down, for right sides (m,
  * sides); both are overwritten. Not 0 where it is not positive definite. */
 int band_solved(double *band, double *right, int m, int w, int sides);

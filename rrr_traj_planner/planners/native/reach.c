@@ -15,9 +15,13 @@
 /* Transition, cruise, transition: how far one joint comes in a segment (segment.py). */
 #include "reach.h"
 
-#include "chain.h"
+#include "export.h"
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+enum { JOINTS = 3 };
 
 double largest_change(const Law *law, double T)
 {
@@ -58,15 +62,25 @@ static double least_time(const Law *law, double u)
     return fmax(law->slope * u, law->root * sqrt(u));
 }
 
-double reach(const Law *law, double v0, double v1, double T)
+/* Displacement with shortest transitions to and from a cruise that is not below either end. */
+static double displacement(const Law *law, double cruise, double v0, double v1, double T)
 {
-    const double cruise = fmin(fmax(v0, v1) + rise(law, fabs(v1 - v0), T), law->max_velocity);
     const double u0 = cruise - v0, u1 = cruise - v1;
     return cruise * T - 0.5 * (u0 * least_time(law, u0) + u1 * least_time(law, u1));
 }
 
+static double fastest_cruise(const Law *law, double v0, double v1, double T)
+{
+    return fmin(fmax(v0, v1) + rise(law, fabs(v1 - v0), T), law->max_velocity);
+}
+
+double reach(const Law *law, double v0, double v1, double T)
+{
+    return displacement(law, fastest_cruise(law, v0, v1, T), v0, v1, T);
+}
+
 typedef struct {
-    double t, m, i, k;  /* as in segment.py; k is how i changes with u, times i */
+    double t, m, i, k;  /* of a transition by u: its duration t, m and i of transition_law.py; k is how i changes with u, times i */
 } Transition;
 
 static Transition transition(const Law *law, double u)
@@ -104,24 +118,36 @@ ReachDerivatives reach_derivatives(const Law *law, double v0, double v1, double 
     return found;
 }
 
-/* Displacement with shortest transitions to and from a cruise that is not below either end. */
-static double displacement(const Law *law, double cruise, double a, double b, double T)
+/* See transition_law.py: of count cases with three joints each. */
+EXPORTED void reach_at(int32_t count, const double *slope, const double *root,
+                       const double *max_velocity, const double *v0, const double *v1,
+                       const double *T, double *cruise, double *distance,
+                       double (*gradient)[3], double (*hessian)[3][3])
 {
-    const double u0 = cruise - a, u1 = cruise - b;
-    return cruise * T - 0.5 * (u0 * least_time(law, u0) + u1 * least_time(law, u1));
+    for (int i = 0; i < JOINTS * count; ++i) {
+        const Law law = {slope[i % JOINTS], root[i % JOINTS], max_velocity[i % JOINTS]};
+        cruise[i] = fastest_cruise(&law, v0[i], v1[i], T[i]);
+        distance[i] = displacement(&law, cruise[i], v0[i], v1[i], T[i]);
+        if (!gradient)
+            continue;
+        const ReachDerivatives at = reach_derivatives(&law, v0[i], v1[i], T[i]);
+        memcpy(gradient[i], at.gradient, sizeof at.gradient);
+        memcpy(hessian[i], at.hessian, sizeof at.hessian);
+    }
 }
 
-/* See compiled_segments.py: arrays (n, 3), T (n); cruise is the highest at first. */
-EXPORTED void cruise_covering(int32_t n, int32_t bisections, const double *slope,
-                              const double *root, const double *lowest, const double *a,
-                              const double *b, const double *T, const double *D, double *cruise)
+/* The lowest cruises, from lowest up to given ones, that cover displacements D in durations T (count)
+ * with shortest transitions; cruise has the given ones at first. */
+EXPORTED void cruise_covering(int32_t count, int32_t bisections, const double *slope,
+                              const double *root, const double *lowest, const double *v0,
+                              const double *v1, const double *T, const double *D, double *cruise)
 {
-    for (int i = 0; i < 3 * n; ++i) {
-        const Law law = {slope[i % 3], root[i % 3], INFINITY};
+    for (int i = 0; i < JOINTS * count; ++i) {
+        const Law law = {slope[i % JOINTS], root[i % JOINTS], INFINITY};
         double low = lowest[i], high = cruise[i];
         for (int k = 0; k < bisections; ++k) {
             const double middle = 0.5 * (low + high);
-            if (displacement(&law, middle, a[i], b[i], T[i / 3]) < D[i])
+            if (displacement(&law, middle, v0[i], v1[i], T[i / JOINTS]) < D[i])
                 low = middle;
             else
                 high = middle;

@@ -1,0 +1,219 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* The log barrier: values, gradients, Hessians and damping of its parts. */
+#include "via_problem.h"
+
+#include "blocks.h"
+#include "reach.h"
+
+#include <math.h>
+#include <string.h>
+
+static Law law_of(const ViaProblem *p, int j)
+{
+    const Law law = {p->slope[j], p->root[j], p->max_velocity[j]};
+    return law;
+}
+
+static void ends(const ViaProblem *p, const double *v, int k, int j, double *v0, double *v1)
+{
+    *v0 = k > 0 ? v[(k - 1) * JOINTS + j] : 0.0;
+    *v1 = k < p->n - 1 ? v[k * JOINTS + j] : 0.0;
+}
+
+static double barrier(double product, double least)
+{
+    return least > 0.0 ? -log(product) : INFINITY;
+}
+
+/* -sum log(slack) of each part at a point; infinite where a constraint is not strictly kept. */
+static void part_values(const ViaProblem *p, const double *point, double *values)
+{
+    const int n = p->n;
+    const double *v = point, *T = point + (n - 1) * JOINTS;
+    for (int j = 0; j < JOINTS; ++j) {
+        const Law law = law_of(p, j);
+        for (int k = 0; k < n; ++k) {
+            double v0, v1, *value = &values[k * JOINTS + j];
+            *value = INFINITY;
+            if (!(T[k] > 0.0))
+                continue;
+            ends(p, v, k, j, &v0, &v1);
+            const double D = p->displacements[k * JOINTS + j];
+            const double change = largest_change(&law, T[k]);
+            const double up = change - (v1 - v0), down = change + (v1 - v0);
+            if (!(up > 0.0 && down > 0.0))
+                continue;
+            const double forth = reach(&law, v0, v1, T[k]) - D;
+            const double back = reach(&law, -v0, -v1, T[k]) + D;
+            *value = barrier(up * down * forth * back, fmin(forth, back));
+        }
+    }
+    values += n * JOINTS;
+    for (int i = 0; i < (n - 1) * JOINTS; ++i) {
+        const double low = v[i] - p->lowest[i], high = p->highest[i] - v[i];
+        values[i] = barrier(low * high, fmin(low, high));
+    }
+    values += (n - 1) * JOINTS;
+    for (int k = 0; k < n; ++k) {
+        const double spare = p->floor ? T[k] - p->floor[k] : 1.0;
+        values[k] = barrier(spare, spare);
+    }
+}
+
+static double objective(const ViaProblem *p, const double *point)
+{
+    const double *T = point + (p->n - 1) * JOINTS;
+    double sum = 0.0;
+    for (int k = 0; k < p->n; ++k)
+        sum += T[k];
+    return p->proportions ? T[0] / p->proportions[0] : sum;
+}
+
+/* What is minimised, at the iterate. */
+EXPORTED double via_objective(const ViaProblem *p)
+{
+    return objective(p, p->point);
+}
+
+/* Evaluate the barrier at the iterate. */
+EXPORTED double via_value(const ViaProblem *p)
+{
+    double sum = 0.0;
+    part_values(p, p->point, p->before);
+    for (int i = 0; i < parts_of(p); ++i)
+        sum += p->before[i];
+    return sum;
+}
+
+/* Follow the step; how weight * objective + barrier changes on it, infinite where it breaks a limit. */
+EXPORTED double via_trial(const ViaProblem *p, double weight)
+{
+    for (int u = 0; u < unknowns_of(p); ++u)
+        p->next[u] = p->point[u] + p->step[u];
+    part_values(p, p->next, p->after);
+    double change = weight * objective(p, p->next) - weight * objective(p, p->point);
+    for (int i = 0; i < parts_of(p); ++i)
+        change += p->after[i] - p->before[i];
+    return change;
+}
+
+/* Go where the last trial led; every part's damping is multiplied by a factor. */
+EXPORTED void via_accept(const ViaProblem *p, double less_damping)
+{
+    memcpy(p->point, p->next, unknowns_of(p) * sizeof(double));
+    memcpy(p->before, p->after, parts_of(p) * sizeof(double));
+    for (int i = 0; i < parts_of(p); ++i)
+        p->damping[i] *= less_damping;
+}
+
+/* Add -log of a slack to the derivatives. */
+static void pushed(double slack, const double gradient[3], double slope[3], double block[3][3])
+{
+    const double inverse = 1.0 / slack;
+    double relative[3];
+    for (int i = 0; i < 3; ++i) {
+        relative[i] = gradient[i] * inverse;
+        slope[i] -= relative[i];
+    }
+    for (int i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c)
+            block[i][c] += relative[i] * relative[c];
+}
+
+/* The reach forth (sign 1) or back (-1), and its own second derivatives. */
+static void reach_pushed(const Law *law, double sign, double v0, double v1, double T, double D,
+                         double slope[3], double block[3][3])
+{
+    const double by[3] = {sign, sign, 1.0};
+    ReachDerivatives at = reach_derivatives(law, sign * v0, sign * v1, T);
+    const double slack = at.distance - sign * D, inverse = 1.0 / slack;
+    for (int i = 0; i < 3; ++i) {
+        at.gradient[i] *= by[i];
+        for (int c = 0; c < 3; ++c)
+            block[i][c] -= by[i] * by[c] * inverse * at.hessian[i][c];
+    }
+    pushed(slack, at.gradient, slope, block);
+}
+
+/* The parts' derivatives at the iterate. */
+EXPORTED void via_differentiate(const ViaProblem *p)
+{
+    const int n = p->n;
+    const double *v = p->point, *T = p->point + (n - 1) * JOINTS;
+    memset(p->gradient, 0, n * JOINTS * sizeof *p->gradient);
+    memset(p->hessian, 0, n * JOINTS * sizeof *p->hessian);
+    for (int j = 0; j < JOINTS; ++j) {
+        const Law law = law_of(p, j);
+        for (int k = 0; k < n; ++k) {
+            const int at = k * JOINTS + j;
+            double v0, v1, *slope = p->gradient[at];
+            double (*block)[3] = p->hessian[at];
+            ends(p, v, k, j, &v0, &v1);
+            const double D = p->displacements[at];
+            const double change = largest_change(&law, T[k]), rate = change_rate(&law, T[k]);
+            const double up[3] = {1.0, -1.0, rate}, down[3] = {-1.0, 1.0, rate};
+            reach_pushed(&law, 1.0, v0, v1, T[k], D, slope, block);
+            reach_pushed(&law, -1.0, v0, v1, T[k], D, slope, block);
+            pushed(change - (v1 - v0), up, slope, block);
+            pushed(change + (v1 - v0), down, slope, block);
+            made_convex(block);
+        }
+    }
+    double (*bound)[2] = p->bound;
+    for (int i = 0; i < (n - 1) * JOINTS; ++i, ++bound) {
+        const double low = 1.0 / (v[i] - p->lowest[i]), high = 1.0 / (p->highest[i] - v[i]);
+        (*bound)[0] = high - low;
+        (*bound)[1] = low * low + high * high;
+    }
+    for (int k = 0; k < n; ++k, ++bound) {
+        const double spare = p->floor ? 1.0 / (T[k] - p->floor[k]) : 0.0;
+        (*bound)[0] = -spare;
+        (*bound)[1] = spare * spare;
+    }
+}
+
+/* Damp the parts that rose more on the last trial than their derivatives foretell: more than their
+ * slope by a share of the damped curvature's full term. All, if none did. */
+EXPORTED void via_damp(const ViaProblem *p, double tolerated, double more_damping)
+{
+    const int segments = p->n * JOINTS, bounds = segments - JOINTS, all = parts_of(p);
+    const double *dv = p->step, *dT = p->step + bounds;
+    int found = 0;
+    for (int i = 0; i < all; ++i) {
+        double first = 0.0, second = 0.0;
+        if (i < segments) {
+            double step[3] = {0.0, 0.0, dT[i / JOINTS]};
+            ends(p, dv, i / JOINTS, i % JOINTS, &step[0], &step[1]);
+            for (int a = 0; a < 3; ++a) {
+                first += p->gradient[i][a] * step[a];
+                for (int b = 0; b < 3; ++b)
+                    second += step[a] * p->hessian[i][a][b] * step[b];
+            }
+        } else {
+            const int at = i - segments;
+            const double step = at < bounds ? dv[at] : dT[at - bounds];
+            first = p->bound[at][0] * step;
+            second = p->bound[at][1] * step * step;
+        }
+        const double rise = p->after[i] - p->before[i];
+        if (!(rise - first <= tolerated * (1.0 + p->damping[i]) * second)) {
+            p->damping[i] = p->damping[i] * more_damping + 1.0;
+            found = 1;
+        }
+    }
+    for (int i = 0; !found && i < all; ++i)
+        p->damping[i] = p->damping[i] * more_damping + 1.0;
+}

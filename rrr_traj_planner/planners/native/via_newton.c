@@ -1,0 +1,130 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* The Newton step of weight * objective + barrier, whose cost is linear in the via points. */
+#include "blocks.h"
+#include "via_problem.h"
+
+#include <string.h>
+
+/* First and second derivatives by a via velocity, and by a duration. */
+static void by_velocity(const ViaProblem *p, int i, double *first, double *second)
+{
+    const double *damping = p->damping, *bound = damping + p->n * JOINTS;
+    *first = p->gradient[i][1] + p->gradient[i + JOINTS][0] + p->bound[i][0];
+    *second = p->hessian[i][1][1] * (1.0 + damping[i])
+        + p->hessian[i + JOINTS][0][0] * (1.0 + damping[i + JOINTS])
+        + p->bound[i][1] * (1.0 + bound[i]);
+}
+
+static void by_duration(const ViaProblem *p, int k, double *first, double *second)
+{
+    const int floor = (p->n - 1) * JOINTS + k;
+    *first = p->bound[floor][0];
+    *second = p->bound[floor][1] * (1.0 + p->damping[p->n * JOINTS + floor]);
+    for (int i = k * JOINTS; i < (k + 1) * JOINTS; ++i) {
+        *first += p->gradient[i][2];
+        *second += p->hessian[i][2][2] * (1.0 + p->damping[i]);
+    }
+}
+
+/* A damped entry of a segment's block. */
+static double entry(const ViaProblem *p, int i, int row, int column)
+{
+    return p->hessian[i][row][column] * (1.0 + p->damping[i]);
+}
+
+/* Every duration is free: unknowns T0, v0 of three joints, T1, v1, ... Gives the decrement squared;
+ * negative where rounding leaves no step. */
+static double free_step(const ViaProblem *p, double weight)
+{
+    enum { W = 5, OWN = 1 + JOINTS };
+    const int n = p->n, m = OWN * n - JOINTS;
+    memset(p->band, 0, (size_t)m * W * sizeof(double));
+    for (int k = 0; k < n; ++k) {
+        double first, *column = p->band + (size_t)OWN * k * W;
+        by_duration(p, k, &first, column);
+        p->pull[OWN * k] = -(weight + first);
+        for (int j = 0; j < JOINTS && k < n - 1; ++j) {
+            const int i = k * JOINTS + j;
+            double *own = column + (1 + j) * W;
+            by_velocity(p, i, &first, own);
+            p->pull[OWN * k + 1 + j] = -first;
+            column[1 + j] = entry(p, i, 1, 2);
+            own[JOINTS - j] = entry(p, i + JOINTS, 0, 2);
+            if (k < n - 2)
+                own[OWN] = entry(p, i + JOINTS, 0, 1);
+        }
+    }
+    memcpy(p->right, p->pull, m * sizeof(double));
+    if (band_solved(p->band, p->right, m, W, 1))
+        return -1.0;
+    double decrement = 0.0, *dT = p->step + (n - 1) * JOINTS;
+    for (int i = 0; i < m; ++i)
+        decrement += p->pull[i] * p->right[i];
+    for (int k = 0; k < n; ++k) {
+        dT[k] = p->right[OWN * k];
+        for (int j = 0; j < JOINTS && k < n - 1; ++j)
+            p->step[k * JOINTS + j] = p->right[OWN * k + 1 + j];
+    }
+    return decrement;
+}
+
+/* A common stretch: a band for the velocities, bordered by the stretch. */
+static double common_step(const ViaProblem *p, double weight)
+{
+    enum { W = JOINTS + 1 };
+    const int n = p->n, m = (n - 1) * JOINTS;
+    const double *in = p->proportions;
+    double g = weight, h = 0.0;
+    for (int k = 0; k < n; ++k) {
+        double first, second;
+        by_duration(p, k, &first, &second);
+        g += first * in[k];
+        h += second * in[k] * in[k];
+    }
+    memset(p->band, 0, (size_t)m * W * sizeof(double));
+    for (int i = 0; i < m; ++i) {
+        const int k = i / JOINTS;
+        by_velocity(p, i, &p->pull[i], &p->band[(size_t)i * W]);
+        if (i + JOINTS < m)
+            p->band[(size_t)i * W + JOINTS] = entry(p, i + JOINTS, 0, 1);
+        p->border[i] = entry(p, i, 1, 2) * in[k] + entry(p, i + JOINTS, 0, 2) * in[k + 1];
+        p->right[2 * i] = p->pull[i];
+        p->right[2 * i + 1] = p->border[i];
+    }
+    if (band_solved(p->band, p->right, m, W, 2))
+        return -1.0;
+    double by_pull = 0.0, by_border = 0.0;
+    for (int i = 0; i < m; ++i) {
+        by_pull += p->border[i] * p->right[2 * i];
+        by_border += p->border[i] * p->right[2 * i + 1];
+    }
+    const double stretch = -(g - by_pull) / (h - by_border);
+    double decrement = -g * stretch, *dT = p->step + m;
+    for (int i = 0; i < m; ++i) {
+        p->step[i] = -(p->right[2 * i] + p->right[2 * i + 1] * stretch);
+        decrement -= p->pull[i] * p->step[i];
+    }
+    for (int k = 0; k < n; ++k)
+        dT[k] = stretch * in[k];
+    return decrement;
+}
+
+/* The damped Newton step at the iterate. The objective is the durations' sum, or their factor over
+ * the given proportions. Gives the decrement squared; negative where rounding leaves no step. */
+EXPORTED double via_newton(const ViaProblem *p, double weight)
+{
+    return p->proportions ? common_step(p, weight) : free_step(p, weight);
+}

@@ -1,0 +1,111 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The barrier method over via velocities and durations, always strictly feasible.
+
+Boyd & Vandenberghe, Convex Optimization, algorithm 11.1: the minima of weight * objective +
+barrier are followed to ever larger weights by damped Newton steps, until their gap, the number
+of constraints over the weight (11.2.2), is closed. In place of a line search along one step, the
+Hessian of those parts of the barrier alone is raised that the step misjudged (after Levenberg and
+Marquardt): the barrier has kinks, where transitions change their law, and the segments away from a
+kink need not wait for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.solver.library import KERNELS
+from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
+
+RELATIVE_GAP = 2e-7        # of the objective, at which the method ends
+BARRIER_REDUCTION = 0.12   # of 1 / weight, from one centre to the next
+CENTRED = 0.5              # Newton decrement squared at which the weight is raised,
+POLISHED = 1e-7            # and at the end: the answer then varies smoothly with the task
+STEPS_TO_CENTRE = 25       # after which the weight is raised all the same
+SUFFICIENT_DECREASE = 0.1  # of the decrement squared
+TRIALS = 30                # of damping, for one step
+TOLERATED = 0.75           # of s' H s, by which a part may rise beside its slope on a step s: of a
+#                            quadratic it is half
+MORE_DAMPING = 4.0         # of the parts that a trial misjudged
+LESS_DAMPING = 0.25        # of all parts, after a step
+ROUNDING = 1e-15           # of weight * objective, below which no decrease is seen
+
+
+class Solution(NamedTuple):
+    """Velocities at the via points and durations, strictly feasible."""
+
+    velocities: Array  # shape (n - 1, 3) [rad/s]
+    durations: Array   # shape (n,) [s]
+    gap: float         # what a better answer could save at most, of the objective
+
+
+def minimise(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> Solution:
+    """
+    Return the minimum of the objective of a barrier problem.
+
+    Parameters
+    ----------
+    barrier : ViaBarrier
+        The problem, at a strictly feasible point.
+    should_stop : callable
+        The cancellation callback, called before every step; True ends the method with the iterate.
+
+    Returns
+    -------
+    Solution
+        Within RELATIVE_GAP of the least, where the problem is convex and nothing cancels it.
+
+    """
+    at, count = barrier.at, barrier.constraints
+    weight = count / KERNELS.via_objective(at)
+    stopped = _centre(barrier, weight, CENTRED, should_stop)
+    while not stopped and count / weight >= RELATIVE_GAP * KERNELS.via_objective(at):
+        weight /= BARRIER_REDUCTION
+        stopped = _centre(barrier, weight, CENTRED, should_stop)
+    if not stopped:
+        _centre(barrier, weight, POLISHED, should_stop)
+    return Solution(barrier.velocities, barrier.durations, count / weight)
+
+
+def _centre(barrier: ViaBarrier, weight: float, decrement: float,
+            should_stop: Callable[[], bool]) -> bool:
+    """Go near the minimum of weight * objective + barrier; return whether to stop altogether."""
+    at = barrier.at
+    KERNELS.via_value(at)
+    for _ in range(STEPS_TO_CENTRE):
+        if should_stop():
+            return True
+        rounding = ROUNDING * weight * KERNELS.via_objective(at)
+        squared = _step(at, weight)
+        if squared is None or squared < max(decrement, rounding):
+            break
+    return False
+
+
+def _step(at: object, weight: float) -> float | None:
+    """Take a Newton step; return its decrement squared, None where rounding leaves no step."""
+    KERNELS.via_differentiate(at)
+    for _ in range(TRIALS):
+        squared: float = KERNELS.via_newton(at, weight)
+        if not squared >= 0.0:
+            return None
+        if KERNELS.via_trial(at, weight) <= -SUFFICIENT_DECREASE * squared:
+            KERNELS.via_accept(at, LESS_DAMPING)
+            return squared
+        KERNELS.via_damp(at, TOLERATED, MORE_DAMPING)
+    return None

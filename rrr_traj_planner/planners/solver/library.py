@@ -1,0 +1,134 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The compiled kernels: the C code of `planners/native`, called through ctypes.
+
+A kernel is a plain function over arrays that Python holds; a structure has their addresses, made
+once for each problem. Kernels last microseconds to a few milliseconds and keep Python's global
+lock: handing it over at every call would cost more than they do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+import ctypes
+from ctypes import c_double, c_int32, c_void_p
+from importlib.machinery import EXTENSION_SUFFIXES
+from itertools import accumulate
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+
+_NATIVE = Path(__file__).parents[1] / 'native'
+_BUILD = 'build the package, which needs a C compiler: "make setup", or "pip install -e ."'
+
+_SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
+    'reach_at': (None, [c_int32, *[c_void_p] * 10]),
+    'cruise_covering': (None, [c_int32, c_int32, *[c_void_p] * 8]),
+    'via_objective': (c_double, [c_void_p]),
+    'via_value': (c_double, [c_void_p]),
+    'via_differentiate': (None, [c_void_p]),
+    'via_newton': (c_double, [c_void_p, c_double]),
+    'via_trial': (c_double, [c_void_p, c_double]),
+    'via_accept': (None, [c_void_p, c_double]),
+    'via_damp': (None, [c_void_p, c_double, c_double]),
+}
+
+
+def load(folder: Path) -> Any:
+    """
+    Return the compiled kernels.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the library is.
+
+    Returns
+    -------
+    ctypes.PyDLL
+        With arguments and results of every kernel declared.
+
+    Raises
+    ------
+    ImportError
+        If the library is not there, or was built from other sources.
+
+    """
+    paths = [folder / f'kernels{suffix}' for suffix in EXTENSION_SUFFIXES]
+    found = next((path for path in paths if path.exists()), None)
+    if found is None:
+        raise ImportError(f'no compiled kernels in {folder}: {_BUILD}')
+    library = ctypes.PyDLL(str(found))
+    for name, (result, arguments) in _SIGNATURES.items():
+        if not hasattr(library, name):
+            raise ImportError(f'{found} was built from other sources, without {name}: {_BUILD}')
+        kernel = getattr(library, name)
+        kernel.restype, kernel.argtypes = result, arguments
+    return library
+
+
+KERNELS = load(_NATIVE)
+
+
+class Arena:
+    """
+    Memory for the arrays of one problem, in one block, so that their addresses are sums.
+
+    Parameters
+    ----------
+    shapes : mapping of str to tuple of int
+        Of each array; all are zero at first.
+
+    Attributes
+    ----------
+    addresses : dict of str to int
+        Of each array's first number.
+
+    """
+
+    def __init__(self, shapes: Mapping[str, tuple[int, ...]]) -> None:
+        self._shapes = shapes
+        ends = list(accumulate(map(math.prod, shapes.values()), initial=0))
+        self._parts = dict(zip(shapes, zip(ends, ends[1:])))
+        self._block = np.zeros(ends[-1])
+        first, size = self._block.ctypes.data, self._block.itemsize
+        self.addresses = {name: first + size * start for name, start in zip(shapes, ends)}
+
+    def __getitem__(self, name: str) -> Array:
+        """Return an array, not a copy: what kernels write into."""
+        start, end = self._parts[name]
+        return self._block[start:end].reshape(self._shapes[name])
+
+
+def contiguous(values: Array) -> Array:
+    """
+    Return an array as kernels take it.
+
+    Parameters
+    ----------
+    values : ndarray
+        Numbers.
+
+    Returns
+    -------
+    ndarray
+        Of float64, in C order; the same array where it is so already.
+
+    """
+    return np.ascontiguousarray(values, dtype=float)

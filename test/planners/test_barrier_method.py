@@ -1,0 +1,141 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The barrier method over via velocities: against a general solver and a closed form."""
+
+from itertools import count
+
+import numpy as np
+import pytest
+from rrr_traj_planner.planners.chain import Chain
+from rrr_traj_planner.planners.reach import reach
+from rrr_traj_planner.planners.segment import TransitionLaw
+from rrr_traj_planner.planners.solver.barrier_method import RELATIVE_GAP
+from rrr_traj_planner.planners.solver.library import KERNELS
+from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
+from rrr_traj_planner.planners.via_velocities import least_stretch, least_time
+from scipy.optimize import minimize
+
+SEEDS = range(8)
+SOLVED = 1e-4  # relative, to which SLSQP agrees: where laws meet, constraints have kinks
+
+
+def random_chain(seed, most=12):
+    """Return a chain of 1 to 12 segments, with or without a jerk limit, some joints still."""
+    rng = np.random.default_rng(4300 + seed)
+    n = int(rng.integers(1, most + 1))
+    root = rng.uniform(0.3, 1.5, 3) * (rng.random() < 0.7)
+    law = TransitionLaw(rng.uniform(0.5, 3.0, 3), root)
+    highest = rng.uniform(0.1, 1.0, (n - 1, 3))
+    D = rng.normal(0.0, 0.6, (n, 3)) * (rng.random((n, 3)) < 0.8)
+    D[:, 0] += (D == 0.0).all(axis=1)
+    return Chain(D, law, np.full(3, 1.2), -highest, highest)
+
+
+def slacks(chain, v, T):
+    """Return what is left of every constraint."""
+    v0, v1, t = np.vstack((np.zeros(3), v)), np.vstack((v, np.zeros(3))), T[:, np.newaxis]
+    change = chain.law.largest_change(t)
+    return np.concatenate([x.ravel() for x in (
+        reach(chain.law, chain.max_velocity, v0, v1, t) - chain.displacements,
+        reach(chain.law, chain.max_velocity, -v0, -v1, t) + chain.displacements,
+        change - (v1 - v0), change + (v1 - v0), chain.highest - v, v - chain.lowest)])
+
+
+def by_slsqp(chain, start, floor=0.0):
+    """Return the least total time that a general solver finds."""
+    vias = start.velocities.size
+
+    def parts(x):
+        return x[:vias].reshape(-1, 3), np.maximum(x[vias:], 1e-3)
+
+    x = minimize(lambda x: x[vias:].sum(), np.append(start.velocities, 1.2 * start.durations),
+                 method='SLSQP', constraints=[
+                     {'type': 'ineq', 'fun': lambda x: slacks(chain, *parts(x))},
+                     {'type': 'ineq', 'fun': lambda x: x[vias:] - floor}],
+                 options={'maxiter': 500, 'ftol': 1e-10})
+    kept = slacks(chain, *parts(x.x)).min() >= -1e-6
+    return x.fun if kept else np.inf
+
+
+@pytest.mark.parametrize('seed', SEEDS[:4])
+def test_no_general_solver_finds_less_time_and_it_agrees_where_it_converges(seed):
+    chain = random_chain(seed, most=3)
+    found = least_time(chain)
+    assert slacks(chain, found.velocities, found.durations).min() > 0.0
+    assert by_slsqp(chain, found) >= (1.0 - SOLVED) * found.durations.sum()
+    floor = found.durations * np.random.default_rng(seed).uniform(0.5, 1.5, len(found.durations))
+    floored = least_time(chain, floor)
+    assert (floored.durations > floor).all()
+    assert by_slsqp(chain, floored, floor) >= (1.0 - SOLVED) * floored.durations.sum()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_at_the_end_the_gradient_of_objective_and_barrier_vanishes(seed):
+    # The condition of optimality of the last centre: with multipliers 1 / (weight slack) these are
+    # the conditions of Karush, Kuhn and Tucker, but for a gap of the constraints over the weight.
+    chain = random_chain(seed)
+    found = least_time(chain)
+    weight = (12 * len(found.durations) + 6 * len(found.velocities)) / found.gap
+    end = ViaBarrier(chain, found.velocities, found.durations)
+    KERNELS.via_value(end.at)
+    KERNELS.via_differentiate(end.at)
+    assert KERNELS.via_newton(end.at, weight) <= 1e-5
+    assert found.gap < RELATIVE_GAP * found.durations.sum()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_the_least_stretch_of_the_least_durations_is_one_and_halves_for_twice_as_long(seed):
+    chain = random_chain(seed)
+    T = least_time(chain).durations
+    factor, found = least_stretch(chain, T)
+    assert factor <= 1.0 + 1e-6
+    assert slacks(chain, found.velocities, found.durations).min() > 0.0
+    assert found.durations == pytest.approx(factor * T, rel=1e-12)
+    assert least_stretch(chain, 2.0 * T)[0] == pytest.approx(0.5 * factor, rel=1e-5)
+
+
+def test_one_segment_takes_its_closed_form():
+    # 1 rad/s^2: 0.5 rad takes sqrt(D slope) twice, 2 s.
+    chain = Chain(np.array([[0.5, 0.1, 0.0]]), TransitionLaw(np.full(3, 2.0), np.zeros(3)),
+                  np.ones(3), np.zeros((0, 3)), np.zeros((0, 3)))
+    assert least_time(chain).durations == pytest.approx([2.0], rel=1e-6)
+    assert least_stretch(chain, np.array([4.0]))[0] == pytest.approx(0.5, rel=1e-6)
+
+
+def test_a_line_through_a_via_point_takes_as_long_as_without_it():
+    # 2 rad in all joints at 1 rad/s^2, without a velocity limit in reach: 2 sqrt(2 D) = 4 s.
+    D = np.full((2, 3), 1.0)
+    room = np.full((1, 3), 9.0)
+    chain = Chain(D, TransitionLaw(np.full(3, 2.0), np.zeros(3)), np.full(3, 9.0), -room, room)
+    found = least_time(chain)
+    assert found.durations == pytest.approx([2.0, 2.0], rel=1e-5)
+    assert found.velocities == pytest.approx(np.full((1, 3), 1.0), rel=1e-3)
+
+
+@pytest.mark.parametrize('steps', [0, 1, 7])
+def test_it_asks_before_every_step_and_cancelled_it_keeps_its_feasible_iterate(steps):
+    calls = count()
+    chain = random_chain(3)
+    found = least_time(chain, should_stop=lambda: next(calls) == steps)
+    assert next(calls) == steps + 1
+    assert slacks(chain, found.velocities, found.durations).min() > 0.0
+
+
+def test_what_the_callback_raises_goes_on_to_the_caller():
+    def should_stop():
+        raise KeyboardInterrupt('now')
+
+    with pytest.raises(KeyboardInterrupt, match='now'):
+        least_time(random_chain(3), should_stop=should_stop)
