@@ -16,9 +16,14 @@
 
 import os
 
+from rrr_traj_planner.nodes.node_claim import claim
+
 # Stay on this machine, and refuse values that rclpy would otherwise garble without a word.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 
-# A domain for each test process, among those that leave its ports free: 1 to 101.
-os.environ['ROS_DOMAIN_ID'] = str(1 + os.getpid() % 101)
+# A domain for each test process, among those that leave its ports free, and which no other test
+# process of this machine has claimed: the claim lasts as long as the process.
+DOMAINS = [1 + (os.getpid() + i) % 101 for i in range(101)]
+DOMAIN, CLAIM = next((domain, held) for domain in DOMAINS if (held := claim(domain, ' tests')))
+os.environ['ROS_DOMAIN_ID'] = str(DOMAIN)

@@ -36,6 +36,7 @@ from rrr_traj_planner.nodes.arm_time import FollowedClock, OwnClock
 from rrr_traj_planner.nodes.arm_view import ArmView
 from rrr_traj_planner.nodes.configuration import ArmConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
+from rrr_traj_planner.nodes.node_start import NodeStart
 from rrr_traj_planner.nodes.parameters import ARM
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
@@ -97,6 +98,9 @@ class SimulatedArm(Node):
         # The timer runs on steady time, whatever the clock does.
         self._timer = self.create_timer(
             self._period(config), self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._start = NodeStart(
+            self, self._parameters_declared, config.settings.limits,
+            f'follows {self.resolve_topic_name("joint_trajectory")}', kwargs.get('cli_args'))
 
     def _tick(self) -> None:
         """Let time go on, and say what has gone wrong meanwhile."""
@@ -206,6 +210,11 @@ class SimulatedArm(Node):
                 f'publish_rate is {rate:g} Hz, but the arm has a new state every physics_step, '
                 f'{step:g} s: states are published at {1.0 / step:g} Hz')
         return self._time.period(rate, config.real_time_factor)
+
+    def destroy_node(self) -> None:
+        """Leave the node's name to others."""
+        self._start.end()
+        super().destroy_node()
 
 
 def _positions(q: Any) -> str:

@@ -29,6 +29,7 @@ from rcl_interfaces.msg import (
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rrr_traj_planner.core.errors import InvalidInputError, RrrPlannerError
+from rrr_traj_planner.nodes.parameter_names import check_given
 from rrr_traj_planner.nodes.parameters import check_value, Row, rows_of
 
 Config = TypeVar('Config')
@@ -54,22 +55,31 @@ class DeclaredParameters(Generic[Config]):
     ----------
     config : object
         The configuration in force.
+    given : dict
+        The value of each parameter that a file, the command line or the program gives.
+    joint_names : list of str
+        The three joints.
 
     Raises
     ------
     InvalidInputError
-        If a value from a file or the command line is wrong; names parameter, value and range.
+        If a value from a file or the command line is wrong; names parameter, value and range. If
+        a name is unknown, or a joint lacks limits of its own.
 
     """
 
     def __init__(self, node: Node, role: str, build: Callable[[Mapping[str, Any]], Config],
                  changed: Callable[[Config], None]) -> None:
         self._node, self._build, self._changed = node, build, changed
+        # rclpy has no public way to what is given but not declared.
+        self.given = {name: p.value for name, p in node._parameter_overrides.items()}
         row = rows_of(role, ())['joint_names']
         joint_names = self._declare(row)
         self._rows = {row.name: row}
         self._values = {row.name: joint_names}
         _check_distinct(row, joint_names)
+        check_given(self.given, joint_names)
+        self.joint_names = joint_names
         for row in rows_of(role, joint_names).values():
             if row.name not in self._values:
                 self._values[row.name] = self._declare(row)

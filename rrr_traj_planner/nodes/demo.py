@@ -71,14 +71,16 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.bag import Bag
     from rrr_traj_planner.nodes.bringup import node_arguments
     from rrr_traj_planner.nodes.configuration_files import read_task
-    from rrr_traj_planner.nodes.demo_client import connected
+    from rrr_traj_planner.nodes.demo_client import Client
     from rrr_traj_planner.nodes.demo_table import figures, table
+    from rrr_traj_planner.nodes.node_life import spun_in_background
     from rrr_traj_planner.nodes.processes import NodeProcesses
 
     task = read_task(options.task)
     task = replace(task, planner_id=options.planner or task.planner_id)
     with ExitStack() as stack:
-        client = stack.enter_context(connected(ros_arguments))
+        client = stack.enter_context(spun_in_background(Client, ros_arguments))
+        client.check_free()
         bag = None if options.record is None else stack.enter_context(Bag(options.record))
         nodes = stack.enter_context(NodeProcesses(node_arguments(task.arm, ros_arguments)))
         run = client.run(task, nodes.ended, bag)

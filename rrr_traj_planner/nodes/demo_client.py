@@ -16,18 +16,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from threading import Event, Thread
 from time import monotonic, sleep
 from typing import Any
 
 import numpy as np
 from rcl_interfaces.srv import GetParameters
-import rclpy
 from rclpy.client import Client as ServiceClient
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 from rclpy.time import Time
@@ -40,13 +36,15 @@ from rrr_traj_planner.nodes.configuration_files import Task
 from rrr_traj_planner.nodes.demo_messages import plan_request, trajectory_points
 from rrr_traj_planner.nodes.demo_recording import demo_recorder
 from rrr_traj_planner.nodes.entry import StartError
-from rrr_traj_planner.nodes.node_life import end_ros, made, start_ros
+from rrr_traj_planner.nodes.node_claim import is_claimed
+from rrr_traj_planner.nodes.node_start import KEEP_APART
 from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
 from rrr_traj_planner.nodes.processes import ending
-from rrr_traj_planner.nodes.signals import signal_arrived
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
+
+NODES = ('trajectory_planner', 'simulated_arm')
 
 PATIENCE = 20.0       # s that a node is given to appear or to answer
 HEAD_START = 0.5      # s between sending a trajectory and its start
@@ -65,65 +63,6 @@ class Run:
     planned: TrajectoryPoints
     recorded: TrajectoryPoints  # of the arm; time 0 is the motion's start
     torque: Array             # of the motors, at the recorded points [N m]
-
-
-@contextmanager
-def connected(ros_arguments: list[str]) -> Iterator[Client]:
-    """
-    Start ROS and the client's node; end both.
-
-    Parameters
-    ----------
-    ros_arguments : list of str
-        For the node.
-
-    Yields
-    ------
-    Client
-        The node, which an executor spins.
-
-    Raises
-    ------
-    StartError
-        If ROS refuses to start.
-    KeyboardInterrupt
-        After SIGINT or SIGTERM, whatever the client was at.
-
-    """
-    start_ros(ros_arguments)
-    client = executor = thread = None
-    closing = Event()
-    try:
-        client = made(Client)
-        executor = SingleThreadedExecutor()
-        executor.add_node(client)
-        thread = Thread(target=_spin, args=(executor, closing), daemon=True)
-        thread.start()
-        yield client
-    except Exception:
-        if not signal_arrived():  # else ROS was shut down under the client's feet
-            raise
-        raise KeyboardInterrupt from None
-    finally:
-        closing.set()
-        if executor is not None and thread is not None:
-            executor.create_task(lambda: None)  # wakes it
-            thread.join(1.0)  # an executor that is shut down while it spins may raise
-            executor.shutdown(timeout_sec=1.0)
-        if client is not None:
-            client.destroy_node()
-        end_ros()
-
-
-def _spin(executor: SingleThreadedExecutor, closing: Event) -> None:
-    try:
-        while rclpy.ok() and not closing.is_set():
-            executor.spin_once()
-    except ExternalShutdownException:
-        pass
-    except Exception:
-        if not signal_arrived():
-            raise
 
 
 class Client(Node):
@@ -167,6 +106,7 @@ class Client(Node):
         """
         self._ended = ended
         print('waiting for planner and arm ...', flush=True)
+        self._wait(lambda: len(self._claimed()) == len(NODES), 'planner and arm to start')
         self._wait(self._plan.service_is_ready, 'the planner')
         self._wait(lambda: self._states and self._send.get_subscription_count(), 'the arm')
         self._check_alone()
@@ -184,10 +124,31 @@ class Client(Node):
         recorded, torque = _recorded(list(self._states), config, start)
         return Run(task, config, response, planned, recorded, torque)
 
+    def check_free(self) -> None:
+        """
+        Refuse to run where the demonstration's nodes would not be the only ones of their names.
+
+        Raises
+        ------
+        StartError
+            If one runs already.
+
+        """
+        for name in self._claimed():
+            raise StartError(f'a node {name} runs already: {KEEP_APART}')
+
+    def _claimed(self) -> list[str]:
+        """Return which nodes run on this machine."""
+        prefix, domain = self.get_namespace().rstrip('/'), self.context.get_domain_id()
+        names = [f'{prefix}/{node}' for node in NODES]
+        return [name for name in names if is_claimed(domain, name)]
+
     def _check_alone(self) -> None:
-        """Refuse to share topics with another arm: both would drive, and both report."""
-        if max(self._send.get_subscription_count(), self.count_publishers('joint_states')) > 1:
-            raise StartError('another arm is running here: end it, or set another ROS_DOMAIN_ID')
+        """Refuse to share topics with nodes of another machine: all would answer and drive."""
+        found = self.get_node_names_and_namespaces()
+        if max(self._send.get_subscription_count(), self.count_publishers('joint_states'),
+               *(found.count((node, self.get_namespace())) for node in NODES)) > 1:
+            raise StartError(f'another planner or arm is running here: {KEEP_APART}')
 
     def _planner_config(self) -> PlannerConfig:
         """Return the planner's parameters, asked of the node itself."""

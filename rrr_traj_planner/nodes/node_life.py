@@ -16,7 +16,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from threading import Event, Thread
 from typing import Any
 import warnings
 
@@ -89,6 +91,66 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
     finally:
         _clean_up(executor, node)
     return 0
+
+
+@contextmanager
+def spun_in_background(make_node: Callable[[], Any], ros_arguments: list[str]) -> Iterator[Any]:
+    """
+    Start ROS and a node that a thread spins; end both.
+
+    Parameters
+    ----------
+    make_node : callable
+        The node's class.
+    ros_arguments : list of str
+        As from `entry.parse`.
+
+    Yields
+    ------
+    Node
+        The node.
+
+    Raises
+    ------
+    StartError
+        If ROS refuses.
+    KeyboardInterrupt
+        After SIGINT or SIGTERM, whatever else the body raises then.
+
+    """
+    from rclpy.executors import SingleThreadedExecutor
+
+    node = executor = thread = None
+    closing = Event()
+    try:
+        start_ros(ros_arguments)
+        node = made(make_node)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        thread = Thread(target=_spin_until, args=(closing, executor), daemon=True)
+        thread.start()
+        yield node
+    except Exception:
+        if not signal_arrived():  # else ROS was shut down under what is running
+            raise
+        raise KeyboardInterrupt from None
+    finally:
+        closing.set()
+        if executor is not None and thread is not None:
+            executor.create_task(lambda: None)  # wakes it
+            thread.join(1.0)  # an executor that is shut down while it spins may raise
+        _clean_up(executor, node)
+        end_if_signalled()
+
+
+def _spin_until(closing: Event, executor: Any) -> None:
+    import rclpy
+    try:
+        while rclpy.ok() and not closing.is_set():
+            executor.spin_once()
+    except Exception:
+        if not signal_arrived():
+            raise
 
 
 def start_ros(ros_arguments: list[str]) -> None:

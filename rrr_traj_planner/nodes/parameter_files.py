@@ -16,12 +16,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
+import re
 from typing import Any
 
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.model import JOINT_NAMES
 from rrr_traj_planner.nodes.configuration import PlannerConfig
+from rrr_traj_planner.nodes.parameter_names import check_given
 from rrr_traj_planner.nodes.parameters import check_value, PLANNER, rows_of
 import yaml
 
@@ -54,10 +57,43 @@ def planner_config(file: Path) -> PlannerConfig:
         raise InvalidInputError(f'{file}: {" ".join(str(error).split())}') from None
 
 
+def speaks_of(file: Path, node: str) -> bool:
+    """
+    Return whether a parameter file has something for a node.
+
+    Parameters
+    ----------
+    file : Path
+        As ROS takes it.
+    node : str
+        Fully qualified name.
+
+    Returns
+    -------
+    bool
+        True also where it cannot be read: ROS says that.
+
+    """
+    def sections(tree: Any, path: str) -> Iterator[str]:
+        for key, value in tree.items() if isinstance(tree, dict) else ():
+            if key == 'ros__parameters':
+                yield path
+            else:
+                yield from sections(value, f'{path}/{str(key).strip("/")}')
+
+    try:
+        found = list(sections(yaml.safe_load(file.read_text()), ''))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError):
+        return True
+    return any(re.fullmatch(re.escape(path).replace(r'\*\*', '.*').replace(r'\*', '[^/]*'), node)
+               for path in found)
+
+
 def _config(given: dict[str, Any]) -> PlannerConfig:
     rows = rows_of(PLANNER, JOINT_NAMES)
     names = given.get('joint_names', rows['joint_names'].default)
     check_value(rows['joint_names'], names)
+    check_given(given, names)
     rows = rows_of(PLANNER, names)
     values = {name: given.get(name, row.default) for name, row in rows.items()}
     for name, value in values.items():

@@ -36,6 +36,7 @@ from rrr_traj_planner.nodes.background import BackgroundThread
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
 from rrr_traj_planner.nodes.marker_messages import no_plan_markers, plan_markers
+from rrr_traj_planner.nodes.node_start import NodeStart
 from rrr_traj_planner.nodes.parameters import PLANNER
 from rrr_traj_planner.nodes.planning_answer import failure, refusal, success, tip_path
 from rrr_traj_planner.nodes.planning_request import planning_request
@@ -112,6 +113,9 @@ class TrajectoryPlanner(Node):
         self._answered = self.create_guard_condition(self._show, callback_group=turns)
         self.create_timer(DIAGNOSTICS_PERIOD, self._diagnose,  # whatever the clock does
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._start = NodeStart(
+            self, self._parameters_declared, self._parameters_declared.config.limits,
+            f'serves {self.resolve_service_name("plan_trajectory")}', kwargs.get('cli_args'))
 
     async def _plan(self, request: PlanTrajectory.Request,
                     _: PlanTrajectory.Response) -> PlanTrajectory.Response:
@@ -169,6 +173,7 @@ class TrajectoryPlanner(Node):
 
     def destroy_node(self) -> None:
         """End the planning thread with the node."""
+        self._start.end()
         self._thread.end()
         super().destroy_node()
 

@@ -63,18 +63,23 @@ class Script:
             child.kill()
 
     def read_until(self, text):
-        """Read its output up to a line that holds a text."""
-        self._read_until(text, self.process.stdout)
+        """Return lines of its output, up to one that holds a text."""
+        return self._read_until(text, self.process.stdout)
 
     def read_errors_until(self, text):
-        """Read its errors, the log among them, up to a line that holds a text."""
-        self._read_until(text, self.process.stderr)
+        """Return lines of its errors, the log among them, up to one that holds a text."""
+        return self._read_until(text, self.process.stderr)
 
     def _read_until(self, text, stream):
         deadline = Timer(DEADLINE, self.process.kill)  # then there is nothing more to read
         deadline.start()
         try:
-            assert any(text in line for line in stream), f'no {text!r}'
+            lines = []
+            for line in stream:
+                lines.append(line)
+                if text in line:
+                    return lines
+            raise AssertionError(f'no {text!r}, but {lines}')
         finally:
             deadline.cancel()
 

@@ -21,6 +21,7 @@ from threading import Condition
 
 from arm_in_ros import at, moving
 import numpy as np
+from own_limits import own_limits
 from plan_requests import NEAR, plan_request
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -42,7 +43,7 @@ REACHED = 1e-3   # m
 
 # An arm unlike the thesis's in size, names and limits.
 OTHER = {
-    'joint_names': ['turn', 'lift', 'bend'], 'link_names': ['post', 'upper', 'fore'],
+    **own_limits('turn', 'lift', 'bend'), 'link_names': ['post', 'upper', 'fore'],
     'base_frame': 'other_base', 'tip_frame': 'other_tip', 'arm.d1': 0.7, 'arm.a2': 0.8,
     'initial_positions': [0.2, 0.8, 0.3], 'joint_limits.turn.max_velocity': 0.5}
 OTHER_MODEL = RobotModel(d1=0.7, a2=0.8, joint_names=OTHER['joint_names'])

@@ -20,6 +20,7 @@ from math import inf, nan
 from pathlib import Path
 
 import numpy as np
+from own_limits import own_limits
 import pytest
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterType, ParameterValue
@@ -206,8 +207,8 @@ def test_node_without_a_file_has_the_defaults(ros):
 
 
 def test_limits_go_by_the_joints_names(ros):
-    parameters = declared(ros, joint_names=['base', 'shoulder', 'elbow'], **{
-        'joint_limits.shoulder.max_effort': 250.0})
+    parameters = declared(ros, **{
+        **own_limits('base', 'shoulder', 'elbow'), 'joint_limits.shoulder.max_effort': 250.0})
     assert parameters.config.settings.limits.max_effort.tolist() == [150.0, 250.0, 200.0]
     assert parameters.config.settings.model.joint_names == ('base', 'shoulder', 'elbow')
 

@@ -21,6 +21,7 @@ from threading import Event
 
 from nav_msgs.msg import Path
 import numpy as np
+from own_limits import own_limits
 from plan_requests import (
     is_refused,
     NAMES,
@@ -275,7 +276,7 @@ def test_refusal_is_not_published(ros):
 
 def test_parameters_fill_what_a_request_leaves_out(ros):
     made(ros, sample_period=0.05, default_planner_id='cycloid_approach_a', base_frame='world',
-         joint_names=['a', 'b', 'c'])
+         **own_limits('a', 'b', 'c'))
     response = plan(ros, frame='world')
     assert response.trajectory.header.frame_id == 'world'
     assert response.trajectory.joint_names == ['a', 'b', 'c']

@@ -359,7 +359,8 @@ def test_bug_in_a_planner_is_told_and_survived(module_ros):
 
 
 def test_signal_ends_a_node_that_plans(module_ros):
-    with Script(python(BUGS), '--ros-args', '-r', '__ns:=/endless') as planner:
+    with Script(python(BUGS), '--ros-args', '-r', '__ns:=/endless',
+                '--log-level', 'warn') as planner:
         client = module_ros.node.create_client(PlanTrajectory, 'endless/plan_trajectory')
         assert client.wait_for_service(20.0)
         client.call_async(plan_request(planner_id='endless'))

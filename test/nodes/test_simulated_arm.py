@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
 import numpy as np
+from own_limits import own_limits
 import pytest
 from rcl_interfaces.msg import Log
 from rrr_traj_planner.core.dynamics import gravity_torque
@@ -162,7 +163,7 @@ def test_changed_effort_limit_saturates_the_motors(ros):
 
 
 def test_names_and_positions_come_from_parameters(ros):
-    arm = Arm(ros, joint_names=['a', 'b', 'c'], initial_positions=[0.1, 1.5, 0.3])
+    arm = Arm(ros, **own_limits('a', 'b', 'c'), initial_positions=[0.1, 1.5, 0.3])
     state = arm.actual.wait_for()
     assert state.name == ['a', 'b', 'c']
     assert state.position.tolist() == pytest.approx([0.1, 1.5, 0.3])

@@ -125,6 +125,13 @@ def test_wrong_arm_is_told_with_its_file(tmp_path, yaml, text):
     assert errors.count('\n') == 1
 
 
+def test_file_with_an_unknown_key_is_refused(tmp_path):
+    (tmp_path / 'arm.yaml').write_text('/**: {ros__parameters: {arm: {d2: 0.6}}}')
+    with pytest.raises(InvalidInputError, match=r'arm.yaml: parameter arm.d2 is unknown, the '
+                       r'nearest known one is arm.(d1|d4|a2|l2)$'):
+        planner_config(tmp_path / 'arm.yaml')
+
+
 @pytest.mark.parametrize('text', ['', '[1, 2]', '/left/**: {ros__parameters: {arm.d1: 0.6}}'])
 def test_file_without_parameters_of_the_planner_is_refused(tmp_path, text):
     (tmp_path / 'arm.yaml').write_text(text)
@@ -135,7 +142,9 @@ def test_file_without_parameters_of_the_planner_is_refused(tmp_path, text):
 def test_arm_of_ones_own_is_used(tmp_path):
     (tmp_path / 'arm.yaml').write_text(
         '/**:\n  ros__parameters:\n    joint_names: [base, shoulder, elbow]\n'
-        '    joint_limits: {shoulder: {max_velocity: 0.3}}\n'
+        '    joint_limits: {base: &all {min_position: 0.0, max_position: 3.0, max_jerk: 10.0, '
+        'max_velocity: 1.0, max_acceleration: 1.0, has_effort_limits: false}, elbow: *all, '
+        'shoulder: {<<: *all, max_velocity: 0.3}}\n'
         'trajectory_planner:\n  ros__parameters: {default_planner_id: septic}\n')
     (tmp_path / 'points.yaml').write_text(
         'arm: arm.yaml\nvia_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n')

@@ -1,0 +1,78 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+A node's claim to its name among the processes of this machine.
+
+Discovery takes up to three seconds to find a node that runs already. A socket in Linux's abstract
+namespace is there at once, reaches as far as the loopback interface, and ends with its process.
+"""
+
+from __future__ import annotations
+
+from errno import EADDRINUSE
+import socket
+
+
+def claim(domain: int, name: str) -> socket.socket | None:
+    """
+    Claim a node's name.
+
+    Parameters
+    ----------
+    domain : int
+        ROS's.
+    name : str
+        Fully qualified.
+
+    Returns
+    -------
+    socket or None
+        The claim, to be closed when the node ends; None where another has it.
+
+    """
+    held = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    try:
+        held.bind(_address(domain, name))
+    except OSError as error:
+        held.close()
+        if error.errno != EADDRINUSE:
+            raise
+        return None
+    return held
+
+
+def is_claimed(domain: int, name: str) -> bool:
+    """
+    Return whether a node of this machine has a name.
+
+    Parameters
+    ----------
+    domain : int
+        ROS's.
+    name : str
+        Fully qualified.
+
+    Returns
+    -------
+    bool
+        Of this package's nodes alone.
+
+    """
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as probe:
+        return probe.connect_ex(_address(domain, name)) == 0
+
+
+def _address(domain: int, name: str) -> str:
+    return f'\0rrr_traj_planner/{domain}{name}'
