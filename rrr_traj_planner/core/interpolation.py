@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, ReadOnlyArrays
 from rrr_traj_planner.core.errors import InvalidInputError
 
 
@@ -107,6 +107,29 @@ class Interpolant:
         return (_polynomial(c, x, 0), np.where(resting, 0.0, _polynomial(c, x, 1)),
                 np.where(resting, 0.0, _polynomial(c, x, 2)))
 
+    def within(self, shares: ArrayLike,
+               segments: IntArray | slice = slice(None)) -> tuple[Array, Array, Array]:
+        """
+        Return position, velocity and acceleration at the same shares of several segments.
+
+        Parameters
+        ----------
+        shares : array_like, shape (m,)
+            Of the time from a point to the next, from 0 to 1.
+        segments : ndarray or slice
+            Which of the n - 1 segments; k in all.
+
+        Returns
+        -------
+        tuple of ndarray, shape (m, k, 3)
+            [rad], [rad/s], [rad/s^2].
+
+        """
+        c = self.coefficients[:, segments]
+        widths = np.diff(self.points.times)[segments]
+        x = np.asarray(shares, dtype=float)[:, np.newaxis, np.newaxis] * widths[:, np.newaxis]
+        return _polynomial(c, x, 0), _polynomial(c, x, 1), _polynomial(c, x, 2)
+
     def peaks(self, per_segment: int = 16) -> tuple[Array, Array]:
         """
         Return the largest velocity and acceleration of each joint.
@@ -123,16 +146,31 @@ class Interpolant:
 
         """
         widths = np.diff(self.points.times)[:, np.newaxis]
-        velocity, acceleration = np.zeros(3), np.zeros(3)
         if len(widths) == 0:  # a single point rests
-            return velocity, acceleration
-        for s in np.linspace(0.0, 1.0, per_segment + 1):
-            velocity = np.maximum(
-                velocity, np.abs(_polynomial(self.coefficients, s * widths, 1)).max(axis=0))
-        for x in (0.0 * widths, widths, *self._turns_of_acceleration(widths)):
-            acceleration = np.maximum(
-                acceleration, np.abs(_polynomial(self.coefficients, x, 2)).max(axis=0))
-        return velocity, acceleration
+            return np.zeros(3), np.zeros(3)
+        velocity = self.within(np.linspace(0.0, 1.0, per_segment + 1))[1]
+        accelerations = [_polynomial(self.coefficients, x, 2)
+                         for x in (0.0 * widths, widths, *self._turns_of_acceleration(widths))]
+        return np.abs(velocity).max(axis=(0, 1)), np.abs(accelerations).max(axis=(0, 1))
+
+    def peak_jerks(self) -> Array:
+        """
+        Return the largest jerk of each joint between each two points, exactly.
+
+        Returns
+        -------
+        ndarray, shape (n - 1, 3)
+            [rad/s^3].
+
+        """
+        widths = np.diff(self.points.times)[:, np.newaxis]
+        places = [0.0 * widths, widths]
+        if len(self.coefficients) == 6:  # a parabola, whose top may be within
+            with np.errstate(divide='ignore', invalid='ignore'):
+                top = -0.2 * self.coefficients[4] / self.coefficients[5]
+            places.append(np.clip(np.nan_to_num(top), 0.0, widths))
+        return np.asarray(np.abs(
+            [_polynomial(self.coefficients, x, 3) for x in places]).max(axis=0))
 
     def _turns_of_acceleration(self, widths: Array) -> tuple[Array, ...]:
         """Return times since each knot, within its segment, at which the jerk is zero."""

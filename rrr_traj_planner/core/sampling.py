@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
@@ -27,14 +29,47 @@ NANOSECOND = 1e-9
 # No regular sample is nearer to a via point's than this part of the period.
 LEAST_GAP = 0.1
 
+# The quintic of an interval in which acceleration steps swings beyond what is on both sides. With
+# the step at a share u from one end it has the acceleration's mean and first moment: where u is 0,
+# it overshoots on the far side by 37 % of the step, and its jerk is 9 times the step over the
+# interval; where u is 1/6, on the far side alone and least of all, by 5 %.
+STEP_SHARE, STEP_OVERSHOOT = 1.0 / 6.0, 0.0501
+
 # More points than this, where nothing else is said, are refused: they would fill the memory.
 MOST_POINTS = 200_000
+
+
+class SampleTimes(NamedTuple):
+    """When a motion is sampled, shape (n,) each."""
+
+    exact: Array   # [s]
+    stamps: Array  # the same in whole nanoseconds, strictly increasing
+
+    def with_further(self, times: Array) -> SampleTimes:
+        """
+        Return these times and further ones between them.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            [s], at least two nanoseconds from these and from each other.
+
+        Returns
+        -------
+        SampleTimes
+            All of them, in order.
+
+        """
+        stamps = np.round(times / NANOSECOND)
+        exact = np.interp(stamps, self.stamps, self.exact)  # see `sample_times` on rounding
+        return SampleTimes(np.sort(np.append(self.exact, exact)),
+                           np.sort(np.append(self.stamps, stamps)))
 
 
 def sample(trajectory: Trajectory, period: float,
            most_points: int = MOST_POINTS) -> TrajectoryPoints:
     """
-    Return points at every period, at every via time, where acceleration steps, and at the end.
+    Return points at every period, at every via time and at the end.
 
     Parameters
     ----------
@@ -48,8 +83,7 @@ def sample(trajectory: Trajectory, period: float,
     Returns
     -------
     TrajectoryPoints
-        Times in whole nanoseconds; no regular point nearer than a tenth of a period to a via
-        point's; the first and the last point exactly at rest.
+        At `sample_times`; the first and the last point exactly at rest.
 
     Raises
     ------
@@ -57,17 +91,41 @@ def sample(trajectory: Trajectory, period: float,
         If the period is not positive, or there would be too many points.
 
     """
-    exact, stamps = sample_times(trajectory, period, most_points)
-    q, qd, qdd, _ = trajectory(exact)
+    return points_at(trajectory, sample_times(trajectory, period, most_points))
+
+
+def points_at(trajectory: Trajectory, times: SampleTimes) -> TrajectoryPoints:
+    """
+    Return the states of a motion as points.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    times : SampleTimes
+        When, from its start to its end.
+
+    Returns
+    -------
+    TrajectoryPoints
+        Times in whole nanoseconds; the first and the last point exactly at rest.
+
+    """
+    q, qd, qdd, _ = trajectory(times.exact)
     for derivative in (qd, qdd):
         derivative[[0, -1]] = 0.0
-    return TrajectoryPoints(stamps * NANOSECOND, q, qd, qdd)
+    return TrajectoryPoints(times.stamps * NANOSECOND, q, qd, qdd)
 
 
 def sample_times(trajectory: Trajectory, period: float,
-                 most_points: int = MOST_POINTS) -> tuple[Array, Array]:
+                 most_points: int = MOST_POINTS) -> SampleTimes:
     """
-    Return when a motion is sampled.
+    Return when a motion is sampled: at every period, at every via time and at the end.
+
+    No regular point is nearer than a tenth of a period to a via time. Nor to a step of
+    acceleration: the quintic of an interval that holds a step well inside hardly swings beyond
+    what is on both sides, while one that begins or ends at it does so by 37 % of the step. A
+    regular point that gives way to a step leaves one half a period before it and one after it.
 
     Parameters
     ----------
@@ -80,8 +138,8 @@ def sample_times(trajectory: Trajectory, period: float,
 
     Returns
     -------
-    tuple of ndarray
-        The exact times [s] and the same as whole nanoseconds, strictly increasing.
+    SampleTimes
+        Times and stamps.
 
     Raises
     ------
@@ -92,33 +150,41 @@ def sample_times(trajectory: Trajectory, period: float,
     if not (np.isfinite(period) and period > 0.0):
         raise InvalidInputError(f'sample_period is {period} s, must be positive')
     check_size(trajectory.duration, period, most_points)
-    vias = np.concatenate(([0.0], trajectory.via_times, [trajectory.duration]))
-    steps = trajectory.step_times
-    after = np.clip(np.searchsorted(vias, steps), 1, len(vias) - 1)
-    apart = np.minimum(steps - vias[after - 1], vias[after] - steps) >= LEAST_GAP * period
-    apart[1:] &= np.diff(steps) >= LEAST_GAP * period
-    # A quintic that ends at a step swings beyond what comes before it: for a short time only.
-    steps = steps[apart]
-    before = steps - LEAST_GAP * period
-    others = np.sort(np.concatenate((vias, steps)))
-    below = np.clip(np.searchsorted(others, before, side='right') - 1, 0, None)
-    before = before[before - others[below] >= LEAST_GAP * period]
-    fixed = np.sort(np.concatenate((vias, steps, before)))
+    fixed = np.sort(np.concatenate(([0.0], trajectory.via_times, [trajectory.duration])))
     fixed = fixed[np.concatenate(([True], np.diff(fixed) >= 1.5 * NANOSECOND))]
     fixed[-1] = trajectory.duration
-    regular = period * np.arange(1, int(trajectory.duration / period) + 1)
-    regular = np.round(regular / NANOSECOND) * NANOSECOND
-    after = np.searchsorted(fixed, regular)
-    gap = np.minimum(regular - fixed[np.maximum(after - 1, 0)],
-                     np.abs(fixed[np.minimum(after, len(fixed) - 1)] - regular))
-    regular = regular[(gap >= LEAST_GAP * period) & (regular < trajectory.duration)]
+    regular: Array = period * np.arange(1.0, int(trajectory.duration / period) + 1)
+    gap, steps = LEAST_GAP * period, trajectory.step_times
+    beside = _beside_steps(steps, regular, period)
+    kept = regular[_distance(regular, steps) >= gap]
+    between = np.round(np.sort(np.concatenate((kept, beside))) / NANOSECOND) * NANOSECOND
+    between = between[(_distance(between, fixed) >= gap) & (between > 0.0)
+                      & (between < trajectory.duration)]
     # Regular points share the rounding of the via points' stamps, which a controller would
     # otherwise see as a step of velocity in the short gap between the two.
     fixed_stamps = np.round(fixed / NANOSECOND)
-    exact = np.concatenate((fixed, np.interp(regular, fixed_stamps * NANOSECOND, fixed)))
-    stamps = np.concatenate((fixed_stamps, np.round(regular / NANOSECOND)))
+    exact = np.concatenate((fixed, np.interp(between, fixed_stamps * NANOSECOND, fixed)))
+    stamps = np.concatenate((fixed_stamps, np.round(between / NANOSECOND)))
     check_size(trajectory.duration, period, most_points, len(stamps))
-    return np.sort(exact), np.sort(stamps)
+    return SampleTimes(np.sort(exact), np.sort(stamps))
+
+
+def _beside_steps(steps: Array, regular: Array, period: float) -> Array:
+    """Return times half a period from steps that a regular point gives way to, far from others."""
+    near = steps[_distance(steps, regular) < LEAST_GAP * period]
+    beside = np.sort(np.concatenate((near - 0.5 * period, near + 0.5 * period)))
+    beside = beside[_distance(beside, steps) >= LEAST_GAP * period]
+    beside = beside[_distance(beside, regular) >= LEAST_GAP * period]
+    return beside[np.diff(beside, prepend=-np.inf) >= LEAST_GAP * period]
+
+
+def _distance(times: Array, others: Array) -> Array:
+    """Return how far each time is from the nearest of others, which increase [s]."""
+    if not len(others):
+        return np.full(len(times), np.inf)
+    after = np.searchsorted(others, times)
+    return np.minimum(np.abs(times - others[np.maximum(after - 1, 0)]),
+                      np.abs(others[np.minimum(after, len(others) - 1)] - times))
 
 
 def check_size(duration: float, period: float, most_points: int = MOST_POINTS,

@@ -93,7 +93,7 @@ class _Problem(ctypes.Structure):
         ('boxed', _Bytes), ('general_lower', _Doubles), ('general_upper', _Doubles),
         ('kept', _Bytes), ('floor', _Doubles), ('free', _Bytes), ('tie', _Doubles),
         ('weights', _Doubles), ('still', _Bytes), ('arm', _Doubles), ('table', _Doubles),
-        ('steps', _Doubles), ('overshoot', ctypes.c_double), ('difference', ctypes.c_double)]
+        ('overshoot', _Doubles), ('difference', ctypes.c_double)]
 
 
 def _library() -> Any:
@@ -176,8 +176,8 @@ class Compiled:
             self._doubles(tables.general_upper), self._bytes(tables.kept),
             self._doubles(tables.floor), self._bytes(freedom.free), self._doubles(freedom.tie),
             self._doubles(freedom.weights), self._bytes(freedom.still),
-            self._doubles(tables.arm), self._doubles(tables.table), self._doubles(tables.steps),
-            tables.overshoot, tables.difference)
+            self._doubles(tables.arm), self._doubles(tables.table),
+            self._doubles(tables.overshoot), tables.difference)
         self._settings = _Settings(*settings)
 
     def minimised(self, start: Motion, barrier: float | None, least_barrier: float,

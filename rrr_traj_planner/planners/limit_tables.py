@@ -36,6 +36,5 @@ class Tables(NamedTuple):
     floor: Array | None = None    # (N,), of durations
     arm: Array | None = None      # constants of the equations of motion, of TORQUE
     table: Array | None = None    # (N, 4, intervals, 18), cubic coefficients, of PATH
-    steps: Array | None = None    # (N, 3)
-    overshoot: float = 0.0
+    overshoot: Array | None = None  # (N, 2, 2, 3), of PATH
     difference: float = 0.0

@@ -28,10 +28,6 @@ from rrr_traj_planner.planners.ramp_constraints import Change
 
 FAR = 1e6  # stands for no bound
 
-# A controller's quintic that ends where acceleration steps overshoots by so much of the step: from
-# 1 to 0 without gain of velocity or way it is 1 - 9 u + 18 u^2 - 10 u^3, least -0.3794.
-OVERSHOOT = 0.38
-
 
 QUANTITIES = 14  # three each of velocity, acceleration, jerk and torque, then:
 VELOCITY, ACCELERATION, JERK, TORQUE = (slice(3 * k, 3 * k + 3) for k in range(4))
@@ -228,12 +224,11 @@ class PathConstraints:
             of[0, ..., at], of[1, ..., at] = self._lower[..., column], self._upper[..., column]
             flags[:, at] = True
         return Tables(PATH, bounds[0], bounds[1], boxed, general[0], general[1], kept,
-                      table=self.table.coefficients, steps=self.table.steps,
-                      overshoot=OVERSHOOT)
+                      table=self.table.coefficients, overshoot=self.table.overshoot)
 
     def demands(self, s: Array, order: int = 0) -> list[Demand]:
         """
-        Return what is demanded, at the end of a piece with what a quintic overshoots by.
+        Return what is demanded, at the ends of pieces with what a quintic overshoots by.
 
         Parameters
         ----------
@@ -249,10 +244,12 @@ class PathConstraints:
 
         """
         demands = self.table(s, order)
-        if self.table.steps.any():
-            ddq = demands[0].ddq.copy()
-            ddq[:, self.grid.n] -= OVERSHOOT * self.table.steps
-            demands[0] = demands[0]._replace(ddq=ddq)
+        if self.table.overshoot.any():
+            ddq, c = demands[0].ddq.copy(), demands[0].c.copy()
+            for end, node in enumerate((0, self.grid.n)):
+                ddq[:, node] += self.table.overshoot[:, end, 0]
+                c[:, node] += self.table.overshoot[:, end, 1]
+            demands[0] = demands[0]._replace(ddq=ddq, c=c)
         return demands
 
     def _room(self, x: Array) -> Array:

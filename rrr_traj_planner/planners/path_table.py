@@ -23,6 +23,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.path_trajectory import ArmPath
+from rrr_traj_planner.core.sampling import STEP_OVERSHOOT
 from scipy.interpolate import CubicSpline
 
 INTERVALS = 64  # of each piece
@@ -64,8 +65,9 @@ class PathTable:
         What is demanded there, one-sided at the pieces' ends, shape (N, INTERVALS + 1, 3) each.
     coefficients : ndarray, shape (N, 4, INTERVALS, 18)
         Cubic ones, highest first, of all columns of `Demand` by the part of its interval.
-    steps : ndarray, shape (N, 3)
-        By how much ddq steps at each piece's end.
+    overshoot : ndarray, shape (N, 2, 2, 3)
+        At each piece's begin and end, what a controller's quintic adds to ddq and to c where they
+        step (`core.sampling.STEP_OVERSHOOT`).
 
     """
 
@@ -77,10 +79,12 @@ class PathTable:
         self.places = self.ends[:-1, np.newaxis] + self._lengths[:, np.newaxis] * u
         self.places[:, -1] = self.ends[1:]
         self.values = self._demanded(arm_path)
-        ddq = self.values.ddq
-        steps = np.where(np.isin(self.ends[1:-1], path.joins)[:, np.newaxis],
-                         ddq[1:, 0] - ddq[:-1, -1], 0.0)
-        self.steps = np.concatenate((steps, np.zeros((1, 3))))
+        stepping = np.stack((self.values.ddq, self.values.c), axis=2)
+        steps = np.where(np.isin(self.ends[1:-1], path.joins)[:, np.newaxis, np.newaxis],
+                         stepping[1:, 0] - stepping[:-1, -1], 0.0)
+        self.overshoot = np.zeros((len(self.places), 2, 2, 3))
+        self.overshoot[1:, 0] = STEP_OVERSHOOT * steps
+        self.overshoot[:-1, 1] = -STEP_OVERSHOOT * steps
         self.coefficients = (_spline() @ np.concatenate(self.values, axis=-1)).reshape(
             len(self.places), 4, INTERVALS, -1)
 

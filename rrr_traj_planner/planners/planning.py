@@ -22,22 +22,16 @@ import numpy as np
 from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.axis_planes import passes_axis
-from rrr_traj_planner.core.errors import (
-    ConvergenceError,
-    InvalidInputError,
-    RrrPlannerError,
-    TimingError,
-)
-from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError, RrrPlannerError
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limit_check import violations
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_torque import peak_torque, stretch_for_torque
+from rrr_traj_planner.core.motion_torque import peak_torque
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.postures import Posture
-from rrr_traj_planner.core.sampling import sample
 from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.answer_points import answer_points
 from rrr_traj_planner.planners.least_time import check_answer_size
 from rrr_traj_planner.planners.missed_via_points import miss_note, misses
 from rrr_traj_planner.planners.posture_choice import (
@@ -57,10 +51,9 @@ SAME_TIP = 1e-9    # m, of a path
 # beside ways of 1 rad, numbers overflow.
 STANDING = 1e-14  # rad
 
-# The quintic through the sampled points keeps velocity and acceleration limits to this part.
-INTERPOLATION_TOLERANCE = 8e-4
-RESAMPLING_ROUNDS = 10
-MOST_RESAMPLING_STRETCH = 2.0  # beyond it the motion itself is at fault
+# Motions are planned for points no further apart than this, so that a long sample_period makes
+# none of them slower: the answer has further points where its quintics need them.
+LONGEST_SPACING = 0.01  # s
 
 
 def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Plan:
@@ -132,10 +125,15 @@ def _through(method: Registered, model: RobotModel, limits: JointLimits,
         return _rest(model, limits, request, q)
     assert method.plan is not None
     trajectory = method.plan(JointTask(
-        model, limits, distinct, durations, request.sample_period, np.flatnonzero(~same),
+        model, limits, distinct, durations, _spacing(request), np.flatnonzero(~same),
         request.should_stop, request.half_transition))
     answer = _checked(model, limits, request, trajectory, _via_times(request, trajectory, same))
     return _with_misses(model, answer, q) if method.misses_via_points else answer
+
+
+def _spacing(request: PlanningRequest) -> float:
+    """Return how close points may be for which a motion is planned [s]."""
+    return min(request.sample_period, LONGEST_SPACING)
 
 
 def _with_misses(model: RobotModel, answer: Plan, q: Array) -> Plan:
@@ -172,7 +170,7 @@ def _path_in(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
     try:
         trajectory = method(CartesianTask(
             model, limits, distinct, start, posture, request.max_deviation, request.max_tip_speed,
-            request.steady_zones, request.sample_period, request.should_stop))
+            request.steady_zones, _spacing(request), request.should_stop))
     except RrrPlannerError as error:
         raise _as_counted(error, same, start is not None) from error
     return _checked(model, limits, request, trajectory, _via_times(request, trajectory, same))
@@ -228,37 +226,14 @@ def _rest(model: RobotModel, limits: JointLimits, request: PlanningRequest, q: A
 def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, via_times: Array) -> Plan:
     """Return the plan of a trajectory, after the checks that no planner is trusted with."""
-    period = request.sample_period
-    for _ in range(RESAMPLING_ROUNDS):
-        points = sample(trajectory, period, request.max_points)
-        factor = _stretch_for_interpolation(limits, points)
-        if factor <= 1.0:
-            break
-        if factor > MOST_RESAMPLING_STRETCH:
-            raise ConvergenceError(
-                f'planner {request.planner_id}: the points do not follow the motion')
-        if request.segment_durations is not None:
-            raise TimingError(
-                f'sample_period {request.sample_period} s is too long for segment_durations '
-                f'{list(request.segment_durations)} s: between the points the motion would '
-                'exceed its limits')
-        if np.isinf(stretch_for_torque(model, limits, trajectory).value).any():
-            period *= 0.5  # it hurries past a pose that cannot be held: no slower, but closer
-        else:
-            trajectory, via_times = trajectory.stretched(factor), via_times * factor
+    found = answer_points(model, limits, request, trajectory)
+    trajectory = found.trajectory
     peaks, effort = trajectory.peaks(), peak_torque(model, trajectory).value
     broken = violations(limits, peaks, effort)
     if broken:
         raise ConvergenceError(
             f'planner {request.planner_id} broke a limit: {broken[0].text(model.joint_names)}')
-    return Plan(trajectory, points, via_times, peaks, effort, trajectory.note)
-
-
-def _stretch_for_interpolation(limits: JointLimits, points: TrajectoryPoints) -> float:
-    """Return by how much to slow down so that the quintic through the points keeps its limits."""
-    velocity, acceleration = Interpolant(points).peaks()
-    faster = float((velocity / limits.max_velocity).max())
-    harder = float((acceleration / limits.max_acceleration).max())
-    if max(faster, harder) <= 1.0 + INTERPOLATION_TOLERANCE:
-        return 1.0
-    return max(faster, float(np.sqrt(harder)))
+    # To the part to which the points keep a limit, what they do at it is not beyond it.
+    effort = np.maximum(effort, np.minimum(found.effort, limits.max_effort))
+    return Plan(trajectory, found.points, via_times * found.stretch, peaks, effort,
+                '; '.join(filter(None, (trajectory.note, found.note))))

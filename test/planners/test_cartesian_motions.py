@@ -19,6 +19,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from random_paths import Measured, measured, PathCase, PLANNERS, random_case
+from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.interpolation import Interpolant
 from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
 from rrr_traj_planner.core.kinematics import forward_kinematics
@@ -154,11 +155,13 @@ def test_position_velocity_and_acceleration_are_continuous_but_for_told_steps(se
 
 
 @each_seed
-def test_quintic_through_the_points_keeps_velocity_and_acceleration_limits(seed):
+def test_quintic_through_the_points_keeps_velocity_acceleration_and_torque_limits(seed):
     m = measured(seed)
     times, limits = m.plan.points.times, m.case.limits
     t = (times[:-1, np.newaxis] + np.diff(times)[:, np.newaxis] * np.linspace(0, 1, 21)).ravel()
-    _, qd, qdd = Interpolant(m.plan.points)(t)
+    q, qd, qdd = Interpolant(m.plan.points)(t)
+    torque = inverse_dynamics(m.case.model, q, qd, qdd)
+    assert (np.abs(torque).max(axis=0) <= limits.max_effort * (1.0 + BETWEEN_POINTS)).all()
     assert (np.abs(qd).max(axis=0) <= limits.max_velocity * (1.0 + BETWEEN_POINTS)).all()
     assert (np.abs(qdd).max(axis=0) <= limits.max_acceleration * (1.0 + BETWEEN_POINTS)).all()
     assert np.abs(times[:, np.newaxis] - m.plan.via_times).min(axis=0).max() <= 1e-9

@@ -18,7 +18,8 @@ import numpy as np
 import pytest
 from random_cases import central_difference
 from random_paths import random_case
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix, inverse_dynamics
+from rrr_traj_planner.core.sampling import STEP_OVERSHOOT
 from rrr_traj_planner.planners.path_table import PARTS, PathTable
 
 SEEDS = range(16)
@@ -92,10 +93,14 @@ def test_ends_of_pieces_have_the_values_of_their_own_side(seed):
             wanted = getattr(theirs, name)
             assert getattr(ours, name)[:, 0] == pytest.approx(
                 wanted, abs=1e-10 * (1.0 + np.abs(wanted).max()))
+    # Torque is inertia times acceleration, and all else that speed asks of it does not step.
     steps = from_right.ddq[1:] - from_left.ddq[:-1]
-    size = np.abs(from_left.ddq).max()
-    assert table.steps[:-1] == pytest.approx(steps, abs=1e-10 * (1.0 + size))
-    assert table.steps[-1].tolist() == [0.0] * 3
+    torques = np.einsum('nij,nj->ni', inertia_matrix(arm_path.model, from_right.q[1:]), steps)
+    for ours, theirs in zip(np.moveaxis(table.overshoot, 2, 0), (steps, torques)):
+        tolerance = 1e-9 * (1.0 + np.abs(theirs).max())
+        assert ours[1:, 0] == pytest.approx(STEP_OVERSHOOT * theirs, abs=tolerance)
+        assert ours[:-1, 1] == pytest.approx(-STEP_OVERSHOOT * theirs, abs=tolerance)
+        assert not ours[0, 0].any() and not ours[-1, 1].any()
 
 
 @pytest.mark.parametrize('seed', SEEDS)

@@ -278,13 +278,6 @@ def test_malformed_requests_are_refused(changes, message):
         plan(ARM, LIMITS, table('6.1', **changes))
 
 
-def test_sample_period_too_long_for_prescribed_durations_is_refused():
-    request = table('6.1', sample_period=1.4)
-    # Without durations the motion is slowed until the quintic keeps the limits.
-    slowed = plan(ARM, LIMITS, request)
-    assert slowed.trajectory.duration > duration(LIMITS, table('6.1'))
-
-
 def test_every_planner_is_found_by_its_id():
     assert set(PLANNERS) <= set(planner_ids())
 

@@ -57,8 +57,8 @@ typedef struct {
     const uint8_t *still;   /* (N - 1, J) */
     const double *arm;      /* 11 constants of equations.py, where kind is TORQUE */
     const double *table;    /* (N, 4, intervals, 18), cubic coefficients, where it is PATH */
-    const double *steps;    /* (N, 3), of ddq at the segments' ends */
-    double overshoot, difference;
+    const double *overshoot;  /* (N, 2, 2, 3), at a segment's begin and end, of ddq and of c */
+    double difference;
 } Problem;
 
 /* Size of a segment's Hessian by its states: (P, 4 J, 4 J), of boxes alone the diagonals (P, 4 J). */

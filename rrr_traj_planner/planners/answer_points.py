@@ -1,0 +1,166 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The points of an answer: close enough for a controller's quintics through them to keep the limits.
+
+Where those of the asked period do not, further points are put between, not closer than a tenth of
+it; where that is not enough, the motion is slowed. Where it cannot be slowed, since its durations
+are given or since it hurries past a pose that the motors cannot hold, points are closer still.
+Further points also bring down jerk; no motion is slowed for that, but what is left of it is told.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.controller_spline import spline_excess, SplineExcess
+from rrr_traj_planner.core.errors import ConvergenceError, TimingError
+from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.motion_torque import stretch_for_torque
+from rrr_traj_planner.core.sampling import (
+    LEAST_GAP,
+    NANOSECOND,
+    points_at,
+    sample_times,
+    SampleTimes,
+    STEP_SHARE,
+)
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.request import PlanningRequest
+
+ROUNDS = 40              # of slowing
+MOST_STRETCH = 1.5       # in one of them
+CLOSEST = 1e-4           # s between points of a motion that cannot be slowed
+
+# Beyond these a plan's note tells of it:
+TOLD_JERK = 1.1       # the quintics' jerk, of its limit
+TOLD_STRETCH = 1.001  # how much slower the motion is
+
+
+class AnswerPoints(NamedTuple):
+    """Points whose quintics keep the limits, and what it took."""
+
+    trajectory: Trajectory    # slowed, if it had to be
+    points: TrajectoryPoints
+    effort: Array             # largest torque of the quintics, (3,) [N m]
+    stretch: float            # by what the motion has been slowed
+    note: str                 # what there is to be said of it
+
+
+def answer_points(model: RobotModel, limits: JointLimits, request: PlanningRequest,
+                  trajectory: Trajectory) -> AnswerPoints:
+    """
+    Return the points of a motion, and the motion, slowed if its points ask for that.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Scaled as requested.
+    request : PlanningRequest
+        For the sample period, the durations and how many points there may be.
+    trajectory : Trajectory
+        Within the limits.
+
+    Returns
+    -------
+    AnswerPoints
+        Velocity, acceleration and torque of the quintics are within their limits to 0.1 %.
+
+    Raises
+    ------
+    InvalidInputError
+        If there would be too many points.
+    TimingError
+        If a motion of prescribed durations does not keep its limits between any points.
+    ConvergenceError
+        If no points are found, which is a bug.
+
+    """
+    stretch, gap = 1.0, LEAST_GAP * request.sample_period
+    closest = min(gap, CLOSEST)
+    for _ in range(ROUNDS):
+        spline, excess = _refined(model, limits, request, trajectory, gap)
+        factor = float(excess.stretch.max(initial=1.0))
+        if factor <= 1.0:
+            return AnswerPoints(trajectory, spline.points, excess.effort, stretch, _note(
+                model, limits, request.sample_period, excess.jerk.max(axis=0), stretch))
+        cannot_be_slower = request.segment_durations is not None or np.isinf(
+            stretch_for_torque(model, limits, trajectory).value).any()
+        if cannot_be_slower or np.isinf(factor):
+            if gap == closest:
+                break
+            gap = closest
+            continue
+        factor = min(factor, MOST_STRETCH)
+        trajectory, stretch = trajectory.stretched(factor), stretch * factor
+    if request.segment_durations is not None:
+        raise TimingError(
+            f'sample_period {request.sample_period} s is too long for segment_durations '
+            f'{list(request.segment_durations)} s: between the points the motion would '
+            'exceed its limits')
+    raise ConvergenceError(
+        f'planner {request.planner_id}: the points do not follow the motion')
+
+
+def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
+             trajectory: Trajectory, gap: float) -> tuple[Interpolant, SplineExcess]:
+    """Return quintics through points as close as need be, and what they still exceed."""
+    times = sample_times(trajectory, request.sample_period, request.max_points)
+    while True:
+        spline = Interpolant(points_at(trajectory, times))
+        excess = spline_excess(model, limits, spline)
+        further = _between(limits, times, excess, trajectory.step_times, gap)
+        if not len(further) or len(times.stamps) + len(further) > request.max_points:
+            return spline, excess
+        times = times.with_further(further)
+
+
+def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, steps: Array,
+             gap: float) -> Array:
+    """Return times at which intervals that exceed limits may be cut, none nearer than a gap."""
+    begin, width = times.stamps[:-1] * NANOSECOND, np.diff(times.stamps) * NANOSECOND
+    cut = begin + 0.5 * width
+    jerky = np.asarray((excess.jerk > TOLD_JERK * limits.max_jerk).any(axis=1))
+    if len(steps):
+        index = np.searchsorted(begin, steps, side='right') - 1
+        share = (steps - begin[index]) / width[index]
+        after = excess.place[index] > share
+        # Never at the step: so that it is STEP_SHARE from the end on the side that exceeds.
+        beside = STEP_SHARE / (1.0 - STEP_SHARE) * width[index]
+        cut[index] = np.where(after, steps + beside * share, steps - beside * (1.0 - share))
+        jerky[index] = False  # in less time the step would be steeper
+    far = np.minimum(cut - begin, begin + width - cut) >= gap - NANOSECOND
+    return cut[far & (jerky | (excess.stretch > 1.0) | (excess.outside > 0.0))]
+
+
+def _note(model: RobotModel, limits: JointLimits, period: float, jerk: Array,
+          stretch: float) -> str:
+    """Return what there is to be said of time and of jerk; mostly nothing."""
+    texts = []
+    if stretch > TOLD_STRETCH:
+        texts.append(f'sample_period {period:g} s makes the motion {100.0 * (stretch - 1.0):.2g} '
+                     '% slower: a controller would else exceed limits between points')
+    joint = int((jerk / limits.max_jerk).argmax())
+    if jerk[joint] > TOLD_JERK * limits.max_jerk[joint]:
+        texts.append(
+            f'between points a controller makes {model.joint_names[joint]} reach a jerk of '
+            f'{jerk[joint]:.3g} rad/s^3, limit {limits.max_jerk[joint]:g} rad/s^3')
+    return '; '.join(texts)
