@@ -51,6 +51,7 @@ NONE = np.full(3, np.inf)
 AFTER = 0.5         # s at rest before the arm is judged
 BEYOND = 1e-6       # rad outside a range that count as outside
 PUSHING = 0.5       # N m beside gravity that count as pushing
+STILL = 1e-4        # rad/s
 SLACK = 1.002       # of a limit
 
 
@@ -135,7 +136,7 @@ class Judge:
             found.append(f'is to rest outside, at {arm.motion.final}')
         if np.abs(arm.torque - gravity_torque(MODEL, q)).max() > PUSHING:
             found.append(f'pushes with {arm.torque - gravity_torque(MODEL, q)} N m')
-        if np.abs(states[-1, 3:]).max() > 1e-6:
+        if np.abs(states[-1, 3:]).max() > STILL:
             found.append(f'moves at {states[-1, 3:]}')
         if arm.stop_warnings:
             found.append(f'warns: {arm.stop_warnings}')

@@ -29,8 +29,8 @@ from rrr_traj_planner.core.motion_points import MotionPoints
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.replacement import replacement, Takeover
 from rrr_traj_planner.core.simulation import ArmPhysics
-from rrr_traj_planner.core.stop_task import time_inside
-from rrr_traj_planner.core.stopping import from_state, Stop, stop, what_moves
+from rrr_traj_planner.core.stop_task import measured, time_inside, what_moves
+from rrr_traj_planner.core.stopping import Stop, stop
 
 NO_DISTURBANCE = (0.0, 0.0, 0.0)
 
@@ -258,7 +258,7 @@ class ControlledArm:
                 self.seen, self.desired, self.time - self.motion.end, self._first_check)
             self._first_check = False
             if lines:
-                self._stop(self._measured())
+                self._stop(measured(self.seen, self.now))
                 self.violation = lines
 
     def _keep_ranges(self) -> None:
@@ -276,10 +276,6 @@ class ControlledArm:
     def _stopped(self, motion: DesiredMotion, time: float) -> Stop:
         """Return a stop from a motion at a time."""
         return stop(motion, time, self.settings.limits, self.settings.controller_model)
-
-    def _measured(self) -> DesiredMotion:
-        """Return the measured state, as a motion to be stopped."""
-        return from_state((*self.seen, 0.0, 0.0, 0.0), self.now)
 
     def _stay(self, motion: DesiredMotion) -> None:
         """Follow a motion that is no trajectory: nothing is watched."""

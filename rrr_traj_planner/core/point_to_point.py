@@ -20,6 +20,8 @@ All joints follow one quintic, 10 s^3 - 15 s^4 + 6 s^5 of the way with s = t / T
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.desired_motion import DesiredMotion
@@ -39,8 +41,25 @@ SLOWING, SLOWINGS, HARDLY_MORE = 1.2, 40, 1.1
 SAMPLES = 41
 
 
+class Move(NamedTuple):
+    """
+    A motion that ends with a move.
+
+    Attributes
+    ----------
+    motion : DesiredMotion
+        The motion.
+    peak_torque : ndarray, shape (3,)
+        Of the move [N m]; beyond the limits where no duration keeps them.
+
+    """
+
+    motion: DesiredMotion
+    peak_torque: Array
+
+
 def moved_on(motion: DesiredMotion, target: Array, limits: JointLimits,
-             model: RobotModel) -> DesiredMotion:
+             model: RobotModel) -> Move:
     """
     Return a motion that ends at rest, and then a move to a target.
 
@@ -58,22 +77,43 @@ def moved_on(motion: DesiredMotion, target: Array, limits: JointLimits,
 
     Returns
     -------
-    DesiredMotion
+    Move
         At rest at the target in the end.
 
     """
     start, zero = motion.final, np.zeros(3)
     if (start == target).all():
-        return motion
-    T = _duration(start, target, limits, model)
+        return Move(motion, zero)
+    T, peak_torque = _duration(start, target, limits, model)
     move = np.stack(hermite(T, (start, zero, zero), (target, zero, zero)), axis=-1)
-    return DesiredMotion(np.append(motion.knots, motion.knots[-1] + T),
-                         np.concatenate((motion.coefficients, move[np.newaxis])),
-                         target, motion.origin_ns)
+    return Move(DesiredMotion(np.append(motion.knots, motion.knots[-1] + T),
+                              np.concatenate((motion.coefficients, move[np.newaxis])),
+                              target, motion.origin_ns), peak_torque)
 
 
-def _duration(start: Array, target: Array, limits: JointLimits, model: RobotModel) -> float:
-    """Return how long a move takes [s]."""
+def quickest(share: Array) -> int:
+    """
+    Return which of motions to take, the quicker ones first.
+
+    Parameters
+    ----------
+    share : ndarray, shape (n,)
+        The largest share of a limit that each takes.
+
+    Returns
+    -------
+    int
+        The first that keeps the limits; if none does, the first that exceeds them hardly more
+        than the gentlest does.
+
+    """
+    least = float(share.min())
+    return int(np.argmax(share <= (1.0 if least <= 1.0 else HARDLY_MORE * least)))
+
+
+def _duration(start: Array, target: Array, limits: JointLimits,
+              model: RobotModel) -> tuple[float, Array]:
+    """Return how long a move takes [s], and its largest torques [N m]."""
     distance = np.abs(target - start)
     least = max(LEAST_TIME, float(np.max((
         PEAK_VELOCITY * distance / limits.max_velocity,
@@ -87,4 +127,5 @@ def _duration(start: Array, target: Array, limits: JointLimits, model: RobotMode
         T[:, np.newaxis, np.newaxis] ** 2)
     torque = np.abs(inverse_dynamics(model, np.broadcast_to(q, qd.shape), qd, qdd))
     share = (torque / limits.max_effort).max(axis=(1, 2))
-    return float(T[np.argmax(share <= max(1.0, HARDLY_MORE * share.min()))])
+    i = quickest(share)
+    return float(T[i]), torque[i].max(axis=0)

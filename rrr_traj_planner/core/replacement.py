@@ -40,7 +40,8 @@ from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_points import MotionPoints, segment_orders
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.point_to_point import moved_on
-from rrr_traj_planner.core.stopping import from_state, stop
+from rrr_traj_planner.core.stop_task import from_state
+from rrr_traj_planner.core.stopping import stop
 
 # A command this near to a trajectory is on it [rad], [rad/s].
 POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
@@ -249,6 +250,7 @@ def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
     Return a quintic to the motion's end, later than on schedule, or a stop and a move there.
 
     Where the motion has a velocity at its end, the quintic leads to where it would be by then.
+    Where gravity alone asks too much of a motor on the way, the arm stays where it has stopped.
     """
     due = motion.end - takeover.now
     T = max(due, LEAST_TIME) * LATER
@@ -263,4 +265,10 @@ def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
     running = takeover.running or from_state(
         takeover.command, nanoseconds(takeover.now))
     stopped, warnings = stop(running, takeover.now, takeover.limits, takeover.model)
-    return Replacement(moved_on(stopped, motion.final, takeover.limits, takeover.model), warnings)
+    moved, torque = moved_on(stopped, motion.final, takeover.limits, takeover.model)
+    told = tuple(
+        f"the way to the trajectory's end takes {name} {torque[i]:.1f} N m, limit "
+        f'{takeover.limits.max_effort[i]:.1f} N m: holding'
+        for i, name in enumerate(takeover.model.joint_names)
+        if torque[i] > takeover.limits.max_effort[i] * (1.0 + LIMIT_TOLERANCE))
+    return Replacement(stopped if told else moved, warnings + told)

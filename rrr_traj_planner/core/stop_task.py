@@ -21,6 +21,7 @@ from math import inf
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.control import Desired, State
 from rrr_traj_planner.core.desired_motion import DesiredMotion
 from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.limits import JointLimits
@@ -31,6 +32,9 @@ POSITION_TOLERANCE, TOUCH = 1e-9, 1e-6
 
 # At so many instants it is looked whether a motion stays inside.
 LOOKS = 1001
+
+# A command outside the ranges that is so far from the arm is not what has to stop [rad].
+FAR = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,3 +144,72 @@ def time_inside(motion: DesiredMotion, now: float, limits: JointLimits) -> float
         return motion.end
     first = int(np.argmax(outside))
     return float(looks[first - 1]) if first else -inf
+
+
+def from_state(state: Desired, now: int) -> DesiredMotion:
+    """
+    Return a motion that is over in the state in which it begins.
+
+    Parameters
+    ----------
+    state : tuple of 9 floats
+        Positions [rad], velocities [rad/s], accelerations [rad/s^2].
+    now : int
+        The time [ns].
+
+    Returns
+    -------
+    DesiredMotion
+        Of one knot.
+
+    """
+    q, qd, qdd = np.reshape(state, (3, 3))
+    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), q, now, qd, qdd)
+
+
+def measured(seen: State, now: int) -> DesiredMotion:
+    """
+    Return a measured state as a motion that is over, for `stop`.
+
+    Parameters
+    ----------
+    seen : tuple of 6 floats
+        Positions [rad] and velocities [rad/s].
+    now : int
+        The time [ns].
+
+    Returns
+    -------
+    DesiredMotion
+        Of one knot; without acceleration, which is not measured.
+
+    """
+    return from_state((*seen, 0.0, 0.0, 0.0), now)
+
+
+def what_moves(motion: DesiredMotion, now: int, seen: State,
+               limits: JointLimits) -> DesiredMotion:
+    """
+    Return what has to stop: a motion, or the state measured where that motion is far off.
+
+    Parameters
+    ----------
+    motion : DesiredMotion
+        What is followed.
+    now : int
+        The time [ns].
+    seen : tuple of 6 floats
+        Measured positions [rad] and velocities [rad/s].
+    limits : JointLimits
+        A command outside their ranges, and the arm not with it, is not what moves.
+
+    Returns
+    -------
+    DesiredMotion
+        For `stop`.
+
+    """
+    q = np.array(motion.command(now)[:3])
+    astray = ((q < limits.min_position) | (q > limits.max_position)).any() and (
+        np.abs(q - seen[:3]).max() > FAR)
+    return measured(seen, now) if astray else motion

@@ -29,12 +29,11 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.control import Desired, State
 from rrr_traj_planner.core.desired_motion import DesiredMotion
 from rrr_traj_planner.core.joint_brake import greatest_deceleration
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.point_to_point import HARDLY_MORE, moved_on
+from rrr_traj_planner.core.point_to_point import moved_on, quickest
 from rrr_traj_planner.core.stop_candidates import Indices, JointBrakes, Slowdowns
 from rrr_traj_planner.core.stop_task import POSITION_TOLERANCE, StopTask, time_inside
 from rrr_traj_planner.core.stop_warnings import harder, outside, torques_beyond
@@ -64,8 +63,6 @@ LIMIT_TOLERANCE = 1e-4
 # A joint that is to stop in less time than this stands at once [s].
 INSTANT = 1e-3
 
-# A command outside the ranges that is so far from the arm is not what has to stop [rad].
-FAR = 1e-3
 
 
 class Stop(NamedTuple):
@@ -161,58 +158,9 @@ def stop(motion: DesiredMotion, now: float, limits: JointLimits, model: RobotMod
         told += more
     target = np.clip(found.final, limits.min_position, limits.max_position)
     if np.abs(target - found.final).max() > POSITION_TOLERANCE:
-        found = moved_on(found, target, limits, model)
+        found = moved_on(found, target, limits, model).motion
     found = DesiredMotion(found.knots, found.coefficients, target, found.origin_ns)
     return Stop(found, tuple(told))
-
-
-def from_state(state: Desired, now: int) -> DesiredMotion:
-    """
-    Return a motion that is over in the state in which it begins.
-
-    Parameters
-    ----------
-    state : tuple of 9 floats
-        Positions [rad], velocities [rad/s], accelerations [rad/s^2].
-    now : int
-        The time [ns].
-
-    Returns
-    -------
-    DesiredMotion
-        Of one knot.
-
-    """
-    q, qd, qdd = np.reshape(state, (3, 3))
-    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), q, now, qd, qdd)
-
-
-def what_moves(motion: DesiredMotion, now: int, seen: State,
-               limits: JointLimits) -> DesiredMotion:
-    """
-    Return what has to stop: a motion, or the state measured where that motion is far off.
-
-    Parameters
-    ----------
-    motion : DesiredMotion
-        What is followed.
-    now : int
-        The time [ns].
-    seen : tuple of 6 floats
-        Measured positions [rad] and velocities [rad/s].
-    limits : JointLimits
-        A command outside their ranges, and the arm not with it, is not what moves.
-
-    Returns
-    -------
-    DesiredMotion
-        For `stop`.
-
-    """
-    q = np.array(motion.command(now)[:3])
-    astray = ((q < limits.min_position) | (q > limits.max_position)).any() and (
-        np.abs(q - seen[:3]).max() > FAR)
-    return from_state((*seen, 0.0, 0.0, 0.0), now) if astray else motion
 
 
 def _within_limits(task: StopTask) -> DesiredMotion | None:
@@ -295,7 +243,7 @@ def _as_hard_as_needed(task: StopTask) -> tuple[DesiredMotion, list[str]]:
     brakes = JointBrakes(task, np.zeros(n), tuple(np.tile(x, (n, 1)) for x in (q, v, a)),
                          np.maximum(greatest * RATES[:, np.newaxis], needed), unlimited)
     share = brakes.excess(np.arange(n), FINE)
-    found = brakes.motion(int(np.argmax(share <= max(1.0, HARDLY_MORE * share.min()))))
+    found = brakes.motion(quickest(share))
     needed[at_once] = inf
     return found, (harder(task, q, qd, np.where(needed > np.abs(a), needed, 0.0))
                    + torques_beyond(task, found))

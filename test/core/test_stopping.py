@@ -26,8 +26,8 @@ from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_points import MotionPoints
-from rrr_traj_planner.core.stop_task import time_inside
-from rrr_traj_planner.core.stopping import from_state, stop
+from rrr_traj_planner.core.stop_task import from_state, time_inside
+from rrr_traj_planner.core.stopping import stop
 
 MODEL, FREE = RobotModel(), np.full(3, inf)
 LIMITS = JointLimits(max_effort=FREE)
