@@ -64,7 +64,6 @@ LIMIT_TOLERANCE = 1e-4
 INSTANT = 1e-3
 
 
-
 class Stop(NamedTuple):
     """
     A motion to rest.
