@@ -22,6 +22,7 @@ from typing import Any
 
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.nodes.point_tables import check_number, listed_points, tabulated_points
 import yaml
 
 CHECKOUT = Path(__file__).resolve().parents[2] / 'config'
@@ -57,7 +58,7 @@ class Task:
 
 def read_task(file: str) -> Task:
     """
-    Return what a via-point file says.
+    Return what a via-point file says, a YAML document or a table of comma-separated values (.csv).
 
     Parameters
     ----------
@@ -72,28 +73,63 @@ def read_task(file: str) -> Task:
     Raises
     ------
     InvalidInputError
-        If the file is missing, no YAML, or malformed.
+        If the file is missing, no YAML, or malformed; names the file, the line where there is one,
+        and what is wrong.
 
     """
     path = _found(file, Path.cwd())
     try:
-        content = yaml.safe_load(path.read_text())
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        raise InvalidInputError(f'{path}: {" ".join(str(error).split())}') from None
-    if not isinstance(content, dict) or not content.get('via_points'):
-        raise InvalidInputError(f'{path}: no via_points')
-    unknown = sorted(set(map(str, content)) - set(FIELDS))
-    if unknown:
-        raise InvalidInputError(
-            f'{path}: unknown {", ".join(unknown)}; known are {", ".join(FIELDS)}')
-    try:
+        text = path.read_text(encoding='utf-8-sig')
+        content, lines = _table(text) if path.suffix.lower() == '.csv' else _document(text)
         return Task(
-            name=path.stem, via_points=finite_array('via_points', content['via_points'], (-1, 3)),
+            name=path.stem, via_points=listed_points(content['via_points'], lines),
             arm=arm_file(_text(content, 'arm') or 'thesis_arm.yaml', path.parent),
             planner_id=_text(content, 'planner_id'),
             segment_durations=_durations(content.get('segment_durations')))
-    except InvalidInputError as error:
-        raise InvalidInputError(f'{path}: {error}') from None
+    except (OSError, UnicodeDecodeError, InvalidInputError) as error:
+        raise InvalidInputError(f'{path}: {" ".join(str(error).split())}') from None
+
+
+def _table(text: str) -> tuple[dict[str, Any], list[int]]:
+    """Return the content of a CSV file, as if it were a document, and no lines."""
+    points = tabulated_points(text).tolist()
+    if not points:
+        raise InvalidInputError('no via_points')
+    return {'via_points': points}, []
+
+
+def _document(text: str) -> tuple[dict[str, Any], list[int]]:
+    """Return the content of a YAML file, and in which lines its via points begin."""
+    try:
+        loader = yaml.SafeLoader(text)
+        root = loader.get_single_node()
+        content = None if root is None else loader.construct_document(root)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        raise InvalidInputError(
+            (f'line {mark.line + 1}: ' if mark else '')
+            + ', '.join(filter(None, (error.context, error.problem)))) from None
+    except yaml.YAMLError as error:
+        raise InvalidInputError(str(error)) from None
+    if not isinstance(content, dict) or not content.get('via_points'):
+        raise InvalidInputError('no via_points')
+    _check_keys(root)
+    points = next(value for key, value in root.value if key.value == 'via_points')
+    return content, [item.start_mark.line + 1 for item in points.value
+                     if isinstance(item, yaml.Node)]
+
+
+def _check_keys(root: yaml.MappingNode) -> None:
+    """Refuse keys that are unknown, or stand twice: YAML would take the last."""
+    lines: dict[str, int] = {}
+    for key, _ in root.value:
+        name, line = str(key.value), key.start_mark.line + 1
+        if name not in FIELDS:
+            raise InvalidInputError(
+                f'line {line}: unknown {name}; known are {", ".join(FIELDS)}')
+        if name in lines:
+            raise InvalidInputError(f'line {line}: {name} stands in line {lines[name]} already')
+        lines[name] = line
 
 
 def arm_file(name: str, folder: Path) -> Path:
@@ -129,6 +165,9 @@ def _text(content: dict[str, Any], field: str) -> str:
 
 
 def _durations(value: Any) -> Array:
+    if isinstance(value, list):
+        for i, seconds in enumerate(value):
+            check_number(f'segment_durations[{i}]', seconds)
     return finite_array('segment_durations', [] if value is None else value, (-1,))
 
 
