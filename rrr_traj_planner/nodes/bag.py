@@ -35,12 +35,12 @@ class Bag:
     Parameters
     ----------
     file : Path
-        Replaced if it is there.
+        Not there yet; devices may be.
 
     Raises
     ------
     StartError
-        If the package mcap is missing, or the file cannot be written.
+        If the package mcap is missing, or the file is there or cannot be written.
 
     """
 
@@ -49,6 +49,8 @@ class Bag:
             from mcap.writer import Writer
         except ImportError:
             raise StartError(NO_MCAP) from None
+        if file.is_file():
+            raise StartError(f'{file} is there already: name another file, or remove it')
         self.file = file
         self.count = 0  # of messages
         self._channels: dict[str, int] = {}

@@ -36,7 +36,7 @@ LATCHED = ((JointTrajectory, 'planned_trajectory'), (Path, 'planned_path'),
 
 def demo_recorder(node: Node, bag: Bag) -> Recorder:
     """
-    Return what records both nodes and what is sent to them.
+    Return what records both nodes, what is sent to them, and whatever else comes by.
 
     Parameters
     ----------
@@ -51,4 +51,6 @@ def demo_recorder(node: Node, bag: Bag) -> Recorder:
         At work as long as the node is.
 
     """
-    return Recorder(node, bag, PASSING, LATCHED)
+    recorder = Recorder(node, bag, PASSING, LATCHED)
+    recorder.record_all()
+    return recorder

@@ -16,18 +16,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from importlib import import_module
 from time import time_ns
 from typing import Any
 
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rrr_traj_planner.nodes.bag import Bag
 from rrr_traj_planner.nodes.message_definitions import definition
 
 SECOND = 1_000_000_000  # ns
 QUEUE_DEPTH = 1000
+LOOKING_PERIOD = 0.1  # s
 
 PASSING = QoSProfile(depth=QUEUE_DEPTH)
 LATCHED = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -53,9 +57,38 @@ class Recorder:
     def __init__(self, node: Node, bag: Bag, topics: Iterable[tuple[Any, str]],
                  latched: Iterable[tuple[Any, str]] = ()) -> None:
         self._node, self._bag = node, bag
-        self._subscriptions = [
-            node.create_subscription(kind, topic, self._writer_of(kind, topic), qos, raw=True)
-            for some, qos in ((topics, PASSING), (latched, LATCHED)) for kind, topic in some]
+        self._subscriptions: list[Any] = []
+        self._known: set[str] = set()  # topics that are subscribed, or cannot be
+        for some, qos in ((topics, PASSING), (latched, LATCHED)):
+            for kind, topic in some:
+                self._subscribe(kind, topic, qos)
+
+    def record_all(self) -> None:
+        """Subscribe every other topic that has a publisher, or that gets one later."""
+        self._look()
+        self._timer = self._node.create_timer(
+            LOOKING_PERIOD, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _look(self) -> None:
+        """Subscribe topics that are new; hidden ones are left alone, as in rosbag2."""
+        for topic, types in self._node.get_topic_names_and_types():
+            if topic in self._known or '/_' in topic:
+                continue
+            offered = [i.qos_profile for i in self._node.get_publishers_info_by_topic(topic)]
+            if not offered:
+                continue
+            try:
+                definition(types[0])
+                self._subscribe(message_type(types[0]), topic, suiting(offered))
+            except (ImportError, AttributeError, LookupError, OSError) as error:
+                self._known.add(topic)
+                self._node.get_logger().warning(
+                    f'{topic} is not recorded, its type {types[0]} is not there: {error}')
+
+    def _subscribe(self, kind: Any, topic: str, qos: QoSProfile) -> None:
+        self._known.add(self._node.resolve_topic_name(topic))
+        self._subscriptions.append(self._node.create_subscription(
+            kind, topic, self._writer_of(kind, topic), qos, raw=True))
 
     def is_connected(self) -> bool:
         """Return whether it receives from every publisher that the node knows of."""
@@ -75,6 +108,51 @@ class Recorder:
                             info['source_timestamp'] or now)
 
         return write
+
+
+def suiting(offered: Sequence[QoSProfile]) -> QoSProfile:
+    """
+    Return the quality of service that receives most from all publishers of a topic.
+
+    Parameters
+    ----------
+    offered : sequence of QoSProfile
+        Theirs.
+
+    Returns
+    -------
+    QoSProfile
+        Reliable and transient local, each where all of them are.
+
+    """
+    def all_are(name: str, value: Any) -> bool:
+        return all(getattr(qos, name) == value for qos in offered)
+
+    qos = QoSProfile(depth=QUEUE_DEPTH)
+    if all_are('durability', DurabilityPolicy.TRANSIENT_LOCAL):
+        qos.durability = DurabilityPolicy.TRANSIENT_LOCAL
+    if not all_are('reliability', ReliabilityPolicy.RELIABLE):
+        qos.reliability = ReliabilityPolicy.BEST_EFFORT
+    return qos
+
+
+def message_type(name: str) -> Any:
+    """
+    Return a message class.
+
+    Parameters
+    ----------
+    name : str
+        As `sensor_msgs/msg/JointState`.
+
+    Returns
+    -------
+    type
+        The class.
+
+    """
+    package, folder, kind = name.split('/')
+    return getattr(import_module(f'{package}.{folder}'), kind)
 
 
 def type_name(kind: Any) -> str:

@@ -23,15 +23,18 @@ import warnings
 from bag_reading import messages_by_topic, plain, summary
 import numpy as np
 import pytest
+from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.urdf import urdf
 from rrr_traj_planner.nodes.arm_messages import nanoseconds
 from scripts import Script, script
+from std_msgs.msg import String
 
 NO_PLOT = ('--plot', '')
 RUNNING = {'/joint_states', '/desired_joint_states', '/simulated_arm/tracking_error',
            '/diagnostics'}
+LATE = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = {'/planned_trajectory', '/planned_path', '/markers', '/robot_description'}
 
 
@@ -39,13 +42,22 @@ def by_stamp(found):
     return {nanoseconds(m.header.stamp): m.position for _, m in found}
 
 
-def test_bag_holds_what_was_planned_sent_and_driven(tmp_path):
+def test_bag_holds_what_was_planned_sent_and_driven(ros, tmp_path):
+    late = String(data='late')
     with Script(script('demo'), '--record', 'demo.mcap', *NO_PLOT, cwd=tmp_path) as demo:
+        demo.read_until('driving:')
+        publisher = ros.publisher(String, '/odd/late', LATE)  # that the recorder has found
+        publisher.publish(late)
         code, output, errors = demo.ended()
     assert code == 0, errors
     file = tmp_path / 'demo.mcap'
     found = messages_by_topic(file)
-    assert set(found) == RUNNING | LATCHED | {'/joint_trajectory'}
+    assert set(found) - {'/parameter_events'} == RUNNING | LATCHED | {
+        '/joint_trajectory', '/rosout', '/odd/late'}
+    assert [m.data for _, m in found['/odd/late']] == [late.data]
+    told = {m.name: m.msg for _, m in found['/rosout']}
+    assert 'cycloid planned 3 via points' in told['trajectory_planner']
+    assert 'following 286 points' in told['simulated_arm']
     count = sum(map(len, found.values()))
     assert f'recording: demo.mcap, {count} messages\n' in output
     assert summary(file)[1].statistics.message_count == count
@@ -98,11 +110,13 @@ def test_interrupted_demo_leaves_a_whole_bag(tmp_path):
 
 
 @pytest.mark.parametrize(('arguments', 'text'), [
+    (('--record', 'old.mcap'), 'demo: old.mcap is there already: name another file, or remove it'),
     (('--record', 'there'), 'demo: cannot write there: Is a directory\n'),
     (('--record', 'demo.mcap'), 'demo: recording needs the Python package mcap: ')])
 def test_recording_that_is_impossible_is_told_before_anything_starts(
         tmp_path, monkeypatch, arguments, text):
     (tmp_path / 'there').mkdir()
+    (tmp_path / 'old.mcap').write_text('kept')
     if 'mcap:' in text:
         (tmp_path / 'mcap.py').write_text('raise ImportError\n')
         monkeypatch.setenv('PYTHONPATH', f'{tmp_path}:{os.environ.get("PYTHONPATH", "")}')
@@ -112,3 +126,4 @@ def test_recording_that_is_impossible_is_told_before_anything_starts(
     assert errors.startswith(text)
     assert errors.count('\n') == 1
     assert not (tmp_path / 'demo.mcap').exists()
+    assert (tmp_path / 'old.mcap').read_text() == 'kept'
