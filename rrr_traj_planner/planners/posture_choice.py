@@ -30,7 +30,7 @@ from rrr_traj_planner.core.errors import (
     UnreachableError,
 )
 from rrr_traj_planner.core.joint_ranges import out_of_range
-from rrr_traj_planner.core.joint_sequence import estimated_time, joint_sequence
+from rrr_traj_planner.core.joint_sequence import joint_sequence
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.postures import (
@@ -43,6 +43,7 @@ from rrr_traj_planner.core.postures import (
     Shoulder,
     SHOULDERS,
 )
+from rrr_traj_planner.core.travel_time import travel_time
 
 # A start this close to where postures meet has them all: noise must not choose between them.
 MEETING = 0.01  # rad
@@ -162,4 +163,4 @@ def _time(model: RobotModel, limits: JointLimits, points: Array, start: Array,
     q = joint_sequence(model, limits, points, posture, start)
     if out_of_range(q, limits).any():
         return np.inf
-    return estimated_time(limits, np.vstack((start, q)))
+    return travel_time(limits, np.vstack((start, q)))
