@@ -29,11 +29,12 @@ NANOSECOND = 1e-9
 # No regular sample is nearer to a via point's than this part of the period.
 LEAST_GAP = 0.1
 
-# The quintic of an interval in which acceleration steps swings beyond what is on both sides. With
-# the step at a share u from one end it has the acceleration's mean and first moment: where u is 0,
-# it overshoots on the far side by 37 % of the step, and its jerk is 9 times the step over the
-# interval; where u is 1/6, on the far side alone and least of all, by 5 %.
+# The quintic of an interval in which acceleration steps has the mean and the first moment of the
+# acceleration, and swings beyond what is on both sides. Where the step is at one end of it, it
+# overshoots on the other side by 37 % of the step, and its jerk is 9 times the step over the
+# interval; where it is a sixth from the end, on the other side alone too, but least, by 5 %.
 STEP_SHARE, STEP_OVERSHOOT = 1.0 / 6.0, 0.0501
+STEP_GAP = 0.3  # of the period, between a step and a regular point: in less time jerk is higher
 
 # More points than this, where nothing else is said, are refused: they would fill the memory.
 MOST_POINTS = 200_000
@@ -122,10 +123,9 @@ def sample_times(trajectory: Trajectory, period: float,
     """
     Return when a motion is sampled: at every period, at every via time and at the end.
 
-    No regular point is nearer than a tenth of a period to a via time. Nor to a step of
-    acceleration: the quintic of an interval that holds a step well inside hardly swings beyond
-    what is on both sides, while one that begins or ends at it does so by 37 % of the step. A
-    regular point that gives way to a step leaves one half a period before it and one after it.
+    No regular point is nearer than a tenth of a period to a via time, nor nearer than three tenths
+    to a step of acceleration: it gives way to one half a period before the step and one half a
+    period after it. See `STEP_SHARE` for what a quintic makes of steps.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def sample_times(trajectory: Trajectory, period: float,
     regular: Array = period * np.arange(1.0, int(trajectory.duration / period) + 1)
     gap, steps = LEAST_GAP * period, trajectory.step_times
     beside = _beside_steps(steps, regular, period)
-    kept = regular[_distance(regular, steps) >= gap]
+    kept = regular[_distance(regular, steps) >= STEP_GAP * period]
     between = np.round(np.sort(np.concatenate((kept, beside))) / NANOSECOND) * NANOSECOND
     between = between[(_distance(between, fixed) >= gap) & (between > 0.0)
                       & (between < trajectory.duration)]
@@ -171,10 +171,9 @@ def sample_times(trajectory: Trajectory, period: float,
 
 def _beside_steps(steps: Array, regular: Array, period: float) -> Array:
     """Return times half a period from steps that a regular point gives way to, far from others."""
-    near = steps[_distance(steps, regular) < LEAST_GAP * period]
+    near = steps[_distance(steps, regular) < STEP_GAP * period]
     beside = np.sort(np.concatenate((near - 0.5 * period, near + 0.5 * period)))
     beside = beside[_distance(beside, steps) >= LEAST_GAP * period]
-    beside = beside[_distance(beside, regular) >= LEAST_GAP * period]
     return beside[np.diff(beside, prepend=-np.inf) >= LEAST_GAP * period]
 
 

@@ -97,7 +97,7 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
     stretch, gap = 1.0, LEAST_GAP * request.sample_period
     closest = min(gap, CLOSEST)
     for _ in range(ROUNDS):
-        spline, excess = _refined(model, limits, request, trajectory, gap)
+        spline, excess = _best_refined(model, limits, request, trajectory, gap)
         factor = float(excess.stretch.max(initial=1.0))
         if factor <= 1.0:
             return AnswerPoints(trajectory, spline.points, excess.effort, stretch, _note(
@@ -120,21 +120,38 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
         f'planner {request.planner_id}: the points do not follow the motion')
 
 
+def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
+                  trajectory: Trajectory, gap: float) -> tuple[Interpolant, SplineExcess]:
+    """
+    Return quintics through points as close as need be, and what they still exceed.
+
+    Where a limit is exceeded on one side of a step of acceleration, the quintic is made to
+    overshoot on the other. If that exceeds it too, all overshoot before the step: planners whose
+    motions have steps leave room for that (`PathTable.overshoot`).
+    """
+    found = _refined(model, limits, request, trajectory, gap, False)
+    if len(trajectory.step_times) and (found[1].stretch > 1.0).any():
+        other = _refined(model, limits, request, trajectory, gap, True)
+        found = min(found, other, key=lambda f: float(f[1].stretch.max()))
+    return found
+
+
 def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-             trajectory: Trajectory, gap: float) -> tuple[Interpolant, SplineExcess]:
-    """Return quintics through points as close as need be, and what they still exceed."""
+             trajectory: Trajectory, gap: float,
+             overshoot_before: bool) -> tuple[Interpolant, SplineExcess]:
+    """Return the same; whether quintics are to overshoot before steps alone."""
     times = sample_times(trajectory, request.sample_period, request.max_points)
     while True:
         spline = Interpolant(points_at(trajectory, times))
         excess = spline_excess(model, limits, spline)
-        further = _between(limits, times, excess, trajectory.step_times, gap)
+        further = _between(limits, times, excess, trajectory.step_times, gap, overshoot_before)
         if not len(further) or len(times.stamps) + len(further) > request.max_points:
             return spline, excess
         times = times.with_further(further)
 
 
 def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, steps: Array,
-             gap: float) -> Array:
+             gap: float, overshoot_before: bool) -> Array:
     """Return times at which intervals that exceed limits may be cut, none nearer than a gap."""
     begin, width = times.stamps[:-1] * NANOSECOND, np.diff(times.stamps) * NANOSECOND
     cut = begin + 0.5 * width
@@ -142,8 +159,8 @@ def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, step
     if len(steps):
         index = np.searchsorted(begin, steps, side='right') - 1
         share = (steps - begin[index]) / width[index]
-        after = excess.place[index] > share
-        # Never at the step: so that it is STEP_SHARE from the end on the side that exceeds.
+        after = (excess.place[index] > share) | overshoot_before
+        # Never at the step: so that it is STEP_SHARE from the end on the side that is short.
         beside = STEP_SHARE / (1.0 - STEP_SHARE) * width[index]
         cut[index] = np.where(after, steps + beside * share, steps - beside * (1.0 - share))
         jerky[index] = False  # in less time the step would be steeper

@@ -36,5 +36,5 @@ class Tables(NamedTuple):
     floor: Array | None = None    # (N,), of durations
     arm: Array | None = None      # constants of the equations of motion, of TORQUE
     table: Array | None = None    # (N, 4, intervals, 18), cubic coefficients, of PATH
-    overshoot: Array | None = None  # (N, 2, 2, 3), of PATH
+    overshoot: Array | None = None  # (N, 2, 3), of PATH
     difference: float = 0.0

@@ -228,7 +228,7 @@ class PathConstraints:
 
     def demands(self, s: Array, order: int = 0) -> list[Demand]:
         """
-        Return what is demanded, at the ends of pieces with what a quintic overshoots by.
+        Return what is demanded, at the end of a piece with what a quintic overshoots by.
 
         Parameters
         ----------
@@ -246,9 +246,8 @@ class PathConstraints:
         demands = self.table(s, order)
         if self.table.overshoot.any():
             ddq, c = demands[0].ddq.copy(), demands[0].c.copy()
-            for end, node in enumerate((0, self.grid.n)):
-                ddq[:, node] += self.table.overshoot[:, end, 0]
-                c[:, node] += self.table.overshoot[:, end, 1]
+            ddq[:, self.grid.n] += self.table.overshoot[:, 0]
+            c[:, self.grid.n] += self.table.overshoot[:, 1]
             demands[0] = demands[0]._replace(ddq=ddq, c=c)
         return demands
 

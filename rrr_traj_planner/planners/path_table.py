@@ -65,9 +65,9 @@ class PathTable:
         What is demanded there, one-sided at the pieces' ends, shape (N, INTERVALS + 1, 3) each.
     coefficients : ndarray, shape (N, 4, INTERVALS, 18)
         Cubic ones, highest first, of all columns of `Demand` by the part of its interval.
-    overshoot : ndarray, shape (N, 2, 2, 3)
-        At each piece's begin and end, what a controller's quintic adds to ddq and to c where they
-        step (`core.sampling.STEP_OVERSHOOT`).
+    overshoot : ndarray, shape (N, 2, 3)
+        At each piece's end, what a controller's quintic adds to ddq and to c where they step
+        (`core.sampling.STEP_OVERSHOOT`).
 
     """
 
@@ -82,9 +82,7 @@ class PathTable:
         stepping = np.stack((self.values.ddq, self.values.c), axis=2)
         steps = np.where(np.isin(self.ends[1:-1], path.joins)[:, np.newaxis, np.newaxis],
                          stepping[1:, 0] - stepping[:-1, -1], 0.0)
-        self.overshoot = np.zeros((len(self.places), 2, 2, 3))
-        self.overshoot[1:, 0] = STEP_OVERSHOOT * steps
-        self.overshoot[:-1, 1] = -STEP_OVERSHOOT * steps
+        self.overshoot = np.concatenate((-STEP_OVERSHOOT * steps, np.zeros((1, 2, 3))))
         self.coefficients = (_spline() @ np.concatenate(self.values, axis=-1)).reshape(
             len(self.places), 4, INTERVALS, -1)
 

@@ -166,5 +166,6 @@ def test_no_interval_begins_or_ends_at_a_step_of_acceleration():
         assert len(steps) >= 1
         index = np.searchsorted(times, steps) - 1
         share = (steps - times[index]) / np.diff(times)[index]
-        assert (share > 0.09).all() and (share < 0.91).all()
+        assert (share > 0.15).all() and (share < 0.85).all()
+        assert (np.diff(times)[index] > 0.3 * period).all()
         assert np.diff(times).max() <= 1.1 * period

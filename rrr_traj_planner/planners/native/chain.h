@@ -57,7 +57,7 @@ typedef struct {
     const uint8_t *still;   /* (N - 1, J) */
     const double *arm;      /* 11 constants of equations.py, where kind is TORQUE */
     const double *table;    /* (N, 4, intervals, 18), cubic coefficients, where it is PATH */
-    const double *overshoot;  /* (N, 2, 2, 3), at a segment's begin and end, of ddq and of c */
+    const double *overshoot;  /* (N, 2, 3), of ddq and of c at the segments' ends */
     double difference;
 } Problem;
 

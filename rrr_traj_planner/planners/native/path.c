@@ -36,8 +36,8 @@ static void demanded(const Problem *p, int segment, int point, double s, int ord
     if (order > 1)
         for (int k = 0; k < COLUMNS; ++k)
             second[k] = (6.0 * c3[k] * x + 2.0 * c2[k]) * per * per;
-    if (point == 0 || point == p->n) {  /* where a controller's quintic overshoots */
-        const double *more = p->overshoot + 12 * (size_t)segment + 6 * (point == p->n);
+    if (point == p->n) {  /* where a controller's quintic overshoots */
+        const double *more = p->overshoot + 6 * (size_t)segment;
         for (int j = 0; j < 3; ++j)
             found[0][DDQ][j] += more[j], found[0][C][j] += more[3 + j];
     }
