@@ -26,18 +26,23 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.desired_motion import DesiredMotion, through
+from rrr_traj_planner.core.desired_motion import DesiredMotion
 from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.interpolation import hermite
 from rrr_traj_planner.core.joint_brake import joint_brake, JointBrake
-from rrr_traj_planner.core.motion_points import MotionPoints
 from rrr_traj_planner.core.stop_task import POSITION_TOLERANCE, StopTask
 
 Indices = NDArray[np.int_]
 
-# Points of a slowing motion are no further apart, and no nearer [s]; its clock is inverted by
-# linear interpolation between so many times.
-SPACING, LEAST_SPACING = 0.005, 1e-6
-INVERSION = 2001
+# Points of a slowing motion are no further apart, and but for the motion's own no nearer [s].
+SPACING, LEAST_SPACING = 0.005, 1e-4
+
+# Its clock is inverted by linear interpolation between so many times and so many steps of Newton's
+# method with its rate, of at least so much.
+INVERSION, NEWTON_STEPS, LEAST_RATE = 2001, 2, 1e-3
+
+# What holds just before and just after a time is looked at so far from it [s].
+ASIDE = 1e-7
 
 # A motion of constant jerk, deceleration and jerk again: each jerk's share of the time.
 JERK_SHARE = 1.0 / 3.0
@@ -203,24 +208,33 @@ class Slowdowns:
             It includes what of the followed motion is still to come, and what has been.
 
         """
-        t = self._knots(i)
-        (q, *_), (qd, qdd, _) = self._states(np.array([i]), t[np.newaxis])
-        known = np.ones(len(t), dtype=bool)
-        qd[0, -1] = 0.0
-        points = through(MotionPoints(t, q[0], qd[0], qdd[0], known, known))
-        return _after(self.task, float(self.delays[i]), t, points.coefficients, points.final)
+        t, chosen = self._knots(i), np.array([i])
+        q = self._states(chosen, t[np.newaxis])[0][0][0]
+        # Where the motion's own polynomials meet, velocity and acceleration may step.
+        starts, ends = ([x[0] for x in self._states(chosen, times[np.newaxis])[1][:2]]
+                        for times in (np.append(0.0, t[1:-1] + ASIDE), np.append(
+                            t[1:-1] - ASIDE, t[-1])))
+        ends[0][-1] = 0.0
+        c = hermite(np.diff(t)[:, np.newaxis], (q[:-1], *starts), (q[1:], *ends))
+        return _after(self.task, float(self.delays[i]), t, np.stack(c, axis=-1), q[-1])
 
     def _knots(self, i: int) -> Array:
         """Return times that are not far apart, and when the motion's own knots are passed."""
-        T, motion = float(self.durations[i]), self.task.motion
+        T, motion, rates = float(self.durations[i]), self.task.motion, self._rates(np.array([i]))
         t = np.linspace(0.0, T, INVERSION)
-        clock = self.task.now + self.delays[i] - motion.origin + self._rates(np.array([i])).at(
-            t[np.newaxis])[0][0]
-        passed = motion.knots[(motion.knots > clock[0]) & (motion.knots < clock[-1])]
-        knots = np.unique(np.concatenate((
-            np.linspace(0.0, T, 2 + int(T / SPACING)), np.interp(passed, clock, t))))
-        apart = np.diff(knots) > LEAST_SPACING
-        return np.concatenate((knots[:1], knots[1:-1][apart[:-1] & apart[1:]], knots[-1:]))
+        begin = self.task.now + self.delays[i] - motion.origin
+        own = motion.knots - begin
+        s = rates.at(t[np.newaxis])[0][0]
+        own = own[(own > 0.0) & (own < s[-1])]
+        passed = np.interp(own, s, t)
+        for _ in range(NEWTON_STEPS):
+            s, sd = (x[0] for x in rates.at(passed[np.newaxis])[:2])
+            passed = passed - (s - own) / np.maximum(sd, LEAST_RATE)
+        passed = passed[(passed > LEAST_SPACING) & (passed < T - LEAST_SPACING)]
+        grid = np.linspace(0.0, T, 2 + int(T / SPACING))
+        near = np.abs(grid[1:-1, np.newaxis] - passed).min(axis=1, initial=T) < LEAST_SPACING
+        return np.concatenate((
+            grid[:1], np.unique(np.concatenate((grid[1:-1][~near], passed))), grid[-1:]))
 
     def _rates(self, chosen: Indices) -> JointBrake:
         """Return how the motion's clock slows down, shape (k, 1)."""

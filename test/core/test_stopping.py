@@ -202,6 +202,37 @@ def test_pose_that_cannot_be_held_is_flown_through():
     assert np.abs(gravity_torque(MODEL, final))[1] <= limits.max_effort[1] * 1.001
 
 
+@pytest.mark.parametrize('order', [1, 3])
+def test_steps_of_the_followed_motion_are_its_own_and_no_more(order):
+    # A motion of lines or cubics steps at its points; a stop along it steps less, and only there.
+    t = np.linspace(0.0, 3.0, 31)
+    q = np.array([0.3, 1.0, 0.2]) + np.outer(0.3 * np.sin(1.1 * t), (1.0, 0.5, 1.0))
+    qd = np.outer(0.33 * np.cos(1.1 * t), (1.0, 0.5, 1.0)) * (order > 1)
+    known = np.full(31, order > 1)
+    motion = through(MotionPoints(t, q, qd, np.zeros((31, 3)), known, known & False), NOW_NS)
+    limits = replace(LIMITS, max_effort=np.array([150.0, 175.0, 65.0]), max_jerk=FREE)
+    for begin in NOW + np.linspace(0.05, 2.8, 12):
+        motion_to_rest = stop(motion, begin, limits, MODEL).motion
+        x = np.linspace(begin, motion_to_rest.end, 3000)
+        _, qd, qdd, _ = motion_to_rest.at(x)
+        before, after = (motion.at(NOW + t[1:-1] + e)[1] for e in (-1e-6, 1e-6))
+        steps = np.abs(after - before).max(axis=0) if order == 1 else 0.0
+        own = np.abs(motion.at(np.linspace(begin, motion.end, 3000))[2]).max(axis=0)
+        assert (np.abs(qdd) <= np.maximum(limits.max_acceleration, own) * 1.001).all()
+        assert (np.abs(np.diff(qd, axis=0)) <= 1.01 * steps + 1.01 * np.diff(x).max() * np.maximum(
+            limits.max_acceleration, own)).all()
+
+
+def test_stop_that_is_asked_for_again_and_again_ends_no_later():
+    motion = parabola(1.2, 1.0)
+    first = stop(motion, NOW + 0.3, LIMITS, MODEL).motion
+    again = first
+    for now in NOW + np.linspace(0.3, 0.9, 20):
+        again = stop(again, now, LIMITS, MODEL).motion
+    assert again.end <= first.end + 1e-6
+    np.testing.assert_allclose(again.final, first.final, atol=1e-6)
+
+
 def test_time_inside_is_when_a_motion_leaves_its_ranges():
     motion = parabola(np.pi / 2 + 0.02, 1.0)  # beyond from 0.2 s before its turn on
     assert time_inside(motion, NOW, LIMITS) == pytest.approx(NOW + 0.8, abs=0.003)
