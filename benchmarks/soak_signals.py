@@ -49,7 +49,7 @@ SCRIPTS = {'planner': (), 'simulated_arm': (), 'bringup': (), 'demo': (),
            'report': ('--thesis', 'page')}
 LATEST = 3.0    # s
 GIVEN_UP = 20.0  # s
-WORDS = ('Traceback', 'Exception', 'Error', 'terminate', 'dumped', 'Aborted', 'fault')
+WORDS = ('Traceback', 'Exception', 'Error', 'terminate', 'dumped', 'Aborted', 'Segmentation')
 
 
 class Trial(NamedTuple):

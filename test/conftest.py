@@ -12,18 +12,45 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What every test needs before ROS is imported."""
+"""What every test needs before the package and ROS are imported."""
 
 import os
+from pathlib import Path
+import sys
 
-from rrr_traj_planner.nodes.node_claim import claim
+import pytest
 
 # Stay on this machine, and refuse values that rclpy would otherwise garble without a word.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 
-# A domain for each test process, among those that leave its ports free, and which no other test
-# process of this machine has claimed: the claim lasts as long as the process.
-DOMAINS = [1 + (os.getpid() + i) % 101 for i in range(101)]
-DOMAIN, CLAIM = next((domain, held) for domain in DOMAINS if (held := claim(domain, ' tests')))
-os.environ['ROS_DOMAIN_ID'] = str(DOMAIN)
+# What is installed is what is tested, not the source tree, which Python's start puts on the path
+# and which may lack what is built.
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:] = [entry for entry in sys.path if Path(entry or '.').resolve() != ROOT]
+
+NOT_BUILT = (
+    '{error}. Tests run on what is built: `make test` builds first; in a colcon workspace call '
+    '`colcon build` and `source install/setup.bash`')
+
+
+def pytest_configure(config):
+    """Claim a ROS domain; end where what is to be tested is not there."""
+    try:
+        from rrr_traj_planner.nodes.node_claim import claim
+        from rrr_traj_planner.planners.registry import planner_ids
+        planner_ids()  # loads them all, compiled code included
+    except ImportError as error:
+        raise pytest.UsageError(NOT_BUILT.format(error=error)) from None
+
+    # A domain for each test process, among those that leave its ports free, and which no other
+    # test process of this machine has claimed: the claim lasts as long as the process.
+    domains = (1 + (os.getpid() + i) % 101 for i in range(101))
+    os.environ['ROS_DOMAIN_ID'], config.claim = next(
+        (str(domain), held) for domain in domains if (held := claim(domain, ' tests')))
+
+
+def pytest_report_header():
+    """Say what is tested."""
+    import rrr_traj_planner
+    return f'rrr_traj_planner: {Path(rrr_traj_planner.__file__).parent}'

@@ -149,7 +149,7 @@ def _spin_until(closing: Event, executor: Any) -> None:
         while rclpy.ok() and not closing.is_set():
             executor.spin_once()
     except Exception:
-        if not signal_arrived():
+        if rclpy.ok():  # else a signal has shut ROS down, of which the main thread takes note
             raise
 
 

@@ -54,6 +54,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _load() -> type[TrajectoryPlanner]:
     from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+    from rrr_traj_planner.planners.registry import planner_ids
+    planner_ids()  # imports the planners, before ROS starts and signals have to wait for them
     return TrajectoryPlanner
 
 

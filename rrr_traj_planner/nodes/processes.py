@@ -17,16 +17,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 import signal
 import subprocess
 import sys
 from time import monotonic, sleep
 from types import TracebackType
 
+import rrr_traj_planner
 from rrr_traj_planner.nodes.signals import signal_arrived, signals_blocked
 
 MODULES = {'planner': 'rrr_traj_planner.nodes.planner',
            'simulated_arm': 'rrr_traj_planner.nodes.simulated_arm'}
+
+# As -m does it, but from where this package is: -m prefers what lies in the folder.
+PLACE = str(Path(rrr_traj_planner.__file__).parents[1])
+RUN_MODULE = f"""\
+import runpy, sys
+sys.path[:1] = [] if {PLACE!r} in sys.path else [{PLACE!r}]
+del sys.argv[0]
+runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"""
 
 POLL_PERIOD = 0.1   # s
 PATIENCE = 1.5      # s that a process is given to end by itself
@@ -55,7 +65,7 @@ class NodeProcesses:
             with signals_blocked():
                 for name, module in MODULES.items():
                     self._processes[name] = subprocess.Popen(
-                        [sys.executable, '-m', module, *self._ros_arguments])
+                        [sys.executable, '-c', RUN_MODULE, module, *self._ros_arguments])
         except BaseException:
             self.stop()
             raise

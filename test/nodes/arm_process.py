@@ -16,10 +16,10 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 import subprocess
-import sys
+
+from scripts import python
 
 ROOT = Path(__file__).parents[2]
 DEADLINE = 20.0  # s
@@ -29,10 +29,8 @@ RUN = 'import sys; from rrr_traj_planner.nodes.simulated_arm import main; sys.ex
 
 def arm_process(*arguments, code=RUN):
     """Start the script, or another piece of Python, with arguments."""
-    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get('PYTHONPATH')) if p)
-    return subprocess.Popen(
-        [sys.executable, '-c', code, *arguments], text=True, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE, env={**os.environ, 'PYTHONPATH': path})
+    return subprocess.Popen([*python(code), *arguments], text=True, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE)
 
 
 def ended(process):

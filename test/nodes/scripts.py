@@ -39,8 +39,8 @@ def script(name):
 
 
 def python(code):
-    """Return a command that runs a piece of Python."""
-    return [sys.executable, '-c', code]
+    """Return a command that runs a piece of Python, with what is installed and no other module."""
+    return [sys.executable, '-c', f'import sys; del sys.path[0]  # the folder\n{code}']
 
 
 class Script:

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 import signal
 import subprocess
@@ -37,10 +36,8 @@ HEAVY = ('arm: thesis_arm.yaml\nplanner_id: line_arc\n'
 
 
 def report(*arguments, cwd, code=RUN):
-    path = os.pathsep.join(p for p in (str(ROOT), os.environ.get('PYTHONPATH')) if p)
-    return subprocess.Popen(
-        [sys.executable, '-c', code, *map(str, arguments)], text=True, cwd=cwd,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, 'PYTHONPATH': path})
+    return subprocess.Popen([sys.executable, '-c', code, *map(str, arguments)], text=True, cwd=cwd,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
 
 def ended(process):
