@@ -43,8 +43,9 @@ ROOM = 1e-6              # relative, the promise of every planner
 POINTS_ROOM = 1e-3       # relative, of the quintics through the points
 ANGLE_ROOM = 1e-9        # rad
 PLACE_ROOM = 1e-8        # m, and rad/s of what rests
-OVERSHOOT = 1e-6         # rad that a quintic may leave a range by
+OVERSHOOT = 1e-4         # rad that a quintic may leave a range by
 NANOSECOND = 1e-9        # s
+LEAST_GAP = 0.1          # of the period, between points
 
 
 def violations(task: Task, found: Plan) -> list[str]:
@@ -54,8 +55,17 @@ def violations(task: Task, found: Plan) -> list[str]:
     t = (motion.knots[:-1, np.newaxis] + np.diff(motion.knots)[:, np.newaxis] * steps).ravel()
     t = np.append(t[:: max(1, len(t) // MOST)], motion.duration)
     broken = _beyond(task, limits, *motion(t), ROOM, ANGLE_ROOM)
+    followed = controller_motion(found.points)
     broken += [f'at the points: {text}' for text in _beyond(
-        task, limits, *controller_motion(found.points), POINTS_ROOM, OVERSHOOT)]
+        task, limits, *followed, POINTS_ROOM, OVERSHOOT)]
+    effort = np.abs(inverse_dynamics(task.model, *followed[:3])).max(axis=0)
+    if not (effort <= found.effort * (1.0 + POINTS_ROOM)).all():
+        broken.append(f'torque at the points: {effort}, told {found.effort}')
+    gap = np.diff(found.points.times)[np.abs(
+        found.points.times[:, np.newaxis] - found.via_times).min(axis=1)[1:] > 2.0 * NANOSECOND]
+    if task.request.segment_durations is None and gap.min(initial=np.inf) < (
+            LEAST_GAP * task.request.sample_period - 3.0 * NANOSECOND):
+        broken.append(f'points {gap.min():.3g} s apart')
     misses = planner(task.request.planner_id).misses_via_points
     inner = slice(None) if not misses else [0, -1]
     missed = np.abs(forward_kinematics(task.model, motion(found.via_times[inner])[0])

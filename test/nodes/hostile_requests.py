@@ -23,6 +23,7 @@ from geometry_msgs.msg import Pose
 from hypothesis import strategies as st
 import numpy as np
 from plan_requests import NAMES, plan_request, points_of, stamps
+from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.errors import ConvergenceError, RrrPlannerError
 from rrr_traj_planner.core.interpolation import Interpolant
 from rrr_traj_planner.core.kinematics import forward_kinematics
@@ -186,9 +187,13 @@ def assert_sound(request, response, config=CONFIG):
         motion.positions, motion.velocities, motion.accelerations))
     limits = config.limits.scaled(request.max_velocity_scaling_factor or 1.0,
                                   request.max_acceleration_scaling_factor or 1.0)
-    velocity, acceleration = Interpolant(motion).peaks()
+    spline = Interpolant(motion)
+    velocity, acceleration = spline.peaks()
     assert (velocity <= limits.max_velocity * (1.0 + INTERPOLATED)).all()
     assert (acceleration <= limits.max_acceleration * (1.0 + INTERPOLATED)).all()
+    torque = np.abs(inverse_dynamics(config.model, *spline.within(np.linspace(0.0, 1.0, 9))))
+    assert (torque <= limits.max_effort * (1.0 + INTERPOLATED)).all()
+    assert (torque <= np.array(response.peak_effort) * (1.0 + INTERPOLATED) + 1e-9).all()
     assert (np.array(response.peak_effort) <= limits.max_effort * (1.0 + 1e-6)).all()
 
 
