@@ -19,6 +19,7 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm_settings import ArmSettings
 from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.condition import ConditionMonitor
 from rrr_traj_planner.core.control import computed_torque, Desired, saturated, State, Triple
 from rrr_traj_planner.core.desired_motion import DesiredMotion, holding
 from rrr_traj_planner.core.dynamics import kinetic_energy, potential_energy
@@ -64,6 +65,8 @@ class ControlledArm:
         Torques on the joints besides the motors' [N m]; may be set at any time.
     ledger : EnergyLedger
         Work and losses since the last reset.
+    monitor : ConditionMonitor
+        What has strained the arm.
     violation : tuple of str
         What was wrong when a tolerance was last exceeded; empty where none was.
     stop_warnings : tuple of str
@@ -74,6 +77,7 @@ class ControlledArm:
     def __init__(self, settings: ArmSettings, q: ArrayLike) -> None:
         self.steps, self._step_ns = 0, settings.step_ns
         self.settings, self.ledger = settings, EnergyLedger()
+        self.monitor = ConditionMonitor()
         self.disturbance: Triple = NO_DISTURBANCE
         self.motion: DesiredMotion = holding(q)
         self.stop_warnings: tuple[str, ...] = ()
@@ -221,14 +225,16 @@ class ControlledArm:
         # The inner loop of nearly everything that runs an arm: local names, floats, no numpy.
         physics, desired, limit = self._physics, self.motion.elapsed, self._max_effort
         h, gains = self.settings.step, self.settings.gains
-        stiffness, damping = gains.stiffness, gains.damping
+        stiffness, damping, cut = gains.stiffness, gains.damping, self.monitor.cut
         state, torque, motors = self.state, self.torque, 0.0
         step_ns = self._step_ns
         first = self.steps * step_ns - self.motion.origin_ns
         for n in range(first, first + steps * step_ns, step_ns):
             t = physics.terms(state)
-            torque = saturated(
-                computed_torque(t, stiffness, damping, state, desired(n, n / 1e9)), limit)
+            wanted = computed_torque(t, stiffness, damping, state, desired(n, n / 1e9))
+            torque = saturated(wanted, limit)
+            if torque is not wanted:
+                cut(wanted)
             after = physics.step(t, state, torque, h)
             motors += work(torque, state, after)
             state = after
@@ -285,17 +291,21 @@ class ControlledArm:
     def _control(self) -> Triple:
         """Return the torques that the controller gives now [N m]."""
         gains, seen = self.settings.gains, self.seen
-        return saturated(computed_torque(self._known.terms(seen), gains.stiffness, gains.damping,
-                                         seen, self.desired), self._max_effort)
+        wanted = computed_torque(self._known.terms(seen), gains.stiffness, gains.damping, seen,
+                                 self.desired)
+        torque = saturated(wanted, self._max_effort)
+        if torque is not wanted:
+            self.monitor.cut(wanted)
+        return torque
 
     def _enforce(self, settings: ArmSettings) -> None:
         """Make the physics and the controller's model of the settings."""
         low, high = (_triple(x) for x in (
             settings.limits.min_position, settings.limits.max_position))
         self._physics = ArmPhysics(settings.loaded_model, low, high, settings.friction,
-                                   settings.soft_stops, self.ledger)
+                                   settings.soft_stops, self.ledger, self.monitor)
         self._known = ArmPhysics(settings.controller_model, low, high)
-        self._max_effort = _triple(settings.limits.max_effort)
+        self._max_effort = self.monitor.max_effort = _triple(settings.limits.max_effort)
         self._plain = settings.encoder.is_true and (
             settings.payload.known_to_controller or settings.payload.mass == 0.0)
 

@@ -90,7 +90,7 @@ class DesiredMotion:
 
     @property
     def end_ns(self) -> int:
-        """The same [ns]."""
+        """Return the same [ns]."""
         return self.origin_ns + self._knots_ns[-1]
 
     @property

@@ -56,6 +56,10 @@ class IncomingTrajectory(NamedTuple):
     points: Sequence[IncomingPoint]
 
 
+class MovingEndError(InvalidInputError):
+    """A trajectory whose last point has a velocity, where `Rules` do not allow it."""
+
+
 class Rules(NamedTuple):
     """What is allowed, by the names of joint_trajectory_controller's parameters."""
 
@@ -161,7 +165,7 @@ def _check_rest(trajectory: IncomingTrajectory) -> None:
     last = trajectory.points[-1]
     for name, velocity in zip(trajectory.joint_names, last.velocities):
         if abs(velocity) > FLOAT_EPSILON:
-            raise InvalidInputError(
+            raise MovingEndError(
                 f'Velocity of last trajectory point of joint {name} is not zero: {velocity:.15f}')
 
 

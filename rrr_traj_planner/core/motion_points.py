@@ -78,6 +78,32 @@ class MotionPoints(ReadOnlyArrays):
         super().__post_init__()
 
 
+def led_in(points: MotionPoints, time: float, state: tuple[Array, Array, Array]) -> MotionPoints:
+    """
+    Return points with a state before them, from which a segment leads to the first one.
+
+    Parameters
+    ----------
+    points : MotionPoints
+        The points.
+    time : float
+        When the state is, on the points' time; before the first of them [s].
+    state : tuple of ndarray, shape (3,)
+        Position [rad], velocity [rad/s], acceleration [rad/s^2].
+
+    Returns
+    -------
+    MotionPoints
+        One point more; the first has velocity and acceleration.
+
+    """
+    q, qd, qdd = state
+    return MotionPoints(
+        np.append(time, points.times), np.vstack((q, points.positions)),
+        np.vstack((qd, points.velocities)), np.vstack((qdd, points.accelerations)),
+        np.append(True, points.has_velocity), np.append(True, points.has_acceleration))
+
+
 def segment_orders(points: MotionPoints) -> NDArray[np.int_]:
     """
     Return the order of the polynomial between each two points.

@@ -37,7 +37,7 @@ from rrr_traj_planner.core.interpolation import hermite
 from rrr_traj_planner.core.joint_brake import LEAST_TIME
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_points import MotionPoints, segment_orders
+from rrr_traj_planner.core.motion_points import led_in, MotionPoints, segment_orders
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.point_to_point import moved_on
 from rrr_traj_planner.core.stop_task import from_state
@@ -130,39 +130,30 @@ def replacement(takeover: Takeover, points: MotionPoints, origin_ns: int,
     """
     motion = through(points, origin_ns)
     if motion.start > takeover.now + least_lead:
-        led_in = _led_in(takeover, points, takeover.now - motion.origin)
-        if _lead_keeps_limits(takeover, led_in):
-            return Replacement(through(led_in, origin_ns))
+        whole = led_in(points, takeover.now - motion.origin, takeover.states)
+        if _lead_keeps_limits(takeover, whole):
+            return Replacement(through(whole, origin_ns))
     elif _is_on(takeover, motion, points):
         return Replacement(motion)
     i = _first_in_reach(takeover, motion)
     return Replacement(_joined(takeover, motion, i)) if i >= 0 else _gone_to(takeover, motion)
 
 
-def _led_in(takeover: Takeover, points: MotionPoints, time: float) -> MotionPoints:
-    """Return the command followed by the points."""
-    q, qd, qdd = takeover.states
-    return MotionPoints(
-        np.append(time, points.times), np.vstack((q, points.positions)),
-        np.vstack((qd, points.velocities)), np.vstack((qdd, points.accelerations)),
-        np.append(True, points.has_velocity), np.append(True, points.has_acceleration))
-
-
-def _lead_keeps_limits(takeover: Takeover, led_in: MotionPoints) -> bool:
+def _lead_keeps_limits(takeover: Takeover, whole: MotionPoints) -> bool:
     """
     Return whether the segment that leads in does.
 
     Lines step in velocity by their nature, those of a stream of single points all the time;
     others must not step by more than the acceleration limit gives in the segment's time.
     """
-    T = np.diff(led_in.times[:2])
-    known = int(segment_orders(led_in)[0] + 1) // 2
-    if known == 1 and len(led_in.times) > 2:
-        rate = (led_in.positions[1] - led_in.positions[0]) / T
-        step = np.abs(rate - led_in.velocities[0])
+    T = np.diff(whole.times[:2])
+    known = int(segment_orders(whole)[0] + 1) // 2
+    if known == 1 and len(whole.times) > 2:
+        rate = (whole.positions[1] - whole.positions[0]) / T
+        step = np.abs(rate - whole.velocities[0])
         if (step > takeover.limits.max_acceleration * T).any():
             return False
-    ends = (led_in.positions, led_in.velocities, led_in.accelerations)[:known]
+    ends = (whole.positions, whole.velocities, whole.accelerations)[:known]
     return bool(_within_limits(takeover, T, tuple(x[1:2] for x in ends))[0])
 
 

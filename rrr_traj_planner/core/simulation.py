@@ -21,11 +21,12 @@ energy that the stop has taken. An arm with friction or bumpers is `resisted_mot
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import copysign, cos, sin
 
+from rrr_traj_planner.core.condition import ConditionMonitor
 from rrr_traj_planner.core.control import State, Triple
 from rrr_traj_planner.core.energy import EnergyLedger, kinetic
-from rrr_traj_planner.core.equations import accelerations, constants, Terms, terms
+from rrr_traj_planner.core.equations import accelerations, constants, Terms, terms, torques
 from rrr_traj_planner.core.friction import Friction
 from rrr_traj_planner.core.joint_stops import Contact, contact, FREE, held, permitted
 from rrr_traj_planner.core.model import RobotModel
@@ -60,6 +61,8 @@ class ArmPhysics:
         Bumpers, from low and high on outwards; none by default.
     ledger : EnergyLedger, optional
         Where losses are entered.
+    monitor : ConditionMonitor, optional
+        What is told of stops that are touched.
 
     Attributes
     ----------
@@ -70,11 +73,13 @@ class ArmPhysics:
 
     def __init__(self, model: RobotModel, low: Triple, high: Triple,
                  friction: Friction | None = None, soft_stops: SoftStops | None = None,
-                 ledger: EnergyLedger | None = None) -> None:
-        self.low, self.high = low, high
+                 ledger: EnergyLedger | None = None,
+                 monitor: ConditionMonitor | None = None) -> None:
+        self.low, self.high, self._monitor = low, high, monitor or ConditionMonitor()
         self.ledger = EnergyLedger() if ledger is None else ledger
         self._constants = constants(model)
         self._bumper, friction = soft_stops or SoftStops(), friction or Friction()
+        self._viscous, self._coulomb = friction.viscous.tolist(), friction.coulomb.tolist()
         self._resisted = None if friction.is_none and not self._bumper.width else ResistedMotion(
             self._constants, self.terms, Bounds(low, high), friction, self._bumper, self.ledger)
 
@@ -134,7 +139,7 @@ class ArmPhysics:
 
         """
         if self._resisted is not None:
-            return self._resisted.step(state, torque, h)
+            return self._watched(t, state, self._resisted.step(state, torque, h), torque, h)
         (l1, l2, l3), (u1, u2, u3) = self.low, self.high
         q1, q2, q3 = state[:3]
         if l1 < q1 < u1 and l2 < q2 < u2 and l3 < q3 < u3:
@@ -142,7 +147,23 @@ class ArmPhysics:
             q1, q2, q3 = after[:3]
             if l1 <= q1 <= u1 and l2 <= q2 <= u2 and l3 <= q3 <= u3:
                 return after
-        return self._step_with_stops(state, torque, h)
+        return self._watched(t, state, self._step_with_stops(state, torque, h), torque, h)
+
+    def _watched(self, t: Terms, state: State, after: State, torque: Triple, h: float) -> State:
+        """Tell the monitor of stops that are touched after a step, and return the state then."""
+        (q1, q2, q3, w1, w2, w3), low, high = state, self.low, self.high
+        freely = (q1 + h * w1, q2 + h * w2, q3 + h * w3, w1, w2, w3)
+        a, b = contact(after, low, high), contact(freely, low, high)  # b: it may have left again
+        if a != FREE or b != FREE:
+            at = (a[0] or b[0], a[1] or b[1], a[2] or b[2])
+            v1, v2, v3 = after[3:]
+            net = torques(t, w1, w2, w3, (v1 - w1) / h, (v2 - w2) / h, (v3 - w3) / h)
+            r1, r2, r3 = (
+                _beyond(total - own + viscous * v, coulomb) for total, own, v, viscous, coulomb in
+                zip(net, torque, after[3:], self._viscous, self._coulomb))
+            self._monitor.touched(
+                at, contact(state, low, high), state[3:], (r1, r2, r3), torque)
+        return after
 
     def _step_with_stops(self, state: State, torque: Triple, h: float) -> State:
         """Step from stop to stop: up to each impact exactly, and on without the lost energy."""
@@ -218,6 +239,11 @@ def _after_impact(t: Terms, state: State, torque: Triple, at: Contact,
     if s2 * w2 < 0.0 or s3 * w3 < 0.0:  # stopping one joint has thrown the other into its stop
         lock, w2, w3 = (lock[0], s2, s3), 0.0, 0.0
     return state[:3] + (w1, w2, w3), lock
+
+
+def _beyond(torque: float, friction: float) -> float:
+    """Return the part of a torque that friction cannot account for."""
+    return copysign(max(abs(torque) - friction, 0.0), torque)
 
 
 def _overshoot(state: State, low: Triple, high: Triple) -> float:

@@ -30,14 +30,11 @@ from rrr_traj_planner.core.model import RobotModel
 # So far beyond a range is within it [rad]; a motion may touch its ends to the other.
 POSITION_TOLERANCE, TOUCH = 1e-9, 1e-6
 
-# A joint that is outside its range may go so much further before it comes back [rad].
-OUTSIDE_ROOM = 0.05
-
 # At so many instants it is looked whether a motion stays inside.
 LOOKS = 1001
 
-# A command so far from the arm is not what has to stop: outside the ranges, inside [rad].
-ASTRAY_OUTSIDE, ASTRAY = 1e-3, 0.2
+# A command outside the ranges that is so far from the arm is not what has to stop [rad].
+FAR = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +100,7 @@ class StopTask:
 
     def ranges(self, q: Array) -> tuple[Array, Array]:
         """
-        Return the ranges, wider by a little on the side on which a joint is outside.
+        Return the ranges, open on the side on which a joint is outside.
 
         Parameters
         ----------
@@ -117,8 +114,8 @@ class StopTask:
 
         """
         low, high = self.limits.min_position, self.limits.max_position
-        return (np.where(q < low - POSITION_TOLERANCE, q - OUTSIDE_ROOM, low),
-                np.where(q > high + POSITION_TOLERANCE, q + OUTSIDE_ROOM, high))
+        return (np.where(q < low - POSITION_TOLERANCE, -inf, low),
+                np.where(q > high + POSITION_TOLERANCE, inf, high))
 
 
 def time_inside(motion: DesiredMotion, now: float, limits: JointLimits) -> float:
@@ -204,7 +201,7 @@ def what_moves(motion: DesiredMotion, now: int, seen: State,
     seen : tuple of 6 floats
         Measured positions [rad] and velocities [rad/s].
     limits : JointLimits
-        With the ranges: a command outside them must be near the arm to be what moves.
+        A command outside their ranges, and the arm not with it, is not what moves.
 
     Returns
     -------
@@ -213,6 +210,6 @@ def what_moves(motion: DesiredMotion, now: int, seen: State,
 
     """
     q = np.array(motion.command(now)[:3])
-    outside = ((q < limits.min_position) | (q > limits.max_position)).any()
-    astray = np.abs(q - seen[:3]).max() > (ASTRAY_OUTSIDE if outside else ASTRAY)
+    astray = ((q < limits.min_position) | (q > limits.max_position)).any() and (
+        np.abs(q - seen[:3]).max() > FAR)
     return measured(seen, now) if astray else motion

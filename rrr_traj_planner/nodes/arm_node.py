@@ -24,9 +24,16 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rrr_traj_planner.core.controlled_arm import ControlledArm
 from rrr_traj_planner.core.errors import RrrPlannerError
-from rrr_traj_planner.core.incoming_trajectory import check_trajectory, motion_points
+from rrr_traj_planner.core.incoming_trajectory import (
+    check_trajectory,
+    motion_points,
+    MovingEndError,
+)
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.tolerances import TIMED_OUT
+from rrr_traj_planner.core.trajectory_limits import excesses
+from rrr_traj_planner.nodes.arm_diagnostics import ArmDiagnostics
+from rrr_traj_planner.nodes.arm_log import ArmLog
 from rrr_traj_planner.nodes.arm_messages import (
     disturbance_torque,
     incoming_trajectory,
@@ -46,6 +53,10 @@ QUEUE_DEPTH = 10
 
 # The same kind of warning is logged no more often than this [s].
 WARNING_PERIOD = 1.0
+
+MOVING_END_HINT = (
+    '; a stream of points that end while moving needs '
+    'allow_nonzero_velocity_at_trajectory_end: true')
 
 NOT_THE_CLOCK = 'the arm follows a clock; only with publish_clock is it one that can stand'
 
@@ -67,9 +78,9 @@ class SimulatedArm(Node):
     Subscribes `joint_trajectory` and `disturbance` (names and efforts, held until the next one);
     publishes `joint_states` (position and velocity as the encoders tell them, the motors'
     torque), `desired_joint_states` (what the controller follows) and `~/tracking_error` (the
-    second less the first), all three with the same stamp; `robot_description` and `markers` (the
-    arm and where its tip has been), transient local; serves `~/reset`, `~/hold`, `~/pause`
-    and `~/step`. Parameters: see `parameters.py`.
+    second less the first), all three with the same stamp; `diagnostics` once a second;
+    `robot_description` and `markers` (the arm and where its tip has been), transient local;
+    serves `~/reset`, `~/hold`, `~/pause` and `~/step`. Parameters: see `parameters.py`.
 
     """
 
@@ -80,6 +91,7 @@ class SimulatedArm(Node):
         config = self._parameters_declared.config
         self._joint_names = config.settings.model.joint_names
         self._arm = ControlledArm(config.settings, config.initial_positions)
+        self._log = ArmLog(self, self._joint_names)
         self._view = ArmView(self, config, self._arm.seen)
         self._publishers_of_states = [
             (JointStateMessage(self._joint_names),
@@ -95,6 +107,7 @@ class SimulatedArm(Node):
         self._time = OwnClock(
             self, self._arm, self._publish, config.real_time_factor
         ) if config.publish_clock else FollowedClock(self, self._arm, self._publish)
+        self._diagnostics = ArmDiagnostics(self, self._arm, self._time)
         # The timer runs on steady time, whatever the clock does.
         self._timer = self.create_timer(
             self._period(config), self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
@@ -106,6 +119,9 @@ class SimulatedArm(Node):
         """Let time go on, and say what has gone wrong meanwhile."""
         self._time.tick()
         self._view.moved(self._arm.seen[:3])
+        condition = self._arm.monitor.take()
+        self._diagnostics.look(condition)
+        self._log.strained(condition, self._arm.settings.limits)
         if self._arm.violation:
             log = self.get_logger()
             for line in self._arm.violation:
@@ -136,13 +152,14 @@ class SimulatedArm(Node):
                              self._parameters_declared.config.rules)
             points = motion_points(trajectory, self._joint_names, arm.desired[:3])
         except RrrPlannerError as error:
-            self.get_logger().error(str(error))
+            self._log.refused(str(error) + (
+                MOVING_END_HINT if isinstance(error, MovingEndError) else ''))
             return
-        started = trajectory.stamp != 0
-        arm.follow(points, trajectory.stamp - self._time.epoch if started else arm.now)
-        self.get_logger().info(
-            f'following {len(trajectory.points)} points, until '
-            f'{arm.motion.end - arm.time:.3f} s from now')
+        origin_ns = trajectory.stamp - self._time.epoch if trajectory.stamp != 0 else arm.now
+        self._log.exceeded(excesses(
+            points, arm.settings.limits, (arm.now - origin_ns) / SECOND, arm.desired))
+        arm.follow(points, origin_ns)
+        self._log.followed(len(trajectory.points), arm.motion.end - arm.time)
 
     def _disturb(self, message: JointState) -> None:
         """Put torques on the joints, or say why not."""
@@ -150,7 +167,7 @@ class SimulatedArm(Node):
         try:
             self._arm.disturbance = disturbance_torque(message, self._joint_names)
         except RrrPlannerError as error:
-            self.get_logger().error(str(error))
+            self._log.refused(str(error))
 
     def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Put the arm back to its initial positions, at rest."""

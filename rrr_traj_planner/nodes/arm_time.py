@@ -65,6 +65,7 @@ class FollowedClock:
     def __init__(self, node: Node, arm: ControlledArm, publish: Callable[[], None]) -> None:
         self._node, self._arm, self._publish = node, arm, publish
         self.epoch = self.now()  # when the arm's own time began [ns]
+        self.behind = 0          # how far the arm is behind after a tick [ns]
         self._states = Schedule(LEAST_RATE, arm.now)
 
     def now(self) -> int:
@@ -93,11 +94,11 @@ class FollowedClock:
             behind = 0
         due = self._arm.now + behind
         self._advance(due)
-        behind = due - self._arm.now
-        if behind > LATE:
+        self.behind = due - self._arm.now
+        if self.behind > LATE:
             self._node.get_logger().warning(
-                f'simulated time is {behind / SECOND:.3f} s behind the clock: this machine is '
-                'busy or too slow', throttle_duration_sec=WARNING_PERIOD)
+                f'simulated time is {self.behind / SECOND:.3f} s behind the clock: this machine '
+                'is busy or too slow', throttle_duration_sec=WARNING_PERIOD)
 
     catch_up = tick
 
@@ -138,7 +139,7 @@ class OwnClock:
     def __init__(self, node: Node, arm: ControlledArm, publish: Callable[[], None],
                  factor: float) -> None:
         self._node, self._arm, self._publish = node, arm, publish
-        self.epoch = 0
+        self.epoch = self.behind = 0
         self._states = self._clock = Schedule(LEAST_RATE, arm.now)
         self.pace = Pace(factor, monotonic_ns())
         self._publish_clock = node.create_publisher(Clock, '/clock', QUEUE_DEPTH).publish
@@ -171,7 +172,8 @@ class OwnClock:
             self._advance(steps)
             if self._states.passed(self.now()):
                 self._publish()
-        if self.pace.factor > 0.0 and due - self.now() > LATE:
+        self.behind = due - self.now() if self.pace.factor > 0.0 else 0
+        if self.behind > LATE:
             self._node.get_logger().warning(
                 f'real_time_factor {self.pace.factor:g} is too much for this machine',
                 throttle_duration_sec=WARNING_PERIOD)

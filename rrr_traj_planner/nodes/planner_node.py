@@ -35,6 +35,7 @@ from rrr_traj_planner.core.errors import ConvergenceError, quoted, RrrPlannerErr
 from rrr_traj_planner.nodes.background import BackgroundThread
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
+from rrr_traj_planner.nodes.diagnostics import PERIOD
 from rrr_traj_planner.nodes.marker_messages import no_plan_markers, plan_markers
 from rrr_traj_planner.nodes.node_start import NodeStart
 from rrr_traj_planner.nodes.parameters import PLANNER
@@ -51,8 +52,6 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 # So many requests may wait; of more the oldest are lost, and their clients wait in vain.
 WAITING = QoSProfile(depth=1000)
-
-DIAGNOSTICS_PERIOD = 1.0  # s
 
 
 class _Answer(NamedTuple):
@@ -111,7 +110,7 @@ class TrajectoryPlanner(Node):
                             callback_group=turns)
         self._unseen: deque[_Unseen] = deque()
         self._answered = self.create_guard_condition(self._show, callback_group=turns)
-        self.create_timer(DIAGNOSTICS_PERIOD, self._diagnose,  # whatever the clock does
+        self.create_timer(PERIOD, self._diagnose,  # whatever the clock does
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._start = NodeStart(
             self, self._parameters_declared, self._parameters_declared.config.limits,

@@ -20,8 +20,9 @@ from collections import Counter, deque
 from typing import NamedTuple
 
 from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import numpy as np
+from rrr_traj_planner.nodes.diagnostics import diagnostics
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
 # Planning times are remembered of so many requests: percentiles are of these.
@@ -101,17 +102,12 @@ class RequestStatistics:
         text = f'{requests} requests answered, {refused} of them refused'
         if bugs:
             text += f'; {bugs} met a bug, see the log'
-        status = DiagnosticStatus(
-            level=DiagnosticStatus.ERROR if bugs else DiagnosticStatus.OK,
-            name=f'{name}: plan_trajectory', message=text,
-            values=[KeyValue(key=key, value=value)
-                    for key, value in self._values(requests, busy)])
-        message = DiagnosticArray(status=[status])
-        message.header.stamp = stamp
-        return message
+        return diagnostics(
+            f'{name}: plan_trajectory', DiagnosticStatus.ERROR if bugs else DiagnosticStatus.OK,
+            text, self._values(requests, busy), stamp)
 
     def _values(self, requests: int, busy: float) -> list[tuple[str, str]]:
-        """Return keys and values; keys are always the same, so that tools can plot them."""
+        """Return keys and values."""
         values = [('requests', str(requests)), ('busy for [s]', f'{busy:.3f}')]
         values += [(name, str(self.answers[code])) for code, name in CODES.items()]
         times = np.percentile(self._seconds, PERCENTILES) if self._seconds else [

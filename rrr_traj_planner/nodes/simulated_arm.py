@@ -33,6 +33,7 @@ would have it, and holds its position otherwise.
   subscribes  joint_trajectory (trajectory_msgs/JointTrajectory)
               disturbance (sensor_msgs/JointState: names and efforts)
   publishes   joint_states, desired_joint_states, ~/tracking_error (sensor_msgs/JointState)
+              diagnostics (diagnostic_msgs/DiagnosticArray), once a second
               robot_description (std_msgs/String), markers (visualization_msgs/MarkerArray)
               /clock (rosgraph_msgs/Clock), with publish_clock
   services    ~/reset, ~/hold, ~/step (std_srvs/Trigger), ~/pause (std_srvs/SetBool)

@@ -47,7 +47,7 @@ def test_arm_is_the_clock_at_its_factor(ros):
         between = np.diff(times)
         assert (between > 0).all()
         assert (between % (5 * STEP) == 0).all()
-        assert np.median(between) == 5 * STEP  # some may be lost while both sides meet
+        assert between.min() == 5 * STEP  # some may be lost: while both sides meet, in bursts
 
 
 def test_arm_runs_as_fast_as_it_can_and_answers_meanwhile(ros):
@@ -95,7 +95,7 @@ def test_clock_is_published_often_however_seldom_states_are(ros):
     Arm(ros, publish_clock=True, publish_rate=1.0, real_time_factor=4.0)
     clock.wait_for(lambda m: clock_time(m) >= SECOND)
     gaps = np.diff([clock_time(m) for m in clock.messages])
-    assert np.median(gaps) == SECOND // 100
+    assert gaps.min() == SECOND // 100  # some may be lost
 
 
 def test_rate_that_no_step_can_keep_is_told(ros):
