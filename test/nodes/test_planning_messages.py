@@ -114,7 +114,7 @@ def test_an_arm_parked_at_the_end_of_a_range_is_never_refused_for_its_encoders(c
         config.model, config.limits, ControllerGains(30.0, 1.0),
         encoder=EncoderSettings(**encoder)), (0.0, 1.34567, 0.12345))
     outside = 0
-    for _ in range(60):
+    for _ in range(25):
         arm.advance(37)
         seen = arm.seen
         outside += seen[0] < 0.0
@@ -122,7 +122,7 @@ def test_an_arm_parked_at_the_end_of_a_range_is_never_refused_for_its_encoders(c
             'position': seen[:3], 'velocity': seen[3:]}), config)
         first = plan(config.model, config.limits, request).points.positions[0]
         assert first.tolist() == [max(seen[0], 0.0), *seen[1:3]]
-    assert outside > 10 or 'resolution' in encoder
+    assert outside > 3 or 'resolution' in encoder
 
 
 def test_another_frame_is_refused(config):
