@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """The points of answers: what a controller makes of them, worked out anew and with Pinocchio."""
 
 from dataclasses import replace
