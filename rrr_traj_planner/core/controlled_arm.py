@@ -203,7 +203,8 @@ class ControlledArm:
             self._advance(min(left, steps))
             steps -= left
             self._brake_at_end()
-        self._advance(max(steps, 0))
+        if steps > 0:
+            self._advance(steps)
 
     def _brake_at_end(self) -> None:
         """Brake a motion that has come to its end while moving."""

@@ -54,6 +54,11 @@ class DesiredMotion:
     final_velocity, final_acceleration : ndarray, shape (3,), optional
         With which it arrives at the last knot [rad/s], [rad/s^2]; None: it comes to rest there.
 
+    Attributes
+    ----------
+    ends_moving : bool
+        Whether it has a velocity at its last knot.
+
     """
 
     def __init__(self, knots: Array, coefficients: Array, final: Array, origin_ns: int = 0,
@@ -63,8 +68,8 @@ class DesiredMotion:
         self.origin_ns = origin_ns
         self._knots_ns = [nanoseconds(knot) for knot in knots.tolist()]
         zero = np.zeros(3)
-        self.final_velocity = zero if final_velocity is None else final_velocity
-        self.final_acceleration = zero if final_acceleration is None else final_acceleration
+        self.arrive(zero if final_velocity is None else final_velocity,
+                    zero if final_acceleration is None else final_acceleration)
         # One knot alone is a rest that has no beginning.
         self._rests_from = self._knots_ns[-1] if len(knots) > 1 else -np.inf
         self._rest = rest(final)
@@ -72,6 +77,19 @@ class DesiredMotion:
         self._low = self._high = 0
         self._begin = 0.0
         self._current: list[float] = []
+
+    def arrive(self, velocity: Array, acceleration: Array) -> None:
+        """
+        Say with which velocity and acceleration the motion arrives at its last knot.
+
+        Parameters
+        ----------
+        velocity, acceleration : ndarray, shape (3,)
+            [rad/s], [rad/s^2].
+
+        """
+        self.final_velocity, self.final_acceleration = velocity, acceleration
+        self.ends_moving = bool(velocity.any())  # asked at every step of simulations
 
     @property
     def origin(self) -> float:
@@ -92,11 +110,6 @@ class DesiredMotion:
     def end_ns(self) -> int:
         """Return the same [ns]."""
         return self.origin_ns + self._knots_ns[-1]
-
-    @property
-    def ends_moving(self) -> bool:
-        """Whether it has a velocity at its last knot."""
-        return bool(self.final_velocity.any())
 
     @property
     def end_state(self) -> Desired:
@@ -256,8 +269,8 @@ def through(points: MotionPoints, origin_ns: int = 0) -> DesiredMotion:
     moving = np.abs(points.velocities[-1]) > FLOAT_EPSILON
     if moving.any():  # joints without a velocity stand, as where all do
         acceleration = motion.at(motion.end)[2] if len(coefficients) else points.accelerations[-1]
-        motion.final_velocity = np.where(moving, points.velocities[-1], 0.0)
-        motion.final_acceleration = np.where(moving, acceleration, 0.0)
+        motion.arrive(np.where(moving, points.velocities[-1], 0.0),
+                      np.where(moving, acceleration, 0.0))
     return motion
 
 
