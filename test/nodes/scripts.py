@@ -79,7 +79,7 @@ class Script:
                 lines.append(line)
                 if text in line:
                     return lines
-            raise AssertionError(f'no {text!r}, but {lines}')
+            raise AssertionError(f'no {text!r}, but {lines}, and at the end {self.ended()}')
         finally:
             deadline.cancel()
 
