@@ -227,15 +227,16 @@ class ControlledArm:
         physics, desired, limit = self._physics, self.motion.elapsed, self._max_effort
         h, gains = self.settings.step, self.settings.gains
         stiffness, damping, cut = gains.stiffness, gains.damping, self.monitor.cut
-        state, torque, motors = self.state, self.torque, 0.0
+        state, torque, motors, (m1, m2, m3) = self.state, self.torque, 0.0, limit
         step_ns = self._step_ns
         first = self.steps * step_ns - self.motion.origin_ns
         for n in range(first, first + steps * step_ns, step_ns):
             t = physics.terms(state)
-            wanted = computed_torque(t, stiffness, damping, state, desired(n, n / 1e9))
-            torque = saturated(wanted, limit)
-            if torque is not wanted:
-                cut(wanted)
+            torque = n1, n2, n3 = computed_torque(
+                t, stiffness, damping, state, desired(n, n / 1e9))
+            if not (-m1 <= n1 <= m1 and -m2 <= n2 <= m2 and -m3 <= n3 <= m3):
+                cut(torque)
+                torque = saturated(torque, limit)
             after = physics.step(t, state, torque, h)
             motors += work(torque, state, after)
             state = after
