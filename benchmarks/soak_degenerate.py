@@ -45,6 +45,7 @@ ANGLE_ROOM = 1e-9        # rad
 PLACE_ROOM = 1e-8        # m, and rad/s of what rests
 OVERSHOOT = 1e-4         # rad that a quintic may leave a range by
 NANOSECOND = 1e-9        # s
+NO_TORQUE = 1e-6         # N m
 LEAST_GAP = 0.1          # of the period, between points
 
 
@@ -59,7 +60,7 @@ def violations(task: Task, found: Plan) -> list[str]:
     broken += [f'at the points: {text}' for text in _beyond(
         task, limits, *followed, POINTS_ROOM, OVERSHOOT)]
     effort = np.abs(inverse_dynamics(task.model, *followed[:3])).max(axis=0)
-    if not (effort <= found.effort * (1.0 + POINTS_ROOM)).all():
+    if not (effort <= found.effort * (1.0 + POINTS_ROOM) + NO_TORQUE).all():
         broken.append(f'torque at the points: {effort}, told {found.effort}')
     gap = np.diff(found.points.times)[np.abs(
         found.points.times[:, np.newaxis] - found.via_times).min(axis=1)[1:] > 2.0 * NANOSECOND]

@@ -110,7 +110,16 @@ def _looked_at(model: RobotModel, limits: JointLimits, spline: Interpolant,
         np.abs(tau) / limits.max_effort])
     factors = np.stack([ratios[0], np.sqrt(ratios[1]), np.sqrt(
         squared_stretch(model, limits, q, qd, qdd))])
-    factors = np.where(ratios > 1.0 + SPLINE_TOLERANCE, factors, 1.0).max(axis=(0, 3))
+    peaks = ratios + _between(ratios)
+    factors = np.where(ratios > 1.0 + SPLINE_TOLERANCE, factors, np.where(
+        peaks > 1.0 + SPLINE_TOLERANCE, np.sqrt(peaks), 1.0)).max(axis=(0, 3))
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max(axis=(0, 2))
     return (factors.max(axis=0), np.where(outside > RANGE_TOLERANCE, outside, 0.0),
             shares[factors.argmax(axis=0)], np.abs(tau).max(axis=(0, 1)))
+
+
+def _between(values: Array) -> Array:
+    """Return by how much a parabola through three samples may rise above, (m, steps, k, 3)."""
+    rise = np.zeros_like(values)
+    rise[:, 1:-1] = np.abs(values[:, 2:] - 2.0 * values[:, 1:-1] + values[:, :-2]) / 8.0
+    return rise
