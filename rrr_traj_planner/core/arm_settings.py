@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-import numpy as np
 from rrr_traj_planner.core.control import ControllerGains
 from rrr_traj_planner.core.encoder import EncoderSettings
 from rrr_traj_planner.core.errors import InvalidInputError
@@ -27,9 +26,16 @@ from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.nanoseconds import nanoseconds, SECOND
 from rrr_traj_planner.core.payload import Payload, with_payload
+from rrr_traj_planner.core.scalars import kind_of, positive
 from rrr_traj_planner.core.soft_stops import SoftStops
 from rrr_traj_planner.core.step_stability import check_step
 from rrr_traj_planner.core.tolerances import Tolerances
+
+LONGEST_STEP = 1.0  # s: no controller works with more
+
+KINDS = {'model': RobotModel, 'limits': JointLimits, 'gains': ControllerGains,
+         'payload': Payload, 'friction': Friction, 'soft_stops': SoftStops,
+         'encoder': EncoderSettings, 'tolerances': Tolerances}
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +68,8 @@ class ArmSettings:
     Raises
     ------
     InvalidInputError
-        If the step is not positive, or too long for the friction or the bumpers.
+        If a value is of another class, the step is not positive, or it is too long for the
+        friction or the bumpers.
 
     """
 
@@ -77,9 +84,13 @@ class ArmSettings:
     tolerances: Tolerances = field(default_factory=Tolerances)
 
     def __post_init__(self) -> None:
-        """Check the step."""
-        if not 0.0 < self.step < np.inf:
-            raise InvalidInputError(f'physics_step is {self.step} s, must be positive')
+        """Check the values."""
+        for name, kind in KINDS.items():
+            kind_of(name, getattr(self, name), kind)
+        step = positive('step', self.step, 's')
+        if step > LONGEST_STEP:
+            raise InvalidInputError(f'step is {step} s, must be at most {LONGEST_STEP} s')
+        object.__setattr__(self, 'step', step)
         object.__setattr__(self, 'step', max(self.step_ns, 1) / SECOND)
         check_step(self.loaded_model, self.friction, self.soft_stops, self.step)
 

@@ -17,11 +17,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import isfinite
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.conversion import float_array, indexed
+from rrr_traj_planner.core.errors import InvalidInputError, shown
 
 Array: TypeAlias = NDArray[np.float64]
 BoolArray: TypeAlias = NDArray[np.bool_]
@@ -88,9 +90,7 @@ def finite_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = No
 
     """
     array = _checked(name, value, shape)
-    if not np.isfinite(array).all():
-        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        raise InvalidInputError(f'{name}{_index(where)} is {array[where]}, must be finite')
+    refuse_where(name, array, ~np.isfinite(array), 'finite')
     return array
 
 
@@ -138,9 +138,7 @@ def bound_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = Non
 
     """
     array = _checked(name, value, shape)
-    if np.isnan(array).any():
-        where = tuple(int(i) for i in np.argwhere(np.isnan(array))[0])
-        raise InvalidInputError(f'{name}{_index(where)} is nan, must be a number')
+    refuse_where(name, array, np.isnan(array), 'a number')
     return array
 
 
@@ -158,25 +156,147 @@ def joint_values(name: str, value: ArrayLike) -> Array:
     Returns
     -------
     ndarray, shape (..., 3)
-        The same values.
+        The same values; the same object, where it is a float array.
 
     Raises
     ------
     InvalidInputError
-        If the shape is wrong.
+        If the value is no array of numbers, has another shape or is not finite.
 
     """
-    array = np.asarray(value, dtype=float)
+    array = float_array(name, value)
     if array.ndim < 1 or array.shape[-1] != 3:
         raise InvalidInputError(f'{name} has shape {array.shape}, must have (..., 3)')
+    if not isfinite(np.add.reduce(array, axis=None)):  # of finite values too, where they are huge
+        refuse_where(name, array, ~np.isfinite(array), 'finite')
     return array
 
 
-def _checked(name: str, value: ArrayLike, shape: tuple[int, ...] | None) -> Array:
+def joint_states(**values: ArrayLike) -> list[Array]:
+    """
+    Return joint values that belong together, each as from `joint_values`.
+
+    Parameters
+    ----------
+    **values : array_like, shape (..., 3)
+        By what they are called in the error's text.
+
+    Returns
+    -------
+    list of ndarray
+        In the same order, of shapes that broadcast.
+
+    Raises
+    ------
+    InvalidInputError
+        If one is as `joint_values` refuses, or the shapes do not go together.
+
+    """
+    arrays = [joint_values(name, value) for name, value in values.items()]
+    shapes = {array.shape for array in arrays}
+    if len(shapes) > 1:
+        try:
+            np.broadcast_shapes(*shapes)
+        except ValueError:
+            found = ', '.join(f'{name} {a.shape}' for name, a in zip(values, arrays))
+            raise InvalidInputError(f'shapes do not go together: {found}') from None
+    return arrays
+
+
+def parameter_values(name: str, value: ArrayLike) -> Array:
+    """
+    Return values of a curve's parameter, its time or length, as a float array.
+
+    Parameters
+    ----------
+    name : str
+        What the value is called in the error's text.
+    value : array_like, shape (n,) or ()
+        The values; may be infinite.
+
+    Returns
+    -------
+    ndarray, shape (n,) or ()
+        The same values; the same object, where it is a float array.
+
+    Raises
+    ------
+    InvalidInputError
+        If the value is no array of numbers, has another shape or holds a NaN.
+
+    """
+    array = float_array(name, value)
+    if array.ndim > 1:
+        raise InvalidInputError(f'{name} has shape {array.shape}, must have (n) or ()')
+    if np.isnan(array).any():
+        refuse_where(name, array, np.isnan(array), 'a number')
+    return array
+
+
+def truth_array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> BoolArray:
+    """
+    Return a read-only copy of truth values, checked.
+
+    Parameters
+    ----------
+    name : str
+        What the value is called in the error's text.
+    value : array_like of bool
+        The value.
+    shape : tuple of int
+        The shape that it must have.
+
+    Returns
+    -------
+    ndarray of bool
+        A copy that cannot be written to.
+
+    Raises
+    ------
+    InvalidInputError
+        If the value holds anything else, or has another shape.
+
+    """
     try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise InvalidInputError(f'{name} is no array of numbers: {error}') from None
+        array = np.array(value)
+    except ValueError:  # rows of several lengths
+        array = np.empty(0)
+    if array.dtype != np.bool_:
+        raise InvalidInputError(f'{name} is {shown(value)}, must be truth values')
+    if array.shape != shape:
+        raise InvalidInputError(f'{name} has shape {array.shape}, must have {shape}')
+    array.setflags(write=False)
+    return array
+
+
+def refuse_where(name: str, array: Array, wrong: BoolArray, wanted: str) -> None:
+    """
+    Refuse the first value that is wrong.
+
+    Parameters
+    ----------
+    name : str
+        What the array is called.
+    array : ndarray
+        The values.
+    wrong : ndarray of bool
+        Which of them are wrong; none may be.
+    wanted : str
+        What they must be.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is wrong.
+
+    """
+    for where in np.argwhere(wrong):
+        at = tuple(where.tolist())
+        raise InvalidInputError(f'{name}{indexed(at)} is {array[at]}, must be {wanted}')
+
+
+def _checked(name: str, value: ArrayLike, shape: tuple[int, ...] | None) -> Array:
+    array = np.array(float_array(name, value))
     if shape is not None and not _fits(array.shape, shape):
         wanted = '(' + ', '.join('n' if n < 0 else str(n) for n in shape) + ')'
         raise InvalidInputError(f'{name} has shape {array.shape}, must have {wanted}')
@@ -187,7 +307,3 @@ def _checked(name: str, value: ArrayLike, shape: tuple[int, ...] | None) -> Arra
 def _fits(actual: tuple[int, ...], wanted: tuple[int, ...]) -> bool:
     return len(actual) == len(wanted) and all(
         w < 0 or a == w for a, w in zip(actual, wanted))
-
-
-def _index(where: tuple[int, ...]) -> str:
-    return ''.join(f'[{i}]' for i in where)

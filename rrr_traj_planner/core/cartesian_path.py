@@ -27,6 +27,7 @@ from rrr_traj_planner.core.arrays import (
     BoolArray,
     IntArray,
     make_read_only,
+    parameter_values,
     ReadOnlyArrays,
 )
 from rrr_traj_planner.core.errors import InvalidInputError, told_apart
@@ -171,7 +172,7 @@ class CartesianPath(ReadOnlyArrays):
             If a place is not on the path by more than rounding.
 
         """
-        places = np.asarray(s, dtype=float)
+        places = parameter_values('s', s)
         flat = self._on_path(np.atleast_1d(places))
         # Of pieces without length none is found: from the left and from the right alike.
         inner = self._bounds[1:-1]

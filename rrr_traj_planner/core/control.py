@@ -17,10 +17,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
 
 from rrr_traj_planner.core.equations import Terms, torques
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.scalars import positive
 
 Triple = tuple[float, float, float]
 
@@ -55,10 +54,8 @@ class ControllerGains:
 
     def __post_init__(self) -> None:
         """Check both values."""
-        for name, unit in (('natural_frequency', ' rad/s'), ('damping_ratio', '')):
-            value = getattr(self, name)
-            if not (isfinite(value) and value > 0.0):
-                raise InvalidInputError(f'{name} is {value}{unit}, must be positive')
+        for name, unit in (('natural_frequency', 'rad/s'), ('damping_ratio', '')):
+            object.__setattr__(self, name, positive(name, getattr(self, name), unit))
 
     @property
     def stiffness(self) -> float:

@@ -129,7 +129,7 @@ class ControlledArm:
 
         """
         if settings.step != self.settings.step:
-            raise InvalidInputError('physics_step cannot change while the arm runs')
+            raise InvalidInputError('step cannot change while the arm runs')
         before, encoder, old = self.energy, self.settings.encoder, self.settings.limits
         self.settings = settings
         if (settings.limits.min_position > old.min_position).any() or (

@@ -20,8 +20,9 @@ from bisect import bisect_right
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.control import Desired
+from rrr_traj_planner.core.conversion import float_array
 from rrr_traj_planner.core.motion_points import (
     FLOAT_EPSILON,
     MotionPoints,
@@ -204,7 +205,7 @@ class DesiredMotion:
             Position [rad], velocity [rad/s], acceleration [rad/s^2], jerk [rad/s^3].
 
         """
-        t = np.clip(np.asarray(t, dtype=float) - self.origin, self.knots[0], self.knots[-1])
+        t = np.clip(float_array('t', t) - self.origin, self.knots[0], self.knots[-1])
         if len(self.coefficients) == 0:
             still = np.zeros(t.shape + (3,))
             return (still + self.final, still + self.final_velocity,
@@ -291,7 +292,7 @@ def holding(q: ArrayLike, now: int = 0) -> DesiredMotion:
         A motion of one knot.
 
     """
-    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), np.array(q, dtype=float), now)
+    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), finite_array('q', q, (3,)), now)
 
 
 def rest(q: ArrayLike) -> Desired:
@@ -309,5 +310,5 @@ def rest(q: ArrayLike) -> Desired:
         The positions, then zeros.
 
     """
-    q1, q2, q3 = np.asarray(q, dtype=float).tolist()
+    q1, q2, q3 = finite_array('q', q, (3,)).tolist()
     return q1, q2, q3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

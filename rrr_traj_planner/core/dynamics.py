@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core import equations
-from rrr_traj_planner.core.arrays import Array, joint_values
+from rrr_traj_planner.core.arrays import Array, joint_states
 from rrr_traj_planner.core.model import RobotModel
 
 
@@ -49,10 +49,10 @@ def inertia_matrix(model: RobotModel, q: ArrayLike) -> Array:
     Raises
     ------
     InvalidInputError
-        If the shape is wrong.
+        If the shape is wrong, or a value not finite.
 
     """
-    t = _terms(model, q)
+    t = _terms(model, *_split(q=q))
     H = np.zeros(np.shape(q) + (3,))
     H[..., 0, 0] = t.H11
     H[..., 1, 1] = t.H22
@@ -80,11 +80,11 @@ def coriolis_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
     Raises
     ------
     InvalidInputError
-        If a shape is wrong.
+        If a shape is wrong, or a value not finite.
 
     """
-    t = _terms(model, q)
-    return _joined(*equations.velocity_torques(t, *_split('qd', qd)))
+    at, rates = _split(q=q, qd=qd)
+    return _joined(*equations.velocity_torques(_terms(model, at), *rates))
 
 
 def gravity_torque(model: RobotModel, q: ArrayLike) -> Array:
@@ -106,10 +106,10 @@ def gravity_torque(model: RobotModel, q: ArrayLike) -> Array:
     Raises
     ------
     InvalidInputError
-        If the shape is wrong.
+        If the shape is wrong, or a value not finite.
 
     """
-    t = _terms(model, q)
+    t = _terms(model, *_split(q=q))
     return _joined(0.0, t.g2, t.g3)
 
 
@@ -132,11 +132,11 @@ def inverse_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayL
     Raises
     ------
     InvalidInputError
-        If a shape is wrong.
+        If a shape is wrong, or a value not finite.
 
     """
-    t = _terms(model, q)
-    return _joined(*equations.torques(t, *_split('qd', qd), *_split('qdd', qdd)))
+    at, rates, accelerations = _split(q=q, qd=qd, qdd=qdd)
+    return _joined(*equations.torques(_terms(model, at), *rates, *accelerations))
 
 
 def forward_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, tau: ArrayLike) -> Array:
@@ -158,11 +158,11 @@ def forward_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, tau: ArrayL
     Raises
     ------
     InvalidInputError
-        If a shape is wrong.
+        If a shape is wrong, or a value not finite.
 
     """
-    t = _terms(model, q)
-    return _joined(*equations.accelerations(t, *_split('qd', qd), *_split('tau', tau)))
+    at, rates, torques = _split(q=q, qd=qd, tau=tau)
+    return _joined(*equations.accelerations(_terms(model, at), *rates, *torques))
 
 
 def kinetic_energy(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
@@ -184,11 +184,11 @@ def kinetic_energy(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
     Raises
     ------
     InvalidInputError
-        If a shape is wrong.
+        If a shape is wrong, or a value not finite.
 
     """
-    t = _terms(model, q)
-    w1, w2, w3 = _split('qd', qd)
+    at, (w1, w2, w3) = _split(q=q, qd=qd)
+    t = _terms(model, at)
     return np.asarray(0.5 * (t.H11 * (w1 * w1) + t.H22 * (w2 * w2) + t.H33 * (w3 * w3))
                       + t.H23 * w2 * w3)
 
@@ -212,21 +212,28 @@ def potential_energy(model: RobotModel, q: ArrayLike) -> Array:
     Raises
     ------
     InvalidInputError
-        If the shape is wrong.
+        If the shape is wrong, or a value not finite.
 
     """
     k = equations.constants(model)
-    _, q2, q3 = _split('q', q)
+    _, q2, q3 = _split(q=q)[0]
     return np.asarray(k.upper_weight * np.sin(q2) - k.fore_weight * np.cos(q2 + q3))
 
 
-def _split(name: str, value: ArrayLike) -> tuple[Any, Any, Any]:
+def _split(**values: ArrayLike) -> list[tuple[Any, Any, Any]]:
     """Return the values joint by joint: floats of one state, arrays of many."""
-    array = joint_values(name, value)
-    if array.ndim == 1:
-        x1, x2, x3 = array.tolist()
-        return x1, x2, x3
-    return array[..., 0], array[..., 1], array[..., 2]
+    found: list[tuple[Any, Any, Any]] = []
+    for value in values.values():
+        if type(value) is not np.ndarray or value.shape != (3,) or value.dtype != np.float64:
+            break
+        x1, x2, x3 = value.tolist()
+        if not math.isfinite(x1 + x2 + x3):
+            break
+        found.append((x1, x2, x3))
+    else:  # one state, checked by itself: it is what a control loop asks
+        return found
+    return [tuple(array.tolist()) if array.ndim == 1 else (
+        array[..., 0], array[..., 1], array[..., 2]) for array in joint_states(**values)]
 
 
 def _joined(a: Any, b: Any, c: Any) -> Array:
@@ -239,9 +246,7 @@ def _joined(a: Any, b: Any, c: Any) -> Array:
     return out
 
 
-def _terms(model: RobotModel, q: ArrayLike) -> equations.Terms:
-    _, q2, q3 = _split('q', q)
-    # Of infinity `math` knows no sine, NumPy says NaN.
-    in_floats = type(q2) is float and math.isfinite(q2 + q3)
-    sin, cos = (math.sin, math.cos) if in_floats else (np.sin, np.cos)
+def _terms(model: RobotModel, q: tuple[Any, Any, Any]) -> equations.Terms:
+    _, q2, q3 = q
+    sin, cos = (math.sin, math.cos) if type(q2) is float else (np.sin, np.cos)
     return equations.terms(equations.constants(model), q2, q3, sin, cos)

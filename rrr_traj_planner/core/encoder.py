@@ -17,11 +17,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, isfinite
+from math import exp
 from random import Random
 
 from rrr_traj_planner.core.control import State
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.scalars import not_negative, positive, whole_number
 
 UNITS = {'resolution': 'rad', 'noise': 'rad', 'bandwidth': 'rad/s'}
 
@@ -57,11 +57,9 @@ class EncoderSettings:
     def __post_init__(self) -> None:
         """Check the values."""
         for name, unit in UNITS.items():
-            value = getattr(self, name)
-            if not (isfinite(value) and value >= 0.0):
-                raise InvalidInputError(f'encoder.{name} is {value} {unit}, must not be negative')
-        if self.bandwidth == 0.0:
-            raise InvalidInputError('encoder.bandwidth is 0 rad/s, must be positive')
+            object.__setattr__(self, name, not_negative(name, getattr(self, name), unit))
+        positive('bandwidth', self.bandwidth, UNITS['bandwidth'])
+        object.__setattr__(self, 'seed', whole_number('seed', self.seed))
 
     @property
     def is_true(self) -> bool:

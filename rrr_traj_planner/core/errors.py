@@ -16,10 +16,11 @@
 
 from __future__ import annotations
 
+from re import sub
 from reprlib import Repr
 
 _shortened = Repr()
-_shortened.maxstring = 60
+_shortened.maxstring = _shortened.maxother = _shortened.maxlong = 60
 
 MOST_DIGITS = 17  # tell any two floats apart
 
@@ -148,7 +149,28 @@ def quoted(text: str) -> str:
         With escapes for what cannot be printed; its middle left out where it is long.
 
     """
-    return _shortened.repr(str(text))
+    return shown(str(text))
+
+
+def shown(value: object) -> str:
+    """
+    Return a value from outside for an error's message: on one line, not too long.
+
+    Parameters
+    ----------
+    value : object
+        The value.
+
+    Returns
+    -------
+    str
+        Its representation; the middle left out where it is long.
+
+    """
+    try:
+        return sub(r'\s*\n\s*', ' ', _shortened.repr(value))
+    except ValueError:  # of integers of thousands of digits Python makes no text
+        return f'of {type(value).__name__} and too long to show'
 
 
 def told_apart(value: float, *bounds: float, digits: int = 6) -> tuple[str, ...]:

@@ -52,11 +52,11 @@ class Friction(ReadOnlyArrays):
     def __post_init__(self) -> None:
         """Check the values and make the arrays read-only."""
         for name, unit in UNITS.items():
-            array = finite_array(f'friction.{name}', getattr(self, name), (3,))
+            array = finite_array(name, getattr(self, name), (3,))
             object.__setattr__(self, name, array)
             if (array < 0.0).any():
                 raise InvalidInputError(
-                    f'friction.{name} is {array.tolist()} {unit}, must not be negative')
+                    f'{name} is {array.tolist()} {unit}, must not be negative')
 
     @property
     def is_none(self) -> bool:

@@ -29,7 +29,9 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Polynomial
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.conversion import float_array
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.scalars import positive, whole_number
 from rrr_traj_planner.core.transition_shape import Curve, TransitionShape
 from scipy.special import erf
 
@@ -61,8 +63,7 @@ def maclaurin(u: Any, order: int) -> Array:
         If the order is negative.
 
     """
-    u = np.asarray(u, dtype=float)
-    return np.asarray(_series(order)(u))
+    return np.asarray(_series(order)(float_array('u', u)))
 
 
 def maclaurin_error(order: int, half_width: float = HALF_WIDTH) -> float:
@@ -87,6 +88,7 @@ def maclaurin_error(order: int, half_width: float = HALF_WIDTH) -> float:
         If the order is negative.
 
     """
+    half_width = positive('half_width', half_width, 'sigma')
     return float(abs(maclaurin(half_width, order) - exp(-0.5 * half_width ** 2)))
 
 
@@ -114,8 +116,7 @@ def gauss(half_width: float = HALF_WIDTH, order: int | None = None) -> Transitio
         from its middle to its ends.
 
     """
-    if not (np.isfinite(half_width) and half_width > 0.0):
-        raise InvalidInputError(f'half_width is {half_width} sigma, must be positive and finite')
+    half_width = positive('half_width', half_width, 'sigma')
     if order is None:
         steepest = min(1.0, half_width)
         return _lowered('gauss', half_width, steepest, (
@@ -190,8 +191,7 @@ def _second_integral(u: Any) -> Array:
 
 def _series(order: int) -> Polynomial:
     """Return sum (-1/2)^n u^2n / n! up to n = order."""
-    if order < 0:
-        raise InvalidInputError(f'order is {order}, must not be negative')
+    order = whole_number('order', order, least=0)
     coefficients, term = np.zeros(2 * order + 1), 1.0
     for n in range(order + 1):
         coefficients[2 * n] = term

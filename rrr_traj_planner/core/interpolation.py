@@ -20,7 +20,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import (
+    Array,
+    finite_array,
+    IntArray,
+    parameter_values,
+    ReadOnlyArrays,
+)
 from rrr_traj_planner.core.errors import InvalidInputError
 
 
@@ -57,7 +63,7 @@ class TrajectoryPoints(ReadOnlyArrays):
         if n == 0 or (np.diff(self.times) <= 0.0).any():
             raise InvalidInputError('times must be strictly increasing, and at least one')
         for name in ('positions', 'velocities', 'accelerations'):
-            if getattr(self, name) is not None:
+            if name == 'positions' or getattr(self, name) is not None:
                 object.__setattr__(
                     self, name, finite_array(name, getattr(self, name), (n, 3)))
 
@@ -88,22 +94,22 @@ class Interpolant:
 
         Parameters
         ----------
-        t : array_like, shape (n,)
+        t : array_like, shape (n,) or ()
             Times [s]; before the first point and after the last the end's position is held.
 
         Returns
         -------
-        tuple of ndarray, shape (n, 3)
+        tuple of ndarray, shape (n, 3) or (3,)
             [rad], [rad/s], [rad/s^2].
 
         """
-        times = np.asarray(t, dtype=float)
+        times = parameter_values('t', t)
         knots = self.points.times
         clipped = np.clip(times, knots[0], knots[-1])
         index = np.clip(np.searchsorted(knots, clipped, side='right') - 1, 0, len(knots) - 2)
         c = self.coefficients[:, index]
-        x = (clipped - knots[index])[:, np.newaxis]
-        resting = ((times < knots[0]) | (times > knots[-1]))[:, np.newaxis]
+        x = (clipped - knots[index])[..., np.newaxis]
+        resting = ((times < knots[0]) | (times > knots[-1]))[..., np.newaxis]
         return (_polynomial(c, x, 0), np.where(resting, 0.0, _polynomial(c, x, 1)),
                 np.where(resting, 0.0, _polynomial(c, x, 2)))
 

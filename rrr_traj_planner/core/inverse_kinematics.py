@@ -21,7 +21,7 @@ from math import atan2, ceil, cos, hypot, pi, sin, sqrt
 import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, finite_array
-from rrr_traj_planner.core.errors import InvalidInputError, told_apart, UnreachableError
+from rrr_traj_planner.core.errors import told_apart, UnreachableError
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.postures import (
     EDGE_TOLERANCE,
@@ -30,6 +30,7 @@ from rrr_traj_planner.core.postures import (
     Shoulder,
     SHOULDERS,
 )
+from rrr_traj_planner.core.scalars import one_of
 
 
 def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'up',
@@ -68,15 +69,14 @@ def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'u
 
     """
     x, y, z = finite_array('position', position, (3,)).tolist()
-    if elbow not in ELBOWS:
-        raise InvalidInputError(f"elbow is '{elbow}', must be 'up' or 'down'")
-    if shoulder not in SHOULDERS:
-        raise InvalidInputError(f"shoulder is '{shoulder}', must be 'front' or 'back'")
+    one_of('elbow', elbow, ELBOWS)
+    one_of('shoulder', shoulder, SHOULDERS)
     a2, d4 = model.a2, model.d4
     r, h = hypot(x, y), z - model.d1
     back = shoulder == 'back'
+    kept = 0.0 if previous is None else float(finite_array('previous', previous, (3,))[0])
     if r <= EDGE_TOLERANCE:
-        theta_1 = 0.0 if previous is None else float(finite_array('previous', previous, (3,))[0])
+        theta_1 = kept
     else:
         theta_1 = _wrapped(atan2(y, x) + (pi if back else 0.0))
     W = _distance_in_reach(model, (x, y, z), hypot(r, h))

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, joint_values
+from rrr_traj_planner.core.arrays import Array, joint_states, joint_values
 from rrr_traj_planner.core.model import RobotModel
 
 
@@ -41,7 +41,7 @@ def forward_kinematics(model: RobotModel, q: ArrayLike) -> Array:
     Raises
     ------
     InvalidInputError
-        If the shape is wrong.
+        If the shape is wrong, or a value not finite.
 
     """
     q = joint_values('q', q)
@@ -68,7 +68,7 @@ def radial_distance(model: RobotModel, q: ArrayLike) -> Array:
     Raises
     ------
     InvalidInputError
-        If the shape is wrong.
+        If the shape is wrong, or a value not finite.
 
     """
     return _reach_and_height(model, joint_values('q', q))[0]
@@ -93,7 +93,7 @@ def jacobian(model: RobotModel, q: ArrayLike) -> Array:
     Raises
     ------
     InvalidInputError
-        If the shape is wrong.
+        If the shape is wrong, or a value not finite.
 
     """
     q = joint_values('q', q)
@@ -124,10 +124,10 @@ def jacobian_rate(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
     Raises
     ------
     InvalidInputError
-        If a shape is wrong.
+        If a shape is wrong, or a value not finite.
 
     """
-    q, qd = joint_values('q', q), joint_values('qd', qd)
+    q, qd = np.broadcast_arrays(*joint_states(q=q, qd=qd))
     s1, c1 = np.sin(q[..., 0]), np.cos(q[..., 0])
     w1, w2, w23 = qd[..., 0], qd[..., 1], qd[..., 1] + qd[..., 2]
     Z1, Z2, Z3, Z4 = _z_terms(model, q)

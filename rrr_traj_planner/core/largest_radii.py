@@ -22,8 +22,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cartesian_path import CartesianPath
-from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError
+from rrr_traj_planner.core.errors import ConvergenceError
 from rrr_traj_planner.core.path_design import check_points
+from rrr_traj_planner.core.scalars import positive
 
 # A turn so slight that its radius would be more than this many times the polyline's length.
 MOST_LENGTHS = 10.0
@@ -61,8 +62,7 @@ def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: A
 
     """
     points = check_points(points)
-    if not 0.0 < max_deviation < np.inf:
-        raise InvalidInputError(f'max_deviation is {max_deviation} m, must be positive')
+    max_deviation = positive('max_deviation', max_deviation, 'm')
     legs = np.diff(points, axis=0)
     lengths = np.linalg.norm(legs, axis=1)
     u = legs / lengths[:, np.newaxis]

@@ -26,6 +26,7 @@ from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError,
 from rrr_traj_planner.core.kinematics import jacobian, jacobian_rate
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.scalars import not_negative, positive
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
 
@@ -90,8 +91,7 @@ def least_radius(model: RobotModel, limits: JointLimits, q: ArrayLike, tangent: 
 
     """
     q, T, N = _checked(q, tangent, normal)
-    if not 0.0 <= speed < np.inf:
-        raise InvalidInputError(f'speed is {speed} m/s, must not be negative')
+    speed = not_negative('speed', speed, 'm/s')
     J = _regular_jacobian(model, q)
     qd = speed * np.linalg.solve(J, T)
     straight = np.linalg.solve(J, -jacobian_rate(model, q, qd) @ qd)
@@ -134,8 +134,7 @@ def largest_speed(model: RobotModel, limits: JointLimits, q: ArrayLike, tangent:
 
     """
     q, T, N = _checked(q, tangent, normal)
-    if not radius > 0.0:
-        raise InvalidInputError(f'radius is {radius} m, must be positive')
+    radius = positive('radius', radius, 'm', may_be_infinite=True)
     J = _regular_jacobian(model, q)
     rate = np.linalg.solve(J, T)  # qd for 1 m/s
     change = np.linalg.solve(J, N / radius - jacobian_rate(model, q, rate) @ rate)

@@ -21,6 +21,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, bound_array, ReadOnlyArrays
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.scalars import share
 
 UNITS = {
     'min_position': 'rad', 'max_position': 'rad', 'max_velocity': 'rad/s',
@@ -94,9 +95,6 @@ class JointLimits(ReadOnlyArrays):
             If a factor is outside (0, 1].
 
         """
-        for name, factor in (('velocity', velocity), ('acceleration', acceleration)):
-            if not 0.0 < factor <= 1.0:
-                raise InvalidInputError(
-                    f'max_{name}_scaling_factor is {factor}, must be in (0, 1]')
-        return replace(self, max_velocity=self.max_velocity * velocity,
-                       max_acceleration=self.max_acceleration * acceleration)
+        return replace(
+            self, max_velocity=self.max_velocity * share('velocity', velocity),
+            max_acceleration=self.max_acceleration * share('acceleration', acceleration))

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, joint_values
+from rrr_traj_planner.core.arrays import Array, joint_states
 from rrr_traj_planner.core.kinematics import matrix
 from rrr_traj_planner.core.model import RobotModel
 
@@ -66,10 +66,10 @@ def link_motion(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) 
     Raises
     ------
     InvalidInputError
-        If a shape is wrong.
+        If a shape is wrong, or a value not finite.
 
     """
-    q, qd, qdd = (joint_values(n, v) for n, v in (('q', q), ('qd', qd), ('qdd', qdd)))
+    q, qd, qdd = np.broadcast_arrays(*joint_states(q=q, qd=qd, qdd=qdd))
     R = _rotations(q)
     w, wd = _angular_motion(q, qd, qdd)
     base = np.zeros(q.shape)

@@ -22,7 +22,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.scalars import finite, names, positive
 
+UNITS = {'d1': 'm', 'a2': 'm', 'd4': 'm', 'l2': 'm', 'l3': 'm', 'gravity': 'm/s^2'}
 JOINT_NAMES = ('joint_1', 'joint_2', 'joint_3')
 
 
@@ -77,24 +79,29 @@ class RobotModel(ReadOnlyArrays):
 
     def __post_init__(self) -> None:
         """Check every value and make the arrays read-only."""
-        for name in ('d1', 'a2', 'd4', 'l2', 'l3', 'gravity'):
-            object.__setattr__(self, name, float(finite_array(name, getattr(self, name), ())))
+        for name, unit in UNITS.items():
+            object.__setattr__(self, name, finite(name, getattr(self, name), unit))
         object.__setattr__(self, 'mass', finite_array('mass', self.mass, (3,)))
         object.__setattr__(self, 'inertia', finite_array('inertia', self.inertia, (3, 3)))
-        object.__setattr__(self, 'joint_names', tuple(str(n) for n in self.joint_names))
+        object.__setattr__(self, 'joint_names', names('joint_names', self.joint_names))
         for name in ('a2', 'd4'):
-            if getattr(self, name) <= 0.0:
-                raise InvalidInputError(f'{name} is {getattr(self, name)} m, must be positive')
+            positive(name, getattr(self, name), UNITS[name])
         for name in ('mass', 'inertia'):
             if (getattr(self, name) < 0.0).any():
                 raise InvalidInputError(f'{name} is {getattr(self, name)}, must not be negative')
-        names = self.joint_names
-        if len(names) != 3 or len(set(names)) != 3 or '' in names:
-            raise InvalidInputError(f'joint_names is {list(names)}, must be 3 distinct names')
+        found = self.joint_names
+        if len(found) != 3 or len(set(found)) != 3 or '' in found:
+            raise InvalidInputError(f'joint_names is {list(found)}, must be 3 distinct names')
         self._check_inertia()
 
     def _check_inertia(self) -> None:
         """Refuse an arm that a torque could accelerate without bound in some pose."""
+        for name, mass, length in (('l2', self.mass[1], self.l2), ('l3', self.mass[2], self.l3)):
+            with np.errstate(over='ignore'):
+                moment = mass * np.square(length)
+            if not np.isfinite(moment):
+                raise InvalidInputError(
+                    f'{name} is {length} m: the inertia of {mass} kg there is not finite')
         if self.inertia[2, 1] + self.mass[2] * self.l3 ** 2 <= 0.0:
             raise InvalidInputError('link 3 has no inertia about joint axis 3')
         if self.inertia[1, 2] + self.mass[1] * self.l2 ** 2 <= 0.0 and (

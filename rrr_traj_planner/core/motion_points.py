@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays, truth_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.interpolation import hermite
 
@@ -71,11 +71,7 @@ class MotionPoints(ReadOnlyArrays):
         for name in ('positions', 'velocities', 'accelerations'):
             object.__setattr__(self, name, finite_array(name, getattr(self, name), (n, 3)))
         for name in ('has_velocity', 'has_acceleration'):
-            flags = np.array(getattr(self, name), dtype=bool)
-            if flags.shape != (n,):
-                raise InvalidInputError(f'{name} has shape {flags.shape}, must have ({n},)')
-            object.__setattr__(self, name, flags)
-        super().__post_init__()
+            object.__setattr__(self, name, truth_array(name, getattr(self, name), (n,)))
 
 
 def led_in(points: MotionPoints, time: float, state: tuple[Array, Array, Array]) -> MotionPoints:

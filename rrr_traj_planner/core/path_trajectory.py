@@ -23,7 +23,13 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, BoolArray, make_read_only, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import (
+    Array,
+    BoolArray,
+    make_read_only,
+    parameter_values,
+    ReadOnlyArrays,
+)
 from rrr_traj_planner.core.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.cartesian_path import CartesianPath
 from rrr_traj_planner.core.joint_ranges import whole_turns
@@ -37,6 +43,7 @@ from rrr_traj_planner.core.path_kinematics import (
 )
 from rrr_traj_planner.core.piecewise import JointProfile
 from rrr_traj_planner.core.postures import Posture
+from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory import Peaks, times_within, Trajectory
 
 STEPS_PER_PIECE = 24   # of the path, at which whole turns of the joints are remembered
@@ -141,7 +148,7 @@ class PathTrajectory(Trajectory):
 
     def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
         """Return position, velocity, acceleration and jerk; see `Trajectory`."""
-        times = np.asarray(t, dtype=float)
+        times = parameter_values('t', t)
         found = self._with_speed(np.atleast_1d(times))[1:]
         return tuple(v[0] for v in found) if times.ndim == 0 else found
 
@@ -214,6 +221,7 @@ class PathTrajectory(Trajectory):
 
     def stretched(self, factor: float) -> PathTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""
+        factor = positive('factor', factor)
         slower = PathTrajectory(self.arm_path, self.progress.stretched(factor),
                                 self.via_times * factor, self.join_times * factor, self.note)
         if '_peaks' in self.__dict__:  # they are dear

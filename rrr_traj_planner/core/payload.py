@@ -17,11 +17,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import isfinite
 
 import numpy as np
-from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.scalars import not_negative, truth
 
 
 @dataclass(frozen=True)
@@ -39,7 +38,7 @@ class Payload:
     Raises
     ------
     InvalidInputError
-        If the mass is negative or not finite.
+        If the mass is negative or not finite, or a value of another kind.
 
     """
 
@@ -47,9 +46,10 @@ class Payload:
     known_to_controller: bool = False
 
     def __post_init__(self) -> None:
-        """Check the mass."""
-        if not (isfinite(self.mass) and self.mass >= 0.0):
-            raise InvalidInputError(f'payload.mass is {self.mass} kg, must not be negative')
+        """Check the values."""
+        object.__setattr__(self, 'mass', not_negative('mass', self.mass, 'kg'))
+        object.__setattr__(self, 'known_to_controller', truth(
+            'known_to_controller', self.known_to_controller))
 
 
 def with_payload(model: RobotModel, mass: float) -> RobotModel:
@@ -71,7 +71,13 @@ def with_payload(model: RobotModel, mass: float) -> RobotModel:
     RobotModel
         The same object where the mass is 0.
 
+    Raises
+    ------
+    InvalidInputError
+        If the mass is negative or not finite.
+
     """
+    mass = not_negative('mass', mass, 'kg')
     if mass == 0.0:
         return model
     m1, m2, m3 = model.mass.tolist()

@@ -27,10 +27,12 @@ from rrr_traj_planner.core.arrays import (
     finite_array,
     IntArray,
     make_read_only,
+    parameter_values,
     ReadOnlyArrays,
 )
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.pieces import Pieces
+from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
 
 # Newton steps towards a zero of velocity, halvings of its bracket where they leave it. An error e
@@ -223,7 +225,7 @@ class PiecewiseTrajectory(Trajectory):
 
     def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
         """Return position, velocity, acceleration and jerk; see `Trajectory`."""
-        times = np.asarray(t, dtype=float)
+        times = parameter_values('t', t)
         flat = np.atleast_1d(times)
         resting = (flat < 0.0) | (flat >= self.duration)
         q, qd, qdd, qddd = np.moveaxis(np.array([p(flat) for p in self.profiles]), 0, -1)
@@ -255,5 +257,6 @@ class PiecewiseTrajectory(Trajectory):
 
     def stretched(self, factor: float) -> PiecewiseTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""
+        factor = positive('factor', factor)
         return PiecewiseTrajectory([p.stretched(factor) for p in self.profiles],
                                    self.via_times * factor, self.note)

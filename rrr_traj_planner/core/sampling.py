@@ -22,6 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.scalars import positive, whole_number
 from rrr_traj_planner.core.trajectory import Trajectory
 
 NANOSECOND = 1e-9
@@ -147,8 +148,8 @@ def sample_times(trajectory: Trajectory, period: float,
         If the period is not positive, or there would be too many points.
 
     """
-    if not (np.isfinite(period) and period > 0.0):
-        raise InvalidInputError(f'sample_period is {period} s, must be positive')
+    period = positive('period', period, 's')
+    most_points = whole_number('most_points', most_points, least=1)
     check_size(trajectory.duration, period, most_points)
     fixed = np.sort(np.concatenate(([0.0], trajectory.via_times, [trajectory.duration])))
     fixed = fixed[np.concatenate(([True], np.diff(fixed) >= 1.5 * NANOSECOND))]
@@ -209,7 +210,7 @@ def check_size(duration: float, period: float, most_points: int = MOST_POINTS,
 
     """
     points = duration / period + 1.0 if points is None else points
-    if not points < most_points + 1.0:
+    if not points < most_points + 1:
         raise InvalidInputError(
             f'a motion of {duration:.6g} s with a point every {period:.6g} s has more than '
             f'{most_points} points')

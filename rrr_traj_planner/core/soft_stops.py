@@ -22,11 +22,10 @@ torque begins at zero, whatever the speed, and a bumper never pulls.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
 
 from rrr_traj_planner.core.control import State, Triple
-from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.joint_stops import Contact
+from rrr_traj_planner.core.scalars import not_negative
 
 
 @dataclass(frozen=True)
@@ -57,10 +56,7 @@ class SoftStops:
     def __post_init__(self) -> None:
         """Check the values."""
         for name, unit in (('width', 'rad'), ('stiffness', 'N m/rad'), ('damping', 's/rad')):
-            value = getattr(self, name)
-            if not (isfinite(value) and value >= 0.0):
-                raise InvalidInputError(
-                    f'soft_stops.{name} is {value} {unit}, must not be negative')
+            object.__setattr__(self, name, not_negative(name, getattr(self, name), unit))
 
     def sides(self, state: State, low: Triple, high: Triple) -> Contact:
         """

@@ -62,14 +62,14 @@ def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
     if decay * step > LARGEST:
         raise InvalidInputError(
             f'friction.viscous is {friction.viscous.tolist()} N m s/rad, too much for '
-            f'physics_step {step:g} s: at most '
+            f'a physics step of {step:g} s: at most '
             f'{told_apart(LARGEST / (decay * step), 1.0, digits=3)[0]} times that')
     squared = float(np.abs(np.linalg.eigvals(inverse)).max()) * bumper  # [1/s^2]
     if squared * step ** 2 > LARGEST:
         stiffness, most = told_apart(bumper, bumper * LARGEST / (squared * step ** 2), digits=3)
         raise InvalidInputError(
             f'soft_stops.stiffness is {stiffness} N m/rad, must be at most {most} N m/rad with '
-            f'physics_step {step:g} s')
+            f'a physics step of {step:g} s')
 
 
 def _poses() -> Array:

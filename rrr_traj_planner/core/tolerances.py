@@ -22,12 +22,12 @@ velocity. As there, a tolerance of 0 is none.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import isfinite
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
 from rrr_traj_planner.core.control import Desired, State
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.scalars import not_negative
 
 PATH_VIOLATED = 'Holding position due to state tolerance violation'
 GOAL_TIME_EXCEEDED = 'Exceeded goal_time_tolerance: holding position...'
@@ -67,15 +67,14 @@ class Tolerances(ReadOnlyArrays):
     def __post_init__(self) -> None:
         """Check the values and make the arrays read-only."""
         for name in ('trajectory', 'goal'):
-            array = finite_array(f'constraints.{name}', getattr(self, name), (3,))
+            array = finite_array(name, getattr(self, name), (3,))
             object.__setattr__(self, name, array)
             if (array < 0.0).any():
                 raise InvalidInputError(
-                    f'constraints.{name} is {array.tolist()} rad, must not be negative')
-        for name in ('stopped_velocity', 'goal_time', 'cmd_timeout'):
-            value = getattr(self, name)
-            if not (isfinite(value) and value >= 0.0):
-                raise InvalidInputError(f'{name} is {value}, must not be negative')
+                    f'{name} is {array.tolist()} rad, must not be negative')
+        for name, unit in (('stopped_velocity', 'rad/s'), ('goal_time', 's'),
+                           ('cmd_timeout', 's')):
+            object.__setattr__(self, name, not_negative(name, getattr(self, name), unit))
 
     @property
     def are_none(self) -> bool:

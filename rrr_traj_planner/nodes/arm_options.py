@@ -30,6 +30,7 @@ from rrr_traj_planner.core.payload import Payload
 from rrr_traj_planner.core.soft_stops import SoftStops
 from rrr_traj_planner.core.tolerances import Tolerances
 from rrr_traj_planner.core.urdf import check_frames, FrameNames
+from rrr_traj_planner.nodes.naming import named, of_group
 
 Values = Mapping[str, Any]
 
@@ -53,10 +54,9 @@ def physical_options(values: Values) -> dict[str, Any]:
 
     """
     return {
-        'payload': Payload(values['payload.mass'], values['payload.known_to_controller']),
-        'friction': Friction(values['friction.viscous'], values['friction.coulomb']),
-        'soft_stops': SoftStops(*(
-            values[f'soft_stops.{name}'] for name in ('width', 'stiffness', 'damping'))),
+        'payload': of_group(Payload, 'payload', values),
+        'friction': of_group(Friction, 'friction', values),
+        'soft_stops': of_group(SoftStops, 'soft_stops', values),
         'tolerances': tolerances(values)}
 
 
@@ -77,8 +77,11 @@ def tolerances(values: Values) -> Tolerances:
     """
     of_joints = [np.array([values[f'constraints.{joint}.{name}']
                            for joint in values['joint_names']]) for name in ('trajectory', 'goal')]
-    return Tolerances(*of_joints, values['constraints.stopped_velocity_tolerance'],
-                      values['constraints.goal_time'], values['cmd_timeout'])
+    with named({'trajectory': 'constraints.JOINT.trajectory', 'goal': 'constraints.JOINT.goal',
+                'stopped_velocity': 'constraints.stopped_velocity_tolerance',
+                'goal_time': 'constraints.goal_time'}):
+        return Tolerances(*of_joints, values['constraints.stopped_velocity_tolerance'],
+                          values['constraints.goal_time'], values['cmd_timeout'])
 
 
 def encoder(values: Values, gains: ControllerGains) -> EncoderSettings:
@@ -103,8 +106,7 @@ def encoder(values: Values, gains: ControllerGains) -> EncoderSettings:
         If their estimate of velocity is too slow for the controller.
 
     """
-    settings = EncoderSettings(*(
-        values[f'encoder.{name}'] for name in ('resolution', 'noise', 'seed', 'bandwidth')))
+    settings = of_group(EncoderSettings, 'encoder', values)
     # Routh's criterion for the tracking loop within the controller's: bandwidth / natural
     # frequency above (zeta + sqrt(zeta^2 + 4)) / 2.
     zeta = gains.damping_ratio

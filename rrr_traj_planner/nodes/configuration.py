@@ -36,6 +36,7 @@ from rrr_traj_planner.nodes.arm_options import (
     physical_options,
     trajectory_rules,
 )
+from rrr_traj_planner.nodes.naming import named, of_group
 from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]
@@ -133,8 +134,7 @@ class ArmConfig:
 
         """
         limits = joint_limits(values)
-        gains = ControllerGains(values['controller.natural_frequency'],
-                                values['controller.damping_ratio'])
+        gains = of_group(ControllerGains, 'controller', values)
         step = values['physics_step']
         if gains.damping * step > MOST_DAMPING_PER_STEP:
             frequency, most = told_apart(gains.natural_frequency, MOST_DAMPING_PER_STEP / (
@@ -143,8 +143,9 @@ class ArmConfig:
                 f'controller.natural_frequency is {frequency} rad/s, must be at most {most} rad/s '
                 f'with controller.damping_ratio {gains.damping_ratio:g} and physics_step '
                 f'{step:g} s')
-        settings = ArmSettings(robot_model(values), limits, gains, step,
-                               encoder=encoder(values, gains), **physical_options(values))
+        with named({'step': 'physics_step'}):
+            settings = ArmSettings(robot_model(values), limits, gains, step,
+                                   encoder=encoder(values, gains), **physical_options(values))
         return cls(settings, values['publish_rate'], _initial_positions(values, limits),
                    trajectory_rules(values), values['publish_clock'], values['real_time_factor'],
                    frame_names(values), values['marker_rate'])
@@ -170,11 +171,13 @@ def robot_model(values: Values) -> RobotModel:
         If a pose of the arm has no inertia, or names repeat.
 
     """
-    lengths = {name: values[f'arm.{name}'] for name in ('d1', 'a2', 'd4', 'l2', 'l3', 'gravity')}
-    return RobotModel(
-        **lengths, mass=values['arm.mass'],
-        inertia=np.array([list(values[f'arm.inertia_{i}']) for i in (1, 2, 3)]),
-        joint_names=values['joint_names'])
+    inertia = np.array([list(values[f'arm.inertia_{i}']) for i in (1, 2, 3)])
+    parameters = {name: f'arm.{name}' for name in (
+        'd1', 'a2', 'd4', 'l2', 'l3', 'gravity', 'mass')}
+    with named(parameters):
+        return RobotModel(
+            **{name: values[parameter] for name, parameter in parameters.items()},
+            inertia=inertia, joint_names=values['joint_names'])
 
 
 def joint_limits(values: Values) -> JointLimits:

@@ -30,6 +30,7 @@ from rrr_traj_planner.core.errors import (
     told_apart,
 )
 from rrr_traj_planner.nodes.configuration import PlannerConfig
+from rrr_traj_planner.nodes.naming import named
 from rrr_traj_planner.planners.request import never, PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
@@ -39,6 +40,11 @@ LEAST_SAMPLE_PERIOD, LARGEST_SAMPLE_PERIOD = 1e-4, 10.0
 
 # Zones of less cannot be told from corners; more is beyond any arm [m].
 LEAST_DEVIATION, LARGEST_DEVIATION = 1e-6, 100.0
+
+# What the service and its node call the arguments of `PlanningRequest`, where that differs.
+FIELDS = {'start': 'start_state', 'velocity_scaling': 'max_velocity_scaling_factor',
+          'acceleration_scaling': 'max_acceleration_scaling_factor',
+          'half_transition': 'poly_414.t_acc'}
 
 
 class FrameError(RrrPlannerError):
@@ -86,21 +92,22 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
     if deviation != 0.0 and not LEAST_DEVIATION <= deviation <= LARGEST_DEVIATION:
         raise InvalidInputError('max_deviation is {} m, must be 0 or in [{}, {}] m'.format(
             *told_apart(deviation, LEAST_DEVIATION, LARGEST_DEVIATION)))
-    return PlanningRequest(
-        via_points=_tip_positions(message.via_points.poses),
-        start=_start(message.start_state, config),
-        planner_id=message.planner_id or config.default_planner_id,
-        segment_durations=np.array(message.segment_durations) if len(
-            message.segment_durations) else None,
-        velocity_scaling=_unless_zero(message.max_velocity_scaling_factor, 1.0),
-        acceleration_scaling=_unless_zero(message.max_acceleration_scaling_factor, 1.0),
-        sample_period=_unless_zero(period, config.sample_period),
-        elbow=message.elbow or None,
-        max_deviation=_unless_zero(deviation, config.max_deviation),
-        max_tip_speed=_unless_zero(config.max_tip_speed, inf), steady_zones=config.steady_zones,
-        half_transition=config.half_transition,
-        should_stop=should_stop, max_points=config.max_points,
-        start_state_tolerance=config.start_state_tolerance)
+    with named(FIELDS):
+        return PlanningRequest(
+            via_points=_tip_positions(message.via_points.poses),
+            start=_start(message.start_state, config),
+            planner_id=message.planner_id or config.default_planner_id,
+            segment_durations=np.array(message.segment_durations) if len(
+                message.segment_durations) else None,
+            velocity_scaling=_unless_zero(message.max_velocity_scaling_factor, 1.0),
+            acceleration_scaling=_unless_zero(message.max_acceleration_scaling_factor, 1.0),
+            sample_period=_unless_zero(period, config.sample_period),
+            elbow=message.elbow or None,
+            max_deviation=_unless_zero(deviation, config.max_deviation),
+            max_tip_speed=_unless_zero(config.max_tip_speed, inf),
+            steady_zones=config.steady_zones, half_transition=config.half_transition,
+            should_stop=should_stop, max_points=config.max_points,
+            start_state_tolerance=config.start_state_tolerance)
 
 
 def _unless_zero(value: float, default: float) -> float:

@@ -30,6 +30,7 @@ from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.motion_torque import peak_torque
 from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.postures import Posture
+from rrr_traj_planner.core.scalars import kind_of
 from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.answer_points import answer_points
 from rrr_traj_planner.planners.least_time import check_answer_size
@@ -82,6 +83,9 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
         If the planner's motion breaks a limit, which is a bug.
 
     """
+    for name, value, kind in (('model', model, RobotModel), ('limits', limits, JointLimits),
+                              ('request', request, PlanningRequest)):
+        kind_of(name, value, kind)
     method = planner(request.planner_id)
     limits = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
     start = None if request.start is None else check_start(

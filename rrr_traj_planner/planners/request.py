@@ -18,6 +18,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arrays import (
@@ -27,13 +29,22 @@ from rrr_traj_planner.core.arrays import (
     number_array,
     ReadOnlyArrays,
 )
-from rrr_traj_planner.core.errors import InvalidInputError, quoted
+from rrr_traj_planner.core.errors import InvalidInputError, shown
 from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.joint_ranges import RANGE_TOLERANCE
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.postures import Elbow, ELBOWS, Posture
-from rrr_traj_planner.core.sampling import check_size, MOST_POINTS
+from rrr_traj_planner.core.sampling import check_size, MOST_POINTS, NANOSECOND
+from rrr_traj_planner.core.scalars import (
+    not_negative,
+    one_of,
+    positive,
+    share,
+    text,
+    truth,
+    whole_number,
+)
 from rrr_traj_planner.core.trajectory import Peaks, Trajectory
 
 T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
@@ -42,6 +53,16 @@ T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
 def never() -> bool:
     """Return that there is no reason to stop."""
     return False
+
+
+# How each field that is no array is checked: a function of its name and its value.
+CHECKS: dict[str, Callable[[str, Any], Any]] = {
+    'planner_id': text, 'velocity_scaling': share, 'acceleration_scaling': share,
+    'sample_period': partial(positive, unit='s'), 'max_deviation': partial(positive, unit='m'),
+    'max_tip_speed': partial(positive, unit='m/s', may_be_infinite=True), 'steady_zones': truth,
+    'half_transition': partial(positive, unit='s', least=NANOSECOND),
+    'max_points': partial(whole_number, least=1),
+    'start_state_tolerance': partial(not_negative, unit='rad')}
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,20 +137,12 @@ class PlanningRequest(ReadOnlyArrays):
         if len(points) < needed:
             raise InvalidInputError(
                 f'{len(points)} via points given, at least {needed} needed')
-        if self.elbow is not None and self.elbow not in ELBOWS:
-            raise InvalidInputError(
-                f"elbow is {quoted(self.elbow)}, must be 'up', 'down' or empty")
-        for name, unit in (('sample_period', 's'), ('max_deviation', 'm'),
-                           ('half_transition', 's')):
-            value = float(getattr(self, name))
-            if not (np.isfinite(value) and value > 0.0):
-                raise InvalidInputError(f'{name} is {value} {unit}, must be positive')
-        if not 0.0 <= self.start_state_tolerance < np.inf:
-            raise InvalidInputError(f'start_state_tolerance is {self.start_state_tolerance} rad, '
-                                    'must be finite and not negative')
-        if not self.max_tip_speed > 0.0:
-            raise InvalidInputError(
-                f'max_tip_speed is {self.max_tip_speed} m/s, must be positive')
+        for name, checked in CHECKS.items():
+            object.__setattr__(self, name, checked(name, getattr(self, name)))
+        if self.elbow is not None:
+            one_of('elbow', self.elbow, ELBOWS)
+        if not callable(self.should_stop):
+            raise InvalidInputError(f'should_stop is {shown(self.should_stop)}, must be callable')
         if self.segment_durations is not None:
             self._check_durations()
 
@@ -140,11 +153,12 @@ class PlanningRequest(ReadOnlyArrays):
         if len(durations) != self.segments:
             raise InvalidInputError(
                 f'{len(durations)} segment_durations given for {self.segments} segments')
-        wrong = (durations <= 0.0) | np.isinf(durations)
+        wrong = (durations < NANOSECOND) | np.isinf(durations)
         if wrong.any():
             k = int(wrong.argmax())
             raise InvalidInputError(
-                f'segment_durations[{k}] is {durations[k]} s, must be positive and finite')
+                f'segment_durations[{k}] is {durations[k]} s, must be finite and at least '
+                f'{NANOSECOND} s')
         with np.errstate(over='ignore'):  # infinite is long enough
             check_size(float(np.nansum(durations)), self.sample_period, self.max_points)
 

@@ -36,9 +36,9 @@ LOW, HIGH = (0.0, 0.0, -1.0), (1.0, 2.0, 1.0)
 
 
 @pytest.mark.parametrize(('fields', 'text'), [
-    ({'viscous': [1.0, -2.0, 0.0]}, r'friction.viscous is \[1.0, -2.0, 0.0\] N m s/rad'),
-    ({'coulomb': [1.0, nan, 0.0]}, r'friction.coulomb\[1\] is nan'),
-    ({'coulomb': [1.0]}, r'friction.coulomb has shape \(1,\)')])
+    ({'viscous': [1.0, -2.0, 0.0]}, r'^viscous is \[1.0, -2.0, 0.0\] N m s/rad'),
+    ({'coulomb': [1.0, nan, 0.0]}, r'^coulomb\[1\] is nan'),
+    ({'coulomb': [1.0]}, r'^coulomb has shape \(1,\)')])
 def test_friction_that_would_push_is_refused(fields, text):
     with pytest.raises(InvalidInputError, match=text):
         Friction(**fields)
@@ -77,7 +77,7 @@ def test_bumpers_are_pressed_beyond_the_range_alone():
 @pytest.mark.parametrize('name', ['width', 'stiffness', 'damping'])
 def test_bumpers_that_would_pull_are_refused(name):
     for value in (-1.0, nan, inf):
-        with pytest.raises(InvalidInputError, match=f'soft_stops.{name} is .* must not be'):
+        with pytest.raises(InvalidInputError, match=f'^{name} is .* must (not be|be finite)'):
             SoftStops(**{name: value})
 
 
@@ -147,7 +147,7 @@ def test_friction_that_a_step_can_follow_passes():
 
 
 @pytest.mark.parametrize(('friction', 'soft', 'text'), [
-    (Friction([0.0, 0.0, 1e5]), SoftStops(), r'friction.viscous is .*, too much for physics_step'),
+    (Friction([0.0, 0.0, 1e5]), SoftStops(), r'friction.viscous is .*, too much'),
     (Friction(), SoftStops(0.1, 1e8), r'soft_stops.stiffness is 1e\+08 N m/rad, must be at most')])
 def test_friction_and_bumpers_that_are_too_hard_for_the_step_are_refused(friction, soft, text):
     with pytest.raises(InvalidInputError, match=text):

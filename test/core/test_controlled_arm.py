@@ -76,7 +76,7 @@ def test_arm_is_on_the_new_segment_exactly_at_every_point(step):
     n, slopes = 100, np.tile([0.1, -0.1], 50)[:, np.newaxis] * np.ones(3)
     q = Q + 0.01 * np.vstack((np.zeros(3), np.cumsum(slopes, axis=0)))
     arm.follow(MotionPoints(0.01 * np.arange(n + 1), q, *np.zeros((2, n + 1, 3)),
-                            *np.zeros((2, n + 1))), arm.now)
+                            *np.zeros((2, n + 1), dtype=bool)), arm.now)
     for slope in slopes:
         np.testing.assert_allclose(arm.desired[3:6], slope, rtol=1e-9)
         arm.advance(round(0.01 / step))
@@ -238,11 +238,11 @@ def test_changed_limits_hold_from_the_next_step_on():
 
 def test_step_cannot_change_while_the_arm_runs():
     arm = ControlledArm(SETTINGS, Q)
-    with pytest.raises(InvalidInputError, match='physics_step cannot change'):
+    with pytest.raises(InvalidInputError, match='^step cannot change'):
         arm.configure(replace(SETTINGS, step=0.002))
 
 
 @pytest.mark.parametrize('step', [0.0, -1.0, float('inf'), float('nan')])
 def test_step_must_be_positive(step):
-    with pytest.raises(InvalidInputError, match=r'physics_step is .* s, must be positive'):
+    with pytest.raises(InvalidInputError, match=r'^step is .* s, must be (positive|finite)'):
         replace(SETTINGS, step=step)

@@ -260,12 +260,21 @@ def test_one_state_goes_with_many(function):
 
 @pytest.mark.parametrize('function', [inverse_dynamics, forward_dynamics])
 @pytest.mark.parametrize('value', [np.inf, -np.inf, np.nan])
-def test_no_number_comes_of_a_position_that_is_none(function, value):
-    still = np.zeros(3)
-    with np.errstate(invalid='ignore'):
-        found = function(RobotModel(), (0.0, value, 0.0), still, still)
-    assert found.shape == (3,)
-    assert np.isnan(found[1:]).all()
+@pytest.mark.parametrize('shape', [(3,), (4, 3)])
+def test_position_that_is_no_number_is_refused(function, value, shape):
+    still = np.zeros(shape)
+    q = still.copy()
+    q[..., 1] = value
+    where = r'q\[1\]' if len(shape) == 1 else r'q\[0\]\[1\]'
+    with pytest.raises(InvalidInputError, match=f'^{where} is {value}, must be finite$'):
+        function(RobotModel(), q, still, still)
+
+
+@pytest.mark.parametrize('function', [inverse_dynamics, forward_dynamics])
+def test_states_of_different_numbers_are_refused(function):
+    with pytest.raises(InvalidInputError, match=(
+            r'^shapes do not go together: q \(4, 3\), qd \(5, 3\), \w+ \(3,\)$')):
+        function(RobotModel(), np.zeros((4, 3)), np.zeros((5, 3)), np.zeros(3))
 
 
 @pytest.mark.parametrize(('function', 'names'), [

@@ -92,9 +92,9 @@ def test_restart_forgets_what_was_tracked():
 
 
 @pytest.mark.parametrize(('field', 'value', 'text'), [
-    ('resolution', -1.0, r'encoder.resolution is -1.0 rad, must not be negative'),
-    ('noise', nan, r'encoder.noise is nan rad'), ('bandwidth', inf, r'encoder.bandwidth is inf'),
-    ('bandwidth', 0.0, r'encoder.bandwidth is 0 rad/s, must be positive')])
+    ('resolution', -1.0, r'^resolution is -1.0 rad, must not be negative'),
+    ('noise', nan, r'^noise is nan rad'), ('bandwidth', inf, r'^bandwidth is inf'),
+    ('bandwidth', 0.0, r'^bandwidth is 0.0 rad/s, must be positive')])
 def test_settings_without_sense_are_refused(field, value, text):
     with pytest.raises(InvalidInputError, match=text):
         EncoderSettings(**{field: value})

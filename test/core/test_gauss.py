@@ -116,9 +116,9 @@ def test_series_of_order_1_is_paul_s_function():
 
 
 @pytest.mark.parametrize(('arguments', 'message'), [
-    ((-1.0,), r'^half_width is -1\.0 sigma, must be positive and finite$'),
-    ((np.inf,), r'^half_width is inf sigma, must be positive and finite$'),
-    ((2.0, -1), '^order is -1, must not be negative$'),
+    ((-1.0,), r'^half_width is -1\.0 sigma, must be positive$'),
+    ((np.inf,), r'^half_width is inf sigma, must be finite$'),
+    ((2.0, -1), '^order is -1, must be at least 0$'),
     ((2.0, 0), r'^order 0 of the series does not fall up to 2\.0 sigma$'),
     ((3.0, 4), r'^order 4 of the series does not fall up to 3\.0 sigma$')])
 def test_impossible_shapes_are_refused(arguments, message):

@@ -52,5 +52,5 @@ def test_collinear_points_stay_on_their_line(family):
 
 @pytest.mark.parametrize('bound', [0.0, -1.0, np.nan, np.inf])
 def test_deviation_that_is_none_is_refused(bound):
-    with pytest.raises(InvalidInputError, match='^max_deviation is .* m, must be positive$'):
+    with pytest.raises(InvalidInputError, match='^max_deviation is .* m, must be (pos|fin)it'):
         largest_radii(line_arc, np.eye(3), bound)

@@ -163,5 +163,5 @@ def test_malformed_direction_or_speed_is_refused(T, N, speed, text):
 
 @pytest.mark.parametrize('radius', [0.0, -1.0, np.nan])
 def test_radius_that_is_none_is_refused(radius):
-    with pytest.raises(InvalidInputError, match='^radius is .* m, must be positive$'):
+    with pytest.raises(InvalidInputError, match='^radius is .* m, must be (positive|finite)$'):
         largest_speed(MODEL, JointLimits(), Q, X, Y, radius)

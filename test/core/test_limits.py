@@ -89,5 +89,5 @@ def test_scaling_by_one_changes_nothing():
 @pytest.mark.parametrize('name', ['velocity', 'acceleration'])
 def test_scaling_factor_outside_0_to_1_is_refused(name, factor):
     with pytest.raises(InvalidInputError, match=(
-            rf'^max_{name}_scaling_factor is {factor}, must be in \(0, 1\]$')):
+            rf'^{name} is {factor}, must be in \(0, 1\]$')):
         JointLimits().scaled(**{name: factor})

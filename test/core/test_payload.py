@@ -61,5 +61,5 @@ def test_no_payload_is_the_same_arm():
 
 @pytest.mark.parametrize('mass', [-1.0, nan, inf])
 def test_mass_that_is_none_is_refused(mass):
-    with pytest.raises(InvalidInputError, match=r'payload.mass is .* kg, must not be negative'):
+    with pytest.raises(InvalidInputError, match='^mass is .* kg, must (not be negative|be fin)'):
         Payload(mass)

@@ -63,9 +63,9 @@ def test_nothing_is_watched_unless_something_is_limited():
 
 
 @pytest.mark.parametrize(('fields', 'text'), [
-    ({'trajectory': (0.0, -1.0, 0.0)}, r'constraints.trajectory is .* rad, must not be negative'),
-    ({'goal': (0.0, nan, 0.0)}, r'constraints.goal\[1\] is nan'),
-    ({'goal_time': inf}, r'goal_time is inf, must not be negative'),
+    ({'trajectory': (0.0, -1.0, 0.0)}, r'^trajectory is .* rad, must not be negative'),
+    ({'goal': (0.0, nan, 0.0)}, r'^goal\[1\] is nan'),
+    ({'goal_time': inf}, r'goal_time is inf s, must be finite'),
     ({'stopped_velocity': -1.0}, r'stopped_velocity is -1.0')])
 def test_tolerances_without_sense_are_refused(fields, text):
     with pytest.raises(InvalidInputError, match=text):

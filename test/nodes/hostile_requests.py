@@ -206,6 +206,6 @@ def is_well_formed(request):
             and request.planner_id in ('', *planner_ids())
             and all(0.0 <= factor <= 1.0 for factor in (
                 request.max_velocity_scaling_factor, request.max_acceleration_scaling_factor))
-            and all(not d <= 0.0 and d != inf for d in request.segment_durations)
+            and all(not d < 1e-9 and d != inf for d in request.segment_durations)
             and (request.sample_period == 0.0 or 1e-4 <= request.sample_period <= 10.0)
             and (request.max_deviation == 0.0 or 1e-6 <= request.max_deviation <= 100.0))

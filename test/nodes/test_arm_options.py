@@ -182,7 +182,7 @@ def test_end_with_a_velocity_is_braked_from_where_it_is_allowed(ros):
     ('payload.mass', -1.0, 'payload.mass'), ('encoder.seed', -1, 'encoder.seed'),
     ('friction.coulomb', [1.0, -1.0, 0.0],
      'friction.coulomb[1] is -1 N m, must be in [0, 100000] N m'),
-    ('friction.viscous', [0.0, 0.0, 1e5], 'too much for physics_step 0.001 s'),
+    ('friction.viscous', [0.0, 0.0, 1e5], 'too much for a physics step of 0.001 s'),
     ('publish_clock', True, 'read-only')])
 def test_options_without_sense_are_refused(ros, name, value, text):
     arm = Arm(ros)

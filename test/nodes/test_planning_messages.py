@@ -125,6 +125,19 @@ def test_an_arm_parked_at_the_end_of_a_range_is_never_refused_for_its_encoders(c
     assert outside > 3 or 'resolution' in encoder
 
 
+@pytest.mark.parametrize(('field', 'wrong', 'text'), [
+    ('max_velocity_scaling_factor', 2.0, 'is 2.0, must be in (0, 1]'),
+    ('max_acceleration_scaling_factor', -1.0, 'is -1.0, must be in (0, 1]'),
+    ('segment_durations', [0.0, 1.0], '[0] is 0.0 s, must be finite and at least 1e-09 s'),
+    ('elbow', 'left', "is 'left', must be 'up' or 'down'")])
+def test_errors_name_the_service_s_fields(config, field, wrong, text):
+    message = plan_request()
+    setattr(message, field, wrong)
+    with pytest.raises(InvalidInputError) as caught:
+        planning_request(message, config)
+    assert str(caught.value) == f'{field}{"" if text.startswith("[") else " "}{text}'
+
+
 def test_another_frame_is_refused(config):
     with pytest.raises(FrameError, match="in frame 'tool', must be in 'base_link'"):
         planning_request(plan_request(frame='tool'), config)

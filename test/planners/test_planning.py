@@ -269,9 +269,9 @@ def test_missing_acceleration_limit_is_refused_by_joint(planner_id):
 
 
 @pytest.mark.parametrize(('changes', 'message'), [
-    ({'velocity_scaling': 1.5}, r'^max_velocity_scaling_factor is 1\.5, must be in \(0, 1\]$'),
+    ({'velocity_scaling': 1.5}, r'^velocity_scaling is 1\.5, must be in \(0, 1\]$'),
     ({'acceleration_scaling': 0.0},
-     r'^max_acceleration_scaling_factor is 0\.0, must be in \(0, 1\]$'),
+     r'^acceleration_scaling is 0\.0, must be in \(0, 1\]$'),
     ({'planner_id': 'teleport'}, r"^planner_id 'teleport' is unknown, known are cycloid, ")])
 def test_malformed_requests_are_refused(changes, message):
     with pytest.raises(InvalidInputError, match=message):

@@ -1,0 +1,82 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Errors about arguments of the library, told by the names of fields and parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import fields
+from re import match
+from typing import Any, TypeVar
+
+from rrr_traj_planner.core.errors import InvalidInputError
+
+Value = TypeVar('Value')
+
+
+@contextmanager
+def named(names: Mapping[str, str]) -> Iterator[None]:
+    """
+    Have errors about arguments begin with other names.
+
+    Parameters
+    ----------
+    names : mapping
+        By the arguments' names, with which messages begin.
+
+    Raises
+    ------
+    InvalidInputError
+        As raised within, but for the name.
+
+    """
+    try:
+        yield
+    except InvalidInputError as error:
+        argument = match(r'\w*', str(error))[0]
+        if argument not in names:
+            raise
+        message = names[argument] + str(error)[len(argument):]
+        raise InvalidInputError(message, error.via_point) from None
+
+
+def of_group(kind: type[Value], group: str, values: Mapping[str, Any]) -> Value:
+    """
+    Return the value that a group of parameters describes.
+
+    Parameters
+    ----------
+    kind : type
+        A dataclass whose fields are called like the group's parameters.
+    group : str
+        The group's name.
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    object
+        Of that class.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is refused; it begins with the parameter's name.
+
+    """
+    parameters = {field.name: f'{group}.{field.name}' for field in fields(kind)}
+    with named(parameters):
+        return kind(**{name: values[parameter] for name, parameter in parameters.items()})
