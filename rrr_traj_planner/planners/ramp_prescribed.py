@@ -23,9 +23,11 @@ from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.planners.ramp_chain import Grid, Motion
 from rrr_traj_planner.planners.ramp_constraints import Constraints
+from rrr_traj_planner.planners.ramp_fit import torque_fits
 from rrr_traj_planner.planners.ramp_moves import restored, slowed
 from rrr_traj_planner.planners.ramp_newton import Freedom
 from rrr_traj_planner.planners.ramp_problem import fastest, mended, Solved
+from rrr_traj_planner.planners.ramp_room import Room
 from rrr_traj_planner.planners.ramp_start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
 
@@ -96,13 +98,28 @@ def _stretch(solved: Solved, durations: Array) -> float:
     return float(np.nanmax(np.diff(solved.trajectory.via_times) / durations))
 
 
-def _in_time(solved: Solved, durations: Array) -> Solved:
-    """Return a motion run through at the rate at which it keeps its durations exactly."""
-    z = _stretch(solved, durations)
-    return solved._replace(trajectory=solved.trajectory.stretched(1.0 / z))
+def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved]) -> Solved | None:
+    """
+    Return the first of some motions that keeps its limits when slowed to its durations exactly.
+
+    A motion may pass a pose that the motors cannot hold, but no more slowly. Where all do, the
+    motion that stops at every via point is taken, which the motors can hold everywhere.
+    """
+    for solved in found:
+        slower = solved.trajectory.stretched(1.0 / _stretch(solved, durations))
+        if torque_fits(task, slower):
+            return solved._replace(trajectory=slower)
+    segments = len(durations)
+    motion = rest_to_rest(task, Room.none(grid, segments).constraints(task, grid, None))
+    if motion is None:
+        return None
+    T = np.where(np.isnan(durations), motion.T, durations)
+    if (motion.T > T).any():
+        raise _error(durations, np.maximum(T, motion.T))
+    return Solved(grid.trajectory(task.points, slowed(motion, T)), motion, float(T.sum()), np.inf)
 
 
-def _gentlest(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> Solved:
+def _gentlest(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> Solved | None:
     """
     Return the motion of least peak acceleration over its limit.
 
@@ -110,21 +127,23 @@ def _gentlest(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> So
     these there is less time to spare, until there is none.
     """
     limit = np.minimum(task.limits.max_acceleration, kept.trajectory.peaks().acceleration.max())
-    best = _in_time(kept, durations)
+    found = [kept]  # gentlest first
     for _ in range(GENTLENESS_ROUNDS):
         z = _stretch(kept, durations)
         if z ** 2 > 1.0 / GENTLER:
             break
         limit = limit * z ** 2
         gentler = replace(task, limits=replace(task.limits, max_acceleration=limit))
-        found = _kept(gentler, grid, durations)
-        if found is None or _stretch(found, durations) > 1.0 + DURATION_TOLERANCE:
+        again = _kept(gentler, grid, durations)
+        if again is None or _stretch(again, durations) > 1.0 + DURATION_TOLERANCE:
             break
-        kept, best = found, _in_time(found, durations)
-    return best
+        kept = again
+        found.insert(0, kept)
+    return _in_time(task, grid, durations, found)
 
 
-def _fastest_of_free(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> Solved:
+def _fastest_of_free(task: JointTask, grid: Grid, durations: Array,
+                     kept: Solved) -> Solved | None:
     """Return the motion whose free durations are least, the others as prescribed."""
     free, z = np.isnan(durations), _stretch(kept, durations)
     m = kept.motion
@@ -134,7 +153,7 @@ def _fastest_of_free(task: JointTask, grid: Grid, durations: Array, kept: Solved
     freedom = Freedom(free, np.zeros(len(free)), free.astype(float), _no_stops(durations))
     found = mended(task, grid, freedom, lambda planned, constraints: start)
     if found is None or _stretch(found, durations) > 1.0 + DURATION_TOLERANCE:
-        return _in_time(kept, durations)
+        return _in_time(task, grid, durations, [kept])
     return found
 
 
@@ -152,6 +171,11 @@ def _too_short(task: JointTask, grid: Grid, durations: Array) -> TimingError:
         kept = _kept(task, grid, feasible)
         if kept is not None and _stretch(kept, feasible) <= 1.0 + DURATION_TOLERANCE:
             break
+    return _error(durations, feasible)
+
+
+def _error(durations: Array, feasible: Array) -> TimingError:
+    """Return the error of durations that are too short, with feasible ones."""
     asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
     return TimingError(f'segment_durations {asked} s are too short: the least feasible are '
                        f'{offered} s', tuple(offered))

@@ -676,22 +676,48 @@ def test_prescribed_durations_are_kept_even_when_planning_is_stopped_early():
         assert durations_of(m.plan) == pytest.approx([5.0, 6.0], abs=KEPT)
 
 
+# Gravity alone is 1.04 times joint 3's limit on the way of the fastest motion.
+WEAK_JOINT_3 = JointLimits(
+    min_position=[-1.40188418, 0.84157753, -1.23443453],
+    max_position=[0.0531041, 2.30419673, 1.1562909],
+    max_velocity=[2.81122301, 2.4985027, 0.51311566],
+    max_acceleration=[1.46388941, 0.51223958, 0.68577841], max_jerk=NONE,
+    max_effort=[3.08132901, 157.30897877, 54.64090592])
+HURRIED_TIPS = [(0.46996464, -0.02130729, 0.88146230), (0.29513201, -0.10969616, 1.06199934),
+                (0.43890897, -0.58788287, 1.03682936), (0.51175404, -0.05552639, 0.53294995)]
+
+
 def test_a_motion_that_hurries_past_a_pose_has_closer_points_instead_of_being_slowed():
-    # Gravity alone is 1.04 times joint 3's limit on the way: no slower motion keeps it.
-    limits = JointLimits(
-        min_position=[-1.40188418, 0.84157753, -1.23443453],
-        max_position=[0.0531041, 2.30419673, 1.1562909],
-        max_velocity=[2.81122301, 2.4985027, 0.51311566],
-        max_acceleration=[1.46388941, 0.51223958, 0.68577841], max_jerk=NONE,
-        max_effort=[3.08132901, 157.30897877, 54.64090592])
-    tips = [(0.46996464, -0.02130729, 0.88146230), (0.29513201, -0.10969616, 1.06199934),
-            (0.43890897, -0.58788287, 1.03682936), (0.51175404, -0.05552639, 0.53294995)]
-    model = RobotModel()
-    found = plan(model, limits, PlanningRequest(tips, planner_id='time_optimal'))
-    assert np.isinf(stretch_for_torque(model, limits, found.trajectory).value[2])
+    limits = WEAK_JOINT_3  # no slower motion on the same way keeps them
+    found = plan(ARM, limits, PlanningRequest(HURRIED_TIPS, planner_id='time_optimal'))
+    assert np.isinf(stretch_for_torque(ARM, limits, found.trajectory).value[2])
     assert np.diff(found.points.times).min() <= 0.0055 and 'slower' not in found.note
     t = np.linspace(0.0, found.points.times[-1], 20_001)
     q, qd, qdd = Interpolant(found.points)(t)
     assert (np.abs(qd) <= limits.max_velocity * (1.0 + BETWEEN_POINTS)).all()
     assert (np.abs(qdd) <= limits.max_acceleration * (1.0 + BETWEEN_POINTS)).all()
     assert (found.effort <= limits.max_effort * (1.0 + LIMIT_ROOM)).all()
+
+
+@pytest.mark.parametrize('slower', [1.2, 3.0, 30.0])
+def test_durations_that_leave_no_hurry_past_a_pose_are_kept_on_another_way(slower):
+    fastest = plan(ARM, WEAK_JOINT_3, PlanningRequest(HURRIED_TIPS, planner_id='time_optimal'))
+    asked = slower * durations_of(fastest)
+    try:
+        found = plan(ARM, WEAK_JOINT_3, PlanningRequest(
+            HURRIED_TIPS, planner_id='time_optimal', segment_durations=asked))
+    except TimingError:
+        assert slower < 3.0  # the ways around may take longer than asked
+        return
+    assert durations_of(found) == pytest.approx(asked, abs=KEPT)
+    q = fastest.trajectory(fastest.via_times)[0]
+    task = Task(0, '', ARM, WEAK_JOINT_3, q, PlanningRequest(HURRIED_TIPS))
+    assert excess(Measured(task, found)) == []
+
+
+def test_long_durations_are_kept_where_the_shortest_way_is_held_but_for_a_millionth():
+    q = [(0.1, 1.3, 0.7), (1.2, 1.4, 0.4), (1.3, 0.8, 0.8), (0.2, 1.6, 0.4), (0.4, 0.7, 0.8),
+         (1.5, 0.8, 0.4), (1.0, 0.8, -0.1), (0.9, 1.4, 0.0), (0.8, 0.8, 0.6), (1.1, 0.7, 0.3)]
+    m = measured(LIMITS, q, segment_durations=[20.8] * 9, velocity_scaling=0.3)
+    assert durations_of(m.plan) == pytest.approx([20.8] * 9, abs=KEPT)
+    assert excess(m) == []
