@@ -31,9 +31,9 @@ import numpy as np  # noqa: E402
 from rrr_traj_planner.core.dynamics import inverse_dynamics  # noqa: E402
 from rrr_traj_planner.core.errors import ConvergenceError, RrrPlannerError  # noqa: E402
 from rrr_traj_planner.core.kinematics import forward_kinematics  # noqa: E402
+from rrr_traj_planner.planners.plan import Plan  # noqa: E402
 from rrr_traj_planner.planners.planning import plan  # noqa: E402
 from rrr_traj_planner.planners.registry import planner, planner_ids  # noqa: E402
-from rrr_traj_planner.planners.request import Plan  # noqa: E402
 from tasks import Task  # noqa: E402
 
 PER_KNOT = 12            # checked points between two knots of the motion

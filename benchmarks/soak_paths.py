@@ -32,8 +32,8 @@ from rrr_traj_planner.core.dynamics import inverse_dynamics  # noqa: E402
 from rrr_traj_planner.core.interpolation import Interpolant  # noqa: E402
 from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics  # noqa: E402
 from rrr_traj_planner.core.kinematics import forward_kinematics, jacobian  # noqa: E402
+from rrr_traj_planner.planners.plan import Plan  # noqa: E402
 from rrr_traj_planner.planners.planning import plan  # noqa: E402
-from rrr_traj_planner.planners.request import Plan  # noqa: E402
 from soak_time_optimal import PERCENTILES, Result  # noqa: E402
 from tasks import Task  # noqa: E402
 

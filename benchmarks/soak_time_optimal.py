@@ -30,8 +30,8 @@ from measuring import setting  # noqa: E402
 import numpy as np  # noqa: E402
 from rrr_traj_planner.core.dynamics import inverse_dynamics  # noqa: E402
 from rrr_traj_planner.core.kinematics import forward_kinematics  # noqa: E402
+from rrr_traj_planner.planners.plan import Plan  # noqa: E402
 from rrr_traj_planner.planners.planning import plan  # noqa: E402
-from rrr_traj_planner.planners.request import Plan  # noqa: E402
 from soak_tasks import KINDS, soak_task  # noqa: E402
 from tasks import Task  # noqa: E402
 

@@ -42,8 +42,8 @@ from rrr_traj_planner.nodes.parameters import PLANNER
 from rrr_traj_planner.nodes.planning_answer import failure, refusal, success, tip_path
 from rrr_traj_planner.nodes.planning_request import planning_request
 from rrr_traj_planner.nodes.request_statistics import RequestStatistics
+from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import Plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory
 from visualization_msgs.msg import MarkerArray

@@ -34,7 +34,7 @@ from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.planning_request import FrameError
-from rrr_traj_planner.planners.request import Plan
+from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 

@@ -35,13 +35,14 @@ from rrr_traj_planner.core.trajectory import Trajectory
 from rrr_traj_planner.planners.answer_points import answer_points
 from rrr_traj_planner.planners.least_time import check_answer_size
 from rrr_traj_planner.planners.missed_via_points import miss_note, misses
+from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.posture_choice import (
     first_possible,
     joint_postures,
     path_postures,
 )
 from rrr_traj_planner.planners.registry import CartesianPlanner, planner, Registered
-from rrr_traj_planner.planners.request import CartesianTask, JointTask, Plan, PlanningRequest
+from rrr_traj_planner.planners.request import CartesianTask, JointTask, PlanningRequest
 from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 
 # Via points nearer than this in every joint are one point.
@@ -239,5 +240,5 @@ def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
             f'planner {request.planner_id} broke a limit: {broken[0].text(model.joint_names)}')
     # To the part to which the points keep a limit, what they do at it is not beyond it.
     effort = np.maximum(effort, np.minimum(found.effort, limits.max_effort))
-    return Plan(trajectory, found.points, via_times * found.stretch, peaks, effort,
+    return Plan(trajectory, found.points, via_times * found.stretch, peaks, effort, model,
                 '; '.join(filter(None, (trajectory.note, found.note))))

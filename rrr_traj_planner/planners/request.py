@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a planner is asked and what it answers."""
+"""What a planner is asked, and what each kind of them works on."""
 
 from __future__ import annotations
 
@@ -30,7 +30,6 @@ from rrr_traj_planner.core.arrays import (
     ReadOnlyArrays,
 )
 from rrr_traj_planner.core.errors import InvalidInputError, shown
-from rrr_traj_planner.core.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.joint_ranges import RANGE_TOLERANCE
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
@@ -45,7 +44,6 @@ from rrr_traj_planner.core.scalars import (
     truth,
     whole_number,
 )
-from rrr_traj_planner.core.trajectory import Peaks, Trajectory
 
 T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
 
@@ -262,34 +260,3 @@ class CartesianTask(ReadOnlyArrays):
     steady_zones: bool
     sample_period: float
     should_stop: Callable[[], bool] = never
-
-
-@dataclass(frozen=True, eq=False)
-class Plan(ReadOnlyArrays):
-    """
-    A motion that keeps its limits, and the figures that show it.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-        The continuous motion.
-    points : TrajectoryPoints
-        The same, sampled.
-    via_times : ndarray
-        When each via point is passed [s]; where a planner misses one, the middle of the
-        transition that straddles it.
-    peaks : Peaks
-        Exact extremes over the continuous motion.
-    effort : ndarray, shape (3,)
-        Peak torques [N m].
-    note : str
-        What the caller should know; empty where there is nothing.
-
-    """
-
-    trajectory: Trajectory
-    points: TrajectoryPoints
-    via_times: Array
-    peaks: Peaks
-    effort: Array
-    note: str = ''

@@ -24,9 +24,10 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner
-from rrr_traj_planner.planners.request import Plan, PlanningRequest
+from rrr_traj_planner.planners.request import PlanningRequest
 
 TIME_LIMIT = 10.0  # s, after which a planner that still improves its motion is to answer
 

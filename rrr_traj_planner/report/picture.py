@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-import csv
 from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
@@ -26,8 +25,8 @@ from typing import Any
 
 import matplotlib
 from matplotlib.figure import Figure
-import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.columns import write_columns
 from rrr_traj_planner.report.theme import STYLE, themed, WIDTH
 
 PNG_RESOLUTION = 200  # dots an inch
@@ -85,7 +84,7 @@ class Picture:
             text = StringIO()
             figure.savefig(text, format='svg', transparent=True, metadata={'Date': None})
         if self.data:
-            write_columns(folder / f'{self.name}.csv', self.data)
+            write_columns(folder / f'{self.name}.csv', self.data, digits=9)
         return embedded(text.getvalue(), self.name, self.title)
 
 
@@ -114,22 +113,3 @@ def embedded(svg: str, name: str, title: str) -> str:
     svg = re.sub(r'<svg ([^>]*?)height="[^"]*"', r'<svg \1', svg, count=1)
     label = title.replace('&', '&amp;').replace('"', '&quot;').replace('<', '&lt;')
     return themed(svg.replace('<svg ', f'<svg role="img" aria-label="{label}" ', 1))
-
-
-def write_columns(file: Path, columns: dict[str, Array]) -> None:
-    """
-    Write a CSV file.
-
-    Parameters
-    ----------
-    file : Path
-        Where it goes.
-    columns : dict
-        Columns by their heads, of equal lengths.
-
-    """
-    with file.open('w', newline='', encoding='utf-8') as stream:
-        rows = csv.writer(stream)
-        rows.writerow(columns)
-        rows.writerows([f'{x:.9g}' for x in row] for row in np.column_stack(
-            [np.asarray(c, dtype=float) for c in columns.values()]))

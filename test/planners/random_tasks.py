@@ -25,7 +25,8 @@ from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.planners.request import Plan, PlanningRequest
+from rrr_traj_planner.planners.plan import Plan
+from rrr_traj_planner.planners.request import PlanningRequest
 
 HOLDABLE = 0.999    # of an effort limit, at a drawn via point
 CLOSE = 1e-4        # rad between the points of a close pair
