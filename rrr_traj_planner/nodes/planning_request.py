@@ -29,6 +29,7 @@ from rrr_traj_planner.core.errors import (
     StartStateError,
     told_apart,
 )
+from rrr_traj_planner.core.postures import ELBOWS
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.naming import named
 from rrr_traj_planner.planners.request import never, PlanningRequest
@@ -92,6 +93,9 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
     if deviation != 0.0 and not LEAST_DEVIATION <= deviation <= LARGEST_DEVIATION:
         raise InvalidInputError('max_deviation is {} m, must be 0 or in [{}, {}] m'.format(
             *told_apart(deviation, LEAST_DEVIATION, LARGEST_DEVIATION)))
+    if message.elbow not in ('', *ELBOWS):
+        raise InvalidInputError(
+            f"elbow is {quoted(message.elbow)}, must be 'up', 'down' or empty")
     with named(FIELDS):
         return PlanningRequest(
             via_points=_tip_positions(message.via_points.poses),

@@ -24,14 +24,13 @@ import sys
 from time import monotonic, sleep
 from types import TracebackType
 
-import rrr_traj_planner
 from rrr_traj_planner.nodes.signals import signal_arrived, signals_blocked
 
 MODULES = {'planner': 'rrr_traj_planner.nodes.planner',
            'simulated_arm': 'rrr_traj_planner.nodes.simulated_arm'}
 
 # As -m does it, but from where this package is: -m prefers what lies in the folder.
-PLACE = str(Path(rrr_traj_planner.__file__).parents[1])
+PLACE = str(Path(__file__).parents[2])
 RUN_MODULE = f"""\
 import runpy, sys
 sys.path[:1] = [] if {PLACE!r} in sys.path else [{PLACE!r}]

@@ -139,5 +139,5 @@ def test_many_points_take_no_time():
     s = np.linspace(0.0, 50.0, 5000)
     wave = np.sin(40.0 * s)[:, np.newaxis] * np.ones(3)
     points = MotionPoints(s, 1.0 + wave, np.cos(40.0 * s)[:, np.newaxis] * np.full(3, 40.0),
-                          -1600.0 * wave, np.ones(5000), np.ones(5000))
+                          -1600.0 * wave, np.ones(5000, bool), np.ones(5000, bool))
     assert [x.quantity for x in excesses(points, LIMITS)][:1] == ['position']

@@ -167,5 +167,6 @@ def test_half_a_transition_s_length_is_what_the_request_says():
 
 
 def test_a_transition_of_no_length_is_refused():
-    with pytest.raises(InvalidInputError, match=r'half_transition is 0\.0 s, must be positive'):
+    with pytest.raises(InvalidInputError,
+                       match=r'half_transition is 0\.0 s, must be at least 1e-09 s'):
         table('6.1', half_transition=0.0)
