@@ -125,6 +125,29 @@ class TimingError(RrrPlannerError):
         self.least_durations = least_durations
 
 
+class TimeLimitError(TimingError):
+    """
+    Planning that was given up because it took too long.
+
+    Parameters
+    ----------
+    limit : float
+        How long planning may take [s].
+    elapsed : float
+        How long it has taken [s].
+    step : str, optional
+        What took the time.
+
+    """
+
+    def __init__(self, limit: float, elapsed: float, step: str = '') -> None:
+        super().__init__(f'planning_time_limit {limit:g} s: given up after {elapsed:.2f} s'
+                         + (f', during {step}' if step else ''))
+        self.limit = limit
+        self.elapsed = elapsed
+        self.step = step
+
+
 class ConvergenceError(RrrPlannerError):
     """An iteration that ended at its limit without a result."""
 

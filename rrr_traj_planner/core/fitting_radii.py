@@ -19,19 +19,29 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import ConvergenceError
-from rrr_traj_planner.core.tangent_lines import tangent_lines, Tangents, ZoneEnds
+from rrr_traj_planner.core.tangent_lines import (
+    Accuracy,
+    EXACT,
+    nearly_tangent_lines,
+    Tangents,
+    ZoneEnds,
+)
 
-# Zones grow together by steps of at most FASTEST until two touch, which then keep their radius;
-# how near they come to touching is a matter of the last step, SLOWEST. Steps that fail are
-# followed by shorter ones, others by longer ones.
-FASTEST = 1.5
-SLOWEST = 1.005
-THAWED = 1.05
-# Zones that are small against every line always fit: so many halvings at most to come there.
-HALVINGS = 60
-STEPS_PER_ZONE = 200
+FASTEST = 1.5    # radii, from one step to the next
+SLOWEST = 1.005  # a zone that cannot grow by this much touches a neighbour
+REACH = 12       # zones up to so many from a line that overlaps them take smaller steps with it
+THAWED = 1.05    # growth to begin with where there may be room again
+BLAMED = 0.5     # of the largest miss, of lines whose zones are too large to have tangents
+TIE = 1e-4       # of a line, by which zones may differ that stop together
+PASSES = 2       # of growth: zones that were stopped grow again where neighbours grew later
+LEAST = 0.5 ** 60  # of what was asked for
+STEPS, MOST_ZONE_STEPS = 1000, 60_000  # of growth, at most; the second over the number of zones
+ROUGH = Accuracy(1e-8, 1e-8, 10, 3)  # of lines while radii grow
+MARGINS = 1.0, 1.0 - 1e-6, 0.999, 0.97, 0.8  # of what has grown, for lines that are exact
 
 
 class Fitted(NamedTuple):
@@ -41,12 +51,15 @@ class Fitted(NamedTuple):
     lines: Tangents
 
 
-def fit_radii(points: Array, radii: Array, ends: ZoneEnds) -> Fitted:
+def fit_radii(points: Array, radii: Array, ends: ZoneEnds,
+              should_stop: ShouldStop = never) -> Fitted:
     """
     Return the radii asked for, or the largest that fit where zones would overlap.
 
-    Too large ones are grown together from a size at which all fit; zones that touch stop
-    growing, the others go on.
+    Too large ones are grown together from a size at which all fit. Where a step makes zones
+    overlap, they and those near them take smaller steps; a zone that touches a neighbour stops
+    growing, the others go on. What one zone does is not felt far along the path, so the number of
+    steps hardly grows with the number of points.
 
     Parameters
     ----------
@@ -56,6 +69,8 @@ def fit_radii(points: Array, radii: Array, ends: ZoneEnds) -> Fitted:
         Least radius asked for at each interior point [m].
     ends : callable
         The kind of zone.
+    should_stop : callable
+        Asked in every step; once it answers True, radii no longer grow.
 
     Returns
     -------
@@ -68,71 +83,95 @@ def fit_radii(points: Array, radii: Array, ends: ZoneEnds) -> Fitted:
         If not even very small zones fit.
 
     """
-    lines = _fitting(points, radii, ends, None)
-    if lines is not None:
+    lines, hindered = _tried(points, radii, ends, None)
+    if not hindered.any():
         return Fitted(radii, lines)
-    share = np.ones(len(radii))
-    for _ in range(HALVINGS):
-        share *= 0.5
-        lines = _fitting(points, share * radii, ends, None)
-        if lines is not None:
-            return _grown(points, radii, ends, share, lines)
-    raise ConvergenceError(
-        f'no curved zones fit, not even with radii {(share * radii).tolist()} m')
+    smaller, accuracy = radii.copy(), ROUGH
+    while (smaller > LEAST * radii).any():
+        should_stop()
+        if hindered.any():
+            smaller[_near(hindered, smaller > LEAST * radii)] *= 0.5
+        elif accuracy is EXACT:
+            return _grown(points, radii, ends, Fitted(smaller, lines), should_stop)
+        accuracy = ROUGH if hindered.any() else EXACT
+        lines, hindered = _tried(points, smaller, ends, None, accuracy)
+    raise ConvergenceError(f'no curved zones fit, not even with radii {smaller.tolist()} m')
 
 
-def _grown(points: Array, radii: Array, ends: ZoneEnds, share: Array, lines: Tangents) -> Fitted:
-    """Return radii grown from a share of what was asked for until zones touch."""
-    growing = share < 1.0
-    thawed = np.zeros(len(share), dtype=bool)
-    factor = FASTEST
-    for _ in range(STEPS_PER_ZONE * len(radii)):
-        if not growing.any():
-            # Where neighbours grew later there may be room again: once for each zone.
-            growing = (share < 1.0) & ~thawed
-            growing &= _free(points, radii, ends, share, lines, THAWED)
-            if not growing.any():
-                return Fitted(share * radii, lines)
-            thawed |= growing
-            factor = FASTEST
-        larger = np.where(growing, np.minimum(share * factor, 1.0), share)
-        tried = _fitting(points, larger * radii, ends, lines.direction)
-        if tried is not None:
-            share, lines = larger, tried
-            growing = growing & (share < 1.0)
-            factor = min(factor ** 2, FASTEST)  # whatever slowed it may lie behind
-        elif factor > SLOWEST:
-            factor = max(np.sqrt(factor), SLOWEST)
-        else:
-            free = _free(points, radii, ends, share, lines, SLOWEST)
-            growing &= ~_hindered(points, lines, growing) if free[growing].all() else free
-            factor = FASTEST
-    raise ConvergenceError(f'radii {radii.tolist()} m could not be made to fit')
+def _grown(points: Array, radii: Array, ends: ZoneEnds, least: Fitted,
+           should_stop: ShouldStop) -> Fitted:
+    """Return radii grown from smaller ones until zones touch."""
+    share, lines = least.radii / radii, least.lines
+    steps = min(STEPS, MOST_ZONE_STEPS // len(share))
+    for fastest in (FASTEST,) + (PASSES - 1) * (THAWED,):
+        growing, factor = share < 1.0, np.full(len(share), fastest)
+        while growing.any() and steps and not should_stop():
+            steps -= 1
+            larger = np.where(growing, np.minimum(share * factor, 1.0), share)
+            tried, hindered = _tried(points, larger * radii, ends, lines.direction, ROUGH)
+            if not hindered.any():
+                share, lines = larger, tried
+                growing &= share < 1.0
+                factor = np.minimum(factor ** 2, FASTEST)  # what slowed it may lie behind
+                continue
+            slower = _near(hindered, growing)
+            stuck = slower & (factor <= SLOWEST)
+            touching = stuck & ~_free_alone(points, radii, ends, share, lines, stuck)
+            growing &= ~(touching if touching.any() else _tightest(points, lines, stuck))
+            factor[slower] = np.maximum(np.sqrt(factor[slower]), SLOWEST)
+    for margin in MARGINS:
+        fitting = np.where(share < 1.0, margin * share, 1.0) * radii
+        exact, hindered = _tried(points, fitting, ends, lines.direction)
+        if not hindered.any():
+            return Fitted(fitting, exact)
+    return least
 
 
-def _free(points: Array, radii: Array, ends: ZoneEnds, share: Array, lines: Tangents,
-          factor: float) -> BoolArray:
-    """Return the zones that can grow by a factor while all others stay as they are."""
-    alone = np.where(np.eye(len(share), dtype=bool), np.minimum(share * factor, 1.0), share)
-    return np.array([_fitting(points, one * radii, ends, lines.direction) is not None
-                     for one in alone])
+def _tried(points: Array, radii: Array, ends: ZoneEnds, near: Array | None,
+           accuracy: Accuracy = EXACT) -> tuple[Tangents, BoolArray]:
+    """Return the lines between zones, and which miss them most or overlap them, shape (n - 1,)."""
+    with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
+        lines, misses = nearly_tangent_lines(points, radii, ends, near, accuracy)
+        worst = misses.max()
+        return lines, np.asarray(misses >= BLAMED * worst if worst > accuracy.tolerance
+                                 else ~(lines.length >= 0.0))
 
 
-def _fitting(points: Array, radii: Array, ends: ZoneEnds, near: Array | None) -> Tangents | None:
-    """Return the lines between zones that do not overlap, or None."""
-    try:
-        with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
-            lines = tangent_lines(points, radii, ends, near)
-    except ConvergenceError:
-        return None
-    return lines if (lines.length >= 0.0).all() else None
+def _free_alone(points: Array, radii: Array, ends: ZoneEnds, share: Array, lines: Tangents,
+                zones: BoolArray) -> BoolArray:
+    """Return which zones can grow while all near them stay as they are."""
+    free = zones.copy()
+    for first in range(REACH):
+        alone = np.zeros(len(zones), dtype=bool)
+        alone[first::REACH] = zones[first::REACH]
+        if alone.any():
+            larger = np.where(alone, np.minimum(share * SLOWEST, 1.0), share)
+            _, hindered = _tried(points, larger * radii, ends, lines.direction, ROUGH)
+            if hindered.any():
+                free &= ~_next_to(hindered, alone)
+    return free
 
 
-def _hindered(points: Array, lines: Tangents, growing: BoolArray) -> BoolArray:
-    """Return the growing zones next to the line that has least left, or that turn most."""
-    legs = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    left = lines.length / legs
+def _tightest(points: Array, lines: Tangents, zones: BoolArray) -> BoolArray:
+    """Return those of some zones that have no more room to grow than any other within reach."""
+    left = lines.length / np.linalg.norm(np.diff(points, axis=0), axis=1)
     # A zone has room on the shorter of its lines, and in what is left to half a revolution.
     room = np.minimum(np.minimum(left[:-1], left[1:]), np.cos(lines.angle))
-    least: float = room[growing].min()
-    return np.asarray(growing & (room <= least))
+    room = np.where(zones, room, np.inf)
+    around = sliding_window_view(np.pad(room, REACH, constant_values=np.inf), 2 * REACH + 1)
+    return np.asarray(zones & (room <= around.min(axis=1) + TIE))
+
+
+def _near(lines: BoolArray, zones: BoolArray) -> BoolArray:
+    """Return which of some zones are within reach of lines; all of them where none is."""
+    reached = np.convolve(lines, np.ones(2 * REACH, dtype=int))[REACH:-REACH] > 0
+    return reached & zones if (reached & zones).any() else zones
+
+
+def _next_to(lines: BoolArray, zones: BoolArray) -> BoolArray:
+    """Return to which of zones that are REACH apart lines are nearest."""
+    at = np.flatnonzero(zones)
+    found = np.zeros(len(zones), dtype=bool)
+    places = np.flatnonzero(lines) - 0.5  # of a line: between the zones before and after it
+    found[at[np.abs(places[:, np.newaxis] - at).argmin(axis=1)]] = True
+    return found

@@ -21,6 +21,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.cartesian_path import CartesianPath
 from rrr_traj_planner.core.errors import ConvergenceError
 from rrr_traj_planner.core.path_design import check_points
@@ -34,7 +35,7 @@ TOLERANCE = 1e-4  # relative, by which the deviation may stay below the one allo
 
 
 def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: ArrayLike,
-                  max_deviation: float) -> CartesianPath:
+                  max_deviation: float, should_stop: ShouldStop = never) -> CartesianPath:
     """
     Return the path with the largest radii that keep a deviation at every point.
 
@@ -46,6 +47,8 @@ def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: A
         Via points [m].
     max_deviation : float
         Largest distance between path and polyline [m].
+    should_stop : callable
+        Asked in every round; once it answers True, radii only shrink, and only where they must.
 
     Returns
     -------
@@ -72,11 +75,11 @@ def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: A
     with np.errstate(divide='ignore'):
         radii = np.minimum(max_deviation / (1.0 - np.sqrt(np.maximum(1.0 - half ** 2, 0.0))),
                            np.minimum(lengths[1:], lengths[:-1]) / (2.0 * half))
-    return _adjusted(family, points, np.minimum(radii, most), most, max_deviation)
+    return _adjusted(family, points, np.minimum(radii, most), most, max_deviation, should_stop)
 
 
 def _adjusted(family: Callable[[Array, ArrayLike], CartesianPath], points: Array, radii: Array,
-              most: Array, max_deviation: float) -> CartesianPath:
+              most: Array, max_deviation: float, should_stop: ShouldStop) -> CartesianPath:
     """Return the path after its radii are scaled until they use the deviation up."""
     power, before = np.ones(len(radii)), None
     for round_ in range(2 * ROUNDS):
@@ -89,7 +92,8 @@ def _adjusted(family: Callable[[Array, ArrayLike], CartesianPath], points: Array
             factor = max_deviation * (1.0 - 0.5 * TOLERANCE) / path.deviation
         wanted = np.minimum(path.radii * np.clip(factor, 0.5, 2.0) ** (1.0 / power), most)
         kept = path.deviation <= max_deviation
-        settled = round_ >= ROUNDS  # neighbours that rob each other of room: only shrink now
+        # Neighbours may rob each other of room: after some time radii only shrink.
+        settled = should_stop() or round_ >= ROUNDS
         if kept.all() and (settled or (wanted <= path.radii * (1.0 + TOLERANCE)).all()):
             return path
         radii = np.where(kept, path.radii, wanted) if settled else wanted

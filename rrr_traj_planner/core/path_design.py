@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arc_zone import ArcZones
 from rrr_traj_planner.core.arrays import Array, bound_array, finite_array
+from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.cartesian_path import CartesianPath, Zones
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.fitting_radii import fit_radii
@@ -31,7 +32,8 @@ CLOSEST_POINTS = 1e-9  # m
 REVERSAL = 1e-6        # rad, by which a turn must stay below half a revolution
 
 
-def line_arc(points: ArrayLike, radii: ArrayLike) -> CartesianPath:
+def line_arc(points: ArrayLike, radii: ArrayLike,
+             should_stop: ShouldStop = never) -> CartesianPath:
     """
     Return lines and arcs of circles; the tangent is continuous, curvature steps at the joins.
 
@@ -45,6 +47,8 @@ def line_arc(points: ArrayLike, radii: ArrayLike) -> CartesianPath:
         Via points [m], at least two.
     radii : array_like, shape (n - 2,) or ()
         Radius at each interior point [m]; shrunk where neighbouring arcs would overlap.
+    should_stop : callable
+        See `fit_radii`.
 
     Returns
     -------
@@ -64,12 +68,13 @@ def line_arc(points: ArrayLike, radii: ArrayLike) -> CartesianPath:
         arc = three_point_arc(points, float(asked[0]))
         return CartesianPath(points, asked, np.array([arc.radius]), arc.lines,
                              arc.tangent, arc.normal, ArcZones([arc.before], [arc.after]))
-    fitted = fit_radii(points, asked, ArcZones.ends)
+    fitted = fit_radii(points, asked, ArcZones.ends, should_stop)
     half = fitted.lines.angle
     return _path(points, asked, fitted.radii, fitted.lines, ArcZones(half, half))
 
 
-def line_polynomial(points: ArrayLike, radii: ArrayLike) -> CartesianPath:
+def line_polynomial(points: ArrayLike, radii: ArrayLike,
+                    should_stop: ShouldStop = never) -> CartesianPath:
     """
     Return lines and polynomial curved zones (3.18); curvature is continuous.
 
@@ -80,6 +85,8 @@ def line_polynomial(points: ArrayLike, radii: ArrayLike) -> CartesianPath:
     radii : array_like, shape (n - 2,) or ()
         Least radius of curvature of each zone [m], which is met at the via point; shrunk where
         neighbouring zones would overlap.
+    should_stop : callable
+        See `fit_radii`.
 
     Returns
     -------
@@ -95,7 +102,7 @@ def line_polynomial(points: ArrayLike, radii: ArrayLike) -> CartesianPath:
 
     """
     points, asked = _checked(points, radii)
-    fitted = fit_radii(points, asked, PolynomialZones.ends)
+    fitted = fit_radii(points, asked, PolynomialZones.ends, should_stop)
     return _path(points, asked, fitted.radii, fitted.lines, PolynomialZones(fitted.lines.angle))
 
 

@@ -259,5 +259,7 @@ class PathTrajectory(Trajectory):
 
 def _at_knots(progress: JointProfile, times: Array) -> Array:
     """Return the knots nearest to times: to rounding, a join's time might be before its knot."""
-    nearest = np.abs(progress.knots - times[:, np.newaxis]).argmin(axis=1)
-    return np.asarray(progress.knots[nearest])
+    knots = progress.knots
+    after = np.clip(np.searchsorted(knots, times), 1, len(knots) - 1)
+    before = times - knots[after - 1] <= knots[after] - times
+    return np.asarray(knots[after - before])

@@ -22,21 +22,32 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError
+from scipy.linalg import solve_banded
 
 # Half turn of a zone -> where it meets its lines (x along the tangent, y along the normal), for
 # least radius 1.
 ZoneEnds: TypeAlias = Callable[[Array], tuple[Array, Array]]
 
-ITERATIONS = 40
-HALVINGS = 12
-TOLERANCE = 1e-14   # by how far a line may miss a zone's end, relative to the largest extent
-ROUNDING = 2e-13    # the same, where rounding stops the iteration earlier
 DIFFERENCE = 1e-7   # rad, step of the numerical derivative
 LARGEST_STEP = 0.3  # rad
 
 # Each line's miss depends on its own direction and its two neighbours' alone: every third line
 # is turned at once.
 COLOURS = 3
+NEXT, AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])  # of the axes of space
+BAND = 3  # of the matrix, to either side of its diagonal: 2 components of 3 lines
+
+
+class Accuracy(NamedTuple):
+    """How good lines are to be, and how much may be done for it."""
+
+    aimed_at: float   # by how far a line may miss a zone's end, relative to the largest extent
+    tolerance: float  # the same, where the iteration goes no nearer
+    iterations: int
+    halvings: int     # of a step that does not bring lines nearer
+
+
+EXACT = Accuracy(1e-14, 2e-13, 40, 12)
 
 
 class Tangents(NamedTuple):
@@ -97,8 +108,7 @@ def tangent_lines(points: Array, radii: Array, ends: ZoneEnds,
     """
     Return the lines that are tangent to every zone while each zone contains its via point.
 
-    The corners where neighbouring lines meet lie outside the polyline. Newton's method on the
-    directions of the lines, which stay well defined where the corners recede to infinity.
+    The corners where neighbouring lines meet lie outside the polyline.
 
     Parameters
     ----------
@@ -122,26 +132,54 @@ def tangent_lines(points: Array, radii: Array, ends: ZoneEnds,
         If there are no such lines, or none were found: the radii are too large.
 
     """
+    lines, misses = nearly_tangent_lines(points, radii, ends, near)
+    if not (misses <= EXACT.tolerance).all():
+        raise ConvergenceError(
+            f'no lines are tangent to zones with radii {radii.tolist()} m: the best miss by '
+            f"{misses.max():.3g} of the path's extent")
+    return lines
+
+
+def nearly_tangent_lines(points: Array, radii: Array, ends: ZoneEnds, near: Array | None = None,
+                         accuracy: Accuracy = EXACT) -> tuple[Tangents, Array]:
+    """
+    Return the lines of `tangent_lines`, or the best that were found, and by how far they miss.
+
+    Newton's method on the directions of the lines, which stay well defined where the corners
+    recede to infinity. A line's miss depends on its own direction and its neighbours' alone: each
+    step solves a band matrix, in time linear in the number of points.
+
+    Parameters
+    ----------
+    points, radii, ends, near
+        As of `tangent_lines`.
+    accuracy : Accuracy
+        How good the lines are to be.
+
+    Returns
+    -------
+    tuple of Tangents and ndarray, shape (n - 1,)
+        The lines, and by how far each misses a zone's end, relative to the largest extent.
+
+    """
     legs = np.diff(points, axis=0)
     direction = _unit(legs) if near is None else near
     scale = max(float(np.ptp(points, axis=0).max()), float(np.abs(points).max()))
     basis = _basis(direction)
     lines = tangents(points, radii, ends, direction)
-    miss = _largest(_misses(lines, basis))
-    for _ in range(ITERATIONS):
-        if miss <= TOLERANCE * scale:
-            return lines
+    misses, before = _misses(lines, basis), np.inf
+    for _ in range(accuracy.iterations):
+        miss = _largest(misses)
+        if miss <= accuracy.aimed_at * scale or 0.5 * before < miss <= accuracy.tolerance * scale:
+            break
         step = _newton_step(points, radii, ends, lines, basis)
-        better = _damped(points, radii, ends, lines, basis, step, miss)
+        better = None if step is None else _damped(
+            points, radii, ends, lines, basis, step, miss, accuracy.halvings)
         if better is None:
             break
-        lines, basis = better, _basis(better.direction)
-        miss = _largest(_misses(lines, basis))
-    if miss <= ROUNDING * scale:
-        return lines
-    raise ConvergenceError(
-        f'no lines are tangent to zones with radii {radii.tolist()} m: the best miss by '
-        f'{miss:.3g} m')
+        lines, basis, before = better, _basis(better.direction), miss
+        misses = _misses(lines, basis)
+    return lines, np.nan_to_num(np.abs(misses).max(axis=-1) / scale, nan=np.inf)
 
 
 def frames(first: Array, second: Array) -> tuple[Array, Array]:
@@ -174,10 +212,10 @@ def frames(first: Array, second: Array) -> tuple[Array, Array]:
 
 
 def _damped(points: Array, radii: Array, ends: ZoneEnds, lines: Tangents, basis: Array,
-            step: Array, miss: float) -> Tangents | None:
+            step: Array, miss: float, halvings: int) -> Tangents | None:
     """Return the lines after as much of a step as makes them miss by less, or None."""
     share = min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
-    for _ in range(HALVINGS):
+    for _ in range(halvings):
         tried = tangents(points, radii, ends, _turned(lines.direction, basis, share * step))
         if _largest(_misses(tried, _basis(tried.direction))) < miss:
             return tried
@@ -186,27 +224,29 @@ def _damped(points: Array, radii: Array, ends: ZoneEnds, lines: Tangents, basis:
 
 
 def _newton_step(points: Array, radii: Array, ends: ZoneEnds, lines: Tangents,
-                 basis: Array) -> Array:
-    """Return by what angles the lines are to be turned, shape (n - 1, 2) [rad]."""
+                 basis: Array) -> Array | None:
+    """Return by what angles the lines are to be turned, shape (n - 1, 2) [rad], or None."""
     n = len(lines.direction)
-    line = np.arange(n)
     turns = np.zeros((COLOURS, 2, n, 2))
     for colour in range(COLOURS):
         turns[colour, :, colour::COLOURS] = np.eye(2)[:, np.newaxis] * DIFFERENCE
     turned = tangents(points, radii, ends, _turned(lines.direction, basis, turns))
     base = _misses(lines, basis)
     slope = (_misses(turned, basis) - base) / DIFFERENCE  # colour, turn, line, component
-    J = np.zeros((n, 2, n, 2))
-    for offset in (-1, 0, 1):
-        own = line[(line + offset >= 0) & (line + offset < n)]
-        J[own + offset, :, own, :] = np.swapaxes(slope[own % COLOURS, :, own + offset], 1, 2)
-    if not np.isfinite(J).all():
-        raise ConvergenceError(f'no lines are tangent to zones with radii {radii.tolist()} m')
+    band = np.zeros((2 * BAND + 1, n, 2))  # diagonals of LAPACK's band, by line and turn
+    for offset in (-1, 0, 1):  # the turn of a line is felt by itself and by its neighbours
+        own = np.arange(max(-offset, 0), n - max(offset, 0))
+        for component in range(2):
+            for turn in range(2):
+                band[BAND + 2 * offset + component - turn, own, turn] = slope[
+                    own % COLOURS, turn, own + offset, component]
+    if not np.isfinite(band).all():
+        return None
     try:
-        step = np.linalg.solve(J.reshape(2 * n, 2 * n), -base.ravel())
+        step = solve_banded((BAND, BAND), band.reshape(2 * BAND + 1, 2 * n), -base.ravel(),
+                            overwrite_ab=True, overwrite_b=True, check_finite=False)
     except np.linalg.LinAlgError:
-        raise ConvergenceError(
-            f'lines tangent to zones with radii {radii.tolist()} m are not unique') from None
+        return None
     return np.asarray(step, dtype=float).reshape(n, 2)
 
 
@@ -232,9 +272,14 @@ def _basis(direction: Array) -> Array:
     """Return two unit vectors across each direction, shape (n, 2, 3)."""
     axis = np.eye(3)[np.abs(direction).argmin(axis=-1)]
     basis = np.empty(direction.shape[:-1] + (2, 3))
-    basis[..., 0, :] = _unit(np.asarray(np.cross(direction, axis), dtype=float))
-    basis[..., 1, :] = np.cross(direction, basis[..., 0, :])
+    basis[..., 0, :] = _unit(_cross(direction, axis))
+    basis[..., 1, :] = _cross(direction, basis[..., 0, :])
     return basis
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Return products of vectors, many times faster than `numpy.cross`."""
+    return np.asarray(a[..., NEXT] * b[..., AFTER] - a[..., AFTER] * b[..., NEXT])
 
 
 def _unit(vectors: Array) -> Array:

@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.axis_planes import axis_planes, AxisPlanes
+from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.cartesian_path import CartesianPath
 from rrr_traj_planner.core.errors import (
     LimitViolationError,
@@ -59,7 +60,8 @@ class JointRange(NamedTuple):
 
 
 def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
-                    posture: Posture, start: Array | None = None) -> JointRange:
+                    posture: Posture, start: Array | None = None,
+                    should_stop: ShouldStop = never) -> JointRange:
     """
     Refuse a path that leaves the workspace or a joint's range anywhere, between points too.
 
@@ -78,6 +80,8 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
         The posture; where the path crosses joint axis 1 in a plane with it, at its beginning.
     start : ndarray, shape (3,), optional
         Joint positions in which the path is to begin [rad]; None: in any whole turns.
+    should_stop : callable
+        Asked in every round; its answer does not matter, for there is none before the last.
 
     Returns
     -------
@@ -101,6 +105,7 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
     _check_axis(model, path, planes)
     grid = _grid(path)
     for _ in range(ROUNDS):
+        should_stop()
         joints = unlimited_joint_path(model, planes.points(path, grid), posture)
         from_left = unlimited_joint_path(model, planes.points(path, grid, left=True), posture)
         h = np.diff(grid)[:, np.newaxis]

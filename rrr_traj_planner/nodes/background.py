@@ -12,90 +12,123 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-
-"""A thread for what takes long, so that a node answers all else meanwhile."""
+"""Threads for what takes long, so that a node answers all else meanwhile."""
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from queue import SimpleQueue
-from threading import Lock, Thread
-from typing import Any
+from threading import Lock, Semaphore, Thread
+from time import perf_counter
+from typing import Any, NamedTuple
 
 from rclpy.node import Node
 from rclpy.task import Future
+from rrr_traj_planner.nodes.turns import Turns
 
+# Threads are told to end, and waited for, so long; a function asks often enough.
 PATIENCE = 1.0  # s
 
+MOST_THREADS = 32  # more calls wait until one of so many has returned
 
-class BackgroundThread:
+
+class _Call(NamedTuple):
+    """What is to be called, and who is told."""
+
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    done: Future
+
+
+class Background:
     """
-    Calls one function after another; callbacks of the node await what they return.
+    Calls functions in threads that take turns; callbacks of the node await what they return.
 
     Parameters
     ----------
     node : Node
         Its executor is woken when a function has returned.
     name : str
-        The thread's.
+        The threads'.
 
     """
 
     def __init__(self, node: Node, name: str) -> None:
-        self._calls: SimpleQueue[tuple[Callable[..., Any], tuple[Any, ...], Future] | None]
-        self._calls = SimpleQueue()
-        self._returned = node.create_guard_condition(lambda: None)  # wakes the executor
+        self._name, self._turns = name, Turns()
+        self._calls: SimpleQueue[_Call | None] = SimpleQueue()
+        self._returned: deque[tuple[Future, Any, Exception | None]] = deque()
+        self._wake = node.create_guard_condition(self._tell)
         self._ending, self._ended = Lock(), False
-        self._thread = Thread(target=self._run, name=name, daemon=True)
-        self._thread.start()
+        self._idle, self._threads = Semaphore(0), list[Thread]()
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Future:
         """
-        Call a function when those before it have returned.
+        Call a function in a thread.
 
         Parameters
         ----------
         function : callable
-            What takes long.
+            What takes long; its last argument is its `Turn`, whose `seconds` it asks often.
         *arguments
-            Its arguments.
+            Those before.
 
         Returns
         -------
         Future
-            What it returns or raises, once it has and unless the thread is ended before.
+            What it returns or raises, once it has and unless the threads are ended before. Of
+            several it is told in the order in which they returned.
 
         """
         done = Future()
-        self._calls.put((function, arguments, done))
+        self._calls.put(_Call(function, arguments, done))
+        if not self._idle.acquire(blocking=False) and len(self._threads) < MOST_THREADS:
+            self._threads.append(Thread(target=self._run, name=self._name, daemon=True))
+            self._threads[-1].start()
         return done
 
     def is_ending(self) -> bool:
-        """Return whether the thread is told to end: what it is at may as well be given up."""
+        """Return whether the threads are told to end: what they are at may be given up."""
         return self._ended
 
     def end(self) -> None:
         """
-        End the thread; what it is at is waited for, but not for long.
+        End the threads; what they are at is waited for, but not for long.
 
         Compiled code that Python's end cuts short may abort the process.
         """
         with self._ending:
             self._ended = True
-        self._calls.put(None)
-        self._thread.join(PATIENCE)
+        self._turns.end()
+        for _ in self._threads:
+            self._calls.put(None)
+        until = perf_counter() + PATIENCE
+        for thread in self._threads:
+            thread.join(max(0.0, until - perf_counter()))
 
     def _run(self) -> None:
-        for function, arguments, done in iter(self._calls.get, None):
-            try:
-                result, error = function(*arguments), None
-            except Exception as raised:
-                result, error = None, raised
+        for call in iter(self._calls.get, None):
+            with self._turns.turn() as turn:
+                if self._ended:
+                    return
+                try:
+                    result, error = call.function(*call.arguments, turn), None
+                except Exception as raised:
+                    result, error = None, raised
             with self._ending:
                 if self._ended:
                     return
-                if error is None:
-                    done.set_result(result)
-                else:
-                    done.set_exception(error)
-                self._returned.trigger()
+                self._returned.append((call.done, result, error))
+                self._wake.trigger()
+            self._idle.release()
+
+    def _tell(self) -> None:
+        """Tell what one function has returned: an executor answers the last told first."""
+        done, result, error = self._returned.popleft()
+        if error is None:
+            done.set_result(result)
+        else:
+            done.set_exception(error)
+        with self._ending:
+            if self._returned and not self._ended:
+                self._wake.trigger()

@@ -119,8 +119,8 @@ TABLE: tuple[Row, ...] = (
         'Cartesian path', nodes=(PLANNER,)),
     Row('poly_414.t_acc', 0.5, 'half the length of a transition of planner poly_414', 's', 0.001,
         100.0, nodes=(PLANNER,)),
-    Row('planning_time_limit', 1.0, 'after which a planner that still improves its motion answers '
-        'with the best so far', 's', 1e-3, 3600.0, nodes=(PLANNER,)),
+    Row('planning_time_limit', 1.0, 'time for a request; then the best motion is the answer, '
+        'or a refusal that says what took the time', 's', 1e-3, 3600.0, nodes=(PLANNER,)),
     Row('max_points', MOST_POINTS, 'points that an answer may have; a request for more is refused '
         'before they are computed', 'points', 2, 10_000_000, nodes=(PLANNER,)),
     Row('max_via_points', 1000, 'via points that a request may have; one with more is refused '

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node `trajectory_planner`: plans on request, one request at a time."""
+"""The node `trajectory_planner`: plans on request, short requests before long ones."""
 
 from __future__ import annotations
 
@@ -26,13 +26,14 @@ from typing import Any, NamedTuple
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Path
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rrr_traj_planner.core.cancellation import step
 from rrr_traj_planner.core.errors import ConvergenceError, quoted, RrrPlannerError
-from rrr_traj_planner.nodes.background import BackgroundThread
+from rrr_traj_planner.nodes.background import Background
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters
 from rrr_traj_planner.nodes.diagnostics import PERIOD
@@ -42,6 +43,8 @@ from rrr_traj_planner.nodes.parameters import PLANNER
 from rrr_traj_planner.nodes.planning_answer import failure, refusal, success, tip_path
 from rrr_traj_planner.nodes.planning_request import planning_request
 from rrr_traj_planner.nodes.request_statistics import RequestStatistics
+from rrr_traj_planner.nodes.turns import Turn
+from rrr_traj_planner.planners.deadline import Deadline
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
@@ -73,9 +76,9 @@ class _Unseen(NamedTuple):
 
 class TrajectoryPlanner(Node):
     """
-    Serves `plan_trajectory`; a thread plans, so that the node answers all else meanwhile.
+    Serves `plan_trajectory`; threads plan in turns, so that the node answers all else meanwhile.
 
-    A plan is answered first and published then, before the next request is taken up.
+    A plan is answered first and published then.
 
     Parameters
     ----------
@@ -100,16 +103,14 @@ class TrajectoryPlanner(Node):
         self._markers = self.create_publisher(MarkerArray, 'markers', LATCHED)
         self._markers.publish(no_plan_markers(self._parameters_declared.config.base_frame))
         self._statistics = RequestStatistics()
-        self._begun: float | None = None  # when what is planned was taken up
+        self._begun: list[float] = []  # when what is planned was taken up
         self._diagnostics = self.create_publisher(DiagnosticArray, 'diagnostics', 10)
-        self._thread = BackgroundThread(self, 'planning')
-        # A group of its own, held while a request is planned and until its answer is sent, and
-        # while a plan is published: each waits its turn.
-        turns = MutuallyExclusiveCallbackGroup()
+        self._threads = Background(self, 'planning')
         self.create_service(PlanTrajectory, 'plan_trajectory', self._plan, qos_profile=WAITING,
-                            callback_group=turns)
+                            callback_group=ReentrantCallbackGroup())
         self._unseen: deque[_Unseen] = deque()
-        self._answered = self.create_guard_condition(self._show, callback_group=turns)
+        self._answered = self.create_guard_condition(
+            self._show, callback_group=MutuallyExclusiveCallbackGroup())
         self.create_timer(PERIOD, self._diagnose,  # whatever the clock does
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._start = NodeStart(
@@ -120,9 +121,10 @@ class TrajectoryPlanner(Node):
                     _: PlanTrajectory.Response) -> PlanTrajectory.Response:
         """Answer a request; the executor goes on with other work until the plan is there."""
         config, stamp = self._parameters_declared.config, self.get_clock().now().to_msg()
-        self._begun = perf_counter()
-        answer = await self._thread.call(_answer, request, config, self._thread.is_ending)
-        self._begun = None
+        begun = perf_counter()
+        self._begun.append(begun)
+        answer = await self._threads.call(_answer, request, config, self._threads.is_ending)
+        self._begun.remove(begun)
         name = quoted(request.planner_id or config.default_planner_id)[1:-1]
         self._statistics.add(answer.response, self.get_clock().now().to_msg())
         self._report(name, answer)
@@ -138,11 +140,11 @@ class TrajectoryPlanner(Node):
                 await self._publish(self._unseen.popleft())
 
     async def _publish(self, unseen: _Unseen) -> None:
-        """Publish a plan; the thread makes what is only looked at."""
+        """Publish a plan; a thread makes what is only looked at."""
         trajectory, *plan_and_setting = unseen
         self._trajectory.publish(trajectory)
         try:
-            path, markers = await self._thread.call(_drawing, *plan_and_setting)
+            path, markers = await self._threads.call(_drawing, *plan_and_setting)
         except Exception:  # a bug, but the plan is good and has been answered
             self.get_logger().error(f'a plan cannot be drawn:\n{traceback.format_exc()}')
             return
@@ -151,7 +153,7 @@ class TrajectoryPlanner(Node):
 
     def _diagnose(self) -> None:
         """Publish what requests have come to."""
-        busy = 0.0 if self._begun is None else perf_counter() - self._begun
+        busy = perf_counter() - min(self._begun) if self._begun else 0.0
         self._diagnostics.publish(self._statistics.message(
             self.get_name(), self.get_clock().now().to_msg(), busy))
 
@@ -171,26 +173,24 @@ class TrajectoryPlanner(Node):
             log.warning(f'{name} refused {took} ({response.error_code}): {response.message}')
 
     def destroy_node(self) -> None:
-        """End the planning thread with the node."""
+        """End the planning threads with the node."""
         self._start.end()
-        self._thread.end()
+        self._threads.end()
         super().destroy_node()
 
 
 def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
-            is_ending: Callable[[], bool]) -> _Answer:
+            is_ending: Callable[[], bool], turn: Turn) -> _Answer:
     """Plan; whatever goes wrong is an answer too."""
-    started = perf_counter()
     found, trace = None, ''
+    deadline = Deadline(config.planning_time_limit, turn.seconds, is_ending)
     try:
-        deadline = started + config.planning_time_limit
-        found = plan(config.model, config.limits, planning_request(
-            request, config, lambda: is_ending() or perf_counter() > deadline))
-        seconds = perf_counter() - started
-        response = success(found, config)
+        found = plan(config.model, config.limits, planning_request(request, config, deadline))
+        seconds = turn.used()
+        with step('the making of the message'):
+            response = success(found, config, deadline)
     except Exception as error:
-        seconds = perf_counter() - started
-        found = None
+        found, seconds = None, turn.used()
         if isinstance(error, RrrPlannerError) and not isinstance(error, ConvergenceError):
             response = refusal(error)
         else:  # a bug: the caller is told, the log has the trace
@@ -199,7 +199,8 @@ def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
     return _Answer(response, found, trace)
 
 
-def _drawing(found: Plan, config: PlannerConfig, stamp: Time) -> tuple[Path, MarkerArray]:
+def _drawing(found: Plan, config: PlannerConfig, stamp: Time,
+             turn: Turn) -> tuple[Path, MarkerArray]:
     """Return the tip's path and the markers of a plan."""
-    return (tip_path(found.points, config, stamp),
+    return (tip_path(found.points, config, stamp, lambda: turn.seconds() < 0.0),
             plan_markers(found.points, found.via_times, config.model, config.base_frame))

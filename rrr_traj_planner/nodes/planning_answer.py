@@ -23,6 +23,7 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Path
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import (
     InvalidInputError,
     LimitViolationError,
@@ -39,6 +40,7 @@ from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 SECOND = 1_000_000_000  # ns
+POINTS_AT_ONCE = 1000   # of a message, some 20 ms
 
 _RESPONSE = PlanTrajectory.Response
 _CODES: tuple[tuple[type[RrrPlannerError], int], ...] = (
@@ -51,7 +53,8 @@ _CODES: tuple[tuple[type[RrrPlannerError], int], ...] = (
 )
 
 
-def success(plan: Plan, config: PlannerConfig) -> PlanTrajectory.Response:
+def success(plan: Plan, config: PlannerConfig,
+            should_stop: ShouldStop = never) -> PlanTrajectory.Response:
     """
     Return a plan as the response.
 
@@ -61,6 +64,8 @@ def success(plan: Plan, config: PlannerConfig) -> PlanTrajectory.Response:
         The plan.
     config : PlannerConfig
         The node's parameters.
+    should_stop : callable
+        Asked now and then; what it raises ends the work.
 
     Returns
     -------
@@ -70,7 +75,8 @@ def success(plan: Plan, config: PlannerConfig) -> PlanTrajectory.Response:
     """
     return PlanTrajectory.Response(
         error_code=_RESPONSE.SUCCESS, message=plan.note, failed_via_point=-1,
-        trajectory=joint_trajectory(plan.points, config), via_times=plan.via_times.tolist(),
+        trajectory=joint_trajectory(plan.points, config, should_stop),
+        via_times=plan.via_times.tolist(),
         peak_velocity=plan.peaks.velocity.tolist(),
         peak_acceleration=plan.peaks.acceleration.tolist(),
         peak_jerk=plan.peaks.jerk.tolist(), peak_effort=plan.effort.tolist())
@@ -116,7 +122,8 @@ def failure(error: Exception) -> PlanTrajectory.Response:
         message=f'internal error, {type(error).__name__}: {error}')
 
 
-def joint_trajectory(points: TrajectoryPoints, config: PlannerConfig) -> JointTrajectory:
+def joint_trajectory(points: TrajectoryPoints, config: PlannerConfig,
+                     should_stop: ShouldStop = never) -> JointTrajectory:
     """
     Return the message that joint_trajectory_controller accepts.
 
@@ -126,6 +133,8 @@ def joint_trajectory(points: TrajectoryPoints, config: PlannerConfig) -> JointTr
         With velocities and accelerations.
     config : PlannerConfig
         For the frame and the joints' names.
+    should_stop : callable
+        As of `success`.
 
     Returns
     -------
@@ -139,6 +148,8 @@ def joint_trajectory(points: TrajectoryPoints, config: PlannerConfig) -> JointTr
     q, qd, qdd = (_flat(v) for v in (points.positions, points.velocities, points.accelerations))
     filled = []
     for i, stamp in enumerate(stamps):
+        if i % POINTS_AT_ONCE == 0:
+            should_stop()
         point = JointTrajectoryPoint()
         row = slice(3 * i, 3 * i + 3)
         point.positions, point.velocities, point.accelerations = q[row], qd[row], qdd[row]
@@ -148,7 +159,8 @@ def joint_trajectory(points: TrajectoryPoints, config: PlannerConfig) -> JointTr
     return message
 
 
-def tip_path(points: TrajectoryPoints, config: PlannerConfig, stamp: Any) -> Path:
+def tip_path(points: TrajectoryPoints, config: PlannerConfig, stamp: Any,
+             should_stop: ShouldStop = never) -> Path:
     """
     Return the path of the tip through the points of a motion.
 
@@ -160,6 +172,8 @@ def tip_path(points: TrajectoryPoints, config: PlannerConfig, stamp: Any) -> Pat
         For the frame and the arm.
     stamp : builtin_interfaces.msg.Time
         When it was planned.
+    should_stop : callable
+        As of `success`.
 
     Returns
     -------
@@ -170,7 +184,9 @@ def tip_path(points: TrajectoryPoints, config: PlannerConfig, stamp: Any) -> Pat
     message = Path()
     message.header.frame_id, message.header.stamp = config.base_frame, stamp
     poses = []
-    for x, y, z in forward_kinematics(config.model, points.positions).tolist():
+    for i, (x, y, z) in enumerate(forward_kinematics(config.model, points.positions).tolist()):
+        if i % POINTS_AT_ONCE == 0:
+            should_stop()
         pose = PoseStamped(header=message.header)
         position = pose.pose.position
         position.x, position.y, position.z = x, y, z

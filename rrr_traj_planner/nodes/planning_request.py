@@ -16,12 +16,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import inf, isfinite
 from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import (
     InvalidInputError,
     quoted,
@@ -32,7 +32,7 @@ from rrr_traj_planner.core.errors import (
 from rrr_traj_planner.core.postures import ELBOWS
 from rrr_traj_planner.nodes.configuration import PlannerConfig
 from rrr_traj_planner.nodes.naming import named
-from rrr_traj_planner.planners.request import never, PlanningRequest
+from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 
@@ -53,7 +53,7 @@ class FrameError(RrrPlannerError):
 
 
 def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
-                     should_stop: Callable[[], bool] = never) -> PlanningRequest:
+                     should_stop: ShouldStop = never) -> PlanningRequest:
     """
     Return what a message asks, with the node's defaults in the empty fields.
 

@@ -142,6 +142,7 @@ def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
     """Return the same; whether quintics are to overshoot before steps alone."""
     times = sample_times(trajectory, request.sample_period, request.max_points)
     while True:
+        request.should_stop()
         spline = Interpolant(points_at(trajectory, times))
         excess = spline_excess(model, limits, spline)
         further = _between(limits, times, excess, trajectory.step_times, gap, overshoot_before)

@@ -132,6 +132,7 @@ def _holdable_motion(task: JointTask, chain: Chain,
     stretch says so by being infinite.
     """
     for _ in range(STRAIGHTENING_ROUNDS):
+        task.should_stop()
         motion = _least_time_motion(task, chain, floor)
         stretch = segment_stretch(task, motion)
         blocked = np.isinf(stretch)
@@ -145,6 +146,7 @@ def _holdable_motion(task: JointTask, chain: Chain,
 def _least_time_motion(task: JointTask, chain: Chain, floor: Array | None) -> ChainMotion:
     """Return the motion of least total time within the kinematic limits."""
     for round_ in range(OVERSHOOT_ROUNDS + 1):
+        task.should_stop()
         if round_ == OVERSHOOT_ROUNDS:
             chain = at_rest(chain)
         motion, overshoot = (quickest_motion(task, chain) if floor is None

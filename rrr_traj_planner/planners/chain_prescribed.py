@@ -80,6 +80,7 @@ def _within_limits(task: JointTask, chain: Chain, durations: Array) -> ChainMoti
     slowed to these durations; else lower via velocities may help.
     """
     for round_ in range(STRAIGHTENING_ROUNDS + 1):
+        task.should_stop()
         if round_ == STRAIGHTENING_ROUNDS:
             chain = at_rest(chain)
         for gently in (True, False):
@@ -110,6 +111,7 @@ def _with_durations(task: JointTask, chain: Chain, durations: Array,
                     gently: bool) -> ChainMotion | None:
     """Return a motion of given durations within the kinematic limits; None if there is none."""
     for round_ in range(OVERSHOOT_ROUNDS + 1):
+        task.should_stop()
         if round_ == OVERSHOOT_ROUNDS:
             chain = at_rest(chain)
         motion, overshoot = timed_motion(task, chain, durations, gently)

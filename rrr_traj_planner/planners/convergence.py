@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 CONVERGED = 5e-3  # relative gap
+INFORMATIVE = 0.5  # a larger part of the time says nothing that a reader could use
 
 
 def unconverged_note(gap: float, duration: float) -> str:
@@ -33,10 +34,12 @@ def unconverged_note(gap: float, duration: float) -> str:
     Returns
     -------
     str
-        Empty where it converged.
+        Empty where it converged; with a bound on what could be saved where it is a useful one.
 
     """
     if gap < CONVERGED * duration:
         return ''
-    part = 100.0 * min(gap / duration, 1.0)
-    return f'planning ended before it converged: at most {part:.3g} % of the time could be saved'
+    if not gap < INFORMATIVE * duration:
+        return 'planning ended before it converged: faster motions may be possible'
+    return (f'planning ended before it converged: at most {100.0 * gap / duration:.3g} % of the '
+            'time could be saved')

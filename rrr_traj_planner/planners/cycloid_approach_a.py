@@ -23,7 +23,8 @@ other. A beam search chooses them, a descent by coordinates refines them.
 from __future__ import annotations
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, IntArray
+from rrr_traj_planner.core.cancellation import ShouldStop
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
@@ -35,7 +36,12 @@ from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.segment_motion import Parts, quick_parts, trajectory
-from rrr_traj_planner.planners.transition_cruise import cruise_velocity, stopping_time
+from rrr_traj_planner.planners.transition_cruise import (
+    bisected,
+    cruise_velocity,
+    stopping_bracket,
+    stopping_time,
+)
 
 BEAM = 24
 # Durations tried, over the least one from rest to rest: fine near it, on to very slow.
@@ -85,10 +91,11 @@ def plan(task: JointTask) -> Trajectory:
 
 def _fastest(task: JointTask, chain: Chain) -> Array:
     """Return durations of least total time, as good as the search finds them, shape (n,)."""
-    durations = _beam_search(chain)
+    durations = _beam_search(chain, task.should_stop)
     if len(durations) <= REFINED_SEGMENTS:
-        durations = _refined(chain, durations)
+        durations = _refined(chain, durations, task.should_stop)
     for factor in STRETCHES:
+        task.should_stop()
         if _motion(task, chain, chain.law, factor * durations) is not None:
             return np.asarray(factor * durations)
     raise TimingError(
@@ -96,12 +103,13 @@ def _fastest(task: JointTask, chain: Chain) -> Array:
         'durations are found at which every joint then stays in its range')
 
 
-def _beam_search(chain: Chain) -> Array:
+def _beam_search(chain: Chain, should_stop: ShouldStop) -> Array:
     """Return durations chosen one after the other; where that ends, very long ones."""
     D, law, limit = chain.displacements, chain.law, chain.max_velocity
     grids = np.maximum(chain.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
     v, elapsed, chosen = np.zeros((1, 3)), np.zeros(1), np.zeros((1, 0))
     for k in range(len(D) - 1):
+        should_stop()
         T = grids[k]
         next_v = cruise_velocity(law, limit, v[:, np.newaxis], T[:, np.newaxis], D[k])
         total = elapsed[:, np.newaxis] + T
@@ -111,18 +119,30 @@ def _beam_search(chain: Chain) -> Array:
             return np.asarray(grids[:, -1])
         v, elapsed = next_v[beam, step], total[beam, step]
         chosen = np.column_stack((chosen[beam], T[step]))
-        best = np.argsort(elapsed + stopping_time(law, limit, v, D[k + 1], grids[k + 1]),
-                          kind='stable')[:BEAM]
+        best = _best(law, limit, v, elapsed, D[k + 1], grids[k + 1])
         v, elapsed, chosen = v[best], elapsed[best], chosen[best]
     last = stopping_time(law, limit, v, D[-1], grids[-1])
     best_one = int((elapsed + last).argmin())
     return np.append(chosen[best_one], min(last[best_one], grids[-1, -1]))
 
 
-def _refined(chain: Chain, durations: Array) -> Array:
+def _best(law: TransitionLaw, limit: Array, v: Array, elapsed: Array, D: Array,
+          grid: Array) -> IntArray:
+    """Return which beams can come to rest first at the end of the next segment."""
+    low, high = stopping_bracket(law, limit, v, D, grid)
+    near = np.arange(len(v))
+    if len(v) > BEAM:  # others than these cannot be among them
+        near = np.flatnonzero(elapsed + low <= np.partition(elapsed + high, BEAM - 1)[BEAM - 1])
+    rest = bisected(law, limit, v[near], D, low[near], high[near])
+    return near[np.argsort(elapsed[near] + rest, kind='stable')[:BEAM]]
+
+
+def _refined(chain: Chain, durations: Array, should_stop: ShouldStop) -> Array:
     """Return better durations, each varied in turn by smaller and smaller steps."""
     best, step = _total(chain, durations[np.newaxis])[0], FIRST_STEP
     for _ in range(REFINING_PASSES):
+        if should_stop():
+            break
         for k in range(len(durations) - 1):
             trials = np.tile(durations, (len(REFINING_STEPS), 1))
             trials[:, k] *= 1.0 + step * REFINING_STEPS

@@ -125,7 +125,9 @@ def nearly_fastest_along(task: PathTask) -> Timed:
         If the motors cannot hold the arm somewhere on the path; with the place.
 
     """
+    task.should_stop()
     table = PathTable(task.arm_path)
+    task.should_stop()
     N = len(table.ends) - 1
     grid = grid_of(_ramps(N), task.cruise)
     bounds = all_bounds(task.limits, task.max_tip_speed)
@@ -136,15 +138,18 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     def limits(margins: Array) -> PathConstraints:
         return PathConstraints(table, task.limits, task.max_tip_speed, grid, margins, steady)
 
+    task.should_stop()
     constraints, former = limits(np.zeros((N, 2 * grid.n + 1, QUANTITIES))), None
     start = Centre(_slow_start(task, table, constraints, steady), None)
     found = [(float(start.motion.T.sum()), start.motion, -np.inf)]  # no motion takes less than
+    task.should_stop()
     for repair in range(REPAIRS if is_within(constraints, start.motion) else 0):
         outcome = minimise(constraints, start, freedom, task.should_stop, former=former,
                            relative_gap=RELATIVE_GAP if former else ROUGH_GAP)
         if former and not outcome.within:  # it was too much at once
             constraints = limits(0.5 * (former.margins + constraints.margins))
             continue
+        task.should_stop()
         outcome, seen = _onward(outcome, start, table, grid, bounds)
         found.append(_slowed(outcome, seen.stretch))
         worth_it = WORTH_IT * LESS_WORTH ** max(repair - PATIENCE, 0)
@@ -152,6 +157,7 @@ def nearly_fastest_along(task: PathTask) -> Timed:
             break
         start = outcome.centres[-NEARER if former else -1:][0]
         former, constraints = constraints, limits(constraints.margins + seen.excess)
+    task.should_stop()
     T, motion, _ = min(found, key=lambda f: f[0])
     least = max(least for *_, least in found)
     return Timed(_trajectory(task, table, grid, motion), max(T - least, 0.0))
@@ -179,6 +185,7 @@ def kept(task: PathTask, timed: Timed) -> Timed:
         Within every limit.
 
     """
+    task.should_stop()
     factor = _exact_stretch(task, timed.trajectory)
     return timed._replace(trajectory=timed.trajectory.stretched(factor)) if factor > 1.0 else timed
 

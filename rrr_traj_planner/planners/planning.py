@@ -22,6 +22,7 @@ import numpy as np
 from rrr_traj_planner.core import cycloid
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.axis_planes import passes_axis
+from rrr_traj_planner.core.cancellation import step
 from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError, RrrPlannerError
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limit_check import violations
@@ -91,10 +92,11 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
     limits = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
     start = None if request.start is None else check_start(
         model, limits, request.start, request.start_state_tolerance)
-    if method.plan_path is not None:
-        answer = _planned_path(method.plan_path, model, limits, request, start)
-    else:
-        answer = _planned_joints(method, model, limits, request, start)
+    with step(f'planning by {request.planner_id}'):
+        if method.plan_path is not None:
+            answer = _planned_path(method.plan_path, model, limits, request, start)
+        else:
+            answer = _planned_joints(method, model, limits, request, start)
     if start is not None and np.abs(answer.points.positions[0] - start).max() > SAME_POINT:
         raise ConvergenceError(
             f'planner {request.planner_id} began at {answer.points.positions[0].tolist()} rad, '
@@ -231,9 +233,13 @@ def _rest(model: RobotModel, limits: JointLimits, request: PlanningRequest, q: A
 def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, via_times: Array) -> Plan:
     """Return the plan of a trajectory, after the checks that no planner is trusted with."""
-    found = answer_points(model, limits, request, trajectory)
+    with step('the choice of points for the answer'):
+        found = answer_points(model, limits, request, trajectory)
     trajectory = found.trajectory
-    peaks, effort = trajectory.peaks(), peak_torque(model, trajectory).value
+    with step('the final checks'):
+        request.should_stop()
+        peaks, effort = trajectory.peaks(), peak_torque(model, trajectory).value
+        request.should_stop()
     broken = violations(limits, peaks, effort)
     if broken:
         raise ConvergenceError(

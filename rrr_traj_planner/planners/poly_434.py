@@ -35,7 +35,11 @@ from rrr_traj_planner.planners.motion_law import chain_of, torque_stretch
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.segment_motion import joint_profiles
-from rrr_traj_planner.planners.stops_at_via_points import quick_durations, stopping_motion
+from rrr_traj_planner.planners.stops_at_via_points import (
+    may_lack_torque,
+    quick_durations,
+    stopping_motion,
+)
 from rrr_traj_planner.planners.symmetric_434 import fastest_symmetric, least_time, Loads, loads_of
 from rrr_traj_planner.planners.torque_434 import law_for_torque, Segment, STARTS
 
@@ -68,8 +72,10 @@ def plan(task: JointTask) -> Trajectory:
     loads = loads_of(chain_of(task, QUARTIC))
     symmetric = fastest_symmetric(loads)
     floors = quick_durations(task, least_time(symmetric, loads))
+    lacking = may_lack_torque(task, _motion(task.points, symmetric, floors))
     found = [_for_torque(task, k, Loads(*(load[k] for load in loads)), _nth(symmetric, k),
-                         float(floors[k])) for k in range(len(floors))]
+                         float(floors[k])) if lacking[k] else (_nth(symmetric, k), True)
+             for k in range(len(floors))]
     laws = Law434(*(np.array(field) for field in zip(*(law for law, _ in found))))
     quick = np.maximum(floors, quick_durations(task, least_time(laws, loads)))
     note = _note([task.segment_number(k) for k, (_, whole) in enumerate(found) if not whole])
@@ -99,6 +105,7 @@ def _for_torque(task: JointTask, k: int, loads: Loads, law: Law434,
     It is the one given where torque allows that in least time, or in the time prescribed.
     """
     points = task.points[k:k + 2]
+    task.should_stop()
 
     def total(law: Law434) -> float:
         """Return the duration that a law needs, torque included."""

@@ -62,6 +62,7 @@ def within_torque(task: JointTask, law: TransitionLaw,
     """
     scale, too_full, too_gentle = 1.0, None, None  # of the acceleration
     for _ in range(ROUNDS):
+        task.should_stop()
         motion = motion_by(TransitionLaw(law.slope / scale, law.root / scale ** 0.75))
         if motion is None:
             if too_full is None:

@@ -129,6 +129,7 @@ def _gentlest(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> So
     limit = np.minimum(task.limits.max_acceleration, kept.trajectory.peaks().acceleration.max())
     found = [kept]  # gentlest first
     for _ in range(GENTLENESS_ROUNDS):
+        task.should_stop()
         z = _stretch(kept, durations)
         if z ** 2 > 1.0 / GENTLER:
             break

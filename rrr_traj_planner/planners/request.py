@@ -29,6 +29,7 @@ from rrr_traj_planner.core.arrays import (
     number_array,
     ReadOnlyArrays,
 )
+from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import InvalidInputError, shown
 from rrr_traj_planner.core.joint_ranges import RANGE_TOLERANCE
 from rrr_traj_planner.core.limits import JointLimits
@@ -46,12 +47,6 @@ from rrr_traj_planner.core.scalars import (
 )
 
 T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
-
-
-def never() -> bool:
-    """Return that there is no reason to stop."""
-    return False
-
 
 # How each field that is no array is checked: a function of its name and its value.
 CHECKS: dict[str, Callable[[str, Any], Any]] = {
@@ -121,7 +116,7 @@ class PlanningRequest(ReadOnlyArrays):
     max_tip_speed: float = np.inf
     steady_zones: bool = False
     half_transition: float = T_ACC
-    should_stop: Callable[[], bool] = never
+    should_stop: ShouldStop = never
     max_points: int = MOST_POINTS
     start_state_tolerance: float = RANGE_TOLERANCE
 
@@ -198,7 +193,7 @@ class JointTask(ReadOnlyArrays):
     durations: Array | None
     sample_period: float
     segment_numbers: IntArray | None = None
-    should_stop: Callable[[], bool] = never
+    should_stop: ShouldStop = never
     half_transition: float = T_ACC
 
     def segment_number(self, segment: int) -> int:
@@ -259,4 +254,4 @@ class CartesianTask(ReadOnlyArrays):
     max_tip_speed: float
     steady_zones: bool
     sample_period: float
-    should_stop: Callable[[], bool] = never
+    should_stop: ShouldStop = never

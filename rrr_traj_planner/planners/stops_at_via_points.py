@@ -25,13 +25,15 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import TimingError
+from rrr_traj_planner.core.motion_torque import squared_stretch, torque_grid
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.motion_law import cannot_hold, torque_stretch
 from rrr_traj_planner.planners.request import JointTask
 
 ROOM = 1e-6                # durations are longer than the least by this part
+PLENTY = 0.8                # of the speed, up to which torque is not looked at more closely
 DURATION_TOLERANCE = 1e-7  # relative, by which prescribed durations may fall short
 
 # Returns the motion of some of the segments, one after the other, in given durations.
@@ -86,9 +88,10 @@ def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> Pie
 
     """
     everywhere = slice(0, len(quick))
-    stretches = np.array([
-        max(1.0, torque_stretch(task, motion(slice(k, k + 1), quick[k:k + 1])))
-        for k in range(len(quick))])
+    stretches = np.ones(len(quick))
+    for k in np.flatnonzero(may_lack_torque(task, motion(everywhere, quick))).tolist():
+        task.should_stop()
+        stretches[k] = max(1.0, torque_stretch(task, motion(slice(k, k + 1), quick[k:k + 1])))
     if np.isinf(stretches).any():
         raise cannot_hold(task, motion(everywhere, quick))
     least = quick * stretches
@@ -98,6 +101,31 @@ def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> Pie
     if short.any():
         raise _too_short(task, durations, least, np.flatnonzero(short).tolist())
     return motion(everywhere, durations)
+
+
+def may_lack_torque(task: JointTask, motion: PiecewiseTrajectory) -> BoolArray:
+    """
+    Return which segments are to be looked at closely: others have torque to spare, and plenty.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    motion : PiecewiseTrajectory
+        Through all via points.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Segments on which torque at many points asks for more than PLENTY of the speed.
+
+    """
+    t = torque_grid(motion)
+    squared = squared_stretch(task.model, task.limits, *motion(t)[:3]).max(axis=1)
+    worst = np.zeros(len(motion.via_times) - 1)
+    np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='right'), squared)
+    np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='left'), squared)
+    return np.asarray(~(worst < PLENTY ** 2))
 
 
 def _too_short(task: JointTask, durations: Array, least: Array, short: list[int]) -> TimingError:

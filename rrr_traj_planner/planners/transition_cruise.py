@@ -120,13 +120,54 @@ def stopping_time(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array,
         [s], infinite where no duration of the grid will do.
 
     """
+    return bisected(law, max_velocity, v0, D, *stopping_bracket(law, max_velocity, v0, D, grid))
+
+
+def stopping_bracket(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array,
+                     grid: Array) -> tuple[Array, Array]:
+    """
+    Return durations of a last segment, to rest: one that is too short, and one that will do.
+
+    Parameters
+    ----------
+    law, max_velocity, v0, D, grid
+        As in `stopping_time`.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n,)
+        [s], infinite where no duration of the grid will do.
+
+    """
     fits = can_stop(law, max_velocity, v0[:, np.newaxis], grid[:, np.newaxis], D)
     first = fits.argmax(axis=1)
-    found = fits[np.arange(len(v0)), first]
     low = np.where(first > 0, grid[np.maximum(first - 1, 0)], 0.5 * grid[0])
-    high = grid[first]
+    found = fits[np.arange(len(v0)), first]
+    return np.where(found, low, np.inf), np.where(found, grid[first], np.inf)
+
+
+def bisected(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array, low: Array,
+             high: Array) -> Array:
+    """
+    Return the least durations of a last segment that are in brackets.
+
+    Parameters
+    ----------
+    law, max_velocity, v0, D
+        As in `stopping_time`.
+    low, high : ndarray, shape (n,)
+        As of `stopping_bracket` [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [s], infinite where the bracket is.
+
+    """
+    found = np.isfinite(high)
+    v0, low, least = v0[found], low[found], high.copy()
     for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
+        middle = 0.5 * (low + least[found])
         fits = can_stop(law, max_velocity, v0, middle[:, np.newaxis], D)
-        low, high = np.where(fits, low, middle), np.where(fits, middle, high)
-    return np.where(found, high, np.inf)
+        low, least[found] = np.where(fits, low, middle), np.where(fits, middle, least[found])
+    return least

@@ -27,8 +27,8 @@ from collections.abc import Callable
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import never
 from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.request import never
 from rrr_traj_planner.planners.solver.barrier_method import minimise, Solution
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 

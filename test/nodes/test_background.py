@@ -12,21 +12,21 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A node's background thread: calls in order, what they return or raise, and how it ends."""
+"""A node's threads: calls in order, what they return or raise, and how it ends."""
 
 from threading import Event
 from time import perf_counter, sleep
 
 import pytest
 from rrr_traj_planner.nodes import background
-from rrr_traj_planner.nodes.background import BackgroundThread
+from rrr_traj_planner.nodes.background import Background
 
 DEADLINE = 10.0  # s
 
 
 @pytest.fixture
-def thread(ros):
-    made = BackgroundThread(ros.node, 'test')
+def threads(ros):
+    made = Background(ros.node, 'test')
     yield made
     made.end()
 
@@ -46,43 +46,47 @@ def until_done(*futures):
     return came
 
 
-def failing():
+def added(a, b, turn):
+    return a + b
+
+
+def failing(turn):
     raise ValueError('no number')
 
 
-def test_calls_are_made_in_order_and_return_or_raise(thread):
-    calls = [thread.call(sum, [1, 2]), thread.call(failing), thread.call(sum, [3, 4])]
+def test_calls_are_made_in_order_and_return_or_raise(threads):
+    calls = [threads.call(added, 1, 2), threads.call(failing), threads.call(added, 3, 4)]
     assert until_done(*calls) == [3, 'no number', 7]
 
 
-def test_end_waits_for_what_is_called(thread):
+def test_end_waits_for_what_is_called(threads):
     begun, ended = Event(), []
 
-    def slow():
+    def slow(turn):
         begun.set()
         sleep(0.2)
         ended.append(True)
 
-    future = thread.call(slow)
+    future = threads.call(slow)
     assert begun.wait(DEADLINE)
-    assert not thread.is_ending()
-    thread.end()
+    assert not threads.is_ending()
+    threads.end()
     assert ended
-    assert thread.is_ending()
+    assert threads.is_ending()
     assert not future.done()  # nobody is there to be told
 
 
-def test_end_does_not_wait_for_ever(thread, monkeypatch):
+def test_end_does_not_wait_for_ever(threads, monkeypatch):
     monkeypatch.setattr(background, 'PATIENCE', 0.05)
     begun, release = Event(), Event()
 
-    def endless():
+    def endless(turn):
         begun.set()
         release.wait()
 
-    thread.call(endless)
+    threads.call(endless)
     assert begun.wait(DEADLINE)
     started = perf_counter()
-    thread.end()
+    threads.end()
     assert perf_counter() - started < DEADLINE
     release.set()

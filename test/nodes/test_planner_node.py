@@ -209,7 +209,7 @@ def test_bug_is_told_logged_and_survived(ros, monkeypatch, error, text):
 
 
 def test_answer_that_cannot_be_written_is_no_success(ros, monkeypatch):
-    def broken(found, config):
+    def broken(*_):
         raise RuntimeError('no message')
 
     monkeypatch.setattr('rrr_traj_planner.nodes.planner_node.success', broken)

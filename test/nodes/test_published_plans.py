@@ -143,20 +143,6 @@ def test_answer_comes_before_the_path_is_even_made(ros, planner, drawing):
     topics.wait_for([response])
 
 
-def test_plan_is_published_before_the_next_one_is_made(ros, planner, drawing, monkeypatch):
-    next_one = Gate(registry.planner('cycloid').plan)
-    next_one.open.set()
-    monkeypatch.setitem(registry._planners, 'next', registry.Registered(next_one, False))
-    topics, client = Topics(ros), Client(ros)
-    first, second = client.ask(to(1.0)), client.ask(to(1.1), planner_id='next')
-    assert answered(first).error_code == CODES.SUCCESS
-    assert drawing.reached.wait(DEADLINE)
-    assert is_responsive(ros)
-    assert not next_one.reached.is_set()
-    drawing.open.set()
-    topics.wait_for([answered(first), answered(second)])
-
-
 def test_every_plan_of_many_is_published_in_order(ros, planner):
     topics, clients = Topics(ros), [Client(ros) for _ in range(2)]
     asked = [clients[i % 2].ask(to(1.0 + 0.01 * i)) for i in range(REQUESTS)]
@@ -210,7 +196,7 @@ def test_node_can_be_destroyed_while_a_path_is_made(ros, planner, drawing):
 
 
 def test_node_can_be_destroyed_between_its_publications(ros, planner, monkeypatch):
-    call = planner._thread.call
+    call = planner._threads.call
 
     def destroy_before_the_path(function, *arguments):
         if function is not planner_node._drawing:
@@ -220,7 +206,7 @@ def test_node_can_be_destroyed_between_its_publications(ros, planner, monkeypatc
         done.set_result((Path(), MarkerArray()))
         return done
 
-    monkeypatch.setattr(planner._thread, 'call', destroy_before_the_path)
+    monkeypatch.setattr(planner._threads, 'call', destroy_before_the_path)
     topics = Topics(ros)
     response = answered(Client(ros).ask())
     assert topics.trajectory.wait_for() == response.trajectory

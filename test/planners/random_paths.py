@@ -22,6 +22,7 @@ from functools import cache, cached_property
 import numpy as np
 from random_cases import random_model
 from rrr_traj_planner.core import path_design
+from rrr_traj_planner.core.cancellation import never
 from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.largest_radii import largest_radii
@@ -33,7 +34,7 @@ from rrr_traj_planner.core.workspace_check import check_workspace
 from rrr_traj_planner.planners.followable import followable
 from rrr_traj_planner.planners.path_timing import fastest_along, PathTask
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import never, PlanningRequest
+from rrr_traj_planner.planners.request import PlanningRequest
 
 PLANNERS = ('line_arc', 'line_polynomial')
 NONE = np.full(3, np.inf)

@@ -1,0 +1,119 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Limits on the time of planning: the best so far first, then a refusal that names the step."""
+
+from __future__ import annotations
+
+from itertools import count
+import pickle
+
+import numpy as np
+import pytest
+from rrr_traj_planner.core.cancellation import step
+from rrr_traj_planner.core.errors import TimeLimitError
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.deadline import Deadline, GRACE, part_of
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.registry import planner_ids
+from rrr_traj_planner.planners.request import PlanningRequest
+
+LIMITS = JointLimits(min_position=[-1.6, 0.0, -np.pi])
+
+
+class Clock:
+    """A clock that a test sets."""
+
+    def __init__(self):
+        self.now = 100.0
+
+    def __call__(self):
+        return self.now
+
+
+def circle(n):
+    t = np.linspace(0.0, 2.0 * np.pi, n, endpoint=False)
+    return np.stack((0.6 + 0.1 * np.cos(t), 0.1 * np.sin(t), 1.0 + 0.0 * t), axis=1)
+
+
+def test_it_asks_for_the_best_so_far_and_then_gives_up():
+    clock = Clock()
+    deadline = Deadline(1.0, clock)
+    for now, answer in ((100.0, False), (100.79, False), (100.81, True), (101.0 + GRACE, True)):
+        clock.now = now
+        assert deadline() is answer
+    clock.now = 101.01 + GRACE
+    with pytest.raises(TimeLimitError) as caught:
+        deadline()
+    assert str(caught.value) == 'planning_time_limit 1 s: given up after 1.36 s'
+
+
+def test_a_part_of_it_ends_sooner_and_gives_up_with_the_whole():
+    clock = Clock()
+    part = part_of(Deadline(2.0, clock), 0.25)
+    clock.now = 100.39
+    assert not part()
+    clock.now = 100.41
+    assert part()
+    clock.now = 103.0
+    with pytest.raises(TimeLimitError, match='^planning_time_limit 2 s: given up after 3.00 s$'):
+        part()
+    assert part_of(bool, 0.25) is bool  # of any other question all is waited for
+
+
+def test_the_inner_step_is_named():
+    with pytest.raises(TimeLimitError) as caught, step('all'), step('the first part'):
+        raise TimeLimitError(1.0, 1.5)
+    assert str(caught.value) == (
+        'planning_time_limit 1 s: given up after 1.50 s, during the first part')
+    assert pickle.loads(pickle.dumps(caught.value)).step == 'the first part'
+
+
+def questions_asked(planner_id, answer):
+    """Return how often a planner asks a question that is answered by its number."""
+    questions = count()
+    request = PlanningRequest(
+        circle(8), planner_id=planner_id, should_stop=lambda: answer(next(questions)))
+    try:
+        plan(RobotModel(), LIMITS, request)
+    except TimeLimitError as error:
+        assert ', during ' in str(error)
+    return next(questions)
+
+
+def given_up(last):
+    """Return an answer that raises from a question on."""
+    def answer(number):
+        if number >= last:
+            raise TimeLimitError(1.0, 1.4)
+        return False
+
+    return answer
+
+
+@pytest.mark.parametrize('planner_id', sorted(planner_ids()))
+def test_every_planner_ends_at_once_whenever_the_question_raises(planner_id):
+    total = questions_asked(planner_id, lambda _: False)
+    assert total > 2
+    for last in {0, 1, total // 2, total - 1}:
+        assert questions_asked(planner_id, given_up(last)) == last + 1
+
+
+def test_a_path_through_many_points_is_given_up_in_time_and_says_in_which_step():
+    deadline = Deadline(0.02)
+    with pytest.raises(TimeLimitError, match=(
+            r'^planning_time_limit 0.02 s: given up after 0\.\d\d s, during ')):
+        plan(RobotModel(), LIMITS, PlanningRequest(
+            circle(1000), planner_id='line_arc', should_stop=deadline))
