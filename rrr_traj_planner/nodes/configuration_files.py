@@ -175,6 +175,8 @@ def _found(name: str, folder: Path) -> Path:
     for path in (folder / name, shipped_folder() / name):
         if path.is_file():
             return path.resolve()
+        if path.is_dir():
+            raise InvalidInputError(f"'{name}' is a folder, must be a file")
     shipped = ', '.join(sorted(p.name for p in shipped_folder().glob('*.yaml')))
     raise InvalidInputError(f"no file '{name}' in {folder}, nor among the package's: {shipped}")
 

@@ -35,6 +35,8 @@ NO_MATPLOTLIB = (
     'no figures, matplotlib is missing ({error}): sudo apt install python3-matplotlib, or '
     "pip install matplotlib (the package's extra 'figures')")
 
+MOST_BYTES = 200  # of a folder's name; file systems take 255
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """
@@ -79,7 +81,8 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
                         help="planner id, may be repeated (default: the file's); 'all' for every "
                              'one there is')
     parser.add_argument('--output', type=Path, metavar='OUT_DIR',
-                        help='where the page of --plan goes (default: report_FILE)')
+                        help='where the page of --plan goes (default: report_FILE); an earlier '
+                             'report there is replaced, nothing else is touched')
 
 
 def _thesis(folder: Path) -> int:
@@ -108,7 +111,8 @@ def _plan(options: argparse.Namespace) -> int:
     print('planning and drawing ...', flush=True)
     found = attempts(Task(file.name, config.model, config.limits, request),
                      planner_ids() if 'all' in ids else ids)
-    page = write_plan_report(options.output or Path(f'report_{file.name}'), found)
+    name = file.name.encode()[:MOST_BYTES].decode(errors='ignore')
+    page = write_plan_report(options.output or Path(f'report_{name}'), found)
     print(f'page: {page}')
     refused = [a for a in found if a.plan is None]
     for attempt in refused:

@@ -56,10 +56,25 @@
 
   function label(points, i) {  // beside a point, away from its nearest neighbour
     const [x, y] = points[i];
-    const others = points.filter((p, k) => k !== i).map((p) => [x - p[0], y - p[1]]);
-    others.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
-    const far = others.length ? Math.hypot(...others[0]) : 0;
-    return far > 0 ? [x + 13 * others[0][0] / far, y + 13 * others[0][1] / far] : [x + 9, y - 9];
+    let near = null, far = Infinity;
+    points.forEach((p, k) => {
+      const distance = Math.hypot(x - p[0], y - p[1]);
+      if (k !== i && distance < far) [near, far] = [p, distance];
+    });
+    return near && far > 0 ? [x + 13 * (x - near[0]) / far, y + 13 * (y - near[1]) / far]
+      : [x + 9, y - 9];
+  }
+
+  function labels(points) {  // both ends, and between them at equal steps those that are legible
+    const stride = Math.ceil(points.length / 24), taken = [];
+    const others = [...points.keys()].filter((i) => i % stride === 0);
+    [...new Set([0, points.length - 1, ...others])].forEach((i) => {
+      const [x, y] = label(points, i);
+      if (taken.every(([p]) => Math.abs(p[0] - x) > 18 || Math.abs(p[1] - y) > 13)) {
+        taken.push([[x, y], i]);
+      }
+    });
+    return taken;
   }
 
   function floor(pen, at) {
@@ -78,7 +93,9 @@
 
   function drawArm(canvas, motion) {
     const ratio = window.devicePixelRatio || 1;
-    const width = canvas.clientWidth, height = Math.round(0.85 * width);
+    const width = canvas.clientWidth;
+    const height = Math.round(Math.min(0.85 * width, 0.6 * window.innerHeight));
+    canvas.style.height = height + 'px';
     canvas.width = width * ratio;
     canvas.height = height * ratio;
     const pen = canvas.getContext('2d'), at = projector(width, height);
@@ -90,19 +107,20 @@
     line(pen, path, colour('grid'), 3);
     const elbow = at(between(motion.elbow, place)), tip = at(between(motion.tip, place));
     line(pen, [...path.slice(0, passed), tip], colour('tip'), 3);
-    const vias = data.via_points.map(at);
-    vias.forEach((seen) => dot(pen, seen, 5, colour('via'), colour('ink')));
+    const vias = data.via_points.map(at), size = vias.length > 60 ? 2 : vias.length > 20 ? 3 : 5;
+    vias.forEach((seen) => dot(pen, seen, size, colour('via'), size > 2 && colour('ink')));
     pen.fillStyle = colour('ink');
     pen.textAlign = 'center';
     pen.textBaseline = 'middle';
-    vias.forEach((seen, i) => pen.fillText(String(i), ...label(vias, i)));
+    labels(vias).forEach(([place, i]) => pen.fillText(String(i), ...place));
     const base = at([0, 0, 0]), shoulder = at([0, 0, data.shoulder]);
     line(pen, [base, shoulder, elbow, tip], colour('ink'), 5);
     [shoulder, elbow].forEach((p) => dot(pen, p, 5, colour('paper'), colour('ink')));
     dot(pen, tip, 4, colour('tip'));
-    const done = time >= motion.duration ? 'at rest' : 'tightest limit used to '
-      + Math.round(100 * between(motion.share, place)) + ' %';
-    canvas.nextElementSibling.textContent = motion.duration.toFixed(3) + ' s; ' + done;
+    const frame = Math.min(Math.round(place), motion.share.length - 1);
+    canvas.nextElementSibling.textContent = time >= motion.duration ? 'at rest' : 'now '
+      + motion.limits[motion.nearest[frame]] + ' at ' + Math.round(100 * motion.share[frame])
+      + ' % of its limit';
   }
 
   function draw() {

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.report.attempts import Planned
-from rrr_traj_planner.report.motion_samples import arm_points, limit_shares, sampled, tightest
+from rrr_traj_planner.report.motion_samples import arm_points, limit_shares, sampled
 from rrr_traj_planner.report.page import resource
 
 FRAMES_PER_SECOND = 60.0
@@ -57,6 +57,7 @@ class Animation:
     title: str
     caption: str
     plans: Sequence[Planned]
+    files: tuple[str, ...] = ()
 
     def written(self, folder: Path) -> str:
         """
@@ -74,8 +75,9 @@ class Animation:
 
         """
         arms = ''.join(
-            f'<div><h4>{escape(p.planner_id)}</h4><canvas role="img" aria-label="the arm moved by '
-            f'{escape(p.planner_id)}"></canvas><p></p></div>' for p in self.plans)
+            f'<div><h4>{escape(p.planner_id)}, {p.plan.trajectory.duration:.3f} s in all</h4>'
+            f'<canvas role="img" aria-label="the arm moved by {escape(p.planner_id)}"></canvas>'
+            '<p></p></div>' for p in self.plans)
         # JSON inside a script ends at the first "</"
         data = json.dumps(frames(self.plans), separators=(',', ':')).replace('<', '\\u003c')
         return (f'{CONTROLS}<div class="arms">{arms}</div>'
@@ -96,7 +98,7 @@ def frames(plans: Sequence[Planned]) -> dict[str, Any]:
     -------
     dict
         Via points, and for each motion its duration and, at equal steps of time, elbow and tip
-        [m] and what is used of the tightest limit.
+        [m], and of which limit most is used, and how much.
 
     """
     return {'shoulder': float(plans[0].task.model.d1),
@@ -110,7 +112,12 @@ def _motion(of: Planned) -> dict[str, Any]:
     t = np.linspace(0.0, trajectory.duration, count + 1)
     points = arm_points(model, trajectory(t)[0])
     s = sampled(model, trajectory)
-    share = np.interp(t, s.t, tightest(limit_shares(s, of.task.limits)))
+    shares = {kind: np.stack([np.interp(t, s.t, share[:, joint]) for joint in range(3)], axis=1)
+              for kind, share in limit_shares(s, of.task.limits).items()}
+    names = [f"{joint}'s {kind}" for kind in shares for joint in model.joint_names]
+    every = np.concatenate(list(shares.values()), axis=1)
     return {'duration': float(trajectory.duration), 'via_times': of.plan.via_times.tolist(),
             'elbow': points[:, 2].round(DIGITS).tolist(),
-            'tip': points[:, 3].round(DIGITS).tolist(), 'share': share.round(3).tolist()}
+            'tip': points[:, 3].round(DIGITS).tolist(), 'limits': names,
+            'nearest': every.argmax(axis=1).tolist(),
+            'share': every.max(axis=1).round(3).tolist()}

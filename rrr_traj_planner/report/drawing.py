@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from matplotlib.collections import LineCollection
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -31,6 +32,8 @@ ACCELERATION, JERK, TORQUE = 'acceleration [rad/s²]', 'jerk [rad/s³]', 'torque
 TIME = 'time [s]'
 ROW_HEIGHT = 1.35  # in
 LEGEND_GAP = 0.06  # in, between a legend and the axes below it
+MOST_LINES = 20  # for via points; more would hide what is drawn
+TICK = 0.06      # of the axes' height
 EDGE_HEIGHT = 0.75  # in, of legend and lowest labels
 
 
@@ -145,7 +148,7 @@ def range_lines(axes: Any, low: Array, high: Array) -> None:
 
 def via_lines(axes: Sequence[Any], places: Array) -> None:
     """
-    Mark when, or where, via points are passed.
+    Mark when, or where, via points are passed: by lines, by ticks where there are many.
 
     Parameters
     ----------
@@ -155,9 +158,12 @@ def via_lines(axes: Sequence[Any], places: Array) -> None:
         Horizontal values.
 
     """
+    height = 1.0 if len(places) <= MOST_LINES else TICK
     for one in axes:
-        for place in places:
-            one.axvline(place, **VIA)
+        one.add_collection(LineCollection(
+            [((x, 0.0), (x, height)) for x in places], transform=one.get_xaxis_transform(),
+            **{f'{key}s' if key in ('color', 'linestyle') else key: v for key, v in VIA.items()}),
+            autolim=False)
 
 
 def joint_handles(names: Sequence[str]) -> list[Any]:

@@ -23,9 +23,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Protocol
 
+from rrr_traj_planner.report.page_files import GENERATOR, listed, PAGE, remove_earlier
 from rrr_traj_planner.report.theme import DARK, LIGHT, variables
-
-PAGE = 'index.html'
 
 
 class Content(Protocol):
@@ -42,6 +41,10 @@ class Content(Protocol):
     @property
     def caption(self) -> str:
         """Return what there is to see."""
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Return the names of what is written beside the page."""
 
     def written(self, folder: Path) -> str:
         """
@@ -81,7 +84,10 @@ class Section:
 
 def write_page(folder: Path, title: str, text: str, sections: Sequence[Section]) -> Path:
     """
-    Write a page and the files beside it.
+    Write a page and the files beside it, in the place of an earlier one.
+
+    What an earlier page had beside it, and this one has not, is removed; files that have changed
+    since, and all others, are left alone.
 
     Parameters
     ----------
@@ -97,8 +103,16 @@ def write_page(folder: Path, title: str, text: str, sections: Sequence[Section])
     Path
         The page, written last: if it is there, all else is.
 
+    Raises
+    ------
+    OSError
+        If something cannot be written; FileExistsError if a page is there that is no report.
+
     """
     folder.mkdir(parents=True, exist_ok=True)
+    names = {name for section in sections for content in section.contents
+             for name in content.files}
+    remove_earlier(folder, names)
     body = '\n'.join(_section(folder, i, section) for i, section in enumerate(sections))
     links = ''.join(f'<li><a href="#section-{i}">{escape(s.title)}</a></li>'
                     for i, s in enumerate(sections))
@@ -109,6 +123,7 @@ def write_page(folder: Path, title: str, text: str, sections: Sequence[Section])
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
+<meta name="generator" content="{GENERATOR}">
 <link rel="icon" href="data:,">
 <title>{escape(title)}</title>
 <style>
@@ -121,6 +136,7 @@ def write_page(folder: Path, title: str, text: str, sections: Sequence[Section])
 <main>
 {body}
 </main>
+{listed(folder, names)}
 </body>
 </html>
 """, encoding='utf-8')

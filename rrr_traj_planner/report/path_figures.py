@@ -35,6 +35,10 @@ MAGNIFIED = 2.0      # of half the curve's length, to either side of the via poi
 POINTS = 600
 LEAST_EXTENT = 0.02  # m
 LABEL_DISTANCE = 10.0  # points
+LABEL_SIZE = (18.0, 11.0)  # points, of three digits
+MOST_LABELS = 24
+MARKS = ((20, 5.0), (100, 2.5), (np.inf, 1.2))  # points, of so many via points at most
+POINTS_PER_INCH = 72.0
 ZOOM = 0.88          # leaves room for labels around the axes
 
 
@@ -173,11 +177,37 @@ def _via_points(axes: Any, points: Array) -> Any:
     """Draw via points, numbered from 0 as requests count them, once the view is settled."""
     x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
     seen = np.column_stack((x, y))
-    for i, direction in enumerate(label_directions(seen)):
-        axes.annotate(str(i), seen[i], LABEL_DISTANCE * direction, textcoords='offset points',
+    offsets = LABEL_DISTANCE * label_directions(seen)
+    places = axes.transData.transform(seen) * POINTS_PER_INCH / axes.figure.dpi + offsets
+    for i in legible(places):
+        axes.annotate(str(i), seen[i], offsets[i], textcoords='offset points',
                       ha='center', va='center', zorder=10)
+    size = next(size for most, size in MARKS if len(points) <= most)
     return axes.plot(*points.T, 'o', color=LIGHT['via'], markeredgecolor=LIGHT['ink'],
-                     markersize=5, label='via point', zorder=9)[0]
+                     markersize=size, markeredgewidth=size / 5.0, label='via point', zorder=9)[0]
+
+
+def legible(places: Array) -> list[int]:
+    """
+    Return which labels to show so that none lies on another.
+
+    Parameters
+    ----------
+    places : ndarray, shape (n, 2)
+        Where the labels are [points].
+
+    Returns
+    -------
+    list of int
+        The first, the last, and between them at equal steps those for which there is room.
+
+    """
+    stride = -(-len(places) // MOST_LABELS)
+    found: list[int] = []
+    for i in dict.fromkeys((0, len(places) - 1, *range(0, len(places), stride))):
+        if (np.abs(places[i] - places[found]) > LABEL_SIZE).any(axis=1).all():
+            found.append(i)
+    return found
 
 
 def label_directions(seen: Array) -> Array:

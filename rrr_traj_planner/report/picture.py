@@ -62,6 +62,11 @@ class Picture:
     height: float = 3.2
     data: dict[str, Array] = field(default_factory=dict)
 
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Return what is written beside the page."""
+        return (f'{self.name}.png', *([f'{self.name}.csv'] if self.data else []))
+
     def written(self, folder: Path) -> str:
         """
         Draw the figure.

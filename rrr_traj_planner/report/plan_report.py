@@ -24,7 +24,14 @@ from rrr_traj_planner.report.attempts import Attempt, Planned, planned
 from rrr_traj_planner.report.page import Content, Section, write_page
 from rrr_traj_planner.report.path_figures import path_in_space, paths_in_space
 from rrr_traj_planner.report.profile_figures import compared, profiles, torque_use
-from rrr_traj_planner.report.tables import methods_table, peaks_table
+from rrr_traj_planner.report.tables import (
+    methods_table,
+    peaks_table,
+    refusals_table,
+    via_points_table,
+)
+
+FEW = 6  # via points: so many are in the page's first lines
 
 
 def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
@@ -45,9 +52,10 @@ def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
 
     """
     task = found[0].task
-    points = '; '.join('(' + ', '.join(f'{x:g}' for x in p) + ')' for p in task.via_points)
-    return write_page(folder, f'Plan of {task.name}',
-                      f'{len(task.via_points)} via points [m]: {points}.', sections(found))
+    points = ['(' + ', '.join(f'{x:g}' for x in p) + ')' for p in task.via_points]
+    told = '; '.join(points) if len(points) <= FEW else f'from {points[0]} to {points[-1]}'
+    return write_page(folder, f'Plan of {task.name}', f'{len(points)} via points [m]: {told}.',
+                      sections(found))
 
 
 def sections(found: Sequence[Attempt]) -> list[Section]:
@@ -62,23 +70,35 @@ def sections(found: Sequence[Attempt]) -> list[Section]:
     Returns
     -------
     list of Section
-        Without plans, the table of refusals alone.
+        Without plans, the tables of refusals and of via points alone.
 
     """
-    plans = planned(found)
+    plans, task = planned(found), found[0].task
     notes = '\n\n'.join(f'{p.planner_id}: {p.plan.note}' for p in plans if p.plan.note)
-    parts = [Section('Planners', notes, [methods_table(
-        found, 'planners', 'Planners', "Peaks are the largest of the three joints'.")])]
+    tables: list[Content] = []
+    if plans:
+        tables.append(methods_table(
+            found, 'planners', 'Plans', "Peaks are the largest of the three joints'."))
+    if len(plans) < len(found):
+        tables.append(refusals_table(found, 'refusals'))
+    parts = [Section('Planners', notes, tables)]
+    points = Section('Via points', '', [via_points_table(task, plans, 'via_points')])
     if not plans:
-        return parts
+        return [*parts, points]
     parts.append(Section('Motion', '', [Animation(
         'animation', 'The arm along the path',
-        'Drag a picture to turn the view. The path still to go is grey.', plans)]))
+        'Drag a picture to turn the view. The path still to go is grey. Below each, the limit '
+        'that is nearest at the moment: of velocity, acceleration, jerk or torque, of any joint.',
+        plans)]))
     if len(plans) > 1:
         parts.append(Section('Side by side', '', _comparison(plans)))
     names = unique_names([p.planner_id for p in plans])
-    return parts + [Section(title, text, [draw(p, name) for p, name in zip(plans, names)])
-                    for title, text, draw in _KINDS]
+    kinds = [(title, text, [draw(p, name) for p, name in zip(plans, names)])
+             for title, text, draw in _KINDS]
+    if len(plans) == 1:  # its figures beside each other
+        kinds = [('Figures', ' '.join(text for _, text, _ in kinds if text),
+                  [content for _, _, contents in kinds for content in contents])]
+    return [*parts, *(Section(*kind) for kind in kinds), points]
 
 
 def unique_names(planner_ids: Sequence[str]) -> list[str]:

@@ -25,7 +25,7 @@ from pathlib import Path
 
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.report.attempts import Attempt, Planned
+from rrr_traj_planner.report.attempts import Attempt, Planned, Task
 from rrr_traj_planner.report.measures import measures
 
 MINUTE = 1e-9  # what is smaller is rounding, and shown as 0
@@ -45,7 +45,9 @@ class Table:
     heads : sequence of str
         Of the columns.
     rows : sequence of sequence of str
-        Cells; a row that is shorter ends with one cell over all columns that are left.
+        Cells.
+    sentences : bool
+        Whether cells are to be read as text: on several lines where the page is narrow.
 
     """
 
@@ -54,6 +56,12 @@ class Table:
     caption: str
     heads: Sequence[str]
     rows: Sequence[Sequence[str]]
+    sentences: bool = False
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Return what is written beside the page."""
+        return (f'{self.name}.csv',)
 
     def written(self, folder: Path) -> str:
         """
@@ -74,19 +82,16 @@ class Table:
             rows = csv.writer(stream)
             rows.writerow(self.heads)
             rows.writerows(self.rows)
-        heads = ''.join(f'<th scope="col">{escape(h)}</th>' for h in self.heads)
-        body = ''.join(f'<tr>{self._cells(row)}</tr>\n' for row in self.rows)
+        text = escape if self.sentences else _unbroken
+        heads = ''.join(f'<th scope="col">{text(h)}</th>' for h in self.heads)
+        body = ''.join(
+            f'<tr><th scope="row">{text(row[0])}</th>'
+            + ''.join(f'<td>{text(cell)}</td>' for cell in row[1:]) + '</tr>\n'
+            for row in self.rows)
+        kind = ' class="sentences"' if self.sentences else ''
         return ('<div class="scroll" tabindex="0" role="region" '
-                f'aria-label="{escape(self.title)}"><table><thead><tr>{heads}</tr></thead>\n'
+                f'aria-label="{escape(self.title)}"><table{kind}><thead><tr>{heads}</tr></thead>\n'
                 f'<tbody>{body}</tbody></table></div>')
-
-    def _cells(self, row: Sequence[str]) -> str:
-        left = len(self.heads) - len(row)
-        cells = [f'<th scope="row">{escape(row[0])}</th>',
-                 *(f'<td>{escape(c)}</td>' for c in row[1:])]
-        if left > 0:
-            cells[-1] = f'<td class="told" colspan="{left + 1}">{escape(row[-1])}</td>'
-        return ''.join(cells)
 
 
 def methods_table(found: Sequence[Attempt], name: str, title: str, caption: str) -> Table:
@@ -103,24 +108,72 @@ def methods_table(found: Sequence[Attempt], name: str, title: str, caption: str)
     Returns
     -------
     Table
-        A row for each, the refusal where there is one; peaks are the largest of the three joints'.
+        A row for each that did not refuse; peaks are the largest of the three joints'.
 
     """
     heads = ('planner', 'total time [s]', 'velocity [rad/s]', 'acceleration [rad/s²]',
              'jerk [rad/s³]', 'torque [N m]', "jerk at transitions' ends [rad/s³]",
              'via point missed by [mm]', 'coefficients', 'in a transition', 'planned in [ms]')
-    return Table(name, title, caption, heads, [_method(a) for a in found])
+    return Table(name, title, caption, heads, [
+        _method(Planned(a.task, a.planner_id, a.plan), a.planning_time)
+        for a in found if a.plan is not None])
 
 
-def _method(attempt: Attempt) -> list[str]:
-    if attempt.plan is None:
-        return [attempt.planner_id, f'refused: {attempt.refusal}']
-    m = measures(Planned(attempt.task, attempt.planner_id, attempt.plan))
-    return [attempt.planner_id, f'{m.total_time:.3f}', *(
+def refusals_table(found: Sequence[Attempt], name: str) -> Table:
+    """
+    Return the table of what planners refused.
+
+    Parameters
+    ----------
+    found : sequence of Attempt
+        What they made of one task.
+    name : str
+        See `Table`.
+
+    Returns
+    -------
+    Table
+        A row for each that refused, with its reason.
+
+    """
+    return Table(name, 'Refusals', '', ('planner', 'why'), [
+        [a.planner_id, f'refused: {a.refusal}'] for a in found if a.plan is None], sentences=True)
+
+
+def via_points_table(task: Task, plans: Sequence[Planned], name: str) -> Table:
+    """
+    Return the table of via points, and of when they are passed.
+
+    Parameters
+    ----------
+    task : Task
+        Whose points.
+    plans : sequence of Planned
+        Plans of it.
+    name : str
+        See `Table`.
+
+    Returns
+    -------
+    Table
+        A row for each point, numbered from 0; a column of times for each plan.
+
+    """
+    times = [[f'{t:.3f}' for t in p.plan.via_times] for p in plans]
+    heads = ('#', 'x [m]', 'y [m]', 'z [m]', *(f'{p.planner_id} [s]' for p in plans))
+    caption = 'Where they are, and when each planner passes them.' if plans else ''
+    return Table(name, 'Via points', caption, heads, [
+        [str(i), *(f'{x:.6g}' for x in point), *passed]
+        for i, (point, *passed) in enumerate(zip(task.via_points, *times))])
+
+
+def _method(of: Planned, planning_time: float) -> list[str]:
+    m = measures(of)
+    return [of.planner_id, f'{m.total_time:.3f}', *(
         f'{float(peak.max()):.3f}' for peak in (m.velocity, m.acceleration, m.jerk)),
         f'{float(m.torque.max()):.1f}', shown(float(m.jerk_at_ends.max()), 3),
         shown(1e3 * m.via_distance, 1), str(m.coefficients.total),
-        str(m.coefficients.per_transition), f'{1e3 * attempt.planning_time:.0f}']
+        str(m.coefficients.per_transition), f'{1e3 * planning_time:.0f}']
 
 
 def peaks_table(of: Planned, name: str) -> Table:
@@ -174,6 +227,11 @@ def shown(value: float, digits: int) -> str:
 
     """
     return '0' if abs(value) < MINUTE else f'{value:.{digits}f}'
+
+
+def _unbroken(text: str) -> str:
+    """Return a text as HTML, no line of which ends before a unit's sign."""
+    return escape(text).replace(' %', '&nbsp;%').replace('N m', 'N&nbsp;m')
 
 
 def _limited(velocity: Array, acceleration: Array, jerk: Array, torque: Array,

@@ -19,14 +19,20 @@ from __future__ import annotations
 import os
 
 import browser
+import numpy as np
 import pytest
-from rrr_traj_planner.report.attempts import attempts
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.report.attempts import Attempt, attempts, Task
 from rrr_traj_planner.report.page import write_page
 from rrr_traj_planner.report.plan_report import write_plan_report
 from rrr_traj_planner.report.thesis_report import sections, TEXT, thesis_plans, TITLE
 from rrr_traj_planner.report.thesis_tasks import table_6_1
 
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+REFUSAL = ('via point 2: (2, 0, 0.5) m is 2 m from the shoulder, beyond the reach of 1.6 m; '
+           'no_word_of_a_message_that_is_as_long_as_this_one_leaves_the_page_where_it_is_narrow')
 COMPARED = ('cycloid', 'line_arc', 'time_optimal')
 
 
@@ -47,6 +53,19 @@ def plan_page(tmp_path_factory):
     """Return the page of three planners' plans."""
     return write_plan_report(
         tmp_path_factory.mktemp('plan'), attempts(table_6_1(), COMPARED))
+
+
+@pytest.fixture(scope='session')
+def many_points_page(tmp_path_factory):
+    """Return the page of a plan through 60 points, and of a planner that refused."""
+    a = np.linspace(0.0, 2.0 * np.pi, 60)
+    points = np.column_stack((0.75 + 0.2 * np.sin(2.0 * a + 0.3), 0.6 + 0.2 * np.cos(3.0 * a),
+                              1.0 + 0.25 * np.sin(a)))
+    task = Task('a_name_of_a_file_that_is_longer_than_a_phone_is_wide_' * 2, RobotModel(),
+                JointLimits(), PlanningRequest(points))
+    refused = Attempt(task, 'line_polynomial', None, REFUSAL, 0.0)
+    return write_plan_report(
+        tmp_path_factory.mktemp('many'), [*attempts(task, ['cycloid']), refused])
 
 
 @pytest.fixture(scope='session')

@@ -17,6 +17,8 @@
 from __future__ import annotations
 
 import csv
+from hashlib import sha256
+import json
 from math import pi, sqrt
 from xml.etree import ElementTree
 
@@ -45,7 +47,7 @@ from rrr_traj_planner.report.motion_samples import (
     tightest,
 )
 from rrr_traj_planner.report.page import paragraphs, Section, write_page
-from rrr_traj_planner.report.path_figures import label_directions
+from rrr_traj_planner.report.path_figures import label_directions, legible
 from rrr_traj_planner.report.picture import embedded, Picture
 from rrr_traj_planner.report.plan_report import unique_names
 from rrr_traj_planner.report.tables import Table
@@ -199,17 +201,64 @@ def test_colours_have_one_role_each_and_a_dark_counterpart():
 
 
 def test_page_stands_alone_and_shows_what_it_is_told_as_text(tmp_path):
-    table = Table('t', 'Peaks <b>', 'c & d', ('a', 'b', 'c'), [['<i>', '1', '2'], ['x', 'told']])
+    table = Table('t', 'Peaks <b>', 'c & d', ('a', 'b', 'c'), [['<i>', '1', '2 %']])
     page = write_page(tmp_path / 'new', 'A <title>', 'One.\n\nTwo & three.',
                       [Section('Some', '', [table, a_picture()])])
     text = page.read_text()
-    for piece in ('A &lt;title&gt;', '<p>Two &amp; three.</p>', '&lt;i&gt;', 'colspan="2"',
+    for piece in ('A &lt;title&gt;', '<p>Two &amp; three.</p>', '&lt;i&gt;', '2&nbsp;%',
                   'prefers-color-scheme: dark', 'name="viewport"'):
         assert piece in text
     assert 'http://' not in text.replace('http://www.w3.org', '')
     assert 'https://' not in text
-    assert (tmp_path / 'new' / 't.csv').read_text() == 'a,b,c\n<i>,1,2\nx,told\n'
+    assert (tmp_path / 'new' / 't.csv').read_text() == 'a,b,c\n<i>,1,2 %\n'
     assert paragraphs('  ') == ''
+
+
+def test_page_replaces_an_earlier_one_and_touches_nothing_else(tmp_path):
+    def written(*names):
+        write_page(tmp_path, 'Title', '', [Section('Some', '', [
+            Table(name, name, '', ('a',), [[name]]) for name in names])])
+        return {f.name for f in tmp_path.iterdir()} - {'index.html'}
+
+    mine = tmp_path / 'mine.csv'
+    mine.write_text('of my own')
+    assert written('one', 'two', 'three') == {'mine.csv', 'one.csv', 'two.csv', 'three.csv'}
+    (tmp_path / 'two.csv').write_text('changed by hand')
+    assert written('three', 'four') == {'mine.csv', 'two.csv', 'three.csv', 'four.csv'}
+    assert (tmp_path / 'two.csv').read_text() == 'changed by hand'
+    assert mine.read_text() == 'of my own'
+    assert written('four') == {'mine.csv', 'two.csv', 'four.csv'}
+
+
+def test_page_that_is_no_report_is_not_overwritten(tmp_path):
+    page = tmp_path / 'index.html'
+    page.write_text('<h1>My own</h1>')
+    with pytest.raises(FileExistsError, match='index.html is no report; another folder is needed'):
+        write_page(tmp_path, 'Title', '', [])
+    assert page.read_text() == '<h1>My own</h1>'
+
+
+def test_list_of_files_that_leads_elsewhere_removes_nothing(tmp_path):
+    outside = tmp_path / 'outside.csv'
+    outside.write_text('x')
+    folder = tmp_path / 'report'
+    page = write_page(folder, 'Title', '', [])
+    digest = sha256(b'x').hexdigest()
+    page.write_text(page.read_text().replace('{}', json.dumps({
+        '../outside.csv': digest, str(outside): digest, '.': digest, '..': digest})))
+    write_page(folder, 'Title', '', [])
+    assert outside.read_text() == 'x'
+
+
+@pytest.mark.parametrize('count', [1, 2, 3, 12, 60, 200, 1000])
+def test_labels_of_points_do_not_lie_on_each_other(count):
+    angle = 0.3 + np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    places = 40.0 * np.column_stack((np.sin(angle), np.sin(2.0 * angle)))
+    shown = legible(places)
+    assert {0} <= set(shown) <= set(range(count))
+    apart = np.abs(places[shown, np.newaxis] - places[shown])  # points; a number is 14 by 9
+    assert ((apart[..., 0] > 14.0) | (apart[..., 1] > 9.0) | np.eye(len(shown), dtype=bool)).all()
+    assert len(shown) >= min(count, 2) and len(shown) <= 26
 
 
 def test_names_of_files_do_not_repeat():

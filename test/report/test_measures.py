@@ -29,7 +29,7 @@ from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.report.attempts import planned
 from rrr_traj_planner.report.coefficients import Coefficients, coefficients
 from rrr_traj_planner.report.measures import jerk_at_ends, measures, time_at_limit
-from rrr_traj_planner.report.tables import methods_table, shown
+from rrr_traj_planner.report.tables import methods_table, refusals_table, shown
 
 ROUNDING = 1e-9
 MISSING = {'poly_414', 'cycloid_approach_b'}
@@ -130,7 +130,8 @@ def test_every_planner_is_in_the_table_with_a_time(plans):
 
 def test_the_thesis_arm_cannot_hold_table_6_3(plans):
     assert [a.plan for a in plans.as_printed] == [None]
-    row = methods_table(plans.as_printed, 'x', 'x', 'x').rows[0]
+    assert methods_table(plans.as_printed, 'x', 'x', 'x').rows == []
+    row = refusals_table(plans.as_printed, 'x').rows[0]
     assert row == ['line_arc', 'refused: via point 2: joint_2 needs 218.9 N m to hold, '
                    'limit 200 N m']
 

@@ -152,6 +152,37 @@ def test_every_planner_has_its_row(window, thesis_page):
         assert rows == planner_ids()
 
 
+@pytest.mark.parametrize(('width', 'height'), [(400, 812), (1400, 900)])
+def test_page_of_many_points_and_a_refusal_is_legible(window, many_points_page, width, height):
+    window.show(many_points_page, width, height, False)
+    assert window.complaints() == []
+    assert window.value('document.documentElement.scrollWidth') <= width
+    assert window.value("document.querySelector('header p').textContent") == (
+        '60 via points [m]: from (0.809104, 0.8, 1) to (0.809104, 0.8, 1).')
+    assert window.value("document.querySelector('#refusals td').textContent").startswith(
+        'refused: via point 2: (2, 0, 0.5) m is 2 m')
+    cut = window.value("""[...document.querySelectorAll('#refusals td, #refusals th')].filter(
+      (c) => { const r = document.createRange(); r.selectNodeContents(c);
+        const box = c.closest('.scroll').getBoundingClientRect();
+        return r.getBoundingClientRect().right > box.right + 0.5; }).length""")
+    assert cut == 0
+    assert window.value(OVERLAPS) == []
+    assert window.value("document.querySelectorAll('#via_points tbody tr').length") == 60
+    assert window.value("document.querySelector('#via_points .scroll').clientHeight") < height
+
+
+@pytest.mark.parametrize(('width', 'height'), [(400, 812), (1400, 900), (812, 375)])
+def test_animation_fits_the_window_with_its_controls(window, many_points_page, width, height):
+    window.show(many_points_page, width, height, True)
+    top, bottom = window.value("""(() => { const f = document.querySelector('figure.animation');
+      return [f.querySelector('.controls').getBoundingClientRect().top,
+        f.querySelector('canvas').getBoundingClientRect().bottom]; })()""")
+    assert 0.0 < bottom - top <= height
+    told = window.value("document.querySelector('.arms p').textContent")
+    assert re.fullmatch(
+        r"now joint_\d's (velocity|acceleration|jerk|torque) at \d+ % of its limit", told)
+
+
 def picture_of(window, index=0):
     """Return a canvas's picture as a text."""
     return window.value(f"document.querySelectorAll('canvas')[{index}].toDataURL()")

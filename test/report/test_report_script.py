@@ -89,6 +89,7 @@ def test_one_refusal_does_not_hide_the_other_plan(tmp_path):
 
 @pytest.mark.parametrize(('arguments', 'code', 'text'), [
     (('--plan', 'nowhere.yaml'), 1, "report: no file 'nowhere.yaml' in "),
+    (('--plan', '.'), 1, "report: '.' is a folder, must be a file"),
     (('--plan', 'thesis_arm.yaml'), 1, 'thesis_arm.yaml: no via_points'),
     (('--plan', 'table_6_1.yaml', '--planner', 'fast'), 1,
      "report: planner_id 'fast' is unknown, known are cycloid, "),
