@@ -20,7 +20,8 @@ joint_trajectory_controller, if it keeps the limits. Where it does not, or the f
 or past (that controller then jumps onto the trajectory), we are gentler, here and here alone: the
 command joins by a quintic the earliest later point that can be met on schedule within the ranges
 and the velocity, acceleration and torque limits. Where none can, it goes to the last point as soon
-as the limits allow, by one quintic or by a stop and a move.
+as the limits allow, by one quintic or by a stop and a move; where that point is outside a range,
+the arm stops.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.control import Desired
 from rrr_traj_planner.core.desired_motion import DesiredMotion, through
 from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.errors import told_apart
 from rrr_traj_planner.core.interpolation import hermite
 from rrr_traj_planner.core.joint_brake import LEAST_TIME
 from rrr_traj_planner.core.limits import JointLimits
@@ -41,13 +43,17 @@ from rrr_traj_planner.core.motion_points import led_in, MotionPoints, segment_or
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.point_to_point import moved_on
 from rrr_traj_planner.core.stop_task import from_state
-from rrr_traj_planner.core.stopping import stop
+from rrr_traj_planner.core.stopping import Stop, stop
 
 # A command this near to a trajectory is on it [rad], [rad/s].
 POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
 
 # Limits are kept on this many steps of a join, to this relative tolerance.
 STEPS, LIMIT_TOLERANCE = 32, 1e-6
+
+# A last point is outside a range by more than this part of its end, or of 1 rad: positions are
+# rounded to four digits.
+ROUNDED = 1e-4
 
 # Points that are tried at once.
 BATCH = 256
@@ -241,8 +247,13 @@ def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
     Return a quintic to the motion's end, later than on schedule, or a stop and a move there.
 
     Where the motion has a velocity at its end, the quintic leads to where it would be by then.
-    Where gravity alone asks too much of a motor on the way, the arm stays where it has stopped.
+    Where gravity alone asks too much of a motor on the way, or the end is outside a range, the arm
+    stays where it has stopped.
     """
+    outside = _ends_outside(takeover, motion)
+    if outside:
+        stopped, warnings = _stopped(takeover)
+        return Replacement(stopped, warnings + outside)
     due = motion.end - takeover.now
     T = max(due, LEAST_TIME) * LATER
     q, qd, qdd = np.reshape(motion.end_state, (3, 3))
@@ -253,9 +264,7 @@ def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
         late = DesiredMotion(T[i:i + 1], np.zeros((0, 3, 6)), q[i], nanoseconds(takeover.now),
                              qd, qdd)
         return Replacement(_joined(takeover, late, 0))
-    running = takeover.running or from_state(
-        takeover.command, nanoseconds(takeover.now))
-    stopped, warnings = stop(running, takeover.now, takeover.limits, takeover.model)
+    stopped, warnings = _stopped(takeover)
     moved, torque = moved_on(stopped, motion.final, takeover.limits, takeover.model)
     told = tuple(
         f"the way to the trajectory's end takes {name} {torque[i]:.1f} N m, limit "
@@ -263,3 +272,19 @@ def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
         for i, name in enumerate(takeover.model.joint_names)
         if torque[i] > takeover.limits.max_effort[i] * (1.0 + LIMIT_TOLERANCE))
     return Replacement(stopped if told else moved, warnings + told)
+
+
+def _stopped(takeover: Takeover) -> Stop:
+    """Return a stop from the present."""
+    running = takeover.running or from_state(takeover.command, nanoseconds(takeover.now))
+    return stop(running, takeover.now, takeover.limits, takeover.model)
+
+
+def _ends_outside(takeover: Takeover, motion: DesiredMotion) -> tuple[str, ...]:
+    """Return a sentence for each joint that a motion leaves outside its range."""
+    low, high = takeover.limits.min_position, takeover.limits.max_position
+    return tuple(
+        'the trajectory would end with {} at {} rad, range [{}, {}] rad: holding'.format(
+            name, *told_apart(float(q), float(a), float(b)))
+        for name, q, a, b in zip(takeover.model.joint_names, motion.final, low, high)
+        if not a - ROUNDED * max(1.0, abs(a)) <= q <= b + ROUNDED * max(1.0, abs(b)))

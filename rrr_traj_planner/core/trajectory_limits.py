@@ -39,9 +39,9 @@ from rrr_traj_planner.core.motion_points import led_in, MotionPoints
 # quintics through samples of a motion at its limit exceed it by up to 0.1 %.
 POSITION_TOLERANCE, LIMIT_TOLERANCE = 1e-4, 2e-3
 
-# Numbers that miss their bounds by less than this part of the width between them are not taken for
-# degrees.
-NEAR = 0.1
+# Numbers that miss their bounds by less than this many times the width between them are not taken
+# for degrees.
+NEAR = 1.0
 
 # Extremes are found to this part of the bound that they exceed.
 ACCURACY = 1e-6

@@ -139,7 +139,10 @@ def tabulated_points(text: str) -> Array:
     rows = list(_rows(text))
     columns: list[int] | None = None
     if rows and all(rows[0].number(i) is None for i in range(len(rows[0].fields))):
-        columns = _header(rows.pop(0))
+        header = rows.pop(0)
+        columns = _header(header)
+        for row in rows:
+            _check_width(row, len(header.fields))
     return np.array([_point(row, columns) for row in rows], dtype=float).reshape(-1, len(AXES))
 
 
@@ -160,6 +163,15 @@ def _header(row: _Row) -> list[int]:
                 f'line {row.line}: the header is {", ".join(row.fields)}, and must name one '
                 f'column {axis}')
     return [names.index(axis) for axis in AXES]
+
+
+def _check_width(row: _Row, width: int) -> None:
+    """Refuse a line with more fields than the header has columns; empty ones are no matter."""
+    more = [field for field in row.fields[width:] if field]
+    if more:
+        raise InvalidInputError(
+            f'line {row.line} is {", ".join(row.fields)}: the header has {width} columns, '
+            f'{", ".join(map(repr, more))} {"is" if len(more) == 1 else "are"} too many')
 
 
 def _point(row: _Row, columns: list[int] | None) -> list[float]:

@@ -245,3 +245,22 @@ def test_trajectory_out_of_reach_is_left_for_its_end_without_leaving_a_range():
     assert states[:, 0].min() >= -1e-9
     assert np.abs(states[:, 6:]).max() <= 1.0 + 1e-6
     np.testing.assert_allclose(states[-1, :3], (0.01, 1.0, 0.2), atol=1e-12)
+
+
+@pytest.mark.parametrize(('q', 'text'), [
+    ((-0.3, 0.9, 0.2), 'end with joint_1 at -0.3 rad, range [0, 1.5708] rad: holding'),
+    ((0.5, 0.9, 90.0), 'end with joint_3 at 90 rad, range [-3.14159, 6.28319] rad: holding'),
+    ((0.5, 3.2, 0.2), 'end with joint_2 at 3.2 rad, range [0, 3.14159] rad: holding')])
+@pytest.mark.parametrize('command', [REST, MOVING])
+def test_motion_of_our_own_does_not_end_outside_a_range(command, q, text):
+    found = replacement(takeover(command), single(q, 0.1), NOW_NS, LEAD)
+    assert text in ' '.join(found.warnings)
+    _, states = commands(found.motion, found.motion.end + 0.1)
+    assert (states[:, :3] >= LIMITS.min_position).all()
+    assert (states[:, :3] <= LIMITS.max_position).all()
+    assert not states[-1, 3:].any()
+
+
+def test_last_point_rounded_to_four_digits_is_inside():
+    found = replacement(takeover(), single((1.5708, 1.0, 0.2), 0.1), NOW_NS, LEAD)
+    assert found.motion.final[0] == 1.5708 and not found.warnings

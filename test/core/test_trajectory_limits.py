@@ -59,7 +59,9 @@ def test_point_outside_ranges_is_told_with_joint_value_range_and_unit():
     ((90.5, 1.0, 0.2), [False]),
     ((0.5, 1.0, 359.0), [True]),
     ((0.5, 1.0, 361.0), [False]),
-    ((1.65, 1.0, 0.2), [False]),                 # a near miss is one in radians
+    ((1.8, 1.0, 0.2), [False]),                  # a near miss is one in radians
+    ((0.5, 3.5, 0.2), [False]),
+    ((0.5, 1.0, 12.0), [False]),
     ((5.0, 1.0, 0.2), [True])])
 def test_degrees_are_asked_about_where_they_explain_the_numbers(q, hints):
     assert [x.in_degrees for x in excesses(single(q), LIMITS)] == hints

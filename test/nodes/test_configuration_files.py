@@ -150,6 +150,7 @@ def test_table_of_points_is_read(here, name, content):
      'line 2 is 1.0, 2.0, must be three numbers, x, y, z in m: z is missing'),
     ('1.0,2.0,3.0,4.0\n', 'line 1 is 1.0, 2.0, 3.0, 4.0, must be three numbers, x, y, z in m: '
      "'4.0' is too many"),
+    ('x,y,z\n1,02,0,59,0,97\n', "the header has 3 columns, '59', '0', '97' are too many"),
     ('x,y,z\n1.0,2.0,3.0\n\n1.0,2.0\n', 'line 4: z is missing'),
     ('x,y,z\n1.0,,3.0\n', 'line 2: y is missing'),
     ('x,y,z\n1.0,2.O,3.0\n', "line 2: y is '2.O', must be a number"),
