@@ -38,6 +38,7 @@ class _Call(NamedTuple):
 
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
+    expected: float
     done: Future
 
 
@@ -62,7 +63,7 @@ class Background:
         self._ending, self._ended = Lock(), False
         self._idle, self._threads = Semaphore(0), list[Thread]()
 
-    def call(self, function: Callable[..., Any], *arguments: Any) -> Future:
+    def call(self, function: Callable[..., Any], *arguments: Any, expected: float = 0.0) -> Future:
         """
         Call a function in a thread.
 
@@ -72,6 +73,8 @@ class Background:
             What takes long; its last argument is its `Turn`, whose `seconds` it asks often.
         *arguments
             Those before.
+        expected : float
+            How long it is thought to take at the least [s]; see `Turn`.
 
         Returns
         -------
@@ -81,7 +84,7 @@ class Background:
 
         """
         done = Future()
-        self._calls.put(_Call(function, arguments, done))
+        self._calls.put(_Call(function, arguments, expected, done))
         if not self._idle.acquire(blocking=False) and len(self._threads) < MOST_THREADS:
             self._threads.append(Thread(target=self._run, name=self._name, daemon=True))
             self._threads[-1].start()
@@ -108,7 +111,7 @@ class Background:
 
     def _run(self) -> None:
         for call in iter(self._calls.get, None):
-            with self._turns.turn() as turn:
+            with self._turns.turn(call.expected) as turn:
                 if self._ended:
                     return
                 try:

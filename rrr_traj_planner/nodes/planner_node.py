@@ -56,6 +56,8 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 # So many requests may wait; of more the oldest are lost, and their clients wait in vain.
 WAITING = QoSProfile(depth=1000)
 
+TIME_OF_POINT = 4e-4  # s, that planning takes at the least for each of many via points
+
 
 class _Answer(NamedTuple):
     """What a request comes to."""
@@ -123,7 +125,9 @@ class TrajectoryPlanner(Node):
         config, stamp = self._parameters_declared.config, self.get_clock().now().to_msg()
         begun = perf_counter()
         self._begun.append(begun)
-        answer = await self._threads.call(_answer, request, config, self._threads.is_ending)
+        answer = await self._threads.call(
+            _answer, request, config, self._threads.is_ending,
+            expected=TIME_OF_POINT * len(request.via_points.poses))
         self._begun.remove(begun)
         name = quoted(request.planner_id or config.default_planner_id)[1:-1]
         self._statistics.add(answer.response, self.get_clock().now().to_msg())

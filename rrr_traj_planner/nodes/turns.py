@@ -15,16 +15,16 @@
 """
 Turns of several threads at work that Python would do no faster at once: short work goes first.
 
-Multilevel feedback queues (Corbato et al., An Experimental Time-Sharing System, 1962): work is as
-urgent as it has taken little time so far, so that what is short need not be known beforehand. It
-becomes more urgent as it waits, so that long work gets on whatever else comes.
+Multilevel feedback queues (Corbato et al., An Experimental Time-Sharing System, 1962): work that
+has taken little time so far is urgent, unless it is expected to take long. It becomes more urgent
+as it waits, so that long work gets on whatever else comes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from math import log2
+from math import floor, log2
 from threading import Condition
 from time import perf_counter
 
@@ -43,11 +43,14 @@ class Turn:
     ----------
     turns : Turns
         All.
+    expected : float
+        How long the work is thought to take at the least [s]: it is no more urgent than if it had
+        taken so long already.
 
     """
 
-    def __init__(self, turns: Turns) -> None:
-        self._turns = turns
+    def __init__(self, turns: Turns, expected: float) -> None:
+        self._turns, self._expected = turns, expected
         self._before = 0.0         # time of work before this turn [s]
         self._since = perf_counter()  # of this turn, or of waiting for the next
         self._claim = SHORTEST_TURN
@@ -74,10 +77,9 @@ class Turn:
 
     def level(self, at_work: bool) -> float:
         """Return how little urgent the work is: 0 at first."""
-        done = self.used() if at_work else self._before
-        level = max(0.0, 1.0 + log2(done / FIRST_LEVEL)) if done > 0.0 else 0.0
+        done = max(self._expected, self.used() if at_work else self._before, 0.5 * FIRST_LEVEL)
         waited = 0.0 if at_work else perf_counter() - self._since
-        return float(int(level)) - waited / LEVEL_OF_WAITING
+        return floor(1.0 + log2(done / FIRST_LEVEL)) - waited / LEVEL_OF_WAITING
 
 
 class Turns:
@@ -98,9 +100,22 @@ class Turns:
         self._taken = self._ended = False
 
     @contextmanager
-    def turn(self) -> Iterator[Turn]:
-        """Wait for a turn, and end it afterwards; once turns are over nobody waits any more."""
-        turn = Turn(self)
+    def turn(self, expected: float = 0.0) -> Iterator[Turn]:
+        """
+        Wait for a turn, and end it afterwards; once turns are over nobody waits any more.
+
+        Parameters
+        ----------
+        expected : float
+            See `Turn`.
+
+        Yields
+        ------
+        Turn
+            Of this thread.
+
+        """
+        turn = Turn(self, expected)
         with self._changed:
             self._wait(turn)
         try:

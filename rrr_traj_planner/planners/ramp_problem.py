@@ -91,6 +91,7 @@ def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved |
     if np.isfinite(task.limits.max_acceleration).all():
         free = replace(task, limits=replace(task.limits, max_effort=np.full(3, np.inf)))
         found = mended(free, grid, freedom, rest_to_rest, floor)
+        task.should_stop()
         if found is not None and torque_fits(task, found.trajectory):
             better = _bettered(free, grid, freedom, found, floor)
             return better if torque_fits(task, better.trajectory) else _bettered(
@@ -156,6 +157,7 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
     approaches, beginnings = 0, BEGINNINGS
     tried: list[tuple[Outcome, Motion]] = []  # what was found, from which start
     for repair in range(REPAIRS):
+        task.should_stop()
         worth_it = WORTH_IT * 2.0 ** max(repair - PATIENCE, 0)
         asked, constraints = room, room.constraints(task, grid, floor)
         start = _last_within(constraints, centres)
@@ -174,8 +176,10 @@ def mended(task: JointTask, grid: Grid, freedom: Freedom, begin: Begin,
         slow = slow or start.motion
         outcome = minimise(constraints, start, freedom._replace(still=room.still),
                            task.should_stop)
+        task.should_stop()
         look = Look(task, grid, outcome.motion)
         if look.stretch() <= 1.0 + worth_it and not look.beyond_range.any():
+            task.should_stop()
             fits = _fitting(task, grid, freedom, outcome, outcome.motion)
             if fits is not None and fits.cost <= (1.0 + worth_it) * freedom.cost(
                     outcome.motion.T):
@@ -241,6 +245,7 @@ def _best_that_fits(task: JointTask, grid: Grid, freedom: Freedom,
             cost = freedom.cost(motion.T)
             if best is not None and best.cost <= cost:
                 break
+            task.should_stop()
             fits = _fitting(task, grid, freedom, outcome, motion)
             if fits is not None and (best is None or fits.cost < best.cost):
                 best = fits

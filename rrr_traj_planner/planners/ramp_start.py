@@ -69,6 +69,7 @@ def _fastest_ways(task: JointTask, constraints: Constraints) -> tuple[Array, Arr
     nodes = rest_to_rest_shapes(grid, task.points)
     T, without_torque = _least_durations(task, constraints, nodes)
     for k in np.flatnonzero(T > SLOW * without_torque):
+        task.should_stop()
         corners = holdable_way(task, task.points[k], task.points[k + 1],
                                grid.n // LEAST_RAMPS)
         if corners is None:

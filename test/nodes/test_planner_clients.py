@@ -16,15 +16,21 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from threading import Condition
 
-from plan_requests import NAMES, NEAR, plan_request
+import numpy as np
+from plan_requests import NAMES, NEAR, plan_request, TABLE_6_1
 import pytest
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+from rrr_traj_planner.planners.planning import plan as library_plan
+from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
 DEADLINE = 60.0
@@ -101,3 +107,51 @@ def values(ros):
     return ros.call(
         GetParameters, 'trajectory_planner/get_parameters', GetParameters.Request(
             names=['sample_period', 'max_points', *POSITIONS])).values
+
+
+def test_small_request_is_answered_before_long_ones_that_came_first(ros, planner):
+    """Several long requests cannot all be planned before the small one comes."""
+    arrived, answers = Condition(), []
+    t = np.linspace(0.0, 2.0 * np.pi, 400)
+    many = np.stack((0.7 + 0.1 * np.cos(t), 0.5 + 0.1 * np.sin(2.0 * t), 1.0 + 0.1 * np.sin(t)),
+                    axis=1)
+    node = ros.add(Node('clients', context=ros.context))
+
+    def ask(name, request):
+        def note(future):
+            with arrived:
+                answers.append((name, future.result()))
+                arrived.notify_all()
+
+        client = node.create_client(PlanTrajectory, 'plan_trajectory')
+        assert client.wait_for_service(DEADLINE)
+        client.call_async(request).add_done_callback(note)
+
+    for k in range(3):
+        ask(f'long {k}', plan_request(many, planner_id='time_optimal'))
+    ask('small', plan_request(NEAR))
+    with arrived:
+        assert arrived.wait_for(lambda: len(answers) == 4, DEADLINE), [n for n, _ in answers]
+    names = [name for name, _ in answers]
+    assert names.index('small') < 2, names  # the first long one may be near its end
+    small = dict(answers)['small']
+    alone = plan(ros)
+    assert small.trajectory == alone.trajectory  # bit for bit
+
+
+def test_library_plans_the_same_in_threads_as_alone():
+    tasks = [(planner_id, k) for planner_id in ('cycloid', 'time_optimal', 'line_arc', 'poly_434')
+             for k in range(3)]
+
+    def planned(task):
+        planner_id, k = task
+        points = [*TABLE_6_1[:2], (0.5, 0.4 + 0.05 * k, 1.3)]
+        return library_plan(RobotModel(), JointLimits(), PlanningRequest(
+            points, planner_id=planner_id)).points
+
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(planned, tasks))
+    for task, points in zip(tasks, together):
+        alone = planned(task)
+        for field in ('times', 'positions', 'velocities', 'accelerations'):
+            assert getattr(points, field).tolist() == getattr(alone, field).tolist()

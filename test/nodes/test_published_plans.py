@@ -198,9 +198,9 @@ def test_node_can_be_destroyed_while_a_path_is_made(ros, planner, drawing):
 def test_node_can_be_destroyed_between_its_publications(ros, planner, monkeypatch):
     call = planner._threads.call
 
-    def destroy_before_the_path(function, *arguments):
+    def destroy_before_the_path(function, *arguments, **expected):
         if function is not planner_node._drawing:
-            return call(function, *arguments)
+            return call(function, *arguments, **expected)
         planner.destroy_node()
         done = Future()
         done.set_result((Path(), MarkerArray()))

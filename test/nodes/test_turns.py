@@ -118,6 +118,24 @@ def test_long_work_gets_on_while_short_work_never_ends():
             thread.join(DEADLINE)
 
 
+def test_what_is_expected_to_take_long_lets_others_go_first_from_the_beginning():
+    turns, order = Turns(), []
+
+    def append(name, expected):
+        with turns.turn(expected):
+            order.append(name)
+
+    with turns.turn():
+        threads = [Thread(target=append, args=work) for work in (('long', 1.0), ('short', 0.01))]
+        for k, thread in enumerate(threads):
+            thread.start()
+            while len(turns._waiting) <= k:
+                pass
+    for thread in threads:
+        thread.join(DEADLINE)
+    assert order == ['short', 'long']
+
+
 def test_nobody_waits_once_turns_have_ended():
     turns = Turns()
     with turns.turn():

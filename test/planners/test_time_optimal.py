@@ -198,6 +198,8 @@ def part_left(answer):
     note = answer.trajectory.note
     if not note:
         return 0.0
+    if answer.note == 'planning ended before it converged: faster motions may be possible':
+        return 100.0  # no useful bound is known
     said = re.fullmatch(r'planning ended before it converged: at most ([\d.]+) % of the time '
                         r'could be saved', note)
     assert said, note
@@ -649,7 +651,7 @@ def stops_after(calls):
     return lambda: next(counter) >= calls
 
 
-@pytest.mark.parametrize('calls', [0, 1, 3, 5])
+@pytest.mark.parametrize('calls', [0, 1, 5, 10])
 @pytest.mark.parametrize('limits', [LIMITS, replace(LIMITS, **QUICK)], ids=['a', 'torque'])
 def test_planning_stopped_early_gives_a_valid_motion_and_says_how_far_it_may_be(limits, calls):
     best = plan(ARM, limits, through([A, B, C])).via_times[-1]
