@@ -129,7 +129,7 @@ def test_an_arm_parked_at_the_end_of_a_range_is_never_refused_for_its_encoders(c
     ('max_velocity_scaling_factor', 2.0, 'is 2.0, must be in (0, 1]'),
     ('max_acceleration_scaling_factor', -1.0, 'is -1.0, must be in (0, 1]'),
     ('segment_durations', [0.0, 1.0], '[0] is 0.0 s, must be finite and at least 1e-09 s'),
-    ('elbow', 'left', "is 'left', must be 'up' or 'down'")])
+    ('elbow', 'left', "is 'left', must be 'up', 'down' or empty")])
 def test_errors_name_the_service_s_fields(config, field, wrong, text):
     message = plan_request()
     setattr(message, field, wrong)
