@@ -128,7 +128,7 @@ def test_node_answers_all_else_while_it_plans(ros, gate):
     assert stamps(future.result().trajectory)[1] == 10_000_000
 
 
-def test_requests_are_answered_one_at_a_time_and_in_order(ros, gate):
+def test_requests_that_wait_for_one_that_gives_no_turn_are_all_answered(ros, gate):
     made(ros)
     order = []
     client = ros.node.create_client(PlanTrajectory, 'plan_trajectory')
@@ -146,7 +146,7 @@ def test_requests_are_answered_one_at_a_time_and_in_order(ros, gate):
     assert order == []
     gate.open.set()
     assert finished.wait(DEADLINE)
-    assert order == ['waiting', 'cycloid', 'magic', '']
+    assert sorted(order) == ['', 'cycloid', 'magic', 'waiting']
 
 
 def planning_threads():
