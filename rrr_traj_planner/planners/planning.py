@@ -238,7 +238,9 @@ def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
     trajectory = found.trajectory
     with step('the final checks'):
         request.should_stop()
-        peaks, effort = trajectory.peaks(), peak_torque(model, trajectory).value
+        peaks = trajectory.peaks()
+        request.should_stop()
+        effort = peak_torque(model, trajectory).value
         request.should_stop()
     broken = violations(limits, peaks, effort)
     if broken:
