@@ -26,6 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, IntArray
+from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.dynamics import inverse_dynamics
 from rrr_traj_planner.core.interpolation import Interpolant
 from rrr_traj_planner.core.limits import JointLimits
@@ -52,7 +53,8 @@ class SplineExcess(NamedTuple):
     jerk: Array     # largest jerk of each interval [rad/s^3], exactly, (n - 1, 3)
 
 
-def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant) -> SplineExcess:
+def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
+                  should_stop: ShouldStop = never) -> SplineExcess:
     """
     Return by how much quintics through points exceed velocity, acceleration, torque and range.
 
@@ -64,6 +66,8 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant) -
         Its limits.
     spline : Interpolant
         The quintics.
+    should_stop : callable
+        Asked now and then; its answer does not matter, but what it raises ends the work.
 
     Returns
     -------
@@ -73,8 +77,10 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant) -
     """
     shares = np.linspace(0.0, 1.0, STEPS + 1)
     q, qd, qdd = spline.within(shares)
+    should_stop()
     tau = inverse_dynamics(model, q, qd, qdd)
     effort = np.abs(tau).max(axis=(0, 1))
+    should_stop()
     doubtful = np.zeros(q.shape[1], dtype=bool)
     for values, limit in ((qd, limits.max_velocity), (qdd, limits.max_acceleration),
                           (tau, limits.max_effort)):
@@ -82,6 +88,7 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant) -
     doubtful |= (_most(np.abs(tau), tau) > effort * (1.0 + SPLINE_TOLERANCE)).any(axis=1)
     doubtful |= (_most(q, q) > limits.max_position + RANGE_TOLERANCE).any(axis=1)
     doubtful |= (_most(-q, q) > -limits.min_position + RANGE_TOLERANCE).any(axis=1)
+    should_stop()
     none = np.zeros(q.shape[1])
     found = SplineExcess(none + 1.0, none, none.copy(), effort, spline.peak_jerks())
     index = np.flatnonzero(doubtful)

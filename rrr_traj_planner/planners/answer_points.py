@@ -145,7 +145,7 @@ def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
         request.should_stop()
         spline = Interpolant(points_at(trajectory, times))
         request.should_stop()
-        excess = spline_excess(model, limits, spline)
+        excess = spline_excess(model, limits, spline, request.should_stop)
         further = _between(limits, times, excess, trajectory.step_times, gap, overshoot_before)
         if not len(further) or len(times.stamps) + len(further) > request.max_points:
             return spline, excess
