@@ -12,23 +12,21 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How long planning takes, beside TOPP-RA and without compiled code, and how it grows."""
+"""How long planning takes, beside TOPP-RA, and how it grows."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 import math
 
 from measuring import in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
 from peers import toppra_duration
-from rrr_traj_planner.planners import compiled
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner
-from tasks import full_torque, gentle, NONE, random_task, Task, WEAK
+from tasks import full_torque, gentle, random_task, Task, WEAK
 from tasks import table as thesis_table
 
 SEED = 7
@@ -52,21 +50,6 @@ def _beside(label: str, task: Task, planner_id: str, target: float,
     return [timed(f'planning, {label}: {planner_id} / TOPP-RA', target, medians),
             timed(f'planning, {label}: plan() with {planner_id} / TOPP-RA', None, medians,
                   ours=2)]
-
-
-def compiled_beside_numpy(repetitions: int = REPETITIONS) -> list[Row]:
-    """Return planning times with compiled code over those of the same planner without."""
-    if compiled.LIBRARY is None:
-        print('no compiled code here: its rows are left out', flush=True)
-        return []
-    actions = {}
-    for label, task, targets in _small_tasks():
-        for planner_id in targets:
-            actions[f'{label}: {planner_id}'] = _planning(task, planner_id)
-    path = thesis_table('6.1', replace(gentle(WEAK), max_jerk=NONE), '')
-    actions['table 6.1, v, a, torque: line_arc'] = _planning(path, 'line_arc')
-    return [timed(f'planning, {label}, compiled / NumPy', None, in_turns(
-        action, _by_numpy(action), repetitions=repetitions)) for label, action in actions.items()]
 
 
 def growth(repetitions: int = REPETITIONS, budget: float = GROWTH_BUDGET) -> list[Row]:
@@ -94,25 +77,6 @@ def _small_tasks() -> Iterator[tuple[str, Task, dict[str, float]]]:
             yield f'{len(task.request.via_points)} via points, {label}', task, targets
 
 
-def _by_numpy(action: Callable[[], object]) -> Callable[[], object]:
-    def run() -> object:
-        with _without_compiled_code():
-            return action()
-
-    return run
-
-
-@contextmanager
-def _without_compiled_code() -> Iterator[None]:
-    """Do what RRR_TRAJ_PLANNER_COMPILED=0 does."""
-    library = compiled.LIBRARY
-    compiled.LIBRARY = None
-    try:
-        yield
-    finally:
-        compiled.LIBRARY = library
-
-
 def _planning(task: Task, planner_id: str) -> Callable[[], object]:
     request = task.asked_of(planner_id)
     return lambda: plan(task.model, task.limits, request)
@@ -131,8 +95,7 @@ def main() -> None:
                         help='seconds for each row of growth, then fewer repetitions do')
     options = parser.parse_args()
     print(setting())
-    print(table(beside_toppra(options.repetitions) + compiled_beside_numpy(options.repetitions)
-                + growth(options.repetitions, options.budget)))
+    print(table(beside_toppra(options.repetitions) + growth(options.repetitions, options.budget)))
 
 
 if __name__ == '__main__':

@@ -26,7 +26,6 @@ import time
 from typing import Any, NamedTuple
 
 import numpy as np
-from rrr_traj_planner.planners import compiled
 
 PACKAGES = ('numpy', 'scipy', 'toppra', 'casadi', 'ruckig', 'pin')
 REPETITIONS = 21
@@ -69,8 +68,7 @@ def setting() -> str:
     versions = ', '.join(f'{name} {_version(name)}' for name in PACKAGES)
     threads = os.environ.get('OPENBLAS_NUM_THREADS', 'any number')
     return (f'{_processor()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}\n'
-            f'Python {platform.python_version()}, {versions}\nOPENBLAS_NUM_THREADS {threads}, '
-            f'compiled code {"in use" if compiled.LIBRARY is not None else "NOT in use"}')
+            f'Python {platform.python_version()}, {versions}\nOPENBLAS_NUM_THREADS {threads}')
 
 
 def _version(package: str) -> str:

@@ -48,7 +48,6 @@ def groups(tasks: int) -> dict[str, Callable[[], list[Row]]]:
     """Return what is measured, in the order of the table."""
     return {
         'planning beside TOPP-RA': bench_planning_time.beside_toppra,
-        'compiled code': bench_planning_time.compiled_beside_numpy,
         'motions beside the limit': lambda: [
             *bench_motion_time.tables(), *bench_motion_time.random(tasks)],
         'motions beside TOPP-RA and Ruckig': bench_motion_time.peers,

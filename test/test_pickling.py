@@ -40,10 +40,10 @@ from rrr_traj_planner.core.motion_points import MotionPoints
 from rrr_traj_planner.core.replacement import Takeover
 from rrr_traj_planner.core.septic import SEPTIC
 from rrr_traj_planner.core.tolerances import Tolerances
-from rrr_traj_planner.planners.motion_law import chain_of
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import CartesianTask, JointTask, PlanningRequest
+from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 
 PROTOCOLS = range(2, pickle.HIGHEST_PROTOCOL + 1)
 WAYS = {
@@ -88,7 +88,7 @@ def values():
         ArmSettings(model, limits, ControllerGains(), friction=Friction(np.ones(3), np.ones(3)),
                     tolerances=Tolerances(np.ones(3), np.ones(3))),
         PlanningRequest(POINTS, np.ones(3), 'septic', [1.0, np.nan, 2.0], elbow='up'),
-        task, chain_of(task, SEPTIC), MotionPoints([0, 1], q, zeros, zeros, flags, flags),
+        task, via_problem_of(task, SEPTIC), MotionPoints([0, 1], q, zeros, zeros, flags, flags),
         CartesianTask(model, limits, q, q[0], 'up', 0.05, np.inf, False, 0.01),
         Takeover(0.5, (0.1,) * 9, limits, model),
         *(plan_with(planner_id) for planner_id in planner_ids()))

@@ -29,19 +29,19 @@ from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.motion_law import chain_of, slowed_for_torque
 from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused, within_torque
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.segment import TransitionLaw
-from rrr_traj_planner.planners.segment_motion import Parts, quick_parts, trajectory
-from rrr_traj_planner.planners.transition_cruise import (
+from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, via_problem_of
+from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
+from rrr_traj_planner.planners.transitions.transition_cruise import (
     bisected,
     cruise_velocity,
     stopping_bracket,
     stopping_time,
 )
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 BEAM = 24
 # Durations tried, over the least one from rest to rest: fine near it, on to very slow.
@@ -79,7 +79,7 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    chain = chain_of(task)
+    chain = via_problem_of(task)
     if task.durations is not None:
         return kept_or_refused(lambda durations: within_torque(
             task, chain.law, lambda law: _motion(task, chain, law, durations)), task.durations)
@@ -89,7 +89,7 @@ def plan(task: JointTask) -> Trajectory:
     return slowed_for_torque(task, motion)
 
 
-def _fastest(task: JointTask, chain: Chain) -> Array:
+def _fastest(task: JointTask, chain: ViaProblem) -> Array:
     """Return durations of least total time, as good as the search finds them, shape (n,)."""
     durations = _beam_search(chain, task.should_stop)
     if len(durations) <= REFINED_SEGMENTS:
@@ -103,7 +103,7 @@ def _fastest(task: JointTask, chain: Chain) -> Array:
         'durations are found at which every joint then stays in its range')
 
 
-def _beam_search(chain: Chain, should_stop: ShouldStop) -> Array:
+def _beam_search(chain: ViaProblem, should_stop: ShouldStop) -> Array:
     """Return durations chosen one after the other; where that ends, very long ones."""
     D, law, limit = chain.displacements, chain.law, chain.max_velocity
     grids = np.maximum(chain.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
@@ -137,7 +137,7 @@ def _best(law: TransitionLaw, limit: Array, v: Array, elapsed: Array, D: Array,
     return near[np.argsort(elapsed[near] + rest, kind='stable')[:BEAM]]
 
 
-def _refined(chain: Chain, durations: Array, should_stop: ShouldStop) -> Array:
+def _refined(chain: ViaProblem, durations: Array, should_stop: ShouldStop) -> Array:
     """Return better durations, each varied in turn by smaller and smaller steps."""
     best, step = _total(chain, durations[np.newaxis])[0], FIRST_STEP
     for _ in range(REFINING_PASSES):
@@ -154,7 +154,7 @@ def _refined(chain: Chain, durations: Array, should_stop: ShouldStop) -> Array:
     return np.append(durations[:-1], last) if np.isfinite(best) else durations
 
 
-def _total(chain: Chain, durations: Array) -> Array:
+def _total(chain: ViaProblem, durations: Array) -> Array:
     """Return total times of rows of durations, the last one replaced by the least."""
     v, allowed = np.zeros((len(durations), 3)), np.ones(len(durations), dtype=bool)
     for k in range(durations.shape[1] - 1):
@@ -167,7 +167,7 @@ def _total(chain: Chain, durations: Array) -> Array:
     return np.where(allowed, durations[:, :-1].sum(axis=1) + last, np.inf)
 
 
-def _motion(task: JointTask, chain: Chain, law: TransitionLaw,
+def _motion(task: JointTask, chain: ViaProblem, law: TransitionLaw,
             durations: Array) -> PiecewiseTrajectory | None:
     """Return the motion of given durations, None if it breaks a limit other than torque's."""
     D, T = chain.displacements, durations[:, np.newaxis]

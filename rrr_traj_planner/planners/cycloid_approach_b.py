@@ -29,8 +29,6 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.motion_law import chain_of, slowed_for_torque
 from rrr_traj_planner.planners.prescribed_by_search import (
     fastest_beside_stays,
     kept_or_refused,
@@ -38,7 +36,6 @@ from rrr_traj_planner.planners.prescribed_by_search import (
 )
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.straddled_motion import (
     is_kept,
     shortest_transitions,
@@ -46,6 +43,9 @@ from rrr_traj_planner.planners.straddled_motion import (
     trajectory,
 )
 from rrr_traj_planner.planners.straddled_timing import fastest
+from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, via_problem_of
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 NEWTON_STEPS = 60
 
@@ -75,7 +75,7 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit on the way.
 
     """
-    chain = chain_of(task, CYCLOID)
+    chain = via_problem_of(task, CYCLOID)
     if task.durations is None:
         return _fastest(task, chain)
     return kept_or_refused(
@@ -85,13 +85,13 @@ def plan(task: JointTask) -> Trajectory:
             replace(task, points=points, durations=None))))
 
 
-def _fastest(task: JointTask, chain: Chain) -> Trajectory:
+def _fastest(task: JointTask, chain: ViaProblem) -> Trajectory:
     """Return the fastest motion."""
     timing = fastest(chain, None, task.should_stop)
     return slowed_for_torque(task, trajectory(task.points, timing, CYCLOID))
 
 
-def _motion_in(task: JointTask, chain: Chain, law: TransitionLaw,
+def _motion_in(task: JointTask, chain: ViaProblem, law: TransitionLaw,
                durations: Array) -> PiecewiseTrajectory | None:
     """Return the motion of given durations, None if it breaks a limit other than torque's."""
     lines = _lines(law, chain.displacements, durations)

@@ -27,11 +27,11 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.motion_law import chain_of
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.segment_motion import Parts, quick_parts, trajectory
 from rrr_traj_planner.planners.stops_at_via_points import quick_durations, stopping_motion
+from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
+from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
 
 
 @register('cycloid_approach_c', some_durations=True)
@@ -59,7 +59,7 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    chain = chain_of(task, CYCLOID)
+    chain = via_problem_of(task, CYCLOID)
     quick = quick_durations(task, chain.rest_to_rest_times())
     rest = np.zeros_like(chain.displacements)
     parts = quick_parts(chain.law, rest, rest, quick[:, np.newaxis], chain.displacements)

@@ -21,7 +21,7 @@ Acceleration is continuous, jerk is not: it steps where a transition begins or e
 from __future__ import annotations
 
 from rrr_traj_planner.core.gauss import GAUSS
-from rrr_traj_planner.planners.free_via_velocities import planner_with
 from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.transitions.planner import planner_with
 
 plan = register('gauss')(planner_with(GAUSS))

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from rrr_traj_planner.core.path_design import line_polynomial
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.along_path import along
+from rrr_traj_planner.planners.path_timing.planner import along
 from rrr_traj_planner.planners.registry import register_path
 from rrr_traj_planner.planners.request import CartesianTask
 

@@ -30,13 +30,6 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.quartic import QUARTIC
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.motion_law import (
-    cannot_hold,
-    chain_of,
-    slowed_for_torque,
-    torque_stretch,
-)
 from rrr_traj_planner.planners.prescribed_by_search import (
     fastest_beside_stays,
     kept_or_refused,
@@ -46,6 +39,13 @@ from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.straddled_motion import is_kept, Straddling, trajectory
 from rrr_traj_planner.planners.straddled_timing import fastest, total_time
+from rrr_traj_planner.planners.transitions.motion_law import (
+    cannot_hold,
+    slowed_for_torque,
+    torque_stretch,
+    via_problem_of,
+)
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 
 @register('poly_414', misses_via_points=True)
@@ -102,7 +102,7 @@ def planned(task: JointTask, t_acc: float) -> Trajectory:
         As in `plan`.
 
     """
-    chain = chain_of(task, QUARTIC)
+    chain = via_problem_of(task, QUARTIC)
     if task.durations is not None:
         return kept_or_refused(
             lambda durations: _motion_in(task, chain, t_acc, durations), task.durations,
@@ -111,7 +111,7 @@ def planned(task: JointTask, t_acc: float) -> Trajectory:
     return _fastest(task, chain, t_acc)
 
 
-def _fastest(task: JointTask, chain: Chain, t_acc: float) -> Trajectory:
+def _fastest(task: JointTask, chain: ViaProblem, t_acc: float) -> Trajectory:
     """Return the fastest motion."""
     full = np.full(len(task.points), 2.0 * t_acc)
     short = _beside(full, chain.rest_to_rest_times())
@@ -127,7 +127,7 @@ def _beside(transitions: Array, bounds: Array) -> Array:
     return np.asarray(np.minimum(transitions, inner))
 
 
-def _motion_in(task: JointTask, chain: Chain, t_acc: float,
+def _motion_in(task: JointTask, chain: ViaProblem, t_acc: float,
                durations: Array) -> PiecewiseTrajectory | None:
     """
     Return the motion of given durations, None if it breaks a limit.

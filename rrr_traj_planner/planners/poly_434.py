@@ -31,10 +31,8 @@ from rrr_traj_planner.core.law_434 import Law434
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.quartic import QUARTIC
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.motion_law import chain_of, torque_stretch
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.segment_motion import joint_profiles
 from rrr_traj_planner.planners.stops_at_via_points import (
     may_lack_torque,
     quick_durations,
@@ -42,6 +40,8 @@ from rrr_traj_planner.planners.stops_at_via_points import (
 )
 from rrr_traj_planner.planners.symmetric_434 import fastest_symmetric, least_time, Loads, loads_of
 from rrr_traj_planner.planners.torque_434 import law_for_torque, Segment, STARTS
+from rrr_traj_planner.planners.transitions.motion_law import torque_stretch, via_problem_of
+from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
 
 
 @register('poly_434', some_durations=True)
@@ -69,7 +69,7 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    loads = loads_of(chain_of(task, QUARTIC))
+    loads = loads_of(via_problem_of(task, QUARTIC))
     symmetric = fastest_symmetric(loads)
     floors = quick_durations(task, least_time(symmetric, loads))
     lacking = may_lack_torque(task, _motion(task.points, symmetric, floors))

@@ -23,9 +23,9 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.motion_law import cannot_hold, torque_stretch
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.segment import TransitionLaw
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_stretch
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 TORQUE_TOLERANCE = 5e-7  # of the stretch that torque asks for
 ROUNDS = 12              # of trying gentler transitions

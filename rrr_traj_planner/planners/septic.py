@@ -21,7 +21,7 @@ As with the cycloid, jerk is zero where a transition begins and ends.
 from __future__ import annotations
 
 from rrr_traj_planner.core.septic import SEPTIC
-from rrr_traj_planner.planners.free_via_velocities import planner_with
 from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.transitions.planner import planner_with
 
 plan = register('septic')(planner_with(SEPTIC))

@@ -29,8 +29,8 @@ from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.motion_torque import squared_stretch, torque_grid
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
-from rrr_traj_planner.planners.motion_law import cannot_hold, torque_stretch
 from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_stretch
 
 ROOM = 1e-6                # durations are longer than the least by this part
 PLENTY = 0.8                # of the speed, up to which torque is not looked at more closely

@@ -30,9 +30,9 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.pieces import TransitionFunction
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
-from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.segment import TransitionLaw
-from rrr_traj_planner.planners.segment_motion import joint_profiles
+from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 KEPT = 1e-9  # relative room for rounding, of limits that durations must keep
 
@@ -97,13 +97,13 @@ def shortest_transitions(law: TransitionLaw, displacements: Array, lines: Array)
     return np.asarray(law.least_time(changes).max(axis=1))
 
 
-def excess(chain: Chain, timing: Straddling) -> Array:
+def excess(chain: ViaProblem, timing: Straddling) -> Array:
     """
     Return how far a motion is beyond what it must keep, apart from its torques.
 
     Parameters
     ----------
-    chain : Chain
+    chain : ViaProblem
         The via points.
     timing : Straddling
         Times of the motion.
@@ -125,7 +125,7 @@ def excess(chain: Chain, timing: Straddling) -> Array:
     return np.array([velocity.max(), sharp.max(), (halves / lines).max()])
 
 
-def is_kept(chain: Chain, timing: Straddling) -> bool:
+def is_kept(chain: ViaProblem, timing: Straddling) -> bool:
     """
     Return whether a motion keeps its limits, apart from its torques.
 

@@ -29,8 +29,8 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.chain import Chain
 from rrr_traj_planner.planners.straddled_motion import excess, shortest_transitions, Straddling
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 from scipy import sparse
 from scipy.optimize import linprog
 
@@ -45,14 +45,14 @@ LEAST_TANGENT = 0.05
 ROOM = 1e-6                                # durations are longer than the least by this part
 
 
-def fastest(chain: Chain, transitions: Array | None,
+def fastest(chain: ViaProblem, transitions: Array | None,
             should_stop: Callable[[], bool]) -> Straddling:
     """
     Return the times of least sum within the limits on velocity, acceleration and jerk.
 
     Parameters
     ----------
-    chain : Chain
+    chain : ViaProblem
         The via points; no displacement zero in all joints.
     transitions : ndarray, shape (n + 1,), optional
         Lengths of the transitions [s]; None: free.
@@ -99,7 +99,7 @@ def total_time(timing: Straddling) -> float:
     return float(timing.lines.sum() + 0.5 * (timing.transitions[0] + timing.transitions[-1]))
 
 
-def _made_feasible(chain: Chain, lines: Array, transitions: Array | None) -> Straddling:
+def _made_feasible(chain: ViaProblem, lines: Array, transitions: Array | None) -> Straddling:
     """Return times stretched in proportion, if need be, until they keep the limits."""
     for _ in range(STRETCHES):
         timing = Straddling(lines, shortest_transitions(
@@ -124,7 +124,7 @@ class _Rows(NamedTuple):
 class _Program:
     """The linear programs; unknowns: rates (n), transitions (n + 1) and times of lines (n)."""
 
-    def __init__(self, chain: Chain, transitions: Array | None, start: Straddling) -> None:
+    def __init__(self, chain: ViaProblem, transitions: Array | None, start: Straddling) -> None:
         self.chain, self.transitions = chain, transitions
         self.unit = float(start.lines.mean())  # of time, in which all unknowns are about 1
         self.n = len(start.lines)

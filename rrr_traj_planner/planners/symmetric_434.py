@@ -46,7 +46,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.law_434 import Law434
-from rrr_traj_planner.planners.chain import Chain
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 LEAST_PART, MOST_PART = 1e-7, 0.49  # of the duration, for lift-off; a cruise is always left
 USUAL_PART = 1.0 / 3.0
@@ -70,13 +70,13 @@ class Loads(NamedTuple):
     jerk: Array          # [s^3]
 
 
-def loads_of(chain: Chain) -> Loads:
+def loads_of(chain: ViaProblem) -> Loads:
     """
     Return what the limits ask of each segment.
 
     Parameters
     ----------
-    chain : Chain
+    chain : ViaProblem
         Displacements and limits; the function's are those that the law has been made with.
 
     Returns

@@ -28,14 +28,14 @@ from dataclasses import replace
 import numpy as np
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.planners.convergence import unconverged_note
 from rrr_traj_planner.planners.followable import acceleration_scale, followable
-from rrr_traj_planner.planners.ramp_chain import grid_of
-from rrr_traj_planner.planners.ramp_prescribed import prescribed
-from rrr_traj_planner.planners.ramp_problem import fastest
-from rrr_traj_planner.planners.ramp_start import cannot_be_held
+from rrr_traj_planner.planners.joint_timing.least_time import fastest
+from rrr_traj_planner.planners.joint_timing.prescribed import prescribed
+from rrr_traj_planner.planners.joint_timing.start import cannot_be_held
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.solver.convergence import unconverged_note
+from rrr_traj_planner.planners.solver.ramps import grid_of
 
 RAMPS = 20            # in a segment
 RAMPS_ALONE = 32      # in a motion's only segment, which has to speed up and to slow down

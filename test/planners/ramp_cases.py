@@ -21,12 +21,12 @@ from random_cases import random_model
 from rrr_traj_planner.core.dynamics import gravity_torque
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.planners.ramp_chain import Grid, Motion
-from rrr_traj_planner.planners.ramp_constraints import Constraints
-from rrr_traj_planner.planners.ramp_moves import restored
-from rrr_traj_planner.planners.ramp_newton import Freedom
-from rrr_traj_planner.planners.ramp_start import rest_to_rest
+from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
+from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.solver.library import KERNELS
+from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables
 from scipy import ndimage
 
 NONE = np.full(3, np.inf)
@@ -42,27 +42,27 @@ def random_motion(seed, n=None, segments=None):
     grid = Grid(n or int(rng.integers(4, 13)), cruise=(0.0, 0.6)[seed % 2])
     N = segments or int(rng.integers(1, 5))
     points = rng.uniform([-1.0, 0.8, -0.8], [1.0, 1.8, 0.8], (N + 1, 3))
-    m = Motion(rng.normal(0.0, 1.0, (N, grid.n - 1, 3)), rng.normal(0.0, 0.3, (N - 1, 3)),
-               rng.normal(0.0, 0.5, (N - 1, 3)), rng.uniform(0.7, 2.5, N))
+    m = Variables(rng.normal(0.0, 1.0, (N, grid.n - 1, 3)), rng.normal(0.0, 0.3, (N - 1, 3)),
+                  rng.normal(0.0, 0.5, (N - 1, 3)), rng.uniform(0.7, 2.5, N))
     return grid, points, restored(grid, points, m)
 
 
 def random_step(seed, m):
     """Return a change of every unknown."""
     rng = np.random.default_rng(8000 + seed)
-    return Motion(*(rng.normal(0.0, 1.0, f.shape) for f in m))
+    return Variables(*(rng.normal(0.0, 1.0, f.shape) for f in m))
 
 
 def shifted(m, step, size):
     """Return the motion after a plain step, which need not meet the via points."""
-    return Motion(*(f + size * s for f, s in zip(m, step)))
+    return Variables(*(f + size * s for f, s in zip(m, step)))
 
 
 def bounds(limits, grid, points, floor=None, margin=0.0):
     """Return constraints without room for repairs, or with some for positions."""
     N, p = len(points) - 1, 2 * grid.n + 1
-    return Constraints(ARM, limits, grid, points, np.full((2, N, p, 3), margin),
-                       np.zeros((N, p, 3)), np.zeros((N, p, 3)), floor)
+    return JointConstraints(ARM, limits, grid, points, np.full((2, N, p, 3), margin),
+                            np.zeros((N, p, 3)), np.zeros((N, p, 3)), floor)
 
 
 def closer(limits, part):
@@ -72,8 +72,8 @@ def closer(limits, part):
 
 
 def all_free(N):
-    """Return the freedom of a problem of N segments of free durations."""
-    return Freedom(np.ones(N, bool), np.zeros(N), np.ones(N), np.zeros((N - 1, 3), bool))
+    """Return N free durations of three joints."""
+    return DurationConstraints.all_free(N, 3)
 
 
 def slow_start(limits, grid, points, floor=None):
@@ -83,10 +83,19 @@ def slow_start(limits, grid, points, floor=None):
     return constraints, rest_to_rest(task, constraints)
 
 
-def own_unknowns(grid, m):
-    """Return the unknowns y of every segment, (N, n + 2, 3)."""
-    nodes, v0, _ = grid.nodes(m)
-    return np.concatenate((v0[:, np.newaxis], nodes), axis=1)
+def flat(m):
+    """Return the unknowns of a motion, one behind the other."""
+    return np.concatenate([f.ravel() for f in m])
+
+
+def stepped(problem, m, step, size):
+    """Return where a part of a step leads, and the slacks there; None where it leads nowhere."""
+    problem.begin(m, DurationConstraints.all_free(len(m.T), m.inner.shape[-1]))
+    arrays = problem.arrays
+    arrays['slack'][:], arrays['direction 0'][:] = -np.inf, flat(step)
+    if not KERNELS.timing_trial(problem.at, problem.steps[0].at, size, 1.0, 0.0):
+        return None
+    return problem.motion(arrays['variables 0'].copy()), arrays['slack 0'].copy()
 
 
 def share_of(task, q):
@@ -122,7 +131,7 @@ def is_connected(task, room):
     """
     Return whether cells of joints 2 and 3 that can be held connect a task's two poses.
 
-    Room is how much less than its limits gravity may take, in changes from cell to cell.
+    Margins is how much less than its limits gravity may take, in changes from cell to cell.
     """
     share = _shares(task, FINE)
     change = max(np.abs(np.diff(share, axis=k)).max() for k in (0, 1))

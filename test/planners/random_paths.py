@@ -32,7 +32,7 @@ from rrr_traj_planner.core.path_trajectory import ArmPath
 from rrr_traj_planner.core.postures import ELBOWS, Posture
 from rrr_traj_planner.core.workspace_check import check_workspace
 from rrr_traj_planner.planners.followable import followable
-from rrr_traj_planner.planners.path_timing import fastest_along, PathTask
+from rrr_traj_planner.planners.path_timing.least_time import fastest_along, PathTask
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 

@@ -26,7 +26,7 @@ from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.postures import posture_of
-from rrr_traj_planner.planners.along_path import SMALLER, WORTH_IT
+from rrr_traj_planner.planners.path_timing.planner import SMALLER, WORTH_IT
 from rrr_traj_planner.planners.request import PlanningRequest
 
 SEEDS = range(16)

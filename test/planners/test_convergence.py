@@ -17,7 +17,7 @@
 from math import inf, nan
 
 import pytest
-from rrr_traj_planner.planners.convergence import unconverged_note
+from rrr_traj_planner.planners.solver.convergence import unconverged_note
 
 
 def test_nothing_is_said_of_what_converged():

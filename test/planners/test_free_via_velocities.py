@@ -25,10 +25,10 @@ from rrr_traj_planner.core.kinematics import forward_kinematics
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.septic import SEPTIC
-from rrr_traj_planner.planners.free_via_velocities import planner_with
-from rrr_traj_planner.planners.motion_law import chain_of
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest
+from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
+from rrr_traj_planner.planners.transitions.planner import planner_with
 from thesis_cases import POINTS
 
 ARM, LIMITS = RobotModel(), JointLimits()
@@ -116,7 +116,7 @@ def test_law_is_the_function_s_peaks_over_the_limits():
     # Peak acceleration 15/8 D / t, peak jerk 10 / sqrt(3) D / t^2.
     limits = JointLimits(max_acceleration=[3.75] * 3, max_jerk=[40.0 / np.sqrt(3.0)] * 3)
     q = np.array([[0.3, 1.4, 0.0], [1.0, 1.8, 0.3]])
-    law = chain_of(JointTask(ARM, limits, q, None, 0.01), SEPTIC).law
+    law = via_problem_of(JointTask(ARM, limits, q, None, 0.01), SEPTIC).law
     assert law.slope == pytest.approx([0.5] * 3)
     assert law.root == pytest.approx([0.5] * 3)
 
@@ -124,7 +124,7 @@ def test_law_is_the_function_s_peaks_over_the_limits():
 def test_transitions_at_full_acceleration_last_five_samples_whatever_the_function():
     q = np.array([[0.3, 1.4, 0.0], [1.0, 1.8, 0.3]])
     for function in (CYCLOID, SEPTIC, gauss(), gauss(3.0)):
-        law = chain_of(JointTask(ARM, FREE, q, None, 0.1), function).law
+        law = via_problem_of(JointTask(ARM, FREE, q, None, 0.1), function).law
         # the change of velocity at which both rules ask for the same duration
         change = (law.root / law.slope) ** 2
         assert law.least_time(change) == pytest.approx([0.5] * 3)

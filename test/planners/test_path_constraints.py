@@ -12,25 +12,22 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Limits along a path: slacks against the limits, their derivatives against differences."""
+"""Limits along a path: slacks against the limits, quantities against the exact motion."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from ramp_cases import own_unknowns, random_step, shifted
-from random_cases import central_difference
 from random_paths import NONE, random_case
 from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.planners.path_constraints import (
+from rrr_traj_planner.planners.path_timing.constraints import (
     limited,
     PathConstraints,
     progress_at,
     QUANTITIES,
 )
-from rrr_traj_planner.planners.path_table import PathTable
-from rrr_traj_planner.planners.ramp_chain import Grid, Motion
-from rrr_traj_planner.planners.ramp_moves import restored
+from rrr_traj_planner.planners.path_timing.table import PathTable
+from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables
 
 SEEDS = range(12)
 LIMITS = JointLimits(max_jerk=[10.0] * 3, max_effort=[300.0] * 3)
@@ -48,21 +45,31 @@ def random_problem(seed, limits=LIMITS, max_tip_speed=TIP_SPEED, margin=0.0, ste
         np.full(N, steady))
     L, speed = np.diff(table.ends), rng.uniform(0.8, 1.2, N - 1)
     inner = rng.normal(0.0, 0.05, (N, grid.n - 1, 1))
-    m = Motion(inner, speed[:, np.newaxis], rng.normal(0.0, 0.05, (N - 1, 1)), L.copy())
+    m = Variables(inner, speed[:, np.newaxis], rng.normal(0.0, 0.05, (N - 1, 1)), L.copy())
     m.T[[0, -1]] *= 2.0
     return constraints, restored(grid, constraints.points, m)
 
 
+def slacks_of(constraints, m):
+    """Return what is left above and below, (2, N, p, K): of joints, then the tip's speed."""
+    N, p = len(m.T), 2 * constraints.grid.n + 1
+    limits = constraints.problem.limits
+    found = constraints.problem.slacks(m)[:-2 * N].reshape(N, -1, 2)
+    tip = int(limits.bounded.sum())
+    along, joints = found[:, :tip].reshape(N, p, -1, 2), found[:, tip:].reshape(N, p, -1, 2)
+    return np.moveaxis(np.concatenate((joints, along), axis=2), -1, 0)
+
+
 def demands_of(constraints, m):
     at = progress_at(constraints.grid, constraints.points, m)
-    return at, limited(constraints.demands(at.s)[0], at)
+    return at, limited(constraints.demand(at.s), at)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_slacks_are_limits_less_quantities(seed):
     constraints, m = random_problem(seed)
     _, x = demands_of(constraints, m)
-    (upper, lower), = constraints.slacks(m)
+    upper, lower = slacks_of(constraints, m)
     bounds = np.concatenate((LIMITS.max_velocity, LIMITS.max_acceleration, LIMITS.max_jerk,
                              LIMITS.max_effort))
     assert upper[..., :12] == pytest.approx(bounds - x[..., :12])
@@ -88,8 +95,8 @@ def test_quantities_are_those_of_the_exact_motion(seed):
 
 
 def test_margins_take_their_part_of_every_limit():
-    (plain,), (inside,) = (random_problem(2, margin=x)[0].slacks(random_problem(2)[1])
-                           for x in (0.0, 0.1))
+    plain, inside = (slacks_of(random_problem(2, margin=x)[0], random_problem(2)[1])
+                     for x in (0.0, 0.1))
     assert inside[..., :12] == pytest.approx(plain[..., :12] - 0.1)
     assert inside[0, ..., 12] == pytest.approx(plain[0, ..., 12] - 0.1)
 
@@ -97,53 +104,6 @@ def test_margins_take_their_part_of_every_limit():
 def test_limits_that_are_infinite_are_not_looked_at():
     some = replace(LIMITS, max_effort=[np.inf, 200.0, np.inf], max_jerk=NONE)
     constraints, m = random_problem(2, some, np.inf)
-    slacks, changes, _ = constraints.linear(m)
-    assert slacks[0].shape[-1] == changes[0].by_y.shape[2] == 3 + 3 + 1 + 1
-    assert slacks[0][0, ..., -1].min() > 1e5  # of the tip's speed only that it moves on
-
-
-@pytest.mark.parametrize('seed', SEEDS)
-@pytest.mark.parametrize('steady', [False, True])
-def test_changes_are_finite_differences_of_slacks(seed, steady):
-    constraints, m = random_problem(seed, steady=steady)
-    step = random_step(seed, m)
-    (slacks,), (change,), _ = constraints.linear(m)
-    assert slacks == pytest.approx(constraints.slacks(m)[0])
-    rate = np.einsum('npijm,nmj->npi', change.by_y, own_unknowns(constraints.grid, step))
-    rate += change.by_T * step.T[:, np.newaxis, np.newaxis]
-    size = 1e-4 * float((m.T / np.abs(step.T)).min())
-    rounding = 1e-15 * np.abs(slacks).max(axis=(0, 1, 2)) / size
-    for side, sign in ((0, -1.0), (1, 1.0)):
-        difference = central_difference(lambda z, side=side: constraints.slacks(
-            shifted(m, step, z))[0][side], 0.0, size)
-        off = np.abs(sign * rate - difference).max(axis=(0, 1))
-        assert (off <= 1e-5 * np.abs(rate).max(axis=(0, 1)) + 10.0 * rounding).all()
-
-
-@pytest.mark.parametrize('seed', SEEDS)
-def test_hessian_is_the_second_difference_of_the_weighted_quantities(seed):
-    constraints, m = random_problem(seed)
-    grid, step = constraints.grid, random_step(seed, m)
-    slacks, _, bent = constraints.linear(m)
-    duals = np.random.default_rng(seed).uniform(0.1, 1.0, slacks[0].shape)
-    yy, yT, TT = constraints.hessian(bent, duals)
-    y = own_unknowns(grid, step)[..., 0]
-    found = (np.einsum('ni,nij,nj->n', y, yy, y) + 2.0 * step.T * np.einsum(
-        'ni,ni->n', yT[:, 0], y) + TT * step.T ** 2)
-
-    # Places, speeds, ... move on the step to first order: their own bends are not part of it.
-    at = progress_at(grid, constraints.points, m)
-    moved = np.einsum('npim,nm->npi', bent.by_y, y) + bent.by_T * step.T[:, np.newaxis, np.newaxis]
-    weights = duals[0] - duals[1]
-
-    def total(z):
-        near = type(at)(*(f + z * moved[..., k] for k, f in enumerate(at)))
-        x = limited(constraints.demands(near.s)[0], near)
-        return (weights * x[..., constraints._kept]).sum(axis=(1, 2))
-
-    def second(z):
-        return (total(z) - 2.0 * total(0.0) + total(-z)) / z ** 2
-
-    z = 1e-3 * float((np.diff(constraints.table.ends)).min()) / np.abs(moved[..., 0]).max()
-    size = np.abs(found).max() + np.abs(second(z)).max()
-    assert found == pytest.approx(second(z), abs=2e-3 * size)
+    slacks = slacks_of(constraints, m)
+    assert slacks.shape[-1] == 3 + 3 + 1 + 1
+    assert slacks[0, ..., -1].min() > 1e5  # of the tip's speed only that it moves on

@@ -16,8 +16,8 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.path_start import paced_along, uniform_along
-from rrr_traj_planner.planners.ramp_chain import Grid
+from rrr_traj_planner.planners.path_timing.start import paced_along, uniform_along
+from rrr_traj_planner.planners.solver.ramps import Grid
 
 
 def rough_path(seed):

@@ -17,8 +17,8 @@
 import numpy as np
 import pytest
 from random_cases import central_difference
-from rrr_traj_planner.planners.reach import derivatives, largest_cruise, reach
-from rrr_traj_planner.planners.segment import TransitionLaw
+from rrr_traj_planner.planners.transitions.reach import derivatives, largest_cruise, reach
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 LAWS = {'acceleration': TransitionLaw(np.full(3, 2.0), np.zeros(3)),
         'jerk': TransitionLaw(np.full(3, 2.0), np.full(3, 1.6)),

@@ -19,9 +19,9 @@ import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.planners.motion_law import chain_of
 from rrr_traj_planner.planners.registry import planner, planner_ids, register
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest
+from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 
 POINTS = [[1.0, 0.6, 1.0], [0.5, 0.5, 1.4]]
 
@@ -98,7 +98,7 @@ def test_law_is_the_cycloid_s_peaks_over_the_limits():
     # Peak acceleration 2 D / t, peak jerk 2 pi D / t^2: 1 rad/s at 4 rad/s^2 takes 0.5 s,
     # at 8 pi rad/s^3 too.
     limits = JointLimits(max_acceleration=[4.0] * 3, max_jerk=[8.0 * np.pi] * 3)
-    law = chain_of(task_of(limits)).law
+    law = via_problem_of(task_of(limits)).law
     assert law.least_time(np.full(3, 1.0)) == pytest.approx([0.5] * 3)
     assert law.slope == pytest.approx([0.5] * 3)
     assert law.root == pytest.approx([0.5] * 3)
@@ -107,19 +107,19 @@ def test_law_is_the_cycloid_s_peaks_over_the_limits():
 def test_via_velocity_is_bounded_by_the_room_to_the_range():
     # Joint 1, 0.02 rad from its end at 1 rad/s^2: it stops in v^2 / 1 (a cycloid's mean is half
     # its peak): v^2 = 0.02.
-    chain = chain_of(task_of(points=((0.3, 1.4, 0.0), (0.02, 1.8, 0.3), (0.2, 1.3, -0.5))))
+    chain = via_problem_of(task_of(points=((0.3, 1.4, 0.0), (0.02, 1.8, 0.3), (0.2, 1.3, -0.5))))
     assert chain.highest[0, 0] == pytest.approx(np.sqrt(0.02))
     assert chain.lowest[0].tolist() == (-chain.highest[0]).tolist()
     assert chain.highest[0, 1] == 1.0
 
 
 def test_joint_at_the_end_of_its_range_has_all_but_no_via_velocity():
-    chain = chain_of(task_of(points=((0.3, 1.4, 0.0), (0.0, 1.8, 0.3), (0.2, 1.3, -0.5))))
+    chain = via_problem_of(task_of(points=((0.3, 1.4, 0.0), (0.0, 1.8, 0.3), (0.2, 1.3, -0.5))))
     assert 0.0 < chain.highest[0, 0] <= 1e-8
 
 
 def test_missing_velocity_limit_bounds_nothing_that_a_motion_could_reach():
-    chain = chain_of(task_of(JointLimits(max_velocity=[np.inf] * 3)))
+    chain = via_problem_of(task_of(JointLimits(max_velocity=[np.inf] * 3)))
     D = np.abs(chain.displacements).sum(axis=0)
     assert np.isfinite(chain.max_velocity).all()
     assert (chain.max_velocity > np.sqrt(D)).all()  # 1 rad/s^2, half of it in the mean

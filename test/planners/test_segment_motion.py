@@ -16,9 +16,14 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.reach import reach
-from rrr_traj_planner.planners.segment import TransitionLaw
-from rrr_traj_planner.planners.segment_motion import gentle_parts, Parts, quick_parts, trajectory
+from rrr_traj_planner.planners.transitions.reach import reach
+from rrr_traj_planner.planners.transitions.segment_motion import (
+    gentle_parts,
+    Parts,
+    quick_parts,
+    trajectory,
+)
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 ROUNDING = 1e-9
 SEEDS = range(40)

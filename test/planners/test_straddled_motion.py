@@ -19,8 +19,6 @@ import pytest
 from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.quartic import QUARTIC
 from rrr_traj_planner.core.septic import SEPTIC
-from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.straddled_motion import (
     changes_of_velocity,
     excess,
@@ -29,6 +27,8 @@ from rrr_traj_planner.planners.straddled_motion import (
     Straddling,
     trajectory,
 )
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 POINTS = np.array([[0.0, 0.2, 1.0], [0.6, 0.5, 0.4], [0.3, 0.9, 0.5], [1.0, 0.9, 0.1]])
 TIMING = Straddling(np.array([1.1, 1.3, 1.2]), np.array([0.8, 1.0, 1.2, 0.5]))
@@ -45,9 +45,9 @@ def function(request):
     return request.param
 
 
-def chain_of(law, limit=1.0):
-    return Chain(np.diff(POINTS, axis=0), law, np.full(3, limit), -np.ones((2, 3)),
-                 np.ones((2, 3)))
+def via_problem_of(law, limit=1.0):
+    return ViaProblem(np.diff(POINTS, axis=0), law, np.full(3, limit), -np.ones((2, 3)),
+                      np.ones((2, 3)))
 
 
 def test_motion_lasts_as_long_as_its_lines_and_half_of_both_end_transitions(function):
@@ -107,7 +107,7 @@ def test_shortest_transitions_are_those_of_the_joint_that_needs_most():
 
 def test_excess_is_that_of_velocity_change_and_room():
     law = TransitionLaw(np.full(3, 2.0), np.zeros(3))
-    chain = chain_of(law, limit=0.5)
+    chain = via_problem_of(law, limit=0.5)
     v = np.diff(POINTS, axis=0) / TIMING.lines[:, np.newaxis]
     changes = np.diff(np.vstack((np.zeros(3), v, np.zeros(3))), axis=0)
     found = excess(chain, TIMING)
@@ -116,7 +116,7 @@ def test_excess_is_that_of_velocity_change_and_room():
         (2.0 * np.abs(changes) / TIMING.transitions[:, np.newaxis]).max())
     assert found[2] == pytest.approx(max(0.9 / 1.1, 1.1 / 1.3, 0.85 / 1.2))
     assert not is_kept(chain, TIMING)
-    assert is_kept(chain_of(TransitionLaw(np.full(3, 0.2), np.zeros(3))), TIMING)
+    assert is_kept(via_problem_of(TransitionLaw(np.full(3, 0.2), np.zeros(3))), TIMING)
 
 
 def test_transitions_of_no_length_leave_the_line_alone():

@@ -16,10 +16,10 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.straddled_motion import excess
 from rrr_traj_planner.planners.straddled_timing import fastest, total_time
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 SEEDS = range(12)
 KEPT = 1.0 + 1e-9
@@ -34,8 +34,8 @@ def random_chain(seed, n, jerk=True):
     rng = np.random.default_rng(700 + seed)
     law = TransitionLaw(rng.uniform(0.5, 3.0, 3), rng.uniform(0.1, 1.5, 3) * jerk)
     limit = rng.uniform(0.3, 2.0, 3)
-    return Chain(rng.uniform(-1.0, 1.0, (n, 3)), law, limit, -np.ones((n - 1, 3)),
-                 np.ones((n - 1, 3)))
+    return ViaProblem(rng.uniform(-1.0, 1.0, (n, 3)), law, limit, -np.ones((n - 1, 3)),
+                      np.ones((n - 1, 3)))
 
 
 def searched(chain, transitions=None):

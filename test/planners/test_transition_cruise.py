@@ -16,8 +16,12 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.segment import TransitionLaw
-from rrr_traj_planner.planners.transition_cruise import can_stop, cruise_velocity, stopping_time
+from rrr_traj_planner.planners.transitions.transition_cruise import (
+    can_stop,
+    cruise_velocity,
+    stopping_time,
+)
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 SEEDS = range(25)
 BRUTE_FORCE = 5e-3  # steps of duration are 0.3 %; steps of cruise cost 0.1 %

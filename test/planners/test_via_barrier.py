@@ -19,10 +19,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from random_cases import central_difference
-from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.segment import TransitionLaw
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 SEEDS = range(8)
 
@@ -34,25 +34,17 @@ def chain_and_point(seed):
     law = TransitionLaw(rng.uniform(0.5, 3.0, 3),
                         rng.uniform(0.3, 1.5, 3) * (rng.random(3) < 0.5))
     highest = rng.uniform(0.5, 1.0, (n - 1, 3))
-    chain = Chain(rng.normal(0.0, 0.5, (n, 3)), law, np.full(3, 1.2), -highest, highest)
+    chain = ViaProblem(rng.normal(0.0, 0.5, (n, 3)), law, np.full(3, 1.2), -highest, highest)
     T = chain.rest_to_rest_times() * rng.uniform(1.3, 2.0, n)
     v = 0.05 * rng.uniform(-1.0, 1.0, (n - 1, 3))
     return chain, 0.8 * T if seed % 2 else None, v, T
 
 
-def barrier_at(chain, floor, v, T, proportions=None):
-    """Return the barrier with its parts' derivatives."""
-    barrier = ViaBarrier(chain, v, T, floor, proportions)
-    KERNELS.via_value(barrier.at)
-    KERNELS.via_differentiate(barrier.at)
-    return barrier
-
-
 def value(chain, floor, x):
     """Return the barrier at a point."""
     n = len(chain.displacements)
-    return KERNELS.via_value(ViaBarrier(chain, x[:3 * n - 3].reshape(-1, 3), x[3 * n - 3:],
-                                        floor).at)
+    barrier = ViaBarrier(chain, x[:3 * n - 3].reshape(-1, 3), x[3 * n - 3:], floor)
+    return barrier.arrays['before'].sum()
 
 
 def dense(barrier):
@@ -86,7 +78,7 @@ def test_value_is_the_sum_of_logarithms_of_what_is_left_of_each_limit(seed):
     slacks = (np.where(fits, covered, -np.inf).max(axis=0) - D,
               D - np.where(fits, covered, np.inf).min(axis=0),
               change - (v1 - v0), change + (v1 - v0))
-    parts = barrier_at(chain, floor, v, T).arrays['before']
+    parts = ViaBarrier(chain, v, T, floor).arrays['before']
     segments, velocities, durations = np.split(parts, (3 * n, 6 * n - 3))
     # the grid of cruises misses the best one by a bit, which hardly counts where much is left
     enough = np.minimum(slacks[0], slacks[1]) > 0.05
@@ -102,7 +94,7 @@ def test_value_is_the_sum_of_logarithms_of_what_is_left_of_each_limit(seed):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_gradient_is_the_finite_difference_of_the_value(seed):
     chain, floor, v, T = chain_and_point(seed)
-    x, (g, _) = np.append(v, T), dense(barrier_at(chain, floor, v, T))
+    x, (g, _) = np.append(v, T), dense(ViaBarrier(chain, v, T, floor))
     for k, unit in enumerate(np.eye(len(x))):
         assert g[k] == pytest.approx(central_difference(
             lambda z, unit=unit: value(chain, floor, x + z * unit), 0.0, 1e-5), rel=1e-5, abs=1e-4)
@@ -112,10 +104,10 @@ def test_gradient_is_the_finite_difference_of_the_value(seed):
 def test_hessian_is_the_finite_difference_of_the_gradient_where_the_barrier_is_convex(seed):
     chain, floor, v, T = chain_and_point(seed)
     x = np.append(v, T)
-    _, H = dense(barrier_at(chain, floor, v, T))
+    _, H = dense(ViaBarrier(chain, v, T, floor))
 
     def gradient(x):
-        return dense(barrier_at(chain, floor, x[:v.size].reshape(v.shape), x[v.size:]))[0]
+        return dense(ViaBarrier(chain, x[:v.size].reshape(v.shape), x[v.size:], floor))[0]
 
     difference = np.array([central_difference(
         lambda z, unit=unit: gradient(x + z * unit), 0.0, 1e-5) for unit in np.eye(len(x))])
@@ -132,7 +124,7 @@ def test_hessian_is_the_finite_difference_of_the_gradient_where_the_barrier_is_c
 def test_hessian_is_positive_definite_where_much_time_is_to_spare_too(seed):
     chain, floor, v, T = chain_and_point(seed)
     for spare in (1.0, 4.0):
-        _, H = dense(barrier_at(chain, floor, v, spare * T))
+        _, H = dense(ViaBarrier(chain, v, spare * T, floor))
         assert np.linalg.eigvalsh(H).min() > 0.0
 
 
@@ -140,11 +132,12 @@ def test_hessian_is_positive_definite_where_much_time_is_to_spare_too(seed):
 @pytest.mark.parametrize('common', [False, True])
 def test_newton_step_is_that_of_a_dense_solve(seed, common):
     chain, floor, v, T = chain_and_point(seed)
-    barrier = barrier_at(chain, floor, v, T, T if common else None)
+    barrier = ViaBarrier(chain, v, T, floor, T if common else None)
     n, rng = len(T), np.random.default_rng(seed)
     barrier.arrays['damping'][:] = rng.choice([0.0, 0.5, 8.0], 7 * n - 3)
     weight = 7.0
-    squared = KERNELS.via_newton(barrier.at, weight)
+    KERNELS.via_attempt(barrier.at, weight)
+    squared = barrier.found.decrement
     g, H = dense(barrier)
     # unknowns of the step: all of them, or via velocities and a common factor of durations
     basis = np.eye(4 * n - 3)
@@ -160,38 +153,37 @@ def test_newton_step_is_that_of_a_dense_solve(seed, common):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_a_trial_tells_how_the_merit_changes_and_accepting_it_moves_the_iterate(seed):
+def test_an_attempt_tells_how_the_merit_changes_and_accepting_it_moves_the_iterate(seed):
     chain, floor, v, T = chain_and_point(seed)
-    barrier, rng = barrier_at(chain, floor, v, T), np.random.default_rng(seed)
+    barrier, weight = ViaBarrier(chain, v, T, floor), 7.0
     start, a = np.append(v, T), barrier.arrays
-    a['step'][:] = 0.02 * rng.normal(size=len(start))
     a['damping'][:] = 8.0
+    change = KERNELS.via_attempt(barrier.at, weight)
     moved = start + a['step']
-    expected = 3.0 * a['step'][v.size:].sum() + value(chain, floor, moved) - value(
-        chain, floor, start)
-    assert KERNELS.via_trial(barrier.at, 3.0) == pytest.approx(expected, rel=1e-9, abs=1e-12)
+    assert change == pytest.approx(weight * a['step'][v.size:].sum() + value(
+        chain, floor, moved) - value(chain, floor, start), rel=1e-9, abs=1e-12)
     assert (a['point'] == start).all()
     KERNELS.via_accept(barrier.at, 0.25)
     assert (a['point'] == moved).all() and (a['damping'] == 2.0).all()
-    assert KERNELS.via_objective(barrier.at) == pytest.approx(moved[v.size:].sum())
+    assert barrier.found.objective == pytest.approx(moved[v.size:].sum())
+    there = ViaBarrier(chain, barrier.velocities, barrier.durations, floor)
+    for name in ('before', 'gradient', 'hessian', 'bound'):
+        assert (a[name] == there.arrays[name]).all()
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_parts_that_a_trial_breaks_are_damped_and_none_else_once_they_are_stiff(seed):
+def test_parts_that_an_attempt_breaks_are_damped_and_none_else_once_they_are_stiff(seed):
     chain, floor, v, T = chain_and_point(seed)
-    barrier, rng = barrier_at(chain, floor, v, T), np.random.default_rng(seed)
+    barrier = ViaBarrier(chain, v, T, floor)
     a = barrier.arrays
-    a['step'][:] = np.append(0.2 * chain.highest[:, :1] * rng.normal(size=v.shape),
-                             0.2 * T * rng.normal(size=T.shape))
-    KERNELS.via_trial(barrier.at, 1.0)
+    assert KERNELS.via_attempt(barrier.at, 1e3) == np.inf  # much too far
     broken = np.isinf(a['after'])
     KERNELS.via_damp(barrier.at, 0.75, 4.0)
-    damped = a['damping'] > 0.0
-    assert damped[broken].all()
+    assert broken.any() and (a['damping'] > 0.0)[broken].all()
     assert set(a['damping']) <= {0.0, 1.0}
     a['damping'][:] = 1e9
     KERNELS.via_damp(barrier.at, 0.75, 4.0)
-    assert ((a['damping'] > 1e9) == (broken if broken.any() else True)).all()
+    assert ((a['damping'] > 1e9) == broken).all()
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -215,7 +207,7 @@ def test_rest_to_rest_times_are_what_a_hand_calculation_gives():
     law = TransitionLaw(np.full(3, 2.0), np.zeros(3))
     D = np.array([[0.5, 0.1, 0.0], [0.0, -3.0, 0.2], [0.0, 0.0, 0.0]])
     none = np.zeros((2, 3))
-    chain = Chain(D, law, np.ones(3), none, none)
+    chain = ViaProblem(D, law, np.ones(3), none, none)
     assert chain.rest_to_rest_times() == pytest.approx([2.0, 5.0, 0.0])
     # Jerk alone, root 2: D = u t, t = 2 sqrt(u): u = (D / 2)^(2/3); 2 rad: 2 t = 4 s.
     jerky = replace(chain, law=TransitionLaw(np.full(3, 1e-9), np.full(3, 2.0)),

@@ -16,9 +16,9 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.segment import TransitionLaw
-from rrr_traj_planner.planners.via_velocities import least_stretch, least_time
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
+from rrr_traj_planner.planners.transitions.via_velocities import least_stretch, least_time
 from scipy.optimize import brentq, minimize
 from thesis_cases import POINTS
 
@@ -30,7 +30,7 @@ def chain_through(points, velocity=1.0, acceleration=1.0, jerk=np.inf):
     D = np.diff(np.asarray(points), axis=0)
     law = TransitionLaw(np.full(3, 2.0 / acceleration), np.full(3, np.sqrt(2.0 * np.pi / jerk)))
     highest = np.full((len(D) - 1, 3), float(velocity))
-    return Chain(D, law, np.full(3, float(velocity)), -highest, highest)
+    return ViaProblem(D, law, np.full(3, float(velocity)), -highest, highest)
 
 
 def random_chain(seed, n):

@@ -59,8 +59,11 @@ def missing_tests(text):
 def missing_functions(text):
     missing = []
     for dotted in FUNCTION.findall(text):
-        layer, module, *name = dotted.split('.')
-        path = ROOT / 'rrr_traj_planner' / layer / f'{module}.py'
+        parts, folder = dotted.split('.'), ROOT / 'rrr_traj_planner'
+        while parts and (folder / parts[0]).is_dir():
+            folder /= parts.pop(0)
+        module, *name = parts or ['']
+        path = folder / f'{module}.py'
         if not name or not path.is_file() or '.'.join(name) not in definitions(path):
             missing.append(dotted)
     return missing

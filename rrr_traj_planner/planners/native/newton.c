@@ -13,32 +13,32 @@
 // limitations under the License.
 
 /* One Newton step on a chain of ramps: segments condensed to their borders, durations eliminated,
- * what is left solved as a band (ramp_newton.py). The cost is linear in ramps and segments. */
+ * what is left solved as a band . The cost is linear in ramps and segments. */
 #include "blocks.h"
-#include "chain.h"
+#include "timing_problem.h"
 
 #include <math.h>
 #include <string.h>
 
 #define J 1
 #define FRONT(name) one_##name
-#include "front.inc"
+#include "elimination.inc"
 #undef J
 #undef FRONT
 #define J 3
 #define FRONT(name) three_##name
-#include "front.inc"
+#include "elimination.inc"
 #undef J
 #undef FRONT
 
-enum { MOST_BORDER = 4 * MOST_JOINTS + 1, MOST_BAND = 4 * MOST_JOINTS };
-static const double STIFF = 1e60;
+static const double STIFF = 1e60;  /* on the diagonal of what stays */
+/* Parts of the diagonal that are added until the band is positive definite. */
 static const double STIFFENING[] = {0.0, 1e-9, 1e-6, 1e-3, 1.0};
 
 /* Coordinates are independent of each other, but for time, where boxes alone limit them. */
 static int apart(const Problem *p)
 {
-    return p->J == 1 || p->kind == BOXES_ALONE;
+    return p->J == 1 || p->kind == BOUNDS_ALONE;
 }
 
 static size_t rows_size(const Problem *p)
@@ -51,7 +51,8 @@ static size_t band_size(const Problem *p)
     return (size_t)p->N * 2 * p->J * (4 * p->J + 3);
 }
 
-size_t newton_size(const Problem *p)
+/* How many numbers of scratch the solution takes. */
+EXPORTED int64_t timing_newton_size(const Problem *p)
 {
     const size_t B = 4 * p->J, P = 2 * p->n + 1;
     return p->N * ((B + 1) * (B + 2) + rows_size(p)) + 2 * band_size(p)
@@ -68,7 +69,7 @@ static void picked(const Problem *p, int j, const double *z, const double *Q, co
             own_z[4 * i + a] = z[i * Z + a * J + j];
             own_r[4 * i + a] = r[i * Z + a * J + j];
             for (int b = 0; b < 4; ++b)
-                own_Q[16 * i + 4 * a + b] = p->kind != BOXES_ALONE
+                own_Q[16 * i + 4 * a + b] = p->kind != BOUNDS_ALONE
                     ? Q[((size_t)i * Z + a * J + j) * Z + b * J + j]
                     : a == b ? Q[(size_t)i * Z + a * J + j] : 0.0;
         }
@@ -128,10 +129,12 @@ static double coupled(const Problem *p, const double *S, const double *r, double
     return common;
 }
 
-int newton_step(const Problem *p, Motion m, const double *z, const double *Q, const double *r,
-                const double *Q_T, const double *r_T, Motion step, double *dz, double *gain,
-                double *memory)
+int newton_solved(const Problem *p, const double *Q, const double *r, const double *r_T,
+                  double *direction, double *dz, double *gain)
 {
+    const Variables m = variables_at(p, p->variables), step = variables_at(p, direction);
+    const double *z = p->states, *Q_T = p->hessian_T;
+    double *memory = p->newton;
     const int J = p->J, N = p->N, n = p->n, Z = 4 * J, B = 4 * J, W = B + 1, P = 2 * n + 1;
     double *S = memory, *right = S + (size_t)N * W * W;
     double *rows = right + (size_t)N * W;

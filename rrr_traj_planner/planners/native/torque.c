@@ -13,9 +13,11 @@
 // limitations under the License.
 
 /* Torques of the arm, their derivatives by state and their own bends (ramp_constraints.py). */
-#include "chain.h"
+#include "timing_problem.h"
 
 #include <math.h>
+
+static const double DIFFERENCE = 1e-7;  /* rad, over which the terms change by q2 and q3 */
 
 typedef struct {
     double H11, H22, H23, H33, D2, D3, bc3, g2, g3;
@@ -61,17 +63,17 @@ static void torques(const Terms *t, const double *w, const double *a, double *ta
     tau[2] = t->H23 * a[1] + t->H33 * a[2] - t->D3 * half - t->bc3 * w[1] * w[1] + t->g3;
 }
 
-void torque_at(const Problem *p, const double *z, double *x, double *gradient,
+void torque_at(const double *arm, const double *z, double *x, double *gradient,
                const double *weights, double *second)
 {
     const double *q = z, *w = z + 3, *a = z + 6;
-    const Terms t = terms(p->arm, q[1], q[2]);
+    const Terms t = terms(arm, q[1], q[2]);
     if (x)
         torques(&t, w, a, x);
     if (!gradient && !second)
         return;
-    const Terms by[2] = {change(t, terms(p->arm, q[1] + p->difference, q[2]), p->difference),
-                         change(t, terms(p->arm, q[1], q[2] + p->difference), p->difference)};
+    const Terms by[2] = {change(t, terms(arm, q[1] + DIFFERENCE, q[2]), DIFFERENCE),
+                         change(t, terms(arm, q[1], q[2] + DIFFERENCE), DIFFERENCE)};
     if (gradient) {
         double (*g)[12] = (double (*)[12])gradient;
         for (int e = 0; e < 3; ++e)

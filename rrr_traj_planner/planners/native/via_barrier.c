@@ -82,43 +82,6 @@ static double objective(const ViaProblem *p, const double *point)
     return p->proportions ? T[0] / p->proportions[0] : sum;
 }
 
-/* What is minimised, at the iterate. */
-EXPORTED double via_objective(const ViaProblem *p)
-{
-    return objective(p, p->point);
-}
-
-/* Evaluate the barrier at the iterate. */
-EXPORTED double via_value(const ViaProblem *p)
-{
-    double sum = 0.0;
-    part_values(p, p->point, p->before);
-    for (int i = 0; i < parts_of(p); ++i)
-        sum += p->before[i];
-    return sum;
-}
-
-/* Follow the step; how weight * objective + barrier changes on it, infinite where it breaks a limit. */
-EXPORTED double via_trial(const ViaProblem *p, double weight)
-{
-    for (int u = 0; u < unknowns_of(p); ++u)
-        p->next[u] = p->point[u] + p->step[u];
-    part_values(p, p->next, p->after);
-    double change = weight * objective(p, p->next) - weight * objective(p, p->point);
-    for (int i = 0; i < parts_of(p); ++i)
-        change += p->after[i] - p->before[i];
-    return change;
-}
-
-/* Go where the last trial led; every part's damping is multiplied by a factor. */
-EXPORTED void via_accept(const ViaProblem *p, double less_damping)
-{
-    memcpy(p->point, p->next, unknowns_of(p) * sizeof(double));
-    memcpy(p->before, p->after, parts_of(p) * sizeof(double));
-    for (int i = 0; i < parts_of(p); ++i)
-        p->damping[i] *= less_damping;
-}
-
 /* Add -log of a slack to the derivatives. */
 static void pushed(double slack, const double gradient[3], double slope[3], double block[3][3])
 {
@@ -149,7 +112,7 @@ static void reach_pushed(const Law *law, double sign, double v0, double v1, doub
 }
 
 /* The parts' derivatives at the iterate. */
-EXPORTED void via_differentiate(const ViaProblem *p)
+static void differentiate(const ViaProblem *p)
 {
     const int n = p->n;
     const double *v = p->point, *T = p->point + (n - 1) * JOINTS;
@@ -185,7 +148,42 @@ EXPORTED void via_differentiate(const ViaProblem *p)
     }
 }
 
-/* Damp the parts that rose more on the last trial than their derivatives foretell: more than their
+/* Begin at the iterate: barrier and derivatives there. */
+EXPORTED void via_begin(ViaProblem *p)
+{
+    p->objective = objective(p, p->point);
+    part_values(p, p->point, p->before);
+    differentiate(p);
+}
+
+/* Try the damped Newton step; how weight * objective + barrier changes on it, infinite where it breaks
+ * a constraint. */
+EXPORTED double via_attempt(ViaProblem *p, double weight)
+{
+    p->decrement = via_newton(p, weight);
+    if (!(p->decrement >= 0.0))
+        return INFINITY;
+    for (int u = 0; u < unknowns_of(p); ++u)
+        p->next[u] = p->point[u] + p->step[u];
+    part_values(p, p->next, p->after);
+    double change = weight * objective(p, p->next) - weight * p->objective;
+    for (int i = 0; i < parts_of(p); ++i)
+        change += p->after[i] - p->before[i];
+    return change;
+}
+
+/* Go where the last attempt led; every part's damping is multiplied by a factor. */
+EXPORTED void via_accept(ViaProblem *p, double less_damping)
+{
+    memcpy(p->point, p->next, unknowns_of(p) * sizeof(double));
+    memcpy(p->before, p->after, parts_of(p) * sizeof(double));
+    p->objective = objective(p, p->point);
+    for (int i = 0; i < parts_of(p); ++i)
+        p->damping[i] *= less_damping;
+    differentiate(p);
+}
+
+/* Damp the parts that rose more on the last attempt than their derivatives foretell: more than their
  * slope by a share of the damped curvature's full term. All, if none did. */
 EXPORTED void via_damp(const ViaProblem *p, double tolerated, double more_damping)
 {

@@ -122,9 +122,7 @@ static double common_step(const ViaProblem *p, double weight)
     return decrement;
 }
 
-/* The damped Newton step at the iterate. The objective is the durations' sum, or their factor over
- * the given proportions. Gives the decrement squared; negative where rounding leaves no step. */
-EXPORTED double via_newton(const ViaProblem *p, double weight)
+double via_newton(const ViaProblem *p, double weight)
 {
     return p->proportions ? common_step(p, weight) : free_step(p, weight);
 }

@@ -40,9 +40,15 @@ typedef struct {
     double (*hessian)[3][3];           /* (n, 3), made positive definite */
     double (*bound)[2];                /* first and second derivative of the other parts */
     double *band, *right, *pull, *border;  /* scratch of the Newton step: 5, 2, 1, 1 unknowns */
+    double objective;                  /* at the iterate */
+    double decrement;                  /* of the last step, squared */
 } ViaProblem;
 
 static inline int unknowns_of(const ViaProblem *p) { return 4 * p->n - 3; }
 static inline int parts_of(const ViaProblem *p) { return 7 * p->n - 3; }
+
+/* The damped Newton step of weight * objective + barrier at the iterate, and its decrement squared;
+ * negative where rounding leaves no step. */
+double via_newton(const ViaProblem *p, double weight);
 
 #endif

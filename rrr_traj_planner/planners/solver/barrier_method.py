@@ -71,10 +71,10 @@ def minimise(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> Solution:
         Within RELATIVE_GAP of the least, where the problem is convex and nothing cancels it.
 
     """
-    at, count = barrier.at, barrier.constraints
-    weight = count / KERNELS.via_objective(at)
+    count, found = barrier.constraints, barrier.found
+    weight = count / found.objective
     stopped = _centre(barrier, weight, CENTRED, should_stop)
-    while not stopped and count / weight >= RELATIVE_GAP * KERNELS.via_objective(at):
+    while not stopped and count / weight >= RELATIVE_GAP * found.objective:
         weight /= BARRIER_REDUCTION
         stopped = _centre(barrier, weight, CENTRED, should_stop)
     if not stopped:
@@ -85,26 +85,25 @@ def minimise(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> Solution:
 def _centre(barrier: ViaBarrier, weight: float, decrement: float,
             should_stop: Callable[[], bool]) -> bool:
     """Go near the minimum of weight * objective + barrier; return whether to stop altogether."""
-    at = barrier.at
-    KERNELS.via_value(at)
     for _ in range(STEPS_TO_CENTRE):
         if should_stop():
             return True
-        rounding = ROUNDING * weight * KERNELS.via_objective(at)
-        squared = _step(at, weight)
-        if squared is None or squared < max(decrement, rounding):
+        rounding = ROUNDING * weight * barrier.found.objective
+        squared = _step(barrier, weight)
+        if squared is None or squared < decrement or squared < rounding:
             break
     return False
 
 
-def _step(at: object, weight: float) -> float | None:
+def _step(barrier: ViaBarrier, weight: float) -> float | None:
     """Take a Newton step; return its decrement squared, None where rounding leaves no step."""
-    KERNELS.via_differentiate(at)
+    at, found = barrier.at, barrier.found
     for _ in range(TRIALS):
-        squared: float = KERNELS.via_newton(at, weight)
+        change = KERNELS.via_attempt(at, weight)
+        squared: float = found.decrement
         if not squared >= 0.0:
             return None
-        if KERNELS.via_trial(at, weight) <= -SUFFICIENT_DECREASE * squared:
+        if change <= -SUFFICIENT_DECREASE * squared:
             KERNELS.via_accept(at, LESS_DAMPING)
             return squared
         KERNELS.via_damp(at, TOLERATED, MORE_DAMPING)

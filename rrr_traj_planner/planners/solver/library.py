@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 import ctypes
-from ctypes import c_double, c_int32, c_void_p
+from ctypes import c_double, c_int32, c_int64, c_void_p
 from importlib.machinery import EXTENSION_SUFFIXES
 from itertools import accumulate
 import math
@@ -40,13 +40,23 @@ _BUILD = 'build the package, which needs a C compiler: "make setup", or "pip ins
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     'reach_at': (None, [c_int32, *[c_void_p] * 10]),
     'cruise_covering': (None, [c_int32, c_int32, *[c_void_p] * 8]),
-    'via_objective': (c_double, [c_void_p]),
-    'via_value': (c_double, [c_void_p]),
-    'via_differentiate': (None, [c_void_p]),
-    'via_newton': (c_double, [c_void_p, c_double]),
-    'via_trial': (c_double, [c_void_p, c_double]),
+    'via_attempt': (c_double, [c_void_p, c_double]),
+    'via_begin': (None, [c_void_p]),
     'via_accept': (None, [c_void_p, c_double]),
     'via_damp': (None, [c_void_p, c_double, c_double]),
+    'path_checked': (None, [c_void_p] * 3),
+    'timing_accept': (None, [c_void_p, c_void_p, c_int32, *[c_double] * 3]),
+    'timing_central_duals': (None, [c_void_p, c_double]),
+    'timing_close': (None, [c_void_p, c_void_p, c_double, c_double]),
+    'timing_correct': (c_int32, [c_void_p, c_void_p, c_double, c_void_p]),
+    'timing_cost': (c_double, [c_void_p] * 2),
+    'timing_count': (c_double, [c_void_p]),
+    'timing_linearise': (None, [c_void_p, c_double]),
+    'timing_log': (c_double, [c_void_p] * 2),
+    'timing_newton': (c_int32, [c_void_p, c_int32, c_void_p]),
+    'timing_newton_size': (c_int64, [c_void_p]),
+    'timing_slacks': (c_double, [c_void_p] * 3),
+    'timing_trial': (c_int32, [c_void_p, c_void_p, *[c_double] * 3]),
 }
 
 
@@ -93,7 +103,7 @@ class Arena:
     Parameters
     ----------
     shapes : mapping of str to tuple of int
-        Of each array; all are zero at first.
+        Of each array.
 
     Attributes
     ----------
@@ -106,7 +116,7 @@ class Arena:
         self._shapes = shapes
         ends = list(accumulate(map(math.prod, shapes.values()), initial=0))
         self._parts = dict(zip(shapes, zip(ends, ends[1:])))
-        self._block = np.zeros(ends[-1])
+        self._block = np.empty(ends[-1])
         first, size = self._block.ctypes.data, self._block.itemsize
         self.addresses = {name: first + size * start for name, start in zip(shapes, ends)}
 

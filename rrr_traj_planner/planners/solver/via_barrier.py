@@ -26,18 +26,54 @@ the magnitudes of its eigenvalues.
 from __future__ import annotations
 
 import ctypes
-from typing import Any
+from typing import Any, Protocol
 
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.chain import Chain
-from rrr_traj_planner.planners.solver.library import Arena
+from rrr_traj_planner.planners.solver.library import Arena, KERNELS
+
+
+class Law(Protocol):
+    """How long a transition by u must last: max(slope u, root sqrt(u)) [s]."""
+
+    @property
+    def slope(self) -> Array:
+        """Return the part of a limit on acceleration, shape (3,) [s^2/rad]."""
+
+    @property
+    def root(self) -> Array:
+        """Return the part of a limit on jerk, 0 without one, shape (3,) [s sqrt(s/rad)]."""
+
+
+class ViaLimits(Protocol):
+    """Via points, and what bounds the motion through them."""
+
+    @property
+    def displacements(self) -> Array:
+        """Return the ways from point to point, shape (n, 3) [rad]."""
+
+    @property
+    def law(self) -> Law:
+        """Return the transitions' law."""
+
+    @property
+    def max_velocity(self) -> Array:
+        """Return the limits on velocity, shape (3,) [rad/s]."""
+
+    @property
+    def lowest(self) -> Array:
+        """Return the least via velocities, shape (n - 1, 3) [rad/s]."""
+
+    @property
+    def highest(self) -> Array:
+        """Return the largest via velocities, shape (n - 1, 3) [rad/s]."""
 
 
 class _ViaProblem(ctypes.Structure):  # as in native/via_problem.h
     _fields_ = [('n', ctypes.c_int32), *((name, ctypes.c_void_p) for name in (
         'displacements', 'slope', 'root', 'max_velocity', 'lowest', 'highest', 'floor',
         'proportions', 'point', 'step', 'next', 'before', 'after', 'damping', 'gradient',
-        'hessian', 'bound', 'band', 'right', 'pull', 'border'))]
+        'hessian', 'bound', 'band', 'right', 'pull', 'border')),
+        ('objective', ctypes.c_double), ('decrement', ctypes.c_double)]
 
 
 class ViaBarrier:
@@ -46,7 +82,7 @@ class ViaBarrier:
 
     Parameters
     ----------
-    chain : Chain
+    limits : ViaLimits
         The via points.
     v : ndarray, shape (n - 1, 3)
         Via velocities to begin with [rad/s].
@@ -62,6 +98,8 @@ class ViaBarrier:
     ----------
     at : object
         The problem's address: what kernels are given.
+    found : object
+        What they found: objective at the iterate, and decrement, of the last attempt, squared.
     arrays : Arena
         What they work on, under the names of native/via_problem.h.
     constraints : int
@@ -71,14 +109,14 @@ class ViaBarrier:
 
     """
 
-    def __init__(self, chain: Chain, v: Array, T: Array, floor: Array | None = None,
+    def __init__(self, limits: ViaLimits, v: Array, T: Array, floor: Array | None = None,
                  proportions: Array | None = None) -> None:
         n = len(T)
-        law = chain.law
+        law = limits.law
         given = {name: array for name, array in (
-            ('displacements', chain.displacements), ('slope', law.slope), ('root', law.root),
-            ('max_velocity', chain.max_velocity), ('lowest', chain.lowest),
-            ('highest', chain.highest), ('floor', floor), ('proportions', proportions),
+            ('displacements', limits.displacements), ('slope', law.slope), ('root', law.root),
+            ('max_velocity', limits.max_velocity), ('lowest', limits.lowest),
+            ('highest', limits.highest), ('floor', floor), ('proportions', proportions),
         ) if array is not None}
         unknowns, parts = (4 * n - 3,), (7 * n - 3,)
         self.arrays = Arena({
@@ -89,10 +127,12 @@ class ViaBarrier:
             'pull': unknowns, 'border': unknowns})
         for name, array in given.items():
             self.arrays[name][...] = array
-        problem = _ViaProblem(n=n, **self.arrays.addresses)
-        problem.arrays = self.arrays  # live as long as the problem
-        self.at: Any = ctypes.byref(problem)
+        self.arrays['damping'][:] = 0.0
+        self.found: Any = _ViaProblem(n=n, **self.arrays.addresses)
+        self.found.arrays = self.arrays  # live as long as the problem
+        self.at: Any = ctypes.byref(self.found)
         self.constraints = 12 * n + 6 * (n - 1)
         point = self.arrays['point']
         self.velocities, self.durations = point[:3 * n - 3].reshape(-1, 3), point[3 * n - 3:]
         self.velocities[:], self.durations[:] = v, T
+        KERNELS.via_begin(self.at)

@@ -1,0 +1,109 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Limits on velocity, acceleration, jerk, position and torque of the joints for the solver."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from rrr_traj_planner.core import equations
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, Limits, TORQUE
+from rrr_traj_planner.planners.solver.ramps import Grid
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
+
+# Beyond a range, for joints that stay at its end [rad]; less than what counts as leaving it.
+EDGE = 5e-10
+
+# Stands for no bound: so far away that it does not count.
+FAR = 1e6
+
+
+class JointConstraints:
+    """
+    Limits on velocity, acceleration, jerk, position and torque.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Infinite where there is none.
+    grid : Grid
+        The family of motions.
+    points : ndarray, shape (N + 1, 3)
+        Via points [rad].
+    margins : ndarray, shape (2, N, 2 n + 1, 3)
+        How far inside the range each joint is to stay at each point, above and below [rad].
+    velocity_margins : ndarray, shape (N, 2 n + 1, 3)
+        How far below its limit each velocity is to stay at each point [rad/s].
+    effort_margins : ndarray, shape (N, 2 n + 1, 3)
+        How far below its limit each torque is to stay at each point [N m].
+    floor : ndarray, shape (N,), optional
+        Least durations of the segments [s].
+    workspace : Workspace, optional
+        Memory that problems share which are solved one after the other.
+
+    Attributes
+    ----------
+    effort : ndarray, shape (N, 2 n, 3)
+        Bounds of the torques, margins taken off, at all points but a segment's first [N m].
+    with_torque : bool
+        Whether torque is limited; without it the joints are independent but for time.
+
+    """
+
+    def __init__(self, model: RobotModel, limits: JointLimits, grid: Grid, points: Array,
+                 margins: Array, velocity_margins: Array, effort_margins: Array,
+                 floor: Array | None = None, workspace: Workspace | None = None) -> None:
+        self.grid, self.points, self.limits, self.floor = grid, points, limits, floor
+        self.with_torque = bool(np.isfinite(limits.max_effort).any())
+        self.effort = (np.minimum(limits.max_effort, FAR) - effort_margins)[:, 1:]
+        self._workspace = workspace
+        self._model, self._margins, self._velocity_margins = model, margins, velocity_margins
+
+    @cached_property
+    def problem(self) -> TimingProblem:
+        """Return the problem that the solver works on."""
+        lower, upper, bounded = self._bounds()
+        N, P, _ = lower.shape
+        general = np.zeros((P, 3), bool)
+        general[1:] = self.with_torque
+        effort = np.concatenate((np.full((N, 1, 3), FAR), self.effort), axis=1)
+        return TimingProblem(self.grid, self.points, Limits(
+            TORQUE if self.with_torque else BOUNDS_ALONE, lower, upper, bounded, -effort, effort,
+            general, self.floor, np.array(equations.constants(self._model))), self._workspace)
+
+    def _bounds(self) -> tuple[Array, Array, BoolArray]:
+        """Return bounds on states (N, P, 12), lower and upper, and which there are (P, 12)."""
+        limits, n, N = self.limits, self.grid.n, len(self.points) - 1
+        bounds, bounded = np.zeros((2, N, 2 * n + 1, 4, 3)), np.zeros((2 * n + 1, 4, 3), bool)
+        inside = np.r_[1:n, n + 1:2 * n + 1]  # not at the via points, where the place is given
+        fastest = limits.max_velocity - self._velocity_margins[:, 1:]
+        above, below = self._margins[:, :, inside]
+        for kind, points, lowest, highest in (
+                (0, inside, limits.min_position - EDGE + below,
+                 limits.max_position + EDGE - above),
+                (1, np.arange(1, 2 * n + 1), -fastest, fastest),
+                (2, np.arange(1, n + 1), -limits.max_acceleration, limits.max_acceleration),
+                (3, np.arange(n + 1, 2 * n + 1), -limits.max_jerk, limits.max_jerk)):
+            bounds[0][:, points, kind] = np.maximum(lowest, -FAR)
+            bounds[1][:, points, kind] = np.minimum(highest, FAR)
+            bounded[points, kind] = np.isfinite(highest).any() or np.isfinite(lowest).any()
+        lower, upper = bounds.reshape(2, N, 2 * n + 1, 12)
+        return lower, upper, bounded.reshape(-1, 12)

@@ -1,0 +1,189 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Dense check of joint motions: what they exceed between the points of the problem, and where."""
+
+from __future__ import annotations
+
+from functools import cached_property, lru_cache
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.ramps import RampShape
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+
+CHECKS = 12               # between two points
+ROUNDING = 1e-7          # relative
+
+
+class DenseCheck:
+    """
+    Positions, velocities, accelerations and torques of a motion at many times.
+
+    Parameters
+    ----------
+    task : JointTask
+        The via points, the arm and its limits.
+    grid : Grid
+        The family of motions.
+    m : Variables
+        The motion.
+
+    Attributes
+    ----------
+    q, qd, qdd : ndarray, shape (N, 2 n CHECKS + 1, 3)
+        In the order of time [rad, rad/s, rad/s^2].
+
+    """
+
+    def __init__(self, task: JointTask, grid: Grid, m: Variables) -> None:
+        self._task = task
+        elapsed, by_q, by_qd, by_qdd = _matrices(grid.n, grid.shape.cruise)
+        nodes, v0, _ = grid.nodes(m)
+        h, v0 = (m.T / grid.n)[:, np.newaxis, np.newaxis], v0[:, np.newaxis]
+        self.q = task.points[:-1, np.newaxis] + h * (elapsed * v0 + h * (by_q @ nodes))
+        self.qd, self.qdd = v0 + h * (by_qd @ nodes), by_qdd @ nodes
+        self._peak_jerk = np.abs(grid.shape.peak_jerk * np.diff(nodes, axis=1) / h).max(
+            axis=(0, 1))
+
+    @cached_property
+    def tau(self) -> Array | None:
+        """Return torques [N m], None where they are not limited."""
+        if np.isinf(self._task.limits.max_effort).all():
+            return None
+        return inverse_dynamics(self._task.model, self.q, self.qd, self.qdd)
+
+    def stretch(self) -> float:
+        """
+        Return by how much the motion must be slowed for what is checked, but positions.
+
+        Returns
+        -------
+        float
+            At most 1 where it fits as it is; infinite where no slowing helps.
+
+        """
+        limits, tau = self._task.limits, self.tau
+        factor = max(
+            (np.abs(self.qd) / limits.max_velocity).max(),
+            np.sqrt((np.abs(self.qdd) / limits.max_acceleration).max()),
+            np.cbrt((self._peak_jerk / limits.max_jerk).max()))
+        if tau is None or (np.abs(tau) <= limits.max_effort * (1.0 + ROUNDING)).all():
+            return float(factor)
+        gravity = gravity_torque(self._task.model, self.q)
+        motion = tau - gravity
+        room = limits.max_effort - np.sign(motion) * gravity
+        with np.errstate(divide='ignore', invalid='ignore'):
+            share = np.where(room > 0.0, np.abs(motion) / room, np.inf)
+        by_torque = np.where(np.isinf(limits.max_effort), 0.0, share).max()
+        return float(max(factor, np.sqrt(by_torque)))
+
+    @cached_property
+    def beyond_range(self) -> Array:
+        """
+        Return how far each joint leaves its range in each segment, between checks too.
+
+        Shape (2, N, 3), above and below [rad]; 0 within.
+        """
+        limits, q = self._task.limits, self.q
+        turns, bend = self.qd[:, :-1] * self.qd[:, 1:] < 0.0, _bends(q)
+        bend = np.where(turns, np.maximum(bend[:, :-1], bend[:, 1:]), 0.0)
+        most, least = (f(q[:, :-1], q[:, 1:]) for f in (np.maximum, np.minimum))
+        beyond = np.stack(((most + bend - limits.max_position).max(axis=1),
+                           (limits.min_position - least + bend).max(axis=1)))
+        return np.where(beyond > POSITION_TOLERANCE, beyond, 0.0)
+
+    def excess(self) -> tuple[Array, Array]:
+        """
+        Return by how much velocities and torques exceed limits near each point.
+
+        Returns
+        -------
+        tuple of ndarray, shape (N, 2 n + 1, 3)
+            [rad/s], [N m].
+
+        """
+        velocity = _near_points(np.abs(self.qd), self._task.limits.max_velocity)
+        if self.tau is None:
+            return velocity, np.zeros_like(velocity)
+        return velocity, _near_points(np.abs(self.tau), self._task.limits.max_effort)
+
+
+def near_points(x: Array, limit: Array, checks: int, reach: int) -> Array:
+    """
+    Return by how much magnitudes, seen in the order of time, exceed a limit near each point.
+
+    Parameters
+    ----------
+    x : ndarray, shape (N, 2 n checks + 1, K)
+        Magnitudes.
+    limit : ndarray, shape (K,)
+        Infinite where there is none.
+    checks : int
+        Between two of a segment's 2 n + 1 points.
+    reach : int
+        How many of them to both sides are near a point.
+
+    Returns
+    -------
+    ndarray, shape (N, 2 n + 1, K)
+        Nodes, then the middles between them.
+
+    """
+    peaks = x + _bends(x)
+    excess = np.where(peaks > limit, peaks - limit * (1.0 - ROUNDING), 0.0)
+    padded = np.pad(excess, ((0, 0), (reach, reach), (0, 0)), mode='edge')
+    width = x.shape[1] - 1
+    near = np.max([padded[:, k:k + width + 1:checks] for k in range(2 * reach + 1)], axis=0)
+    return np.concatenate((near[:, ::2], near[:, 1::2]), axis=1)
+
+
+def _near_points(x: Array, limit: Array) -> Array:
+    """Return the same, what is near a segment's first point told of the points beside it too."""
+    near, n = near_points(x, limit, CHECKS, CHECKS // 2), (x.shape[1] - 1) // (2 * CHECKS)
+    near[:-1, n] = np.maximum(near[:-1, n], near[1:, 0])
+    near[:, n + 1] = np.maximum(near[:, n + 1], near[:, 0])
+    return near
+
+
+def _bends(x: Array) -> Array:
+    """Return what a smooth quantity rises by between two checks: an eighth of its bend."""
+    bend = np.abs(np.diff(x, 2, axis=1)) / 8.0
+    near = np.pad(bend, ((0, 0), (2, 2), (0, 0)), mode='edge')
+    return np.asarray(np.max([near[:, k:k + x.shape[1]] for k in range(3)], axis=0))
+
+
+@lru_cache(maxsize=64)
+def _matrices(n: int, cruise: float) -> tuple[Array, Array, Array, Array]:
+    """Return times over h, and matrices as a Grid's, of n ramps at all checks."""
+    per_ramp, one = 2 * CHECKS, np.eye(n + 1)
+    s = np.arange(per_ramp)[:, np.newaxis] / per_ramp
+    way, speed, part, _ = RampShape(cruise)(s)
+    whole = RampShape(cruise)(1.0)[0]
+    at_node, rows = (np.zeros(n + 1), np.zeros(n + 1)), []
+    for i in range(n + 1):
+        a, rise = one[i], (one[i + 1] if i < n else one[i]) - one[i]
+        q, qd = at_node
+        rows.append((q + qd * s + 0.5 * a * s * s + rise * way, qd + a * s + rise * speed,
+                     a + rise * part))
+        at_node = q + qd + 0.5 * a + rise * whole, qd + a + 0.5 * rise
+    count = per_ramp * n + 1
+    elapsed = np.arange(count)[:, np.newaxis] / per_ramp
+    by = tuple(np.concatenate([row[k] for row in rows])[:count] for k in range(3))
+    for matrix in (elapsed, *by):
+        matrix.setflags(write=False)
+    return elapsed, by[0], by[1], by[2]

@@ -1,0 +1,93 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The fastest motion of all joints, solved again from the best so far until it is the optimum."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
+from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
+from rrr_traj_planner.planners.joint_timing.tightening import tightened, WORTH_IT
+from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.ramps import Grid, stretched
+
+POOR = 1e-2              # relative gap of what is solved again
+RESTARTS = 8             # from the best that was found, where it is not the optimum
+SLOWER = (1e-6, 0.02)    # than it, first by just enough to be within its limits
+
+
+def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved | None:
+    """
+    Return the fastest motion.
+
+    Where every joint has an acceleration limit the problem is solved without torque first, which
+    makes the joints independent but for time; often the motion then keeps the torque limits too.
+
+    Parameters
+    ----------
+    task : JointTask
+        The via points, the arm and its limits.
+    grid : Grid
+        The family of motions.
+    floor : ndarray, shape (N,), optional
+        Least durations of the segments [s].
+
+    Returns
+    -------
+    Solved or None
+        None where no way is found along which the motors can hold the arm.
+
+    """
+    whole = JointProblem(task, grid, DurationConstraints.all_free(len(task.points) - 1, 3), floor)
+    if np.isfinite(task.limits.max_acceleration).all():
+        free = replace(whole, task=replace(
+            task, limits=replace(task.limits, max_effort=np.full(3, np.inf))))
+        found = tightened(free, rest_to_rest)
+        task.should_stop()
+        if found is not None and torque_fits(task, found.trajectory):
+            better = _refined(free, found)
+            return better if torque_fits(task, better.trajectory) else _refined(whole, found)
+    found = tightened(whole, rest_to_rest)
+    return None if found is None else _refined(whole, found)
+
+
+def _refined(problem: JointProblem, solved: Solved) -> Solved:
+    """Return what is found by solving again from the best so far, until it is the optimum."""
+    tries = list(SLOWER)
+    for _ in range(RESTARTS):
+        if not tries or solved.gap < POOR * solved.cost or problem.task.should_stop():
+            break
+        again = _solved_from(problem, solved, tries[0])
+        if again is None or again.cost > (1.0 - WORTH_IT) * solved.cost:
+            tries.pop(0)
+        solved = min((s for s in (solved, again) if s is not None), key=lambda s: s.cost)
+    return solved
+
+
+def _solved_from(problem: JointProblem, solved: Solved, slower: float) -> Solved | None:
+    """
+    Return what is found from a motion that keeps every limit, run through a part slower.
+
+    It may keep margins that a motion with stops at the via points cannot: at the ends of ranges,
+    and between two points that are close together.
+    """
+    factor = (1.0 + slower) * solved.cost / problem.durations.cost(solved.motion.T)
+    start = stretched(solved.motion, factor)
+    return tightened(problem, lambda planned, constraints: start)

@@ -1,0 +1,185 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Motions of ramps whose durations, all or some, are prescribed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.errors import TimingError
+from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
+from rrr_traj_planner.planners.joint_timing.least_time import fastest
+from rrr_traj_planner.planners.joint_timing.margins import Margins
+from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
+from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
+from rrr_traj_planner.planners.joint_timing.tightening import tightened
+from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.ramps import Grid, restored, slowed, Variables
+
+DURATION_TOLERANCE = 1e-7  # relative: a stretch of prescribed durations that counts as none
+LEAST_STRETCH = 0.2         # of prescribed durations: shorter than that need not be found out
+FREE_WEIGHT = 1e-3         # of free durations while it is found out whether the others can be kept
+GENTLER = 1.02             # how near the least peak of acceleration is looked for
+GENTLENESS_ROUNDS = 12
+ROOM = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)  # of durations that are offered instead
+
+
+def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
+    """
+    Return a motion of prescribed durations.
+
+    Where all are, the gentlest: the peak of acceleration over its limit is the least. Where some
+    are free, the fastest.
+
+    Parameters
+    ----------
+    task : JointTask
+        The via points, the arm and its limits.
+    grid : Grid
+        The family of motions.
+    durations : ndarray, shape (N,)
+        [s], NaN where free.
+
+    Returns
+    -------
+    Solved or None
+        None where no way is found along which the motors can hold the arm.
+
+    Raises
+    ------
+    TimingError
+        If the durations are too short; with feasible ones.
+
+    """
+    kept = _kept(task, grid, durations)
+    if kept is None:
+        return None
+    if _stretch(kept, durations) > 1.0 + DURATION_TOLERANCE:
+        raise _too_short(task, grid, durations)
+    if np.isnan(durations).any():
+        return _fastest_of_free(task, grid, durations, kept)
+    return _gentlest(task, grid, durations, kept)
+
+
+def _kept(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
+    """Return the motion that stretches prescribed durations, as a whole, least."""
+    free = np.isnan(durations)
+    tie = np.where(free, 0.0, durations)
+    weights = np.where(free, FREE_WEIGHT, 1.0 / np.where(free, 1.0, durations) / (~free).sum())
+
+    def begin(planned: JointTask, constraints: JointConstraints) -> Variables | None:
+        m = rest_to_rest(planned, constraints)
+        if m is None:
+            return None
+        stretch = float((m.T / durations)[~free].max())
+        return slowed(m, np.where(free, m.T, stretch * tie))
+
+    constraints = DurationConstraints(free, tie, weights, _no_stops(durations))
+    return tightened(JointProblem(task, grid, constraints, LEAST_STRETCH * tie), begin)
+
+
+def _stretch(solved: Solved, durations: Array) -> float:
+    """Return by how much a motion stretches the prescribed durations."""
+    return float(np.nanmax(np.diff(solved.trajectory.via_times) / durations))
+
+
+def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved]) -> Solved | None:
+    """
+    Return the first of some motions that keeps its limits when slowed to its durations exactly.
+
+    A motion may pass a pose that the motors cannot hold, but no more slowly. Where all do, the
+    motion that stops at every via point is taken, which the motors can hold everywhere.
+    """
+    for solved in found:
+        slower = solved.trajectory.stretched(1.0 / _stretch(solved, durations))
+        if torque_fits(task, slower):
+            return solved._replace(trajectory=slower)
+    segments = len(durations)
+    problem = JointProblem(task, grid, DurationConstraints.all_free(segments, 3))
+    motion = rest_to_rest(task, problem.constraints(Margins.none(grid, segments)))
+    if motion is None:
+        return None
+    T = np.where(np.isnan(durations), motion.T, durations)
+    if (motion.T > T).any():
+        raise _error(durations, np.maximum(T, motion.T))
+    return Solved(grid.trajectory(task.points, slowed(motion, T)), motion, float(T.sum()), np.inf)
+
+
+def _gentlest(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> Solved | None:
+    """
+    Return the motion of least peak acceleration over its limit.
+
+    A motion with time to spare, slowed to its durations, keeps lower acceleration limits; under
+    these there is less time to spare, until there is none.
+    """
+    limit = np.minimum(task.limits.max_acceleration, kept.trajectory.peaks().acceleration.max())
+    found = [kept]  # gentlest first
+    for _ in range(GENTLENESS_ROUNDS):
+        task.should_stop()
+        z = _stretch(kept, durations)
+        if z ** 2 > 1.0 / GENTLER:
+            break
+        limit = limit * z ** 2
+        gentler = replace(task, limits=replace(task.limits, max_acceleration=limit))
+        again = _kept(gentler, grid, durations)
+        if again is None or _stretch(again, durations) > 1.0 + DURATION_TOLERANCE:
+            break
+        kept = again
+        found.insert(0, kept)
+    return _in_time(task, grid, durations, found)
+
+
+def _fastest_of_free(task: JointTask, grid: Grid, durations: Array,
+                     kept: Solved) -> Solved | None:
+    """Return the motion whose free durations are least, the others as prescribed."""
+    free, z = np.isnan(durations), _stretch(kept, durations)
+    m = kept.motion
+    z = float(np.nanmax(m.T / durations))
+    start = restored(grid, task.points, Variables(
+        m.inner * z ** 2, m.v * z, m.a * z ** 2, np.where(free, m.T / z, durations)))
+    constraints = DurationConstraints(free, np.zeros(len(free)), free.astype(float),
+                                      _no_stops(durations))
+    found = tightened(JointProblem(task, grid, constraints), lambda planned, _: start)
+    if found is None or _stretch(found, durations) > 1.0 + DURATION_TOLERANCE:
+        return _in_time(task, grid, durations, [kept])
+    return found
+
+
+def _no_stops(durations: Array) -> BoolArray:
+    return np.zeros((len(durations) - 1, 3), dtype=bool)
+
+
+def _too_short(task: JointTask, grid: Grid, durations: Array) -> TimingError:
+    """Return the error of prescribed durations that are too short, with feasible ones."""
+    floor = np.nan_to_num(durations)
+    found = fastest(task, grid, floor)
+    least = np.maximum(np.diff(found.trajectory.via_times), floor) if found else floor
+    for room in ROOM:
+        feasible = np.ceil(least * (1.0 + room) * 1e6) / 1e6
+        kept = _kept(task, grid, feasible)
+        if kept is not None and _stretch(kept, feasible) <= 1.0 + DURATION_TOLERANCE:
+            break
+    return _error(durations, feasible)
+
+
+def _error(durations: Array, feasible: Array) -> TimingError:
+    """Return the error of durations that are too short, with feasible ones."""
+    asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
+    return TimingError(f'segment_durations {asked} s are too short: the least feasible are '
+                       f'{offered} s', tuple(offered))

@@ -1,0 +1,142 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The least-time problem of joint motions, and motions that keep every limit of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
+from rrr_traj_planner.planners.joint_timing.margins import Margins
+from rrr_traj_planner.planners.joint_timing.within_limits import fitted
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.solver.interior_point import Centre, minimise, Outcome
+from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.solver.timing_problem import Workspace
+
+# Gives a motion to start from, strictly within constraints, or None.
+Begin = Callable[[JointTask, JointConstraints], Variables | None]
+
+
+class Solved(NamedTuple):
+    """A motion that keeps every limit."""
+
+    trajectory: PiecewiseTrajectory
+    motion: Variables  # of which the trajectory is a little slower, where it had to be
+    cost: float        # its weighted durations [s]
+    gap: float         # what a better motion could save of them at most
+
+
+@dataclass(frozen=True, eq=False)
+class JointProblem:
+    """
+    Via points and limits, the family of motions, and what durations may do.
+
+    Parameters
+    ----------
+    task : JointTask
+        The via points, the arm and its limits.
+    grid : Grid
+        The family of motions.
+    durations : DurationConstraints
+        Which durations may change, and their weights.
+    floor : ndarray, shape (N,), optional
+        Least durations of the segments [s].
+
+    """
+
+    task: JointTask
+    grid: Grid
+    durations: DurationConstraints
+    floor: Array | None = None
+    _workspace: Workspace = field(default_factory=Workspace)
+
+    def constraints(self, margins: Margins) -> JointConstraints:
+        """
+        Return the limits less margins.
+
+        Parameters
+        ----------
+        margins : Margins
+            How far within its limits a motion is to stay at its points.
+
+        Returns
+        -------
+        JointConstraints
+            As the solver takes them.
+
+        """
+        task = self.task
+        return JointConstraints(
+            task.model, task.limits, self.grid, task.points, margins.positions,
+            margins.velocities, margins.efforts, self.floor, self._workspace)
+
+    def minimised(self, constraints: JointConstraints, margins: Margins, start: Centre,
+                  least_barrier: float = 0.0) -> Outcome:
+        """
+        Return the fastest motion within constraints.
+
+        Parameters
+        ----------
+        constraints : JointConstraints
+            Of the margins.
+        margins : Margins
+            They say which joints stay at rest at a via point, too.
+        start : Centre
+            Strictly within the constraints.
+        least_barrier : float
+            The method ends at its centre.
+
+        Returns
+        -------
+        Outcome
+            See `interior_point.minimise`.
+
+        """
+        return minimise(constraints.problem, start, self.durations._replace(still=margins.still),
+                        self.task.should_stop, least_barrier)
+
+    def fitting(self, outcome: Outcome, motion: Variables) -> Solved | None:
+        """
+        Return a motion slowed until it keeps every limit, between its points too.
+
+        Parameters
+        ----------
+        outcome : Outcome
+            What it was found with.
+        motion : Variables
+            One of its motions.
+
+        Returns
+        -------
+        Solved or None
+            None where slowing does not help, or durations may not change.
+
+        """
+        durations = self.durations
+        may_stretch = bool((durations.free | (durations.tie > 0.0)).all())
+        trajectory = fitted(self.task, self.grid.trajectory(self.task.points, motion),
+                            may_stretch)
+        if trajectory is None:
+            return None
+        cost = durations.cost(np.diff(trajectory.via_times))
+        return Solved(trajectory, motion, cost,
+                      outcome.gap + cost - durations.cost(outcome.motion.T))

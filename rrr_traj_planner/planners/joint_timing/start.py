@@ -1,0 +1,198 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A feasible motion to begin with: rest at every via point, slowed until everything fits."""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.errors import LimitViolationError
+from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
+from rrr_traj_planner.planners.joint_timing.feasible_path import (
+    gravity_share,
+    holdable_way,
+    HOLDING_ROOM,
+)
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.solver.ramps import Grid, restored, slowed, Variables
+from rrr_traj_planner.planners.via_points import torque_texts
+
+LEAST_RAMPS = 4         # of a motion from rest to rest
+ROOM = 1.02             # durations over the least that fit
+LEAST_DURATION = 1e-4   # s
+SLOW = 3.0              # torque makes a straight way so much slower: another is looked for
+STRAIGHT_LOOKS = 100    # at a straight way, for the error of one that is blocked
+
+
+def rest_to_rest(task: JointTask, constraints: JointConstraints) -> Variables | None:
+    """
+    Return a motion with a stop at every via point, strictly within all limits.
+
+    Straight in joint space, or with further stops on a way along which gravity leaves more
+    torque, where that is the faster.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm, its limits and the via points.
+    constraints : JointConstraints
+        The same as the method sees them.
+
+    Returns
+    -------
+    Variables or None
+        None where no way is found along which the motors can hold the arm.
+
+    """
+    grid = constraints.grid
+    nodes, T = _fastest_ways(task, constraints)
+    if np.isinf(T).any():
+        return None
+    rest = np.zeros((len(nodes) - 1, 3))
+    m = Variables(nodes[:, 1:-1], rest, rest, np.ones(len(nodes)))
+    return restored(grid, task.points, slowed(m, T))
+
+
+def _fastest_ways(task: JointTask, constraints: JointConstraints) -> tuple[Array, Array]:
+    """Return node accelerations for durations of 1 s, and least durations, of all segments."""
+    grid = constraints.grid
+    nodes = rest_to_rest_shapes(grid, task.points)
+    T, without_torque = _least_durations(task, constraints, nodes)
+    for k in np.flatnonzero(T > SLOW * without_torque):
+        task.should_stop()
+        corners = holdable_way(task, task.points[k], task.points[k + 1],
+                               grid.n // LEAST_RAMPS)
+        if corners is None:
+            continue
+        around = nodes.copy()
+        around[k] = rest_to_rest_legs(grid, corners)
+        duration = _least_durations(task, constraints, around)[0][k]
+        if duration < T[k]:
+            nodes[k], T[k] = around[k], duration
+    return nodes, T
+
+
+def _least_durations(task: JointTask, constraints: JointConstraints,
+                     nodes: Array) -> tuple[Array, Array]:
+    """
+    Return durations that fit all limits, and those that fit all but torque's, each (N,).
+
+    Infinite where gravity blocks the way. The node accelerations are those of 1 s a segment.
+    """
+    limits, grid, rest = task.limits, constraints.grid, np.zeros((len(nodes) - 1, 3))
+    at = grid.states(task.points, Variables(nodes[:, 1:-1], rest, rest, np.ones(len(nodes))))
+    T = np.max([(np.abs(at.qd) / limits.max_velocity).max(axis=(1, 2)),
+                np.sqrt((np.abs(at.qdd) / limits.max_acceleration).max(axis=(1, 2))),
+                np.cbrt((np.abs(at.jerk) / limits.max_jerk).max(axis=(1, 2)))], axis=0)
+    T = np.maximum(ROOM * T, LEAST_DURATION)
+    if constraints.floor is not None:
+        T = np.maximum(T, ROOM * constraints.floor)
+    if not constraints.with_torque:
+        return T, T
+    gravity = gravity_torque(task.model, at.q)
+    moving = inverse_dynamics(task.model, at.q, at.qd, at.qdd) - gravity
+    room = constraints.effort - (np.sign(moving) * gravity)[:, 1:]
+    with np.errstate(divide='ignore', invalid='ignore'):
+        by_torque = np.sqrt((np.abs(moving[:, 1:]) / room).max(axis=(1, 2)))
+    blocked = (gravity_share(task.model, limits, at.q) >= 1.0 - HOLDING_ROOM)[:, 1:-1]
+    blocked_by_margin = (room <= 0.0).any(axis=(1, 2))
+    by_torque[blocked.any(axis=1) | blocked_by_margin] = np.inf
+    return np.maximum(T, ROOM * by_torque), T
+
+
+def rest_to_rest_shapes(grid: Grid, points: Array) -> Array:
+    """
+    Return node accelerations of straight motions of 1 s with a stop at every point.
+
+    Parameters
+    ----------
+    grid : Grid
+        The family of motions.
+    points : ndarray, shape (N + 1, 3)
+        Via points [rad].
+
+    Returns
+    -------
+    ndarray, shape (N, n + 1, 3)
+        [rad/s^2]; those of a motion of T seconds are 1 / T^2 as large.
+
+    """
+    shape = np.sin(2.0 * np.pi * np.arange(grid.n + 1) / grid.n)
+    shape *= grid.n ** 2 / (grid.q[grid.n] @ shape)
+    return shape[:, np.newaxis] * np.diff(points, axis=0)[:, np.newaxis]
+
+
+def rest_to_rest_legs(grid: Grid, points: Array) -> Array:
+    """
+    Return node accelerations of a segment of 1 s that stops at points on its way.
+
+    Parameters
+    ----------
+    grid : Grid
+        The family of motions.
+    points : ndarray, shape (legs + 1, 3)
+        Where it begins, stops and ends [rad]; longer legs have more of the n ramps.
+
+    Returns
+    -------
+    ndarray, shape (n + 1, 3)
+        [rad/s^2].
+
+    """
+    legs = len(points) - 1
+    long = np.sqrt(np.abs(np.diff(points, axis=0)).max(axis=1))
+    spare = (grid.n - LEAST_RAMPS * legs) * np.cumsum(long) / long.sum()
+    ends = np.concatenate(([0], LEAST_RAMPS * np.arange(1, legs + 1)
+                           + np.round(spare).astype(int)))
+    nodes = np.zeros((grid.n + 1, 3))
+    for leg, (first, last) in enumerate(zip(ends[:-1], ends[1:])):
+        part = rest_to_rest_shapes(Grid(last - first), points[leg:leg + 2])[0]
+        nodes[first:last + 1] += part * (grid.n / (last - first)) ** 2
+    return nodes
+
+
+def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
+    """
+    Return the error of a segment on whose way the motors cannot hold the arm.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm, its limits and the via points.
+    grid : Grid
+        The family of motions.
+
+    Returns
+    -------
+    LimitViolationError
+        With the first such segment, and the torque of its straight way.
+
+    """
+    ways = zip(task.points[:-1], task.points[1:])
+    straight = np.array([np.linspace(start, end, STRAIGHT_LOOKS) for start, end in ways])
+    needs = np.abs(gravity_torque(task.model, straight)).max(axis=1)
+    blocked = (k for k, (start, end) in enumerate(zip(task.points[:-1], task.points[1:]))
+               if holdable_way(task, start, end, grid.n // LEAST_RAMPS) is None)
+    k = next(blocked, int((needs / task.limits.max_effort).max(axis=1).argmax()))
+    torque = needs[k]
+    joint = int((torque / task.limits.max_effort).argmax())
+    name = task.model.joint_names[joint]
+    needed, limit = float(torque[joint]), float(task.limits.max_effort[joint])
+    shown, most = torque_texts(needed, limit)
+    return LimitViolationError(
+        f'segment {task.segment_number(k)}: no way is found on which the motors can hold the '
+        f'arm; straight on {name} needs {shown} N m, limit {most} N m',
+        name, needed, limit)

@@ -1,0 +1,146 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Whether chains of ramps keep their limits everywhere, not only at the points looked at."""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.motion_torque import peak_torque
+from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.transitions.motion_law import torque_stretch
+
+ROUNDING = 1e-7         # relative
+
+
+def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
+           may_stretch: bool) -> PiecewiseTrajectory | None:
+    """
+    Return a motion slowed as a whole until it keeps every limit.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : PiecewiseTrajectory
+        The motion.
+    may_stretch : bool
+        Whether it may be slowed at all.
+
+    Returns
+    -------
+    PiecewiseTrajectory or None
+        None where slowing does not help: a joint leaves its range, or the motion hurries past a
+        pose that the motors cannot hold.
+
+    """
+    if beyond_range(task, trajectory).any():
+        return None
+    by_torque, factor = torque_stretch(task, trajectory), stretch_of_rates(task, trajectory)
+    # a motion may pass, but not slowly, where gravity alone would be too much
+    hurries = np.isinf(by_torque)
+    if hurries and not torque_fits(task, trajectory):
+        return None
+    if not hurries:
+        factor = max(factor, by_torque)
+    if factor <= 1.0 + ROUNDING:
+        return trajectory.stretched(factor) if factor > 1.0 and may_stretch else trajectory
+    if not may_stretch:
+        return None
+    slowed = trajectory.stretched(factor)
+    return None if hurries and not torque_fits(task, slowed) else slowed
+
+
+def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
+    """
+    Return how far each joint leaves its range in each segment.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : PiecewiseTrajectory
+        The motion.
+
+    Returns
+    -------
+    ndarray, shape (2, N, 3)
+        Above and below [rad]; 0 within.
+
+    """
+    beyond = np.zeros((2, len(task.points) - 1, 3))
+    starts = trajectory.via_times[1:-1] - 1e-12
+    limits = task.limits
+    for j, profile in enumerate(trajectory.profiles):
+        # no piece leads further from where it begins than at peak velocity
+        reach = profile.peak_velocity * profile.pieces.duration
+        begins = profile.begins
+        if ((begins + reach <= limits.max_position[j])
+                & (begins - reach >= limits.min_position[j])).all():
+            continue
+        least, most = profile.piece_ranges
+        segment = np.searchsorted(starts, profile.knots[:-1], side='right')
+        np.maximum.at(beyond[0, :, j], segment, most - limits.max_position[j])
+        np.maximum.at(beyond[1, :, j], segment, limits.min_position[j] - least)
+    return np.where(beyond > POSITION_TOLERANCE, beyond, 0.0)
+
+
+def stretch_of_rates(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
+    """
+    Return by how much a motion must be slowed for its velocities, accelerations and jerk.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : PiecewiseTrajectory
+        The motion.
+
+    Returns
+    -------
+    float
+        At most 1 where they fit as they are.
+
+    """
+    limits, profiles = task.limits, trajectory.profiles
+    velocity = np.array([p.peak_velocity for p in profiles])
+    acceleration, jerk = np.array([[v.max() for v in p.pieces.peaks()] for p in profiles]).T
+    return float(max((velocity / limits.max_velocity).max(),
+                     np.sqrt((acceleration / limits.max_acceleration).max()),
+                     np.cbrt((jerk / limits.max_jerk).max())))
+
+
+def torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:
+    """
+    Return whether a motion, as fast as it is, keeps the torque limits.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    trajectory : PiecewiseTrajectory
+        The motion.
+
+    Returns
+    -------
+    bool
+        True where there are none.
+
+    """
+    effort = task.limits.max_effort
+    return bool(np.isinf(effort).all() or (peak_torque(
+        task.model, trajectory).value <= effort * (1.0 + ROUNDING)).all())

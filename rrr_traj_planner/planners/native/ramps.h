@@ -1,0 +1,25 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* The family of motions: accelerations that rise from node to node in ramps of one shape. */
+#ifndef RRR_TRAJ_PLANNER_RAMPS_H
+#define RRR_TRAJ_PLANNER_RAMPS_H
+
+/* Of a unit ramp, see core/ramps.py: what its rise adds to the way at its end and half-way, to the
+ * speed half-way, and its peak of jerk. */
+typedef struct {
+    double whole, way, speed, peak;
+} Ramp;
+
+#endif

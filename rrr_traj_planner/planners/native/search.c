@@ -1,0 +1,196 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* What the interior-point method does with steps and multipliers (solver/interior_point.py). */
+#include "timing_problem.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The objective: the weighted sum of durations. */
+EXPORTED double timing_cost(const Problem *p, double *variables)
+{
+    const double *T = variables_at(p, variables).T;
+    double sum = 0.0;
+    for (int k = 0; k < p->N; ++k)
+        sum += p->weights[k] * T[k];
+    return sum;
+}
+
+/* Slacks at given variables, with the shifts; gives the least. */
+EXPORTED double timing_slacks(const Problem *p, double *variables, double *slack)
+{
+    const Variables m = variables_at(p, variables);
+    const size_t all = slacks_size(p);
+    double least = INFINITY;
+    motion_states(p, m, p->trial_states);
+    slacks_at(p, m.T, p->trial_states, 1.0, p->trial_values, slack);
+    for (size_t i = 0; i < all; ++i)
+        if (!(slack[i] >= least))
+            least = slack[i];
+    return least;
+}
+
+/* Multipliers of the barrier's minimum: barrier / slack. */
+EXPORTED void timing_central_duals(const Problem *p, double barrier)
+{
+    const size_t all = slacks_size(p);
+    for (size_t i = 0; i < all; ++i)
+        p->dual[i] = barrier / p->slack[i];
+}
+
+/* The largest part of a slack by which it falls on the whole step, to first order. */
+static double steepest(const Problem *p, const double *rate)
+{
+    const size_t all = slacks_size(p);
+    double worst = 0.0;
+    for (size_t i = 0; i < all; ++i) {
+        const double towards = -rate[i] * p->inverse[i];
+        if (towards > worst)
+            worst = towards;
+    }
+    return worst;
+}
+
+/* The Newton step of the linearised problem, with the constraints' own curvature where exact is not 0;
+ * whether there is one. */
+EXPORTED int32_t timing_newton(const Problem *p, int32_t exact, Step *s)
+{
+    if (newton_solved(p, exact ? p->exact : p->hessian, p->gradient, p->gradient_T, s->direction,
+                      p->step_states, &s->gain) || !isfinite(s->gain))
+        return 0;
+    slack_rates(p, variables_at(p, s->direction).T, p->step_states, s->rate);
+    s->steepest = steepest(p, s->rate);
+    return 1;
+}
+
+/* The size at which a parabola, through a slack, its rate and its value after a trial, leaves the
+ * given part of it: the least of all slacks that kept less; NaN where one is not finite. */
+static double parabola(const Problem *p, const Step *s, double size, double kept)
+{
+    const size_t all = slacks_size(p);
+    double least = INFINITY;
+    for (size_t i = 0; i < all; ++i) {
+        const double slack = p->slack[i], moved = s->slack[i], rate = s->rate[i];
+        const double fall = (1.0 - kept) * slack;
+        if (moved >= slack - fall)
+            continue;
+        if (!isfinite(moved))
+            return NAN;
+        const double bend = (moved - slack - size * rate) / (size * size);
+        const double root = sqrt(rate * rate - 4.0 * bend * fall);
+        least = fmin(least, 2.0 * fall / (root - rate));
+    }
+    return least;
+}
+
+/* Follow a part of a step; whether every slack keeps the given part of itself. Where one does not, a
+ * shorter size at which parabolas say that a wanted part is kept; 0 where they say nothing. */
+EXPORTED int32_t timing_trial(const Problem *p, Step *s, double size, double kept, double wanted)
+{
+    const size_t all = slacks_size(p), unknowns = variables_size(p);
+    const Variables moved = variables_at(p, s->variables);
+    double *direction = s->direction;
+    s->shorter = 0.0;
+    if (s->correction) {
+        direction = p->trial_variables;
+        for (size_t i = 0; i < unknowns; ++i)
+            direction[i] = s->direction[i] + size * s->correction[i];
+    }
+    if (!motion_stepped(p, variables_at(p, p->variables), variables_at(p, direction), size, moved))
+        return 0;
+    motion_states(p, moved, p->trial_states);
+    slacks_at(p, moved.T, p->trial_states, 1.0 - size, p->trial_values, s->slack);
+    for (size_t i = 0; i < all; ++i)
+        if (!(s->slack[i] >= kept * p->slack[i])) {
+            const double root = parabola(p, s, size, wanted);
+            s->shorter = root > 0.0 ? root : 0.0;
+            return 0;
+        }
+    s->cost = timing_cost(p, s->variables);
+    s->log = p->shifted ? 0.0 : timing_log(p, s->slack);
+    return 1;
+}
+
+/* The second-order correction of a step, from how slacks at a trial of the given size differ from
+ * their rates; the corrected step is the same but for it. Whether there is one. */
+EXPORTED int32_t timing_correct(const Problem *p, const Step *s, double size, Step *corrected)
+{
+    const size_t all = slacks_size(p);
+    const Variables moved = variables_at(p, p->trial_variables);
+    double *pull = p->trial_slack, gain;
+    if (!motion_stepped(p, variables_at(p, p->variables), variables_at(p, s->direction), size,
+                        moved))
+        return 0;
+    motion_states(p, moved, p->trial_states);
+    slacks_at(p, moved.T, p->trial_states, 1.0 - size, p->trial_values, pull);
+    for (size_t i = 0; i < all; ++i)
+        pull[i] = -p->dual[i] * p->inverse[i] * (pull[i] - p->slack[i] - size * s->rate[i])
+            / (size * size);
+    pulled(p, pull, p->trial_gradient, p->trial_gradient_T);
+    for (int k = 0; k < p->N; ++k)
+        p->trial_gradient_T[k] -= p->weights[k];  /* the solution adds them */
+    if (newton_solved(p, p->hessian, p->trial_gradient, p->trial_gradient_T, corrected->correction,
+                      p->step_states, &gain))
+        return 0;
+    memcpy(corrected->direction, s->direction, variables_size(p) * sizeof(double));
+    memcpy(corrected->rate, s->rate, all * sizeof(double));
+    corrected->gain = s->gain, corrected->steepest = s->steepest;
+    return 1;
+}
+
+/* Go where the last trial led, if move is not 0. Multipliers follow on a Newton step of their own
+ * towards barrier / slack, so much shorter that each keeps a part of itself, and are then at most so
+ * many times as large or as small as barrier / slack. */
+EXPORTED void timing_accept(const Problem *p, const Step *s, int32_t move, double barrier,
+                            double to_boundary, double corridor)
+{
+    const double *rate = s->rate, *slack = move ? s->slack : p->slack;
+    const size_t all = slacks_size(p);
+    double *change = p->trial_slack, worst = 0.0;
+    for (size_t i = 0; i < all; ++i) {
+        change[i] = (barrier - p->dual[i] * rate[i]) * p->inverse[i] - p->dual[i];
+        if (-change[i] > worst * p->dual[i])  /* divided seldom */
+            worst = -change[i] / p->dual[i];
+    }
+    const double size = worst > to_boundary ? to_boundary / worst : 1.0, part = 1.0 / corridor;
+    for (size_t i = 0; i < all; ++i) {
+        const double central = barrier / slack[i];
+        double d = p->dual[i] + size * change[i];
+        d = d < central * part ? central * part : d;
+        p->dual[i] = d > central * corridor ? central * corridor : d;
+    }
+    if (move)
+        memcpy(p->variables, s->variables, variables_size(p) * sizeof(double));
+}
+
+/* Take the part of all shifts away that the last trial took of its step, and what is then a small part
+ * of its slack. */
+EXPORTED void timing_close(Problem *p, const Step *s, double size, double small)
+{
+    double *slack = s->slack;
+    const size_t all = slacks_size(p);
+    p->shifted = 0;
+    for (size_t i = 0; i < all; ++i) {
+        if (!(p->shift[i] > 0.0))
+            continue;
+        p->shift[i] *= 1.0 - size;
+        if (p->shift[i] > small * slack[i]) {
+            p->shifted = 1;
+        } else {
+            slack[i] -= p->shift[i];
+            p->shift[i] = 0.0;
+        }
+    }
+}

@@ -1,0 +1,128 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What the planners of Cartesian paths share: path, check, timing, and what there is to say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import ShouldStop, step
+from rrr_traj_planner.core.cartesian_path import CartesianPath
+from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
+from rrr_traj_planner.core.largest_radii import largest_radii
+from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
+from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.planners.deadline import part_of
+from rrr_traj_planner.planners.followable import followable
+from rrr_traj_planner.planners.path_timing.least_time import (
+    kept,
+    nearly_fastest_along,
+    PathTask,
+    Timed,
+)
+from rrr_traj_planner.planners.request import CartesianTask
+from rrr_traj_planner.planners.solver.convergence import unconverged_note
+
+Family = Callable[[Array, ArrayLike, ShouldStop], CartesianPath]
+
+DESIGN = 0.3     # of the time, for the first path: the motion takes the rest
+AGAIN = 0.4      # of the time, after which no other path is begun
+
+SMALLER = 0.7    # radii, than those before
+WORTH_IT = 1e-3  # of the time, that smaller radii must gain
+STEP = 1e-3  # rad/s^2: joint accelerations that step by more are told of
+
+
+def along(task: CartesianTask, family: Family) -> PathTrajectory:
+    """
+    Return the fastest motion of the tip along a path of a family.
+
+    Parameters
+    ----------
+    task : CartesianTask
+        What is asked.
+    family : callable
+        `line_arc` or `line_polynomial` of `core.path_design`.
+
+    Returns
+    -------
+    PathTrajectory
+        On the path whose radii are the largest that the deviation allows, or part of them where
+        the motion is faster then.
+
+    Raises
+    ------
+    InvalidInputError
+        If no path passes the points without a stop.
+    UnreachableError, LimitViolationError
+        If the arm cannot follow the path; with the place.
+
+    """
+    early = part_of(task.should_stop, DESIGN)
+    with step(f'the design of a path through {len(task.tips)} points'):
+        path = largest_radii(lambda points, radii: family(points, radii, early),
+                             task.tips, task.max_deviation, early)
+    with step(f'the timing along a path through {len(task.tips)} points'):
+        return _fastest(task, family, path, early)
+
+
+def _fastest(task: CartesianTask, family: Family, path: CartesianPath,
+             early: ShouldStop) -> PathTrajectory:
+    """Return the fastest motion along a path, or along one of smaller radii."""
+    asked = _timing(task, path)
+    timed = nearly_fastest_along(asked)
+    late = part_of(task.should_stop, AGAIN)
+    while len(path.radii) and not late():
+        # smaller ones bend more, but their way is another one: now and then the faster
+        try:
+            path = family(task.tips, SMALLER * path.radii, early)
+            if (path.deviation > task.max_deviation).any():
+                break
+            smaller = _timing(task, path)
+            again = nearly_fastest_along(smaller)
+        except (UnreachableError, LimitViolationError):
+            break
+        if again.trajectory.duration >= (1.0 - WORTH_IT) * timed.trajectory.duration:
+            break
+        asked, timed = smaller, again
+    timed = kept(asked, timed)
+    return timed.trajectory.noted(_note(task, timed))
+
+
+def _timing(task: CartesianTask, path: CartesianPath) -> PathTask:
+    """Return what is asked of the timing, after a check that the arm can follow the path."""
+    with step('the check that the arm can follow the path'):
+        joints = check_workspace(
+            task.model, task.limits, path, task.posture, task.start, task.should_stop)
+    arm_path = ArmPath(task.model, task.limits, path, task.posture, joints.start)
+    limits, cruise = followable(
+        task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
+    return PathTask(
+        arm_path, limits, cruise, task.max_tip_speed, task.steady_zones, task.should_stop)
+
+
+def _note(task: CartesianTask, timed: Timed) -> str:
+    """Return what there is to be said of a motion along a path."""
+    notes = []
+    most = timed.trajectory.acceleration_steps().max(axis=0, initial=0.0)
+    if most.max() > STEP:
+        largest = ', '.join(f'{name} {value:.3g}' for name, value in zip(
+            task.model.joint_names, most))
+        notes.append(f'joint accelerations step where arcs begin and end, at most by {largest} '
+                     'rad/s^2')
+    notes.append(unconverged_note(timed.gap, timed.trajectory.duration))
+    return '; '.join(filter(None, notes))

@@ -1,0 +1,134 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a path asks of the joints, tabulated along it as smooth pieces with derivatives."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.path_trajectory import ArmPath
+from rrr_traj_planner.core.sampling import STEP_OVERSHOOT
+from scipy.interpolate import CubicSpline
+
+INTERVALS = 64  # of each piece
+PARTS = 8       # of the whole length: no piece is longer than one
+
+
+class Demand(NamedTuple):
+    """
+    What each joint must do along the path, shape (..., 3) each.
+
+    Velocity is dq sd; acceleration ddq sd^2 + dq sdd; jerk dddq sd^3 + 3 ddq sd sdd + dq sddd;
+    torque m sdd + c sd^2 + g.
+    """
+
+    dq: Array    # [rad/m]
+    ddq: Array   # [rad/m^2]
+    dddq: Array  # [rad/m^3]
+    m: Array     # [N m s^2/m]
+    c: Array     # [N m s^2/m^2]
+    g: Array     # [N m]
+
+
+class PathTable:
+    """
+    A path in pieces, on each of which everything is smooth.
+
+    Parameters
+    ----------
+    arm_path : ArmPath
+        The path in joint space.
+
+    Attributes
+    ----------
+    ends : ndarray, shape (N + 1,)
+        Places where the pieces meet [m]: joins, and what parts long pieces.
+    places : ndarray, shape (N, INTERVALS + 1)
+        Where the table has its values [m].
+    values : Demand
+        What is demanded there, one-sided at the pieces' ends, shape (N, INTERVALS + 1, 3) each.
+    coefficients : ndarray, shape (N, 4, INTERVALS, 18)
+        Cubic ones, highest first, of all columns of `Demand` by the part of its interval.
+    overshoot : ndarray, shape (N, 2, 3)
+        At each piece's end, what a controller's quintic adds to ddq and to c where they step
+        (`core.sampling.STEP_OVERSHOOT`).
+
+    """
+
+    def __init__(self, arm_path: ArmPath) -> None:
+        path = arm_path.path
+        self.ends = _parted(np.concatenate(([0.0], path.joins, [path.length])))
+        self._lengths = np.diff(self.ends)
+        u = np.linspace(0.0, 1.0, INTERVALS + 1)
+        self.places = self.ends[:-1, np.newaxis] + self._lengths[:, np.newaxis] * u
+        self.places[:, -1] = self.ends[1:]
+        self.values = self._demanded(arm_path)
+        stepping = np.stack((self.values.ddq, self.values.c), axis=2)
+        steps = np.where(np.isin(self.ends[1:-1], path.joins)[:, np.newaxis, np.newaxis],
+                         stepping[1:, 0] - stepping[:-1, -1], 0.0)
+        self.overshoot = np.concatenate((-STEP_OVERSHOOT * steps, np.zeros((1, 2, 3))))
+        self.coefficients = (_spline() @ np.concatenate(self.values, axis=-1)).reshape(
+            len(self.places), 4, INTERVALS, -1)
+
+    def _demanded(self, arm_path: ArmPath) -> Demand:
+        """Return all columns at the table's places, one-sided at the pieces' ends."""
+        ending = np.zeros(self.places.shape, bool)
+        ending[:, -1] = True
+        q, dq, ddq, dddq = (f.reshape(*self.places.shape, 3) for f in arm_path(
+            self.places.ravel(), left=ending.ravel()))
+        still = np.zeros_like(q)
+        g, by_sdd, by_sd = inverse_dynamics(  # of terms at q that are there once
+            arm_path.model, q, np.stack((still, still, dq)), np.stack((still, dq, ddq)))
+        return Demand(dq, ddq, dddq, by_sdd - g, by_sd - g, g)
+
+    def __call__(self, s: Array) -> Demand:
+        """
+        Return what is demanded.
+
+        Parameters
+        ----------
+        s : ndarray, shape (N, p)
+            Places [m]; row k is on piece k.
+
+        Returns
+        -------
+        Demand
+            Of shape (N, p, 3) each.
+
+        """
+        u = (s - self.ends[:-1, np.newaxis]) / self._lengths[:, np.newaxis] * INTERVALS
+        index = np.clip(u.astype(int), 0, INTERVALS - 1)
+        x = ((u - index) / INTERVALS)[..., np.newaxis]
+        rows = np.arange(len(s))[:, np.newaxis]
+        c3, c2, c1, c0 = (self.coefficients[rows, k, index] for k in range(4))
+        return Demand(*np.split(((c3 * x + c2) * x + c1) * x + c0, 6, axis=-1))
+
+
+@cache
+def _spline() -> Array:
+    """Return the matrix from values to the coefficients of a cubic spline through them."""
+    unit = CubicSpline(np.linspace(0.0, 1.0, INTERVALS + 1), np.eye(INTERVALS + 1)).c
+    return np.ascontiguousarray(unit.reshape(4 * INTERVALS, INTERVALS + 1))
+
+
+def _parted(ends: Array) -> Array:
+    """Return ends of pieces between which long ones are parted equally."""
+    counts = np.ceil(np.diff(ends) / ends[-1] * PARTS).astype(int)
+    return np.concatenate((*(np.linspace(a, b, k, endpoint=False) for a, b, k in zip(
+        ends[:-1], ends[1:], np.maximum(counts, 1))), ends[-1:]))

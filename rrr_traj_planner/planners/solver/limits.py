@@ -1,0 +1,89 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a motion must keep, as arrays: limits on states and durations."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, BoolArray
+
+BOUNDS_ALONE, TORQUE, PATH = range(3)  # kinds of general constraints; as in timing_problem.h
+
+
+class Limits(NamedTuple):
+    """Limits as arrays; P = 2 n + 1 points of a segment, at each E general constraints."""
+
+    kind: int               # of the general constraints: BOUNDS_ALONE (none), TORQUE or PATH
+    lower: Array            # (N, P, 4 J), of position, velocity, acceleration and jerk
+    upper: Array
+    bounded: BoolArray      # (P, 4 J), which of these there are
+    general_lower: Array    # (N, P, E)
+    general_upper: Array
+    general: BoolArray      # (P, E), which of these there are
+    floor: Array | None = None    # (N,), least durations
+    arm: Array | None = None      # coefficients of the equations of motion, of TORQUE
+    table: Array | None = None    # (N, 4, intervals, 18), cubic coefficients, of PATH
+    overshoot: Array | None = None  # (N, 2, 3), added to ddq and to c at segments' ends, of PATH
+
+
+class DurationConstraints(NamedTuple):
+    """
+    Which durations are free, and which are common multiples of given ones; what stays at rest.
+
+    Durations that are not free change by `tie` times a common unknown.
+    """
+
+    free: BoolArray  # (N,)
+    tie: Array       # (N,), 0 where free or fixed
+    weights: Array   # (N,), in the objective
+    still: BoolArray  # (N - 1, J), joints whose velocity at a via point stays as it is
+
+    @classmethod
+    def all_free(cls, segments: int, joints: int) -> DurationConstraints:
+        """
+        Return none at all, and the sum of durations as the objective.
+
+        Parameters
+        ----------
+        segments, joints : int
+            Their numbers.
+
+        Returns
+        -------
+        DurationConstraints
+            Nothing stays at rest.
+
+        """
+        return cls(np.ones(segments, bool), np.zeros(segments), np.ones(segments),
+                   np.zeros((segments - 1, joints), bool))
+
+    def cost(self, T: Array) -> float:
+        """
+        Return the objective.
+
+        Parameters
+        ----------
+        T : ndarray, shape (N,)
+            Durations [s].
+
+        Returns
+        -------
+        float
+            Their weighted sum.
+
+        """
+        return float(self.weights @ T)

@@ -1,0 +1,293 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The least-time problem over segments between via points, as the compiled kernels see it.
+
+Decision variables are those of a family of motions (`ramps`). A motion's states are bounded at the
+points of every segment, and so are further quantities of a state: torques, or what joints do while
+the tip follows a path. Durations may be free, fixed or tied to each other, and have least values.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.solver.library import Arena, contiguous, KERNELS
+from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, DurationConstraints, Limits
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+
+STEPS = 4  # that one iteration may try; every second one is the one before, corrected
+
+
+class _Ramp(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_double) for name in ('whole', 'way', 'speed', 'peak')]
+
+
+class _Problem(ctypes.Structure):  # as in native/timing_problem.h
+    _fields_ = [
+        *((name, ctypes.c_int32) for name in (
+            'J', 'N', 'n', 'kind', 'E', 'bounds', 'general', 'intervals')),
+        ('ramp', _Ramp),
+        *((name, ctypes.c_void_p) for name in (
+            'points', 'restore', 'lower', 'upper', 'general_lower', 'general_upper', 'bound_at',
+            'general_at', 'has_general', 'floor', 'free', 'tie', 'weights', 'still', 'arm',
+            'table', 'overshoot', 'variables', 'states', 'values', 'jacobian', 'slack',
+            'inverse', 'dual', 'shift', 'hessian', 'exact', 'gradient', 'gradient_T',
+            'hessian_T', 'trial_variables', 'trial_states', 'trial_values', 'trial_slack',
+            'trial_gradient', 'trial_gradient_T', 'step_states', 'newton')),
+        ('shifted', ctypes.c_int32)]
+
+
+_STEP = 'direction', 'correction', 'rate', 'variables', 'slack'
+
+
+class _Step(ctypes.Structure):  # as in native/timing_problem.h
+    _fields_ = [*((name, ctypes.c_void_p) for name in _STEP),
+                *((name, ctypes.c_double) for name in (
+                    'gain', 'steepest', 'cost', 'log', 'shorter'))]
+
+
+class Step(NamedTuple):
+    """A Newton step, and where a part of it leads."""
+
+    at: Any     # its address: what kernels are given
+    found: Any  # what they found: see native/timing_problem.h
+
+
+class Workspace:
+    """Memory of problems that are solved one after the other: fresh memory costs time."""
+
+    def __init__(self) -> None:
+        self._arenas: dict[tuple[tuple[int, ...], ...], Arena] = {}
+
+    def arena(self, shapes: dict[str, tuple[int, ...]]) -> Arena:
+        """
+        Return memory for arrays.
+
+        Parameters
+        ----------
+        shapes : dict
+            Of each array.
+
+        Returns
+        -------
+        Arena
+            The same for the same shapes.
+
+        """
+        key = tuple(shapes.values())
+        if key not in self._arenas:
+            self._arenas[key] = Arena(shapes)
+        return self._arenas[key]
+
+
+class TimingProblem:
+    """
+    A problem, its iterate and what is known there.
+
+    Parameters
+    ----------
+    grid : Grid
+        The family of motions.
+    points : ndarray, shape (N + 1, J)
+        Via points.
+    limits : Limits
+        What motions must keep.
+    workspace : Workspace, optional
+        Memory that it shares with problems which are solved before and after it.
+
+    Attributes
+    ----------
+    grid, points, limits
+        As given.
+    at : object
+        The problem's address: what kernels are given.
+
+    """
+
+    def __init__(self, grid: Grid, points: Array, limits: Limits,
+                 workspace: Workspace | None = None) -> None:
+        self.grid, self.points, self.limits = grid, points, limits
+        self._workspace = workspace or Workspace()
+        N, n, J = len(points) - 1, grid.n, points.shape[1]
+        (way, speed, _, _), whole = grid.shape(0.5), grid.shape(1.0)[0]
+        self._problem = _Problem(
+            J=J, N=N, n=n, kind=limits.kind, E=limits.general_lower.shape[-1],
+            intervals=0 if limits.table is None else limits.table.shape[2],
+            ramp=_Ramp(float(whole), float(way), float(speed), grid.shape.peak_jerk))
+        self._kept: dict[str, Array] = {}
+        bound_at, general_at = (np.flatnonzero(which) for which in (
+            limits.bounded, limits.general))
+        self._problem.bounds, self._problem.general = len(bound_at), len(general_at)
+        for name, values in (
+                ('points', points), ('restore', grid.restore), ('lower', limits.lower),
+                ('upper', limits.upper), ('general_lower', limits.general_lower),
+                ('general_upper', limits.general_upper), ('floor', limits.floor),
+                ('arm', limits.arm), ('table', limits.table), ('overshoot', limits.overshoot)):
+            if values is not None:
+                self._keep(name, contiguous(values))
+        self._keep('bound_at', bound_at.astype(np.int32))
+        self._keep('general_at', general_at.astype(np.int32))
+        self._keep('has_general', limits.general.any(axis=1).astype(np.uint8))
+        self._shape = N, n, J
+        self.at: Any = ctypes.byref(self._problem)
+
+    def _keep(self, name: str, values: Any) -> None:
+        """Let the kernels know an array, and keep it as long as the problem."""
+        self._kept[name] = values
+        setattr(self._problem, name, values.ctypes.data)
+
+    @cached_property
+    def arrays(self) -> Arena:
+        """Return what the kernels work on, under the names of native/timing_problem.h."""
+        (N, n, J), p = self._shape, self._problem
+        P, Z, E = 2 * n + 1, 4 * J, p.E
+        unknowns = N * (n - 1) * J + 2 * (N - 1) * J + N
+        slacks, states, values = 2 * N * (p.bounds + p.general + 1), (N, P, Z), (N, P, E)
+        hessian = states if p.kind == BOUNDS_ALONE else (N, P, Z, Z)
+        shapes: dict[str, tuple[int, ...]] = {
+            'variables': (unknowns,), 'states': states, 'values': values,
+            'jacobian': (N, P, E, Z), 'slack': (slacks,), 'inverse': (slacks,),
+            'dual': (slacks,), 'shift': (slacks,), 'hessian': hessian,
+            'exact': (0,) if p.kind == BOUNDS_ALONE else hessian, 'gradient': states,
+            'gradient_T': (N,), 'hessian_T': (N,), 'trial_variables': (unknowns,),
+            'trial_states': states, 'trial_values': values, 'trial_slack': (slacks,),
+            'trial_gradient': states, 'trial_gradient_T': (N,), 'step_states': states,
+            'newton': (KERNELS.timing_newton_size(self.at),)}
+        sizes = (unknowns, unknowns, slacks, unknowns, slacks)
+        arena = self._workspace.arena({**shapes, **{
+            f'{name} {k}': (size,) for k in range(STEPS) for name, size in zip(_STEP, sizes)}})
+        for name in shapes:
+            setattr(p, name, arena.addresses[name])
+        return arena
+
+    @cached_property
+    def steps(self) -> list[Step]:
+        """Return room for the steps of an iteration; every second one has a correction."""
+        found = []
+        for k in range(STEPS):
+            direction, correction, *others = (
+                self.arrays.addresses[f'{name} {k}'] for name in _STEP)
+            step = _Step(direction, correction if k % 2 else None, *others)
+            found.append(Step(ctypes.byref(step), step))
+        return found
+
+    def begin(self, motion: Variables, durations: DurationConstraints) -> None:
+        """
+        Begin at a motion.
+
+        Parameters
+        ----------
+        motion : Variables
+            The iterate.
+        durations : DurationConstraints
+            What may change.
+
+        """
+        self.arrays['variables'][:] = np.concatenate([f.ravel() for f in motion])
+        self.arrays['shift'][:] = 0.0
+        self._problem.shifted = 0
+        self._keep('free', durations.free.astype(np.uint8))
+        self._keep('tie', contiguous(durations.tie))
+        self._keep('weights', contiguous(durations.weights))
+        self._keep('still', durations.still.astype(np.uint8))
+
+    def shift(self, former: Limits) -> None:
+        """
+        Shift every constraint out to where it was before.
+
+        Parameters
+        ----------
+        former : Limits
+            On the same quantities; where they are no wider nothing is shifted.
+
+        """
+        now = self.limits
+        above = np.concatenate(((former.upper - now.upper)[:, now.bounded],
+                                (former.general_upper - now.general_upper)[:, now.general]),
+                               axis=1)
+        below = np.concatenate(((now.lower - former.lower)[:, now.bounded],
+                                (now.general_lower - former.general_lower)[:, now.general]),
+                               axis=1)
+        wider = np.maximum(np.stack((above, below), axis=-1), 0.0).ravel()
+        self.arrays['shift'][:wider.size] = wider
+        self._problem.shifted = 1
+
+    @property
+    def shifted(self) -> bool:
+        """Return whether any constraint is."""
+        return bool(self._problem.shifted)
+
+    def slacks(self, motion: Variables) -> Array:
+        """
+        Return how far a motion is within each constraint; see native/timing_problem.h.
+
+        Parameters
+        ----------
+        motion : Variables
+            Any.
+
+        Returns
+        -------
+        ndarray
+            Positive strictly within.
+
+        """
+        flat = np.concatenate([f.ravel() for f in motion])
+        found = np.empty(self.arrays['slack'].size)
+        KERNELS.timing_slacks(self.at, flat.ctypes.data, found.ctypes.data)
+        return found
+
+    def is_within(self, motion: Variables) -> bool:
+        """
+        Return whether a motion is strictly within all constraints, as an iterate must be.
+
+        Parameters
+        ----------
+        motion : Variables
+            Any.
+
+        Returns
+        -------
+        bool
+            False on a constraint.
+
+        """
+        return bool(self.slacks(motion).min() > 0.0)
+
+    def motion(self, variables: Array) -> Variables:
+        """
+        Return a motion.
+
+        Parameters
+        ----------
+        variables : ndarray
+            Its unknowns, one behind the other.
+
+        Returns
+        -------
+        Variables
+            The same unknowns, not copied.
+
+        """
+        N, n, J = self._shape
+        ends = N * (n - 1) * J, N * (n - 1) * J + (N - 1) * J, len(variables) - N
+        return Variables(variables[:ends[0]].reshape(N, n - 1, J),
+                         variables[ends[0]:ends[1]].reshape(N - 1, J),
+                         variables[ends[1]:ends[2]].reshape(N - 1, J), variables[ends[2]:])

@@ -1,0 +1,237 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A motion through a chain of segments of given durations, and what slows it down."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.motion_torque import squared_stretch, torque_grid
+from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.solver.convergence import unconverged_note
+from rrr_traj_planner.planners.transitions import segment_motion
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_stretch
+from rrr_traj_planner.planners.transitions.via_problem import rests_everywhere, ViaProblem
+from rrr_traj_planner.planners.transitions.via_velocities import least_stretch, least_time
+
+STRETCH_TOLERANCE = 3e-7   # of prescribed durations: jerk then keeps its limit to 1e-6
+TORQUE_TOLERANCE = 5e-7    # of the stretch that torque asks for
+
+# Durations are longer than the least by this part, so that they can be prescribed again.
+DURATION_ROOM = 1e-6
+
+
+class TimedMotion(NamedTuple):
+    """A motion within the kinematic limits, and the durations of its segments."""
+
+    trajectory: PiecewiseTrajectory
+    durations: Array
+
+
+def timed_motion(task: JointTask, chain: ViaProblem, durations: Array,
+                 gently: bool = True) -> tuple[TimedMotion | None, BoolArray]:
+    """
+    Return a motion of given durations, and which segments overshoot a joint's range.
+
+    Time to spare makes it gentle, or else slows the fastest motion of the same proportions.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    chain : ViaProblem
+        The via points.
+    durations : ndarray, shape (n,)
+        [s].
+    gently : bool
+        Whether time to spare makes it gentle.
+
+    Returns
+    -------
+    tuple of TimedMotion and ndarray of bool, shape (n, 3)
+        None where it overshoots, or the kinematic limits leave no such motion.
+
+    """
+    if rests_everywhere(chain):
+        factor = float((chain.rest_to_rest_times() / durations).max())
+        v, T = np.zeros_like(chain.highest), durations * factor
+    else:
+        factor, solution = least_stretch(chain, durations)
+        v, T = solution.velocities, solution.durations
+    if factor > 1.0 + STRETCH_TOLERANCE:
+        return None, np.zeros_like(chain.displacements, dtype=bool)
+    if factor <= 1.0 and gently:
+        v, T, factor = v * factor, durations, 1.0
+    motion, overshoot = _moved(task, chain, v, T, durations)
+    if motion is not None and factor != 1.0:
+        motion = motion._replace(trajectory=motion.trajectory.stretched(1.0 / factor))
+    return motion, overshoot
+
+
+def quickest_motion(task: JointTask, chain: ViaProblem) -> tuple[TimedMotion | None, BoolArray]:
+    """
+    Return the motion of least total time, and which segments overshoot a joint's range.
+
+    Parameters
+    ----------
+    task, chain
+        As in `timed_motion`.
+
+    Returns
+    -------
+    tuple of TimedMotion and ndarray of bool, shape (n, 3)
+        None where it overshoots. Its note says where planning was stopped before it converged.
+
+    """
+    stops = chain.rest_to_rest_times()
+    v, T, gap = np.zeros_like(chain.highest), stops, 0.0
+    if not rests_everywhere(chain):
+        found = least_time(chain, should_stop=task.should_stop)
+        gap = found.gap - float(max(found.durations.sum() - stops.sum(), 0.0))
+        if found.durations.sum() <= stops.sum():  # it was not stopped early
+            v, T = found.velocities, found.durations
+    slower = 1.0 + DURATION_ROOM
+    motion, overshoot = _moved(task, chain, v / slower, T * slower, T * slower)
+    if motion is not None:
+        motion.trajectory.note = unconverged_note(gap, motion.trajectory.duration)
+    return motion, overshoot
+
+
+def motion_with_floor(task: JointTask, chain: ViaProblem,
+                      floor: Array) -> tuple[TimedMotion | None, BoolArray]:
+    """
+    Return the motion of least total time whose segments last long enough, and what overshoots.
+
+    Its via velocities are those of the least stretch: where a floor leaves time to spare, they
+    leave most room to slow down or hurry.
+
+    Parameters
+    ----------
+    task, chain
+        As in `timed_motion`.
+    floor : ndarray, shape (n,)
+        Durations [s] that no segment may fall below.
+
+    Returns
+    -------
+    tuple of TimedMotion and ndarray of bool, shape (n, 3)
+        As of `timed_motion`.
+
+    """
+    durations = (np.maximum(chain.rest_to_rest_times(), floor) if rests_everywhere(chain)
+                 else least_time(chain, floor, task.should_stop).durations)
+    return timed_motion(task, chain, durations * (1.0 + DURATION_ROOM))
+
+
+def segment_stretch(task: JointTask, motion: TimedMotion) -> Array:
+    """
+    Return by how much torque asks each segment to be stretched.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    motion : TimedMotion
+        The motion.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Below 1 where there is torque to spare, infinite where gravity alone is too much.
+
+    """
+    if np.isinf(task.limits.max_effort).all():
+        return np.zeros(len(motion.durations))
+    t = torque_grid(motion.trajectory)
+    squared = squared_stretch(task.model, task.limits, *motion.trajectory(t)[:3]).max(axis=1)
+    segment = np.searchsorted(motion.trajectory.via_times[1:-1], t, side='right')
+    worst = np.zeros(len(motion.durations))
+    np.maximum.at(worst, segment, squared)
+    return np.sqrt(worst)
+
+
+def stretched_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotion:
+    """
+    Return the motion slowed as a whole, just enough for its torques.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    motion : TimedMotion
+        The motion.
+
+    Returns
+    -------
+    TimedMotion
+        Within the effort limits.
+
+    Raises
+    ------
+    LimitViolationError
+        If gravity alone exceeds an effort limit on the way.
+
+    """
+    factor = torque_stretch(task, motion.trajectory)
+    if np.isinf(factor):
+        raise cannot_hold(task, motion.trajectory)
+    if factor <= 1.0 + TORQUE_TOLERANCE:
+        return motion
+    return TimedMotion(motion.trajectory.stretched(factor), motion.durations * factor)
+
+
+def _moved(task: JointTask, chain: ViaProblem, v: Array, T: Array,
+           durations: Array) -> tuple[TimedMotion | None, BoolArray]:
+    """Return the motion of given velocities and durations; none where it overshoots a range."""
+    rest = np.zeros((1, 3))
+    v0, v1 = np.concatenate((rest, v)), np.concatenate((v, rest))
+    parts = segment_motion.gentle_parts(
+        chain.law, chain.max_velocity, v0, v1, T[:, np.newaxis], chain.displacements)
+    overshoot = _overshoot(task, chain, v0, v1, parts)
+    if overshoot.any():
+        return None, overshoot
+    trajectory = segment_motion.trajectory(
+        task.points, v0, v1, T[:, np.newaxis], parts, chain.function)
+    return TimedMotion(trajectory, durations), overshoot
+
+
+def _overshoot(task: JointTask, chain: ViaProblem, v0: Array, v1: Array,
+               parts: segment_motion.Parts) -> BoolArray:
+    """
+    Return in which segments which joints leave their range, shape (n, 3).
+
+    Via points lie within it, and between them position has an extreme only where a transition
+    leads to a velocity of the other sign. It is less than velocity times duration away.
+    """
+    limits, cruise = task.limits, parts.cruise
+    least, most = limits.min_position, limits.max_position
+    out = np.zeros(v0.shape, dtype=bool)
+    for point, duration, velocity, way in (
+            (task.points[:-1], parts.first, v0, 1.0), (task.points[1:], parts.last, v1, -1.0)):
+        furthest = point + way * velocity * duration
+        doubtful = (velocity * cruise < 0.0) & (duration > 0.0) & (
+            (furthest < least) | (furthest > most))
+        if doubtful.any():  # a last transition is a first one, backwards
+            row, joint = np.nonzero(doubtful)
+            at = row, joint
+            ranges = JointProfile(chain.function.transition(
+                duration[at], point[at], way * velocity[at], way * cruise[at])).piece_ranges
+            out[at] |= (ranges[0] < least[joint] - POSITION_TOLERANCE) | (
+                ranges[1] > most[joint] + POSITION_TOLERANCE)
+    return out

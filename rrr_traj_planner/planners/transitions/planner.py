@@ -1,0 +1,72 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Transition, cruise, transition in every segment, via velocities free: of any function."""
+
+from __future__ import annotations
+
+from rrr_traj_planner.core.pieces import TransitionFunction
+from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.planners.registry import JointPlanner
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.transitions.fastest import fastest
+from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
+from rrr_traj_planner.planners.transitions.prescribed import prescribed
+
+
+def planner_with(function: TransitionFunction) -> JointPlanner:
+    """
+    Return the planner of this structure whose transitions are made of a function.
+
+    Parameters
+    ----------
+    function : TransitionFunction
+        What transitions are made of.
+
+    Returns
+    -------
+    callable
+        See its own text.
+
+    """
+    def plan(task: JointTask) -> Trajectory:
+        """
+        Return the fastest motion of this structure, or one of prescribed durations.
+
+        Parameters
+        ----------
+        task : JointTask
+            What is asked.
+
+        Returns
+        -------
+        Trajectory
+            Within the limits.
+
+        Raises
+        ------
+        InvalidInputError
+            If a joint has no acceleration limit.
+        TimingError
+            If prescribed durations are too short; with feasible ones.
+        LimitViolationError
+            If gravity alone exceeds an effort limit between the via points.
+
+        """
+        chain = via_problem_of(task, function)
+        if task.durations is None:
+            return fastest(task, chain, None).trajectory
+        return prescribed(task, chain, task.durations).trajectory
+
+    return plan

@@ -1,0 +1,144 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A motion through a chain of segments whose durations are prescribed."""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import ConvergenceError, TimingError
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.transitions.fastest import (
+    fastest,
+    fastest_with_stops,
+    OVERSHOOT_ROUNDS,
+    STRAIGHTENING_ROUNDS,
+)
+from rrr_traj_planner.planners.transitions.motion import (
+    DURATION_ROOM,
+    segment_stretch,
+    STRETCH_TOLERANCE,
+    timed_motion,
+    TimedMotion,
+    TORQUE_TOLERANCE,
+)
+from rrr_traj_planner.planners.transitions.motion_law import torque_stretch
+from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
+
+DURATION_TOLERANCE = 1e-9  # s, to which prescribed durations are kept
+
+
+def prescribed(task: JointTask, chain: ViaProblem, durations: Array) -> TimedMotion:
+    """
+    Return a motion of given durations.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    chain : ViaProblem
+        The via points.
+    durations : ndarray, shape (n,)
+        [s].
+
+    Returns
+    -------
+    TimedMotion
+        Within all limits; the gentlest where there is time to spare.
+
+    Raises
+    ------
+    TimingError
+        If the durations are too short; with feasible ones.
+    LimitViolationError
+        If gravity alone exceeds an effort limit between the via points.
+
+    """
+    motion = _within_limits(task, chain, durations) or _slowed_fastest(task, chain, durations)
+    if motion is None:
+        raise _too_short(task, chain, durations)
+    return motion
+
+
+def _within_limits(task: JointTask, chain: ViaProblem, durations: Array) -> TimedMotion | None:
+    """
+    Return a motion of given durations within all limits; None if none is found.
+
+    Where the gentle one lacks torque, the fastest of the same proportions may have it once it is
+    slowed to these durations; else lower via velocities may help.
+    """
+    for round_ in range(STRAIGHTENING_ROUNDS + 1):
+        task.should_stop()
+        if round_ == STRAIGHTENING_ROUNDS:
+            chain = at_rest(chain)
+        for gently in (True, False):
+            motion = _with_durations(task, chain, durations, gently)
+            if motion is None:
+                return None
+            stretch = segment_stretch(task, motion)
+            if torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
+                return motion
+        lacking = stretch > 1.0
+        chain = slower_at(chain, np.tile(lacking[:, np.newaxis], 3))
+    return None
+
+
+def _slowed_fastest(task: JointTask, chain: ViaProblem, durations: Array) -> TimedMotion | None:
+    """Return the fastest motion, slowed, if that gives the durations; else None."""
+    if (chain.displacements == 0.0).all(axis=1).any():
+        return None  # the fastest motion does not stay anywhere
+    quickest = fastest(task, chain, None)
+    slower = float(np.mean(durations / quickest.durations))
+    if slower < 1.0 - STRETCH_TOLERANCE or (
+            np.abs(durations - slower * quickest.durations).max() > DURATION_TOLERANCE):
+        return None
+    return TimedMotion(quickest.trajectory.stretched(slower), durations)
+
+
+def _with_durations(task: JointTask, chain: ViaProblem, durations: Array,
+                    gently: bool) -> TimedMotion | None:
+    """Return a motion of given durations within the kinematic limits; None if there is none."""
+    for round_ in range(OVERSHOOT_ROUNDS + 1):
+        task.should_stop()
+        if round_ == OVERSHOOT_ROUNDS:
+            chain = at_rest(chain)
+        motion, overshoot = timed_motion(task, chain, durations, gently)
+        if motion is not None or not overshoot.any():
+            return motion
+        chain = slower_at(chain, overshoot)
+    return None
+
+
+def _too_short(task: JointTask, chain: ViaProblem, durations: Array) -> TimingError:
+    """Return the error of prescribed durations that are too short, with feasible ones."""
+    feasible = _least_feasible(task, chain, durations)
+    asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
+    short = np.flatnonzero(durations * (1.0 + 2.0 * DURATION_ROOM) < feasible - 2e-6).tolist()
+    return TimingError(
+        f'segment_durations {asked} s are too short for segment'
+        f'{"s" * (len(short) > 1)} {", ".join(map(str, short))}: the least feasible are '
+        f'{offered} s', tuple(offered))
+
+
+def _least_feasible(task: JointTask, chain: ViaProblem, durations: Array) -> Array:
+    """Return feasible durations in whole microseconds, none shorter than asked for."""
+    for candidate in (fastest(task, chain, durations), fastest_with_stops(
+            task, chain, durations)):
+        for room in (0.0, 1e-6, 1e-5, 1e-4, 1e-3):
+            feasible = np.ceil(candidate.durations * (1.0 + room) * 1e6) / 1e6
+            if _within_limits(task, chain, feasible) is not None:
+                return np.asarray(feasible)
+    raise ConvergenceError(
+        f'no feasible durations found for segment_durations {durations.tolist()} s')

@@ -1,0 +1,120 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+How far a transition, a cruise and a transition lead in a given time, for many joints at once.
+
+Of all motions of a segment between given velocities the one comes furthest whose cruise is the
+fastest that leaves both transitions their least durations.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+
+
+class Derivatives(NamedTuple):
+    """The largest displacement, and its derivatives by v0, v1 and T."""
+
+    distance: Array  # shape (..., 3) [rad]
+    gradient: Array  # (..., 3, 3): of each joint
+    hessian: Array   # (..., 3, 3, 3)
+
+
+def largest_cruise(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
+                   T: Array) -> Array:
+    """
+    Return the cruise that takes furthest in a given time between given velocities.
+
+    Parameters
+    ----------
+    law : TransitionLaw
+        Transitions' least durations.
+    max_velocity : ndarray, shape (3,)
+        [rad/s].
+    v0, v1 : ndarray, shape (..., 3)
+        Velocities at the ends [rad/s], not above the maximum.
+    T : ndarray
+        Duration [s], at least `law.least_time(v1 - v0)`.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        [rad/s]; shapes broadcast.
+
+    """
+    return _evaluated(law, max_velocity, v0, v1, T, derivatives=False)[0]
+
+
+def reach(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array) -> Array:
+    """
+    Return the largest displacement in a given time between given velocities.
+
+    The least one is minus the reach between the opposite velocities.
+
+    Parameters
+    ----------
+    law, max_velocity, v0, v1, T
+        As in `largest_cruise`.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        [rad]; shapes broadcast.
+
+    """
+    return _evaluated(law, max_velocity, v0, v1, T, derivatives=False)[1]
+
+
+def derivatives(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
+                T: Array) -> Derivatives:
+    """
+    Return the largest displacement and its derivatives.
+
+    With t_k how long the transition at end k lasts, i_k the inverse slope of t(u) there and m_k =
+    (t_k + u_k / i_k) / (2 t_k), a change of velocity by u costs m t: m is 1 where acceleration
+    bounds a transition, 3 / 4 where jerk does.
+
+    Parameters
+    ----------
+    law, max_velocity, v0, v1, T
+        As in `largest_cruise`; velocities below the maximum.
+
+    Returns
+    -------
+    Derivatives
+        One-sided where two laws or a limit meet.
+
+    """
+    return Derivatives(*_evaluated(law, max_velocity, v0, v1, T, derivatives=True)[1:])
+
+
+def _evaluated(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array,
+               derivatives: bool) -> tuple[Array, Array, Array, Array]:
+    """Return cruise, distance and, where they are wanted, its derivatives."""
+    three = np.zeros(3)
+    shape = np.broadcast_shapes(np.shape(v0), np.shape(v1), np.shape(T), three.shape)
+    law_and_limit = [contiguous(x + three) for x in (*law, max_velocity)]
+    at = [contiguous(np.broadcast_to(x, shape)) for x in (v0, v1, T)]
+    cruise, distance = np.empty(shape), np.empty(shape)
+    gradient, hessian = (np.empty((*(shape if derivatives else (0,)), *(3,) * k)) for k in (1, 2))
+    KERNELS.reach_at(cruise.size // 3, *(x.ctypes.data for x in (
+        *law_and_limit, *at, cruise, distance)), *(
+            x.ctypes.data if derivatives else None for x in (gradient, hessian)))
+    return cruise, distance, gradient, hessian

@@ -1,0 +1,224 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The transitions and the cruise that fill a segment, once its ends and duration are known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.pieces import Pieces, TransitionFunction
+from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
+from rrr_traj_planner.planners.transitions.reach import largest_cruise
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+
+BISECTIONS = 60
+
+
+class Parts(NamedTuple):
+    """Durations of both transitions and the velocity between them, shapes (n, 3)."""
+
+    first: Array   # [s]
+    cruise: Array  # [rad/s]
+    last: Array    # [s]
+
+
+def gentle_parts(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array,
+                 D: Array) -> Parts:
+    """
+    Return parts that cover a displacement in a given time, gently where there is time to spare.
+
+    Two transitions of half the segment each where the limits allow; else a last (or first)
+    transition as long as the other's limits leave; else both as short as the limits allow and a
+    cruise between them.
+
+    Parameters
+    ----------
+    law : TransitionLaw
+        Transitions' least durations.
+    max_velocity : ndarray, shape (3,)
+        [rad/s].
+    v0, v1 : ndarray, shape (n, 3)
+        Velocities at the ends [rad/s].
+    T : ndarray, shape (n, 1)
+        Durations [s].
+    D : ndarray, shape (n, 3)
+        Displacements [rad], within reach.
+
+    Returns
+    -------
+    Parts
+        Within the limits.
+
+    """
+    def parts(a: Array, b: Array, D: Array) -> Parts:
+        found = _limited(law, max_velocity, a, b, T, D)
+        for share in (_share_left(law, a, b, T, D), np.full_like(D, 0.5)):
+            found = _where_allowed(law, max_velocity, _split(share, a, b, T, D), found, a, b)
+        return found
+
+    return _mirrored(parts, v0, v1, T, D)
+
+
+def quick_parts(law: TransitionLaw, v0: Array, v1: Array, T: Array, D: Array) -> Parts:
+    """
+    Return parts with both transitions as short as the limits allow (section 4.2.3).
+
+    Parameters
+    ----------
+    law, v0, v1, T, D
+        As in `gentle_parts`.
+
+    Returns
+    -------
+    Parts
+        The thesis's own way to slow a joint: full acceleration, a lower cruise.
+
+    """
+    unlimited = np.full(3, np.inf)
+    return _mirrored(lambda a, b, D: _limited(law, unlimited, a, b, T, D), v0, v1, T, D)
+
+
+def trajectory(points: Array, v0: Array, v1: Array, T: Array, parts: Parts,
+               function: TransitionFunction = CYCLOID) -> PiecewiseTrajectory:
+    """
+    Return the motion that the parts of all segments make.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n + 1, 3)
+        Joint positions at the via points [rad].
+    v0, v1 : ndarray, shape (n, 3)
+        Velocities at the segments' ends [rad/s].
+    T : ndarray, shape (n, 1)
+        Durations [s].
+    parts : Parts
+        Of each segment.
+    function : TransitionFunction
+        What transitions are made of.
+
+    Returns
+    -------
+    PiecewiseTrajectory
+        Transition, cruise, transition in every segment; each begins exactly at its via point.
+
+    """
+    middle = np.maximum(T - parts.first - parts.last, 0.0)
+    q1 = points[:-1] + 0.5 * (v0 + parts.cruise) * parts.first
+    q2 = q1 + parts.cruise * middle
+    with np.errstate(divide='ignore', invalid='ignore'):
+        pieces = (function.transition(parts.first, points[:-1], v0, parts.cruise),
+                  function.cruise(middle, q1, parts.cruise),
+                  function.transition(parts.last, q2, parts.cruise, v1))
+    return PiecewiseTrajectory(joint_profiles(pieces), np.concatenate(([0.0], np.cumsum(T))))
+
+
+def joint_profiles(pieces: Sequence[Pieces]) -> list[JointProfile]:
+    """
+    Return the profiles of joints whose every segment consists of the same kinds of pieces.
+
+    Parameters
+    ----------
+    pieces : sequence of Pieces
+        In order of time; values of shape (n, 3), for each segment and joint. Those of no duration
+        are left out, whatever their values are.
+
+    Returns
+    -------
+    list of JointProfile
+        One for each joint.
+
+    """
+    lasting = np.stack([p.duration > 0.0 for p in pieces], axis=1)
+    fields = [np.where(lasting, np.stack(f, axis=1), 0.0).reshape(-1, 3)
+              for f in zip(*(np.broadcast_arrays(*p.arrays().values()) for p in pieces))]
+    return [JointProfile(pieces[0].made_of(f[:, j] for f in fields)) for j in range(3)]
+
+
+def _mirrored(parts: Callable[[Array, Array, Array], Parts], v0: Array, v1: Array, T: Array,
+              D: Array) -> Parts:
+    """
+    Return parts of every case from those for a motion that speeds up and is ahead of its mean.
+
+    Motions behind the mean of their end velocities are mirrored in position, those that slow
+    down are reversed in time.
+    """
+    sign = np.where(D >= 0.5 * (v0 + v1) * T, 1.0, -1.0)
+    a, b = sign * v0, sign * v1
+    backwards = a > b
+    found = parts(np.minimum(a, b), np.maximum(a, b), sign * D)
+    return Parts(np.where(backwards, found.last, found.first), sign * found.cruise,
+                 np.where(backwards, found.first, found.last))
+
+
+def _split(share: Array, a: Array, b: Array, T: Array, D: Array) -> Parts:
+    """Return two transitions without a cruise, the last taking a share of the segment."""
+    cruise = 2.0 * D / T - (1.0 - share) * a - share * b
+    return Parts((1.0 - share) * T, cruise, share * T)
+
+
+def _share_left(law: TransitionLaw, a: Array, b: Array, T: Array, D: Array) -> Array:
+    """Return the largest share that the first transition, at its acceleration limit, leaves."""
+    excess = 2.0 * (D / T - 0.5 * (a + b))
+    with np.errstate(divide='ignore', invalid='ignore'):
+        share = 1.0 - excess / (T / law.slope - (b - a))
+    return np.where(np.isfinite(share), np.clip(share, 0.0, 0.5), 0.5)
+
+
+def _where_allowed(law: TransitionLaw, max_velocity: Array, wanted: Parts, otherwise: Parts,
+                   a: Array, b: Array) -> Parts:
+    """Return the wanted parts where they keep the limits."""
+    allowed = ((law.least_time(wanted.cruise - a) <= wanted.first)
+               & (law.least_time(wanted.cruise - b) <= wanted.last)
+               & (np.abs(wanted.cruise) <= max_velocity) & (wanted.last > 0.0))
+    return Parts(*(np.where(allowed, w, o) for w, o in zip(wanted, otherwise)))
+
+
+def _limited(law: TransitionLaw, max_velocity: Array, a: Array, b: Array, T: Array,
+             D: Array) -> Parts:
+    """
+    Return parts at the limits, for a <= b and D at least the mean velocity's displacement.
+
+    A cruise above both ends, with shortest transitions; or, where D asks for less than that of
+    the least such cruise, a single transition, stretched.
+    """
+    low = b
+    high = np.maximum(largest_cruise(law, max_velocity, a, b, T), b)
+    high = _cruise_covering(law, low, high, a, b, T, D)
+    first, last = law.least_time(high - a), law.least_time(high - b)
+    with np.errstate(divide='ignore', invalid='ignore'):
+        stretched = np.clip(2.0 * (b * T - D) / (b - a), 0.0, T)
+    single = _displacement(law, b, a, b, T) >= D
+    return Parts(np.where(single, np.where(b > a, stretched, 0.0), first),
+                 np.where(single, b, high), np.where(single, 0.0, last))
+
+
+def _cruise_covering(law: TransitionLaw, low: Array, high: Array, a: Array, b: Array, T: Array,
+                     D: Array) -> Array:
+    """Return the lowest cruise of a range that covers a displacement with shortest transitions."""
+    given = [contiguous(x) for x in (*law, low, a, b, T, D)]
+    found = high.copy()
+    KERNELS.cruise_covering(len(T), BISECTIONS, *(x.ctypes.data for x in (*given, found)))
+    return found
+
+
+def _displacement(law: TransitionLaw, cruise: Array, a: Array, b: Array, T: Array) -> Array:
+    """Return the displacement with shortest transitions to and from a cruise."""
+    return cruise * T - 0.5 * ((cruise - a) * law.least_time(cruise - a)
+                               + (cruise - b) * law.least_time(cruise - b))

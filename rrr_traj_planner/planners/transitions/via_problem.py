@@ -1,0 +1,130 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The via points of a chain of segments, and what bounds the motion through them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, BoolArray, ReadOnlyArrays
+from rrr_traj_planner.core.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.pieces import TransitionFunction
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+
+LEAST_VELOCITY = 1e-9  # rad/s: bounds of a via velocity that must be zero
+OVERSHOOT_REDUCTION = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class ViaProblem(ReadOnlyArrays):
+    """
+    Via points of all joints, and what bounds the motion through them.
+
+    Parameters
+    ----------
+    displacements : ndarray, shape (n, 3)
+        From point to point [rad].
+    law : TransitionLaw
+        Transitions' least durations.
+    max_velocity : ndarray, shape (3,)
+        [rad/s], finite.
+    lowest, highest : ndarray, shape (n - 1, 3)
+        Bounds of the velocities at the via points [rad/s], around 0.
+    function : TransitionFunction
+        What transitions are made of.
+
+    """
+
+    displacements: Array
+    law: TransitionLaw
+    max_velocity: Array
+    lowest: Array
+    highest: Array
+    function: TransitionFunction = CYCLOID
+
+    def rest_to_rest_times(self) -> Array:
+        """Return the least durations with a stop at every via point, shape (n,) [s]."""
+        D = np.abs(self.displacements)
+        slope, root = self.law.slope, self.law.root
+        with np.errstate(divide='ignore', invalid='ignore'):
+            by_jerk = np.where(root > 0.0, (D / root) ** (2.0 / 3.0), np.inf)
+            # cruise u without a velocity limit: D = u t(u)
+            u = np.minimum(np.minimum(np.sqrt(D / slope), by_jerk), self.max_velocity)
+            total = np.where(D > 0.0, self.law.least_time(u) + D / u, 0.0)
+        return np.asarray(total.max(axis=1))
+
+
+def slower_at(chain: ViaProblem, segments: BoolArray) -> ViaProblem:
+    """
+    Return the chain with lower velocities at the ends of some segments.
+
+    Parameters
+    ----------
+    chain : ViaProblem
+        The via points.
+    segments : ndarray of bool, shape (n, 3)
+        Which segments of which joints.
+
+    Returns
+    -------
+    ViaProblem
+        Bounds of the via velocities halved there.
+
+    """
+    at_ends = segments[:-1] | segments[1:]
+    factor = np.where(at_ends, OVERSHOOT_REDUCTION, 1.0)
+    return replace(chain, lowest=np.minimum(chain.lowest * factor, -LEAST_VELOCITY),
+                   highest=np.maximum(chain.highest * factor, LEAST_VELOCITY))
+
+
+def at_rest(chain: ViaProblem) -> ViaProblem:
+    """
+    Return the chain with a stop at every via point: its motions never overshoot.
+
+    Parameters
+    ----------
+    chain : ViaProblem
+        The via points.
+
+    Returns
+    -------
+    ViaProblem
+        Via velocities bounded to next to nothing; see `rests_everywhere`.
+
+    """
+    still = np.full_like(chain.highest, LEAST_VELOCITY)
+    return replace(chain, lowest=-still, highest=still)
+
+
+def rests_everywhere(chain: ViaProblem) -> bool:
+    """
+    Return whether every via velocity is to be zero: its times are then known in closed form.
+
+    A search within bounds of next to nothing would leave velocities of that size, and in a long
+    transition even they overshoot a range.
+
+    Parameters
+    ----------
+    chain : ViaProblem
+        The via points.
+
+    Returns
+    -------
+    bool
+        Also where there are no via points between the first and the last.
+
+    """
+    return bool((np.maximum(-chain.lowest, chain.highest) <= LEAST_VELOCITY).all())
