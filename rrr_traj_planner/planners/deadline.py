@@ -23,7 +23,7 @@ from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import TimeLimitError
 
 IMPROVING = 0.8  # of the limit, after which a motion that was found is brought to an answer,
-GRACE = 0.35     # s after the limit up to which that may take
+GRACE = 0.25     # s after the limit up to which that may take
 
 
 class Deadline:
