@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, ReadOnlyArrays
 from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.margins import Margins
@@ -46,7 +46,7 @@ class Solved(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class JointProblem:
+class JointProblem(ReadOnlyArrays):
     """
     Via points and limits, the family of motions, and what durations may do.
 
