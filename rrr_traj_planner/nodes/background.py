@@ -60,7 +60,7 @@ class Background:
         self._calls: SimpleQueue[_Call | None] = SimpleQueue()
         self._returned: deque[tuple[Future, Any, Exception | None]] = deque()
         self._wake = node.create_guard_condition(self._tell)
-        self._ending, self._ended = Lock(), False
+        self._ending, self._ended, self._taking = Lock(), False, Lock()
         self._idle, self._threads = Semaphore(0), list[Thread]()
 
     def call(self, function: Callable[..., Any], *arguments: Any, expected: float = 0.0) -> Future:
@@ -110,19 +110,24 @@ class Background:
             thread.join(max(0.0, until - perf_counter()))
 
     def _run(self) -> None:
-        for call in iter(self._calls.get, None):
-            with self._turns.turn(call.expected) as turn:
+        while True:
+            with self._taking:  # so that calls queue in the order in which they came
+                call = self._calls.get()
+                if call is None:
+                    return
+                queued = self._turns.queued(call.expected)
+            with self._turns.taken(queued) as turn:
                 if self._ended:
                     return
                 try:
                     result, error = call.function(*call.arguments, turn), None
                 except Exception as raised:
                     result, error = None, raised
-            with self._ending:
-                if self._ended:
-                    return
-                self._returned.append((call.done, result, error))
-                self._wake.trigger()
+                with self._ending:
+                    if self._ended:
+                        return
+                    self._returned.append((call.done, result, error))
+                    self._wake.trigger()
             self._idle.release()
 
     def _tell(self) -> None:

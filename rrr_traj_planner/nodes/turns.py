@@ -23,7 +23,7 @@ as it waits, so that long work gets on whatever else comes.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from math import floor, log2
 from threading import Condition
 from time import perf_counter
@@ -75,10 +75,10 @@ class Turn:
         """Note that waiting for the next turn begins."""
         self._before, self._since = self.used(), perf_counter()
 
-    def level(self, at_work: bool) -> float:
-        """Return how little urgent the work is: 0 at first."""
+    def level(self, at_work: bool, now: float) -> float:
+        """Return how little urgent the work is at a time: 0 at first."""
         done = max(self._expected, self.used() if at_work else self._before, 0.5 * FIRST_LEVEL)
-        waited = 0.0 if at_work else perf_counter() - self._since
+        waited = 0.0 if at_work else now - self._since
         return floor(1.0 + log2(done / FIRST_LEVEL)) - waited / LEVEL_OF_WAITING
 
 
@@ -99,23 +99,60 @@ class Turns:
         self._waiting: list[Turn] = []
         self._taken = self._ended = False
 
-    @contextmanager
-    def turn(self, expected: float = 0.0) -> Iterator[Turn]:
+    def queued(self, expected: float = 0.0) -> Turn:
         """
-        Wait for a turn, and end it afterwards; once turns are over nobody waits any more.
+        Return a turn that waits from now on; of equally urgent ones the first goes first.
 
         Parameters
         ----------
         expected : float
             See `Turn`.
 
+        Returns
+        -------
+        Turn
+            To be taken by a thread.
+
+        """
+        with self._changed:
+            turn = Turn(self, expected)
+            self._waiting.append(turn)
+            self.is_wanted = True
+        return turn
+
+    def turn(self, expected: float = 0.0) -> AbstractContextManager[Turn]:
+        """
+        Queue a turn and wait for it; see `taken`.
+
+        Parameters
+        ----------
+        expected : float
+            See `Turn`.
+
+        Returns
+        -------
+        context manager
+            Of the turn.
+
+        """
+        return self.taken(self.queued(expected))
+
+    @contextmanager
+    def taken(self, turn: Turn) -> Iterator[Turn]:
+        """
+        Wait for a queued turn, and end it afterwards; once turns are over nobody waits any more.
+
+        Parameters
+        ----------
+        turn : Turn
+            The turn.
+
         Yields
         ------
         Turn
-            Of this thread.
+            The same.
 
         """
-        turn = Turn(self, expected)
         with self._changed:
             self._wait(turn)
         try:
@@ -136,10 +173,13 @@ class Turns:
 
         """
         with self._changed:
+            now = perf_counter()
             if self._ended or not any(
-                    w.level(False) <= turn.level(True) - 1.0 for w in self._waiting):
+                    w.level(False, now) <= turn.level(True, now) - 1.0 for w in self._waiting):
                 return
             turn.pause()
+            self._waiting.append(turn)
+            self.is_wanted = True
             self._taken = False
             self._changed.notify_all()
             self._wait(turn)
@@ -151,11 +191,13 @@ class Turns:
             self._changed.notify_all()
 
     def _wait(self, turn: Turn) -> None:
-        self._waiting.append(turn)
-        self.is_wanted = True
-        self._changed.wait_for(lambda: self._ended or not self._taken and turn is min(
-            self._waiting, key=lambda w: w.level(False)))
+        self._changed.wait_for(
+            lambda: self._ended or not self._taken and turn is self._most_urgent())
         self._waiting.remove(turn)
         self.is_wanted = bool(self._waiting)
         self._taken = True
         turn.begin()
+
+    def _most_urgent(self) -> Turn:
+        now = perf_counter()
+        return min(self._waiting, key=lambda w: w.level(False, now))

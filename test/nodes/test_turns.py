@@ -151,3 +151,20 @@ def test_an_error_ends_its_turn():
         raise ValueError('no')
     with turns.turn():
         pass
+
+
+def test_turns_are_taken_in_the_order_in_which_they_were_queued():
+    turns, order = Turns(), []
+    first, second = turns.queued(), turns.queued()
+
+    def work(turn, name):
+        with turns.taken(turn):
+            order.append(name)
+
+    early = Thread(target=work, args=(second, 'second'))
+    early.start()
+    early.join(0.05)
+    assert order == []
+    work(first, 'first')
+    early.join()
+    assert order == ['first', 'second']
