@@ -46,8 +46,8 @@ class BuildKernels(build_ext):
                 f'{NAME} needs a C compiler for its kernels, {NATIVE}: {error}') from None
 
 
-# SIGINT and SIGTERM wait until a script can answer them (nodes/signals.py): Python's own start
-# loses them, or shows a traceback.
+# SIGINT and SIGTERM wait until a script can answer them (nodes/process/signals.py): Python's
+# own start loses them, or shows a traceback.
 BLOCKED = ['/usr/bin/env', '--block-signal=INT,TERM']
 LONGEST = 255  # characters of a script's first line that the kernel reads
 
@@ -103,7 +103,7 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            f'{script} = {NAME}.nodes.{script}:main'
+            f'{script} = {NAME}.nodes.scripts.{script}:main'
             for script in ('bringup', 'demo', 'planner', 'report', 'simulated_arm')
         ],
     },

@@ -21,13 +21,13 @@ from dataclasses import replace
 
 from measuring import compared, in_turns, REPETITIONS, Row, setting, table
 import numpy as np
-from rrr_traj_planner.core.arm_settings import ArmSettings
-from rrr_traj_planner.core.control import ControllerGains
-from rrr_traj_planner.core.controlled_arm import ControlledArm
-from rrr_traj_planner.core.encoder import EncoderSettings
-from rrr_traj_planner.core.friction import Friction
-from rrr_traj_planner.core.motion_points import MotionPoints
-from rrr_traj_planner.core.payload import Payload
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.payload import Payload
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.core.simulation.encoder import EncoderSettings
+from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 from rrr_traj_planner.planners.planning import plan
 from tasks import ARM, gentle, WEAK
 from tasks import table as thesis_table

@@ -22,10 +22,9 @@ import math
 from measuring import in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
 import pinocchio
-from rrr_traj_planner.core import equations
-from rrr_traj_planner.core.dynamics import forward_dynamics, inverse_dynamics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.urdf import urdf
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.urdf import urdf
+from rrr_traj_planner.core.dynamics import equations, forward_dynamics, inverse_dynamics
 from tasks import ARM
 
 SEED = 11

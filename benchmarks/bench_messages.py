@@ -24,7 +24,7 @@ from copy import copy
 from measuring import in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
 from ros_processes import MISSING
-from rrr_traj_planner.core.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
 from rrr_traj_planner.planners.planning import plan
 from tasks import ARM, gentle, WEAK
 from tasks import table as thesis_table
@@ -33,7 +33,7 @@ if not MISSING:
     from builtin_interfaces.msg import Duration
     from plan_and_echo import default_config
     from rclpy.serialization import deserialize_message, serialize_message
-    from rrr_traj_planner.nodes.planning_answer import joint_trajectory
+    from rrr_traj_planner.nodes.planner_node.planning_answer import joint_trajectory
     from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 POINTS = 5000

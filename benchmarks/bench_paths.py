@@ -28,12 +28,12 @@ from path_tasks import path_task, PLANNERS, task_path
 from peers import both, GRID_POINTS, torque_of
 from rrr_traj_planner.core.cancellation import never
 from rrr_traj_planner.core.errors import RrrPlannerError
-from rrr_traj_planner.core.path_trajectory import ArmPath
-from rrr_traj_planner.core.postures import Posture
-from rrr_traj_planner.core.workspace_check import check_workspace
-from rrr_traj_planner.planners.followable import followable
+from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.path_timing.least_time import fastest_along, PathTask
 from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.sampling_jerk_limit import followable
 from tasks import gentle, NONE, STRONG, Task, WEAK
 from tasks import table as thesis_table
 from toppra import algorithm, constraint

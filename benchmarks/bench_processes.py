@@ -26,7 +26,7 @@ import time
 from measuring import compared, in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
 from ros_processes import Client, MISSING, node, plan_request, Process, until
-from rrr_traj_planner.core.kinematics import forward_kinematics
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from tasks import ARM, TIPS
 
 if not MISSING:

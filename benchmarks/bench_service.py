@@ -24,8 +24,8 @@ import time
 
 from measuring import in_turns, REPETITIONS, Row, seconds, setting, table, timed
 from ros_processes import Client, MISSING, plan_request, Process
-from rrr_traj_planner.core.sampling import sample
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.sampling import sample
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.planning import plan
 from tasks import gentle, TIPS, WEAK
 from tasks import table as thesis_table

@@ -19,8 +19,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.request import PlanningRequest
 from tasks import ARM, gentle, NONE, Task, WEAK
 

@@ -28,9 +28,9 @@ from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
-from rrr_traj_planner.core import equations
+from rrr_traj_planner.core.dynamics import equations
 from rrr_traj_planner.core.errors import RrrPlannerError
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import JointTask
 from tasks import NONE, Task, thesis_tasks

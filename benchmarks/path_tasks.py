@@ -19,23 +19,23 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from rrr_traj_planner.core import path_design
-from rrr_traj_planner.core.cartesian_path import CartesianPath
-from rrr_traj_planner.core.dynamics import gravity_torque
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import (
     ConvergenceError,
     InvalidInputError,
     LimitViolationError,
     UnreachableError,
 )
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.joint_path import joint_path
-from rrr_traj_planner.core.joint_ranges import whole_turns
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.largest_radii import largest_radii
-from rrr_traj_planner.core.path_trajectory import ArmPath
-from rrr_traj_planner.core.postures import Posture
-from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.kinematics.joint_ranges import whole_turns
+from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.path import design as path_design
+from rrr_traj_planner.core.path.cartesian_path import CartesianPath
+from rrr_traj_planner.core.path.joint_path import joint_path
+from rrr_traj_planner.core.path.largest_radii import largest_radii
+from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.request import PlanningRequest
 from soak_tasks import random_arm, random_limits
 from tasks import ARM, random_pose, Task

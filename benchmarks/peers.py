@@ -19,8 +19,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from rrr_traj_planner.core import equations
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics import equations
 from rrr_traj_planner.planners.request import JointTask
 import ruckig
 import toppra

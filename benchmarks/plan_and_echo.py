@@ -29,10 +29,10 @@ from bare_node import spin_until_signal
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rrr_traj_planner.nodes.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
-from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
-from rrr_traj_planner.nodes.planning_answer import success
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
+from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
+from rrr_traj_planner.nodes.planner_node.planning_answer import success
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory

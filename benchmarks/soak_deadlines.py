@@ -38,10 +38,9 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / 'test' / 'nodes'))
 from plan_requests import plan_request  # noqa: E402, I100
-from rrr_traj_planner.nodes import turns  # noqa: E402
-from rrr_traj_planner.nodes.configuration import PlannerConfig  # noqa: E402
-from rrr_traj_planner.nodes.parameters import PLANNER, rows_of  # noqa: E402
-from rrr_traj_planner.nodes.planner_node import _answer  # noqa: E402
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig  # noqa: E402
+from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of  # noqa: E402
+from rrr_traj_planner.nodes.planner_node.node import _answer, turns  # noqa: E402
 from rrr_traj_planner.planners.registry import planner_ids  # noqa: E402
 from rrr_traj_planner_interfaces.srv import PlanTrajectory  # noqa: E402
 

@@ -48,8 +48,8 @@ import rclpy  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
-from rrr_traj_planner.core.kinematics import forward_kinematics  # noqa: E402
-from rrr_traj_planner.core.model import RobotModel  # noqa: E402
+from rrr_traj_planner.core.arm.model import RobotModel  # noqa: E402
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics  # noqa: E402
 from rrr_traj_planner.planners.registry import planner_ids  # noqa: E402
 from rrr_traj_planner_interfaces.srv import PlanTrajectory  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402

@@ -28,10 +28,10 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')  # before numpy; one process 
 from measuring import setting  # noqa: E402
 import numpy as np  # noqa: E402
 from path_tasks import KINDS, path_task, PLANNERS  # noqa: E402
-from rrr_traj_planner.core.dynamics import inverse_dynamics  # noqa: E402
-from rrr_traj_planner.core.interpolation import Interpolant  # noqa: E402
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics  # noqa: E402
-from rrr_traj_planner.core.kinematics import forward_kinematics, jacobian  # noqa: E402
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics  # noqa: E402
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian  # noqa: E402
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics  # noqa: E402
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant  # noqa: E402
 from rrr_traj_planner.planners.plan import Plan  # noqa: E402
 from rrr_traj_planner.planners.planning import plan  # noqa: E402
 from soak_time_optimal import PERCENTILES, Result  # noqa: E402

@@ -186,6 +186,7 @@ def main() -> int:
     parser.add_argument('--load', action='store_true')
     parser.add_argument('--seconds', type=float, default=4.0)
     options = parser.parse_args()
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's `&` ignores it, and on
     base = 1 + os.getpid() % (100 - options.jobs)
     free = list(range(base, base + options.jobs))  # domains: one for each job
     outcomes: list[Outcome] = []

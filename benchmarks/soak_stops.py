@@ -31,15 +31,15 @@ import sys
 from time import perf_counter
 
 import numpy as np
-from rrr_traj_planner.core.arm_settings import ArmSettings
-from rrr_traj_planner.core.control import ControllerGains
-from rrr_traj_planner.core.controlled_arm import ControlledArm
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.errors import RrrPlannerError
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_points import MotionPoints
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 

@@ -19,10 +19,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from rrr_traj_planner.core.dynamics import gravity_torque
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest
 from scipy import ndimage
 from tasks import ARM, is_usable, NONE, random_pose, Task

@@ -28,8 +28,8 @@ os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')  # before numpy; one process 
 
 from measuring import setting  # noqa: E402
 import numpy as np  # noqa: E402
-from rrr_traj_planner.core.dynamics import inverse_dynamics  # noqa: E402
-from rrr_traj_planner.core.kinematics import forward_kinematics  # noqa: E402
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics  # noqa: E402
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics  # noqa: E402
 from rrr_traj_planner.planners.plan import Plan  # noqa: E402
 from rrr_traj_planner.planners.planning import plan  # noqa: E402
 from soak_tasks import KINDS, soak_task  # noqa: E402

@@ -37,7 +37,7 @@ NOT_BUILT = (
 def pytest_configure(config):
     """Claim a ROS domain; end where what is to be tested is not there."""
     try:
-        from rrr_traj_planner.nodes.node_claim import claim
+        from rrr_traj_planner.nodes.process.node_claim import claim
         from rrr_traj_planner.planners.registry import planner_ids
         planner_ids()  # loads them all, compiled code included
     except ImportError as error:

@@ -15,10 +15,12 @@
 """The layers' rules: who imports whom, and that everything public is documented."""
 
 import ast
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 import sys
 
 import pytest
+from rrr_traj_planner.planners.registry import planner_ids
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = 'rrr_traj_planner'
@@ -90,6 +92,36 @@ def test_report_needs_matplotlib_besides(module):
 def test_nodes_alone_know_ros(module):
     if layer_of(module) != 'nodes':
         assert [name for name in imports_of(module) if is_ros(name)] == []
+
+
+def folder_of(module):
+    """Return a module's folder below its layer; the module itself where it lies in the layer."""
+    return '.'.join(module.split('.')[:3])
+
+
+def imports_of_folders():
+    """Return for each folder, and each module beside folders, those that it imports."""
+    found = {}
+    for module in modules_of(*LAYERS):
+        names = imports_of(module) | {name.rpartition('.')[0] for name in imports_of(module)}
+        found.setdefault(folder_of(module), set()).update(
+            folder_of(name) for name in names & MODULES.keys())
+    return {folder: names - {folder} for folder, names in found.items()}
+
+
+def test_folders_import_one_another_without_circles():
+    list(TopologicalSorter(imports_of_folders()).static_order())
+
+
+def test_a_circle_of_folders_would_be_found():
+    with pytest.raises(CycleError):
+        list(TopologicalSorter({**imports_of_folders(), 'rrr_traj_planner.core.dynamics': {
+            'rrr_traj_planner.core.path'}}).static_order())
+
+
+def test_the_files_of_methods_are_the_planner_ids():
+    names = [m.split('.')[-1] for m in MODULES if '.planners.methods.' in m]
+    assert sorted(set(names) - {'__init__'}) == planner_ids()
 
 
 def classes_by_name():

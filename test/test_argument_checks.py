@@ -21,25 +21,26 @@ import warnings
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core import dynamics, kinematics
-from rrr_traj_planner.core.arm_settings import ArmSettings
-from rrr_traj_planner.core.control import ControllerGains
-from rrr_traj_planner.core.controlled_arm import ControlledArm
-from rrr_traj_planner.core.encoder import EncoderSettings
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.payload import Payload, with_payload
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
+from rrr_traj_planner.core.control.tolerances import Tolerances
+from rrr_traj_planner.core.dynamics import rigid_body as dynamics
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.friction import Friction
-from rrr_traj_planner.core.gauss import gauss
-from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics, nearest_solution
-from rrr_traj_planner.core.least_radius import largest_speed, least_radius
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.link_motion import link_motion
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.path_design import line_arc, line_polynomial
-from rrr_traj_planner.core.payload import Payload, with_payload
-from rrr_traj_planner.core.sampling import sample
-from rrr_traj_planner.core.soft_stops import SoftStops
-from rrr_traj_planner.core.tolerances import Tolerances
+from rrr_traj_planner.core.kinematics import forward as kinematics
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics, nearest_solution
+from rrr_traj_planner.core.kinematics.link_motion import link_motion
+from rrr_traj_planner.core.motion_laws.gauss import gauss
+from rrr_traj_planner.core.path.design import line_arc, line_polynomial
+from rrr_traj_planner.core.path.least_radius import largest_speed, least_radius
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.core.simulation.encoder import EncoderSettings
+from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.trajectory.sampling import sample
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 

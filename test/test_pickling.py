@@ -29,17 +29,17 @@ from typing import get_type_hints
 import numpy as np
 import pytest
 from rrr_traj_planner import core, planners
-from rrr_traj_planner.core.arm_settings import ArmSettings
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import ReadOnlyArrays
-from rrr_traj_planner.core.control import ControllerGains
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
+from rrr_traj_planner.core.control.replacement import Takeover
+from rrr_traj_planner.core.control.tolerances import Tolerances
 from rrr_traj_planner.core.errors import RrrPlannerError, UnreachableError
-from rrr_traj_planner.core.friction import Friction
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_points import MotionPoints
-from rrr_traj_planner.core.replacement import Takeover
-from rrr_traj_planner.core.septic import SEPTIC
-from rrr_traj_planner.core.tolerances import Tolerances
+from rrr_traj_planner.core.motion_laws.septic import SEPTIC
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import CartesianTask, JointTask, PlanningRequest

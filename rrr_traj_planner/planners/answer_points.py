@@ -26,14 +26,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.controller_spline import spline_excess, SplineExcess
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
-from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_torque import stretch_for_torque
-from rrr_traj_planner.core.sampling import (
+from rrr_traj_planner.core.trajectory.controller_spline import spline_excess, SplineExcess
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.trajectory.sampling import (
     LEAST_GAP,
     NANOSECOND,
     points_at,
@@ -41,7 +40,8 @@ from rrr_traj_planner.core.sampling import (
     SampleTimes,
     STEP_SHARE,
 )
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.torque import stretch_for_torque
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.request import PlanningRequest
 
 ROUNDS = 40              # of slowing

@@ -19,10 +19,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
 HIT = 1e-9  # rad: a joint that is so near is there
 

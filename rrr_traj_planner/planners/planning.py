@@ -19,22 +19,22 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from rrr_traj_planner.core import cycloid
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.axis_planes import passes_axis
 from rrr_traj_planner.core.cancellation import step
 from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError, RrrPlannerError
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limit_check import violations
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_torque import peak_torque
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.postures import Posture
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.motion_laws import cycloid
+from rrr_traj_planner.core.path.axis_planes import passes_axis
 from rrr_traj_planner.core.scalars import kind_of
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.limit_check import violations
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.torque import peak_torque
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.answer_points import answer_points
-from rrr_traj_planner.planners.least_time import check_answer_size
+from rrr_traj_planner.planners.answer_size import check_answer_size
 from rrr_traj_planner.planners.missed_via_points import miss_note, misses
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.posture_choice import (

@@ -20,8 +20,9 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.axis_planes import passes_axis
 from rrr_traj_planner.core.errors import (
     JointRangeError,
     LimitViolationError,
@@ -29,11 +30,9 @@ from rrr_traj_planner.core.errors import (
     StartStateError,
     UnreachableError,
 )
-from rrr_traj_planner.core.joint_ranges import out_of_range
-from rrr_traj_planner.core.joint_sequence import joint_sequence
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.postures import (
+from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range
+from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
+from rrr_traj_planner.core.kinematics.postures import (
     EDGE_TOLERANCE,
     Elbow,
     ELBOWS,
@@ -43,7 +42,8 @@ from rrr_traj_planner.core.postures import (
     Shoulder,
     SHOULDERS,
 )
-from rrr_traj_planner.core.travel_time import travel_time
+from rrr_traj_planner.core.kinematics.travel_time import travel_time
+from rrr_traj_planner.core.path.axis_planes import passes_axis
 
 # A start this close to where postures meet has them all: noise must not choose between them.
 MEETING = 0.01  # rad

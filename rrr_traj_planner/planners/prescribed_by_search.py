@@ -21,8 +21,8 @@ from collections.abc import Callable
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import TimingError
-from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_stretch
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw

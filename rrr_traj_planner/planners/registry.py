@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Planner ids and the functions behind them; every module of this package is looked through."""
+"""Planner ids and the functions behind them; every module of `methods` is looked through."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from pkgutil import iter_modules
 from typing import NamedTuple
 
 from rrr_traj_planner.core.errors import InvalidInputError, quoted
-from rrr_traj_planner.core.trajectory import Trajectory
-import rrr_traj_planner.planners
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+import rrr_traj_planner.planners.methods
 from rrr_traj_planner.planners.request import CartesianTask, JointTask
 
 JointPlanner = Callable[[JointTask], Trajectory]
@@ -102,8 +102,8 @@ def planner_ids() -> list[str]:
 
 @cache
 def _import_planners() -> None:
-    for module in iter_modules(rrr_traj_planner.planners.__path__):
-        import_module(f'rrr_traj_planner.planners.{module.name}')
+    for module in iter_modules(rrr_traj_planner.planners.methods.__path__):
+        import_module(f'rrr_traj_planner.planners.methods.{module.name}')
 
 
 def planner(planner_id: str) -> Registered:

@@ -22,6 +22,8 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import (
     Array,
     finite_array,
@@ -31,11 +33,8 @@ from rrr_traj_planner.core.arrays import (
 )
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import InvalidInputError, shown
-from rrr_traj_planner.core.joint_ranges import RANGE_TOLERANCE
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.postures import Elbow, ELBOWS, Posture
-from rrr_traj_planner.core.sampling import check_size, MOST_POINTS, NANOSECOND
+from rrr_traj_planner.core.kinematics.joint_ranges import RANGE_TOLERANCE
+from rrr_traj_planner.core.kinematics.postures import Elbow, ELBOWS, Posture
 from rrr_traj_planner.core.scalars import (
     not_negative,
     one_of,
@@ -45,6 +44,7 @@ from rrr_traj_planner.core.scalars import (
     truth,
     whole_number,
 )
+from rrr_traj_planner.core.trajectory.sampling import check_size, MOST_POINTS, NANOSECOND
 
 T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
 

@@ -17,14 +17,18 @@
 from __future__ import annotations
 
 import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics import gravity_torque
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import LimitViolationError, StartStateError, told_apart
-from rrr_traj_planner.core.joint_ranges import out_of_range, range_error, RANGE_TOLERANCE
-from rrr_traj_planner.core.joint_sequence import joint_sequence
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.postures import Posture
+from rrr_traj_planner.core.kinematics.joint_ranges import (
+    out_of_range,
+    range_error,
+    RANGE_TOLERANCE,
+)
+from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
+from rrr_traj_planner.core.kinematics.postures import Posture
 
 HOLDING_TOLERANCE = 1e-9  # relative
 

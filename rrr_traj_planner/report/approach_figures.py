@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.inverse_kinematics import nearest_solution
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.kinematics.inverse import nearest_solution
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.function_figures import shade

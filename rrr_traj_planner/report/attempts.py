@@ -20,10 +20,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
 
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import RrrPlannerError
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner

@@ -28,14 +28,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import BoolArray
-from rrr_traj_planner.core.cycloid import CycloidPiece
-from rrr_traj_planner.core.path_trajectory import PathTrajectory
-from rrr_traj_planner.core.pieces import Pieces
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.polynomial_piece import PolynomialPiece
-from rrr_traj_planner.core.ramps import Ramps
-from rrr_traj_planner.core.trajectory import Trajectory
-from rrr_traj_planner.core.transition_shape import ShapedPiece
+from rrr_traj_planner.core.motion_laws.cycloid import CycloidPiece
+from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
+from rrr_traj_planner.core.motion_laws.ramps import Ramps
+from rrr_traj_planner.core.motion_laws.transition_shape import ShapedPiece
+from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.trajectory.pieces import Pieces
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
 CRUISE = 2
 CUBIC_CRUISE = 4

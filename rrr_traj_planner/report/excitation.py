@@ -20,7 +20,7 @@ from math import pi, sqrt
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
 POINTS = 4001  # of the quadrature over a motion: some hundred a period of what is asked
 DAMPING = 0.01  # of the flexible mode, as part of critical damping

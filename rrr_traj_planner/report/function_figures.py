@@ -21,13 +21,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.cycloid import cruise, CycloidPiece, transition
-from rrr_traj_planner.core.cycloid_transitions import CYCLOID
-from rrr_traj_planner.core.gauss import GAUSS, maclaurin, maclaurin_error
-from rrr_traj_planner.core.pieces import TransitionFunction
-from rrr_traj_planner.core.piecewise import JointProfile
-from rrr_traj_planner.core.quartic import QUARTIC
-from rrr_traj_planner.core.septic import SEPTIC
+from rrr_traj_planner.core.motion_laws.cycloid import cruise, CycloidPiece, transition
+from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.motion_laws.gauss import GAUSS, maclaurin, maclaurin_error
+from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
+from rrr_traj_planner.core.motion_laws.septic import SEPTIC
+from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.coefficients import is_transition
 from rrr_traj_planner.report.picture import Picture

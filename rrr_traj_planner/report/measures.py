@@ -20,11 +20,11 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.inverse_kinematics import nearest_solution
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.path_trajectory import PathTrajectory
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.inverse import nearest_solution
+from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.coefficients import Coefficients, coefficients
 

@@ -19,14 +19,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.wireframe import skeleton
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics import inverse_dynamics
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.path_trajectory import PathTrajectory
-from rrr_traj_planner.core.trajectory import times_within, Trajectory
-from rrr_traj_planner.core.wireframe import skeleton
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 
 STEPS_PER_MOTION = 500
 STEPS_PER_PIECE = 4

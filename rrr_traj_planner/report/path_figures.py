@@ -23,7 +23,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import proj3d
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.motion_samples import arm_points, sampled

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.measures import time_at_limit

@@ -23,8 +23,8 @@ from html import escape
 from math import isinf
 from pathlib import Path
 
+from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.report.attempts import Attempt, Planned, Task
 from rrr_traj_planner.report.measures import measures
 

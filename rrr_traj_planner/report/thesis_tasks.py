@@ -17,8 +17,8 @@
 from __future__ import annotations
 
 import numpy as np
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.report.attempts import Task
 

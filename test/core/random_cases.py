@@ -17,9 +17,9 @@
 from __future__ import annotations
 
 import numpy as np
-from rrr_traj_planner.core.cycloid import cruise, CycloidPiece, ramp, transition
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.motion_laws.cycloid import cruise, CycloidPiece, ramp, transition
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 
 
 def random_model(rng):

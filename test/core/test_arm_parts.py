@@ -20,14 +20,14 @@ from math import inf, nan, sin
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.event_search import event, PAST
-from rrr_traj_planner.core.friction import Friction
-from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.core.nanoseconds import SECOND
-from rrr_traj_planner.core.pacing import Pace, Schedule
-from rrr_traj_planner.core.soft_stops import SoftStops
-from rrr_traj_planner.core.step_stability import check_step
+from rrr_traj_planner.core.simulation.root_finding import event, PAST
+from rrr_traj_planner.core.simulation.simulated_clock import Pace, Schedule
+from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+from rrr_traj_planner.core.simulation.step_stability import check_step
 
 LOW, HIGH = (0.0, 0.0, -1.0), (1.0, 2.0, 1.0)
 

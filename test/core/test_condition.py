@@ -20,17 +20,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm_settings import ArmSettings
-from rrr_traj_planner.core.condition import Condition, ConditionMonitor, SOUND
-from rrr_traj_planner.core.control import ControllerGains
-from rrr_traj_planner.core.controlled_arm import ControlledArm
-from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix
-from rrr_traj_planner.core.friction import Friction
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_points import MotionPoints
-from rrr_traj_planner.core.payload import Payload
-from rrr_traj_planner.core.soft_stops import SoftStops
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.payload import Payload
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inertia_matrix
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.core.simulation.condition import Condition, ConditionMonitor, SOUND
+from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 
 MODEL, NAMES = RobotModel(), ('joint_1', 'joint_2', 'joint_3')
 SETTINGS = ArmSettings(MODEL, JointLimits(), ControllerGains())

@@ -20,11 +20,19 @@ from math import cos, inf, sin
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.control import computed_torque, ControllerGains, saturated
-from rrr_traj_planner.core.dynamics import forward_dynamics, gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.equations import constants, terms
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.control.computed_torque import (
+    computed_torque,
+    ControllerGains,
+    saturated,
+)
+from rrr_traj_planner.core.dynamics.equations import constants, terms
+from rrr_traj_planner.core.dynamics.rigid_body import (
+    forward_dynamics,
+    gravity_torque,
+    inverse_dynamics,
+)
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.model import RobotModel
 
 MODEL = RobotModel()
 GAINS = ControllerGains(natural_frequency=20.0, damping_ratio=0.7)

@@ -20,14 +20,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm_settings import ArmSettings
-from rrr_traj_planner.core.control import ControllerGains
-from rrr_traj_planner.core.controlled_arm import ControlledArm
-from rrr_traj_planner.core.dynamics import gravity_torque
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_points import MotionPoints
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 
 MODEL = RobotModel()
 SETTINGS = ArmSettings(MODEL, JointLimits(), ControllerGains())

@@ -19,10 +19,10 @@ from dataclasses import replace
 import numpy as np
 from pinocchio_arm import PinocchioArm
 import pytest
-from rrr_traj_planner.core.controller_spline import spline_excess
-from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.trajectory.controller_spline import spline_excess
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
 
 ARM = RobotModel()
 NONE = np.full(3, np.inf)

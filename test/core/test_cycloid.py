@@ -17,14 +17,14 @@
 import numpy as np
 import pytest
 from random_cases import central_difference, joined
-from rrr_traj_planner.core.cycloid import (
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.motion_laws.cycloid import (
     cruise,
     CycloidPiece,
     general_transition,
     ramp,
     transition,
 )
-from rrr_traj_planner.core.errors import InvalidInputError
 from scipy.integrate import quad
 
 # Values are of the order of 1 to 100.

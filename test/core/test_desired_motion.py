@@ -18,11 +18,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.desired_motion import holding, through
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
-from rrr_traj_planner.core.motion_points import MotionPoints, segment_orders
 from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.trajectory.reference_trajectory import holding, through
+from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints, segment_orders
 
 N = 6
 

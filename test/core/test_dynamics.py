@@ -20,9 +20,11 @@ import numpy as np
 from pinocchio_arm import PinocchioArm
 import pytest
 from random_cases import ARMS, central_difference, random_model, random_states
-from rrr_traj_planner.core import equations
-from rrr_traj_planner.core.dynamics import (
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import (
     coriolis_torque,
+    equations,
     forward_dynamics,
     gravity_torque,
     inertia_matrix,
@@ -31,9 +33,7 @@ from rrr_traj_planner.core.dynamics import (
     potential_energy,
 )
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from scipy.integrate import solve_ivp
 import thesis_cases as thesis
 

@@ -20,8 +20,8 @@ from math import inf, nan
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.encoder import Encoder, EncoderSettings
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.simulation.encoder import Encoder, EncoderSettings
 
 STEP = 1e-3
 AT_REST = (0.5, 1.1, -0.2, 0.0, 0.0, 0.0)

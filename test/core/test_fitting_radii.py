@@ -16,12 +16,12 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core import fitting_radii
-from rrr_traj_planner.core.arc_zone import ArcZones
 from rrr_traj_planner.core.errors import ConvergenceError, TimeLimitError
-from rrr_traj_planner.core.fitting_radii import fit_radii
-from rrr_traj_planner.core.polynomial_zone import PolynomialZones
-from rrr_traj_planner.core.tangent_lines import tangent_lines
+from rrr_traj_planner.core.path import fitting_radii
+from rrr_traj_planner.core.path.arc_zone import ArcZones
+from rrr_traj_planner.core.path.fitting_radii import fit_radii
+from rrr_traj_planner.core.path.polynomial_zone import PolynomialZones
+from rrr_traj_planner.core.path.tangent_lines import tangent_lines
 
 ENDS = [ArcZones.ends, PolynomialZones.ends]
 GROWN = 1.06  # a zone that can grow by this much has not been grown far enough

@@ -21,7 +21,7 @@ import re
 import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.gauss import (
+from rrr_traj_planner.core.motion_laws.gauss import (
     GAUSS,
     gauss,
     HALF_WIDTH,
@@ -29,7 +29,7 @@ from rrr_traj_planner.core.gauss import (
     maclaurin_error,
     NEEDED_ORDER,
 )
-from rrr_traj_planner.core.quartic import QUARTIC
+from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from scipy.integrate import quad
 
 S = np.linspace(0.0, 1.0, 41)

@@ -21,14 +21,14 @@ from math import inf, nan
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.incoming_trajectory import (
+from rrr_traj_planner.core.control.trajectory_validation import (
     check_trajectory,
     IncomingPoint,
     IncomingTrajectory,
     motion_points,
     Rules,
 )
+from rrr_traj_planner.core.errors import InvalidInputError
 
 NAMES = ('joint_1', 'joint_2', 'joint_3')
 SECOND = 10 ** 9

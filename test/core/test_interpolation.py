@@ -17,7 +17,7 @@
 import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.interpolation import hermite, Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.trajectory.interpolation import hermite, Interpolant, TrajectoryPoints
 from scipy.interpolate import BPoly, CubicHermiteSpline, PPoly
 
 # Relative to values that grow with the inverse square of segments of a tenth of a second.

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 import numpy as np
-from rrr_traj_planner.core.joint_brake import greatest_deceleration, joint_brake
+from rrr_traj_planner.core.stopping.joint_brake import greatest_deceleration, joint_brake
 
 COUNT = 500
 

@@ -17,14 +17,14 @@
 import numpy as np
 import pytest
 from random_cases import ARMS
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.joint_path import joint_path
-from rrr_traj_planner.core.kinematics import forward_kinematics, jacobian, jacobian_rate
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.path_design import line_arc, line_polynomial
-from rrr_traj_planner.core.postures import ELBOWS, Posture
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian, jacobian_rate
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.kinematics.postures import ELBOWS, Posture
+from rrr_traj_planner.core.path.design import line_arc, line_polynomial
+from rrr_traj_planner.core.path.joint_path import joint_path
 
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))
 

@@ -16,10 +16,10 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.joint_ranges import out_of_range, range_error, whole_turns
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.postures import Posture
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error, whole_turns
+from rrr_traj_planner.core.kinematics.postures import Posture
 
 TURN = 2.0 * np.pi
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))

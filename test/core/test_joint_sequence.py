@@ -19,14 +19,14 @@ from itertools import product
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import UnreachableError
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.joint_sequence import joint_sequence
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.postures import Posture
-from rrr_traj_planner.core.travel_time import travel_time
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
+from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.kinematics.travel_time import travel_time
 
 ARM, TURN = RobotModel(), 2.0 * np.pi
 UP = Posture()

@@ -19,10 +19,10 @@ from __future__ import annotations
 from math import cos, sin
 
 import numpy as np
-from rrr_traj_planner.core.dynamics import inertia_matrix
-from rrr_traj_planner.core.equations import constants, terms
-from rrr_traj_planner.core.joint_stops import contact, FREE, held, permitted
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.equations import constants, terms
+from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix
+from rrr_traj_planner.core.simulation.joint_stops import contact, FREE, held, permitted
 
 MODEL = RobotModel()
 ROUNDING = 1e-9

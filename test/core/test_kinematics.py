@@ -18,9 +18,9 @@ import numpy as np
 from pinocchio_arm import PinocchioArm
 import pytest
 from random_cases import ARMS, central_difference, random_states
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.kinematics import forward_kinematics, jacobian, jacobian_rate
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian, jacobian_rate
 import thesis_cases as thesis
 
 # Sums of a few sines times lengths of about a metre, times joint velocities of a few rad/s.

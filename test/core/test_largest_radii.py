@@ -18,8 +18,8 @@ import numpy as np
 from path_cases import distance_to_polyline, random_points
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.largest_radii import largest_radii
-from rrr_traj_planner.core.path_design import line_arc, line_polynomial
+from rrr_traj_planner.core.path.design import line_arc, line_polynomial
+from rrr_traj_planner.core.path.largest_radii import largest_radii
 
 FAMILIES = (line_arc, line_polynomial)
 

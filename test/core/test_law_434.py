@@ -16,8 +16,8 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.law_434 import Law434
-from rrr_traj_planner.core.quartic import QUARTIC
+from rrr_traj_planner.core.motion_laws.lin_434 import Law434
+from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 
 RNG = np.random.default_rng(611)
 # Parts of the duration, accelerations at the joins, some of them of the wrong sign, duration,

@@ -16,12 +16,12 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
-from rrr_traj_planner.core.kinematics import jacobian, jacobian_rate
-from rrr_traj_planner.core.least_radius import largest_speed, least_radius
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import jacobian, jacobian_rate
+from rrr_traj_planner.core.path.least_radius import largest_speed, least_radius
 
 MODEL, INF = RobotModel(), np.full(3, np.inf)
 EFFORT_ONLY = JointLimits(max_velocity=INF, max_acceleration=INF)

@@ -16,9 +16,9 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.limit_check import violations
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.trajectory import Peaks
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.trajectory.limit_check import violations
+from rrr_traj_planner.core.trajectory.trajectory import Peaks
 
 NAMES = ('base', 'shoulder', 'elbow')
 LIMITS = JointLimits(

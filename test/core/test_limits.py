@@ -16,8 +16,8 @@
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.limits import JointLimits
 
 
 def test_default_limits_are_the_thesis_s_with_joint_2_mirrored():

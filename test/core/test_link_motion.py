@@ -18,10 +18,10 @@ import numpy as np
 from pinocchio_arm import PinocchioArm
 import pytest
 from random_cases import ARMS, central_difference, random_states
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.link_motion import link_motion
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.link_motion import link_motion
 
 # Accelerations reach some hundred m/s^2 in the random states.
 ROUNDING = 1e-12

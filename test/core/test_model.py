@@ -19,9 +19,9 @@ import itertools
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.dynamics import inertia_matrix
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.model import RobotModel
 import thesis_cases as thesis
 
 

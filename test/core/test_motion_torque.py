@@ -17,17 +17,17 @@
 import numpy as np
 import pytest
 from random_cases import ARMS, dense_times, joined, random_trajectory
-from rrr_traj_planner.core.cycloid import cruise, transition
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_torque import (
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.torque import (
     maximum_over_time,
     peak_holding_torque,
     peak_torque,
     stretch_for_torque,
 )
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
 
 # What the package promises for peaks, relative.
 PEAK = 1e-6

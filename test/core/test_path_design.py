@@ -20,7 +20,7 @@ import numpy as np
 from path_cases import distance_to_polyline, inside_pieces, random_tasks
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.path_design import line_arc, line_polynomial
+from rrr_traj_planner.core.path.design import line_arc, line_polynomial
 
 FAMILIES = (line_arc, line_polynomial)
 ON_POINT = 1e-12     # m

@@ -19,13 +19,13 @@ from functools import cache
 import numpy as np
 import pytest
 from random_cases import ARMS, central_difference, dense_times, joined
-from rrr_traj_planner.core.cycloid import cruise, transition
-from rrr_traj_planner.core.kinematics import forward_kinematics, jacobian
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.path_design import line_arc, line_polynomial
-from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
-from rrr_traj_planner.core.piecewise import JointProfile
-from rrr_traj_planner.core.postures import Posture
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian
+from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
+from rrr_traj_planner.core.path.design import line_arc, line_polynomial
+from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))
 SEEDS = range(16)

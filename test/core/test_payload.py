@@ -22,9 +22,13 @@ import numpy as np
 from pinocchio_arm import PinocchioArm
 import pytest
 from random_cases import ARMS, random_states
-from rrr_traj_planner.core.dynamics import forward_dynamics, kinetic_energy, potential_energy
+from rrr_traj_planner.core.arm.payload import Payload, with_payload
+from rrr_traj_planner.core.dynamics.rigid_body import (
+    forward_dynamics,
+    kinetic_energy,
+    potential_energy,
+)
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.payload import Payload, with_payload
 
 MASSES = (0.0, 0.3, 8.0, 60.0)
 

@@ -17,9 +17,9 @@
 import numpy as np
 import pytest
 from random_cases import dense_times, joined, random_chain, random_trajectory
-from rrr_traj_planner.core.cycloid import cruise, CycloidPiece, ramp, transition
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.motion_laws.cycloid import cruise, CycloidPiece, ramp, transition
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 
 ROUNDING = 1e-12
 # A parabola between samples of a two-thousandth of a piece: (pi / 2,000)^2 / 2.

@@ -17,7 +17,7 @@
 import numpy as np
 from numpy.polynomial import Polynomial
 import pytest
-from rrr_traj_planner.core.polynomial_zone import ALPHA, BETA, PolynomialZones
+from rrr_traj_planner.core.path.polynomial_zone import ALPHA, BETA, PolynomialZones
 from scipy.integrate import quad
 
 ANGLES = np.radians([0.01, 1.0, 10.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9])

@@ -17,10 +17,10 @@
 import numpy as np
 import pytest
 from random_cases import ARMS
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics, nearest_solution
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.postures import (
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics, nearest_solution
+from rrr_traj_planner.core.kinematics.postures import (
     ELBOWS,
     Posture,
     posture_of,

@@ -16,7 +16,7 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.quartic import QUARTIC
+from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 
 CASES = [(0.5, 1.3, -0.35, 0.8, 0.6), (0.2, 0.4, 0.1, 0.3, -1.0)]  # t_acc, T1, dB, dC, B
 

@@ -16,10 +16,10 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.cycloid import ramp
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.piecewise import JointProfile
-from rrr_traj_planner.core.ramps import Ramps, RampShape
+from rrr_traj_planner.core.motion_laws.cycloid import ramp
+from rrr_traj_planner.core.motion_laws.ramps import Ramps, RampShape
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 
 CRUISES = (0.0, 0.3, 0.6, 0.9)
 SEEDS = range(8)

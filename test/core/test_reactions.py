@@ -20,10 +20,10 @@ from math import cos, inf, sin
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.dynamics import inertia_matrix
-from rrr_traj_planner.core.equations import constants, terms
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.reactions import NO_REACTION, resting_accelerations
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.equations import constants, terms
+from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix
+from rrr_traj_planner.core.simulation.stiction import NO_REACTION, resting_accelerations
 
 MODEL = RobotModel()
 

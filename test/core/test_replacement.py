@@ -21,13 +21,13 @@ from math import inf
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.desired_motion import through
-from rrr_traj_planner.core.dynamics import inverse_dynamics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_points import MotionPoints
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.control.replacement import replacement, Takeover
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.nanoseconds import nanoseconds
-from rrr_traj_planner.core.replacement import replacement, Takeover
+from rrr_traj_planner.core.trajectory.reference_trajectory import through
+from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 
 LIMITS = JointLimits(max_effort=np.full(3, inf))
 NOW, LEAD = 50.0, 0.001

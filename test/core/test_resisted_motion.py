@@ -20,19 +20,19 @@ from math import exp, inf, log, pi
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.dynamics import (
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import (
     forward_dynamics,
     gravity_torque,
     inertia_matrix,
     kinetic_energy,
     potential_energy,
 )
-from rrr_traj_planner.core.energy import work
-from rrr_traj_planner.core.friction import Friction
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.resisted_motion import ResistedMotion
-from rrr_traj_planner.core.simulation import ArmPhysics
-from rrr_traj_planner.core.soft_stops import SoftStops
+from rrr_traj_planner.core.simulation.energy import work
+from rrr_traj_planner.core.simulation.friction_dynamics import ResistedMotion
+from rrr_traj_planner.core.simulation.physics import ArmPhysics
+from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from scipy.integrate import solve_ivp
 
 MODEL = RobotModel()

@@ -17,11 +17,11 @@
 import numpy as np
 import pytest
 from random_cases import joined, random_trajectory
-from rrr_traj_planner.core.cycloid import cruise, transition
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.interpolation import Interpolant
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.sampling import sample, sample_times
+from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.sampling import sample, sample_times
 
 # Times are rounded to whole nanoseconds, by half of one at most.
 NANOSECOND = 1e-9

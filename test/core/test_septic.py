@@ -17,7 +17,7 @@
 import numpy as np
 from numpy.polynomial import Polynomial
 import pytest
-from rrr_traj_planner.core.septic import SEPTIC
+from rrr_traj_planner.core.motion_laws.septic import SEPTIC
 
 CASES = [(0.3, -0.4, 0.9, 0.7), (-1.0, 0.5, 0.5, 1.3), (0.0, 1.0, -0.2, 0.4)]  # A, C, D, T
 

@@ -20,11 +20,15 @@ from math import inf, pi
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.dynamics import forward_dynamics, kinetic_energy, potential_energy
-from rrr_traj_planner.core.equations import constants
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.simulation import ArmPhysics
-from rrr_traj_planner.core.time_step import free_step, held_step
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.equations import constants
+from rrr_traj_planner.core.dynamics.rigid_body import (
+    forward_dynamics,
+    kinetic_energy,
+    potential_energy,
+)
+from rrr_traj_planner.core.simulation.physics import ArmPhysics
+from rrr_traj_planner.core.simulation.time_step import free_step, held_step
 from scipy.integrate import solve_ivp
 
 MODEL = RobotModel()

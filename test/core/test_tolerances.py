@@ -20,8 +20,8 @@ from math import inf, nan
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.control.tolerances import Tolerances
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.tolerances import Tolerances
 
 SEEN = (0.5, 1.1, 0.2, 0.0, 0.05, 0.0)
 DESIRED = (0.5, 1.1, 0.5, *(0.0,) * 6)  # joint 2 is 0.3 rad behind, joint 1 moves

@@ -17,7 +17,7 @@
 import numpy as np
 import pytest
 from random_cases import random_trajectory
-from rrr_traj_planner.core.trajectory import times_within, Trajectory
+from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 
 
 class KnotsAlone(Trajectory):

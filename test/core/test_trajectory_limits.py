@@ -18,10 +18,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.desired_motion import through
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.motion_points import MotionPoints
-from rrr_traj_planner.core.trajectory_limits import ACCURACY, excesses
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.control.trajectory_limits import ACCURACY, excesses
+from rrr_traj_planner.core.trajectory.reference_trajectory import through
+from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 
 LIMITS = JointLimits()  # ranges [0, pi/2], [0, pi], [-pi, 2 pi]; 1 rad/s, 1 rad/s^2
 WIDE = JointLimits(max_velocity=[100.0] * 3, max_acceleration=[1000.0] * 3)

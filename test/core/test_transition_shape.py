@@ -17,11 +17,11 @@
 import numpy as np
 import pytest
 from random_cases import central_difference, dense_times
-from rrr_traj_planner.core.cycloid_transitions import CYCLOID
-from rrr_traj_planner.core.gauss import GAUSS, gauss
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.quartic import QUARTIC
-from rrr_traj_planner.core.septic import SEPTIC
+from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.motion_laws.gauss import GAUSS, gauss
+from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
+from rrr_traj_planner.core.motion_laws.septic import SEPTIC
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from scipy.integrate import quad
 
 SHAPES = [SEPTIC, QUARTIC, GAUSS, gauss(3.0), gauss(0.8), gauss(order=9)]

@@ -22,14 +22,14 @@ import numpy as np
 import pinocchio
 import pytest
 from random_cases import ARMS, random_states
-from rrr_traj_planner.core.dynamics import inertia_matrix, inverse_dynamics
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf import FrameNames, NO_EFFORT_LIMIT, NO_VELOCITY_LIMIT, urdf
+from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix, inverse_dynamics
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.friction import Friction
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.link_motion import link_motion
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.urdf import FrameNames, NO_EFFORT_LIMIT, NO_VELOCITY_LIMIT, urdf
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.link_motion import link_motion
 from urdf_parser_py.urdf import URDF
 
 STATES = 50

@@ -19,8 +19,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from random_cases import ARMS, random_states
-from rrr_traj_planner.core.link_motion import link_motion
-from rrr_traj_planner.core.wireframe import picked, rod, skeleton, Trail
+from rrr_traj_planner.core.arm.wireframe import picked, rod, skeleton, Trail
+from rrr_traj_planner.core.kinematics.link_motion import link_motion
 
 ROUNDING = 1e-12  # m, rad
 

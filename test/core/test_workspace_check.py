@@ -16,13 +16,13 @@
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import LimitViolationError, RrrPlannerError, UnreachableError
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.path_design import line_arc, line_polynomial
-from rrr_traj_planner.core.postures import Posture
-from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.path.design import line_arc, line_polynomial
+from rrr_traj_planner.core.path.workspace_check import check_workspace
 import thesis_cases as thesis
 
 MODEL = RobotModel()

@@ -24,7 +24,7 @@ from scripts import python
 ROOT = Path(__file__).parents[2]
 DEADLINE = 20.0  # s
 
-RUN = 'import sys; from rrr_traj_planner.nodes.simulated_arm import main; sys.exit(main())'
+RUN = 'import sys; from rrr_traj_planner.nodes.scripts.simulated_arm import main; sys.exit(main())'
 
 
 def arm_process(*arguments, code=RUN):

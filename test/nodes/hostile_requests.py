@@ -23,15 +23,15 @@ from geometry_msgs.msg import Pose
 from hypothesis import strategies as st
 import numpy as np
 from plan_requests import NAMES, plan_request, points_of, stamps
-from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.arm.model import JOINT_NAMES, RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import ConvergenceError, RrrPlannerError
-from rrr_traj_planner.core.interpolation import Interpolant
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.model import JOINT_NAMES, RobotModel
-from rrr_traj_planner.nodes.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
-from rrr_traj_planner.nodes.planning_answer import refusal, success
-from rrr_traj_planner.nodes.planning_request import planning_request
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
+from rrr_traj_planner.nodes.planner_node.planning_answer import refusal, success
+from rrr_traj_planner.nodes.planner_node.planning_request import planning_request
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner_interfaces.srv import PlanTrajectory

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from rrr_traj_planner.nodes.parameters import ARM, rows_of
+from rrr_traj_planner.nodes.parameters.table import ARM, rows_of
 
 
 def own_limits(*joint_names):

@@ -18,10 +18,10 @@ from __future__ import annotations
 
 from geometry_msgs.msg import Pose, PoseArray
 import numpy as np
-from rrr_traj_planner.core.interpolation import TrajectoryPoints
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.nodes.arm_messages import nanoseconds
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.nodes.arm_node.arm_messages import nanoseconds
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 

@@ -19,7 +19,7 @@ from __future__ import annotations
 from pathlib import Path
 import re
 
-from rrr_traj_planner.nodes.parameters import ARM, rows_of
+from rrr_traj_planner.nodes.parameters.table import ARM, rows_of
 
 ROOT = Path(__file__).parents[2]
 DOCUMENT = (ROOT / 'docs' / 'arm.md').read_text()

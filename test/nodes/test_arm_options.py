@@ -20,9 +20,9 @@ from arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, stamp, START
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Log
-from rrr_traj_planner.core.dynamics import gravity_torque
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.payload import with_payload
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.payload import with_payload
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from sensor_msgs.msg import JointState
 
 # The thesis's motors hardly carry the arm; these follow quick motions too [N m].

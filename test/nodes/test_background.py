@@ -18,8 +18,8 @@ from threading import Event
 from time import perf_counter, sleep
 
 import pytest
-from rrr_traj_planner.nodes import background
-from rrr_traj_planner.nodes.background import Background
+from rrr_traj_planner.nodes.planner_node import background
+from rrr_traj_planner.nodes.planner_node.background import Background
 
 DEADLINE = 10.0  # s
 

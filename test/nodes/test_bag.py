@@ -30,16 +30,16 @@ import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from rosgraph_msgs.msg import Clock
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.wireframe import skeleton
-from rrr_traj_planner.nodes.bag import Bag, NO_MCAP
-from rrr_traj_planner.nodes.demo_recording import LATCHED, PASSING
-from rrr_traj_planner.nodes.entry import StartError
-from rrr_traj_planner.nodes.marker_messages import arm_markers
-from rrr_traj_planner.nodes.message_definitions import definition
-from rrr_traj_planner.nodes.recorder import LATCHED as LATCHED_QOS
-from rrr_traj_planner.nodes.recorder import PASSING as PASSING_QOS
-from rrr_traj_planner.nodes.recorder import Recorder, type_name
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.wireframe import skeleton
+from rrr_traj_planner.nodes.demo.recording import LATCHED, PASSING
+from rrr_traj_planner.nodes.output.marker_messages import arm_markers
+from rrr_traj_planner.nodes.process.entry import StartError
+from rrr_traj_planner.nodes.recording.bag import Bag, NO_MCAP
+from rrr_traj_planner.nodes.recording.message_definitions import definition
+from rrr_traj_planner.nodes.recording.recorder import LATCHED as LATCHED_QOS
+from rrr_traj_planner.nodes.recording.recorder import PASSING as PASSING_QOS
+from rrr_traj_planner.nodes.recording.recorder import Recorder, type_name
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header, String
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint

@@ -23,9 +23,9 @@ import sys
 
 from plan_requests import plan_request, TABLE_6_3
 import pytest
-from rrr_traj_planner.nodes.bringup import node_arguments
-from rrr_traj_planner.nodes.processes import NodeProcesses
-from rrr_traj_planner.nodes.signals import signals_blocked
+from rrr_traj_planner.nodes.process.processes import NodeProcesses
+from rrr_traj_planner.nodes.process.signals import signals_blocked
+from rrr_traj_planner.nodes.scripts.bringup import node_arguments
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from scripts import CONFIG, DEADLINE, Script, script
 from sensor_msgs.msg import JointState

@@ -25,10 +25,10 @@ from own_limits import own_limits
 from plan_requests import NEAR, plan_request
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.nodes.arm_node import SimulatedArm
-from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
+from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from scripts import CONFIG, Script, script
 from sensor_msgs.msg import JointState

@@ -21,7 +21,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.configuration_files import arm_file, read_task, shipped_folder
+from rrr_traj_planner.nodes.parameters.configuration_files import (
+    arm_file,
+    read_task,
+    shipped_folder,
+)
 from scripts import CONFIG
 
 POINTS = 'via_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n'

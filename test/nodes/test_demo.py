@@ -111,7 +111,7 @@ def test_node_that_dies_ends_the_demo(tmp_path):
     with Script(script('demo'), '--planner', 'cycloid_approach_a', cwd=tmp_path) as demo:
         demo.read_until("planned 3 via points with 'cycloid_approach_a' in ")
         children = demo.started(2)
-        arm, = (c for c in children if 'rrr_traj_planner.nodes.simulated_arm' in c.command)
+        arm, = (c for c in children if 'rrr_traj_planner.nodes.scripts.simulated_arm' in c.command)
         arm.kill()
         code, _, errors = demo.ended()
         assert all(child.has_ended() for child in children)

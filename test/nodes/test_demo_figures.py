@@ -21,16 +21,16 @@ from dataclasses import replace
 from matplotlib.image import imread
 import numpy as np
 import pytest
-from rrr_traj_planner.core.dynamics import inverse_dynamics
-from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
-from rrr_traj_planner.core.model import JOINT_NAMES
-from rrr_traj_planner.nodes.configuration import PlannerConfig
-from rrr_traj_planner.nodes.configuration_files import read_task
-from rrr_traj_planner.nodes.demo_client import Run
-from rrr_traj_planner.nodes.demo_plot import draw
-from rrr_traj_planner.nodes.demo_table import figures, table
-from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
-from rrr_traj_planner.nodes.planning_answer import success
+from rrr_traj_planner.core.arm.model import JOINT_NAMES
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.nodes.demo.client import Run
+from rrr_traj_planner.nodes.demo.plot import draw
+from rrr_traj_planner.nodes.demo.table import figures, table
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.parameters.configuration_files import read_task
+from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
+from rrr_traj_planner.nodes.planner_node.planning_answer import success
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
@@ -127,7 +127,7 @@ def test_plot_takes_points_that_coincide(task, tmp_path, points):
 
 
 def test_file_that_cannot_be_written_is_told(task, tmp_path, capsys):
-    from rrr_traj_planner.nodes.demo import _plot
+    from rrr_traj_planner.nodes.scripts.demo import _plot
     (tmp_path / 'file').write_text('')
     for file, text in ((tmp_path / 'file' / 'run.png', 'demo: no plot: '),
                        (tmp_path / 'run.xyz', "demo: no plot: Format 'xyz' is not supported")):

@@ -24,10 +24,10 @@ from bag_reading import messages_by_topic, plain, summary
 import numpy as np
 import pytest
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.urdf import urdf
-from rrr_traj_planner.nodes.arm_messages import nanoseconds
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf import urdf
+from rrr_traj_planner.nodes.arm_node.arm_messages import nanoseconds
 from scripts import Script, script
 from std_msgs.msg import String
 

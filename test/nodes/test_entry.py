@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from arm_process import arm_process, ended, RUN
 import pytest
-from rrr_traj_planner.nodes.entry import split_ros_arguments
+from rrr_traj_planner.nodes.process.entry import split_ros_arguments
 
 
 def without(module):
@@ -48,7 +48,7 @@ def test_missing_ros_is_said_in_one_line():
 
 def test_missing_interfaces_are_said_in_one_line():
     code, _, errors = ended(arm_process(code=(
-        'import sys; from rrr_traj_planner.nodes.node_life import run_node\n'
+        'import sys; from rrr_traj_planner.nodes.process.node_life import run_node\n'
         'def load():\n    sys.modules["rrr_traj_planner_interfaces"] = None\n'
         '    import rrr_traj_planner_interfaces\n'
         'sys.exit(run_node("planner", "", load))')))

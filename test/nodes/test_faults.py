@@ -49,7 +49,7 @@ import sys, threading
 from rrr_traj_planner.planners.registry import register
 @register('endless')
 def endless(task): print('begun', flush=True); threading.Event().wait()
-from rrr_traj_planner.nodes.planner import main
+from rrr_traj_planner.nodes.scripts.planner import main
 sys.exit(main())
 """
 

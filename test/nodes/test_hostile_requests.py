@@ -26,7 +26,7 @@ from plan_requests import is_refused, NAMES, NEAR, plan_request, START, TABLE_6_
 import pytest
 from rclpy.parameter import Parameter
 from rrr_traj_planner.core.errors import ConvergenceError
-from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 

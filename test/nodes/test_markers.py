@@ -22,15 +22,15 @@ from plan_requests import plan_request, TABLE_6_1, TABLE_6_3
 import pytest
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from rrr_traj_planner.core.friction import Friction
-from rrr_traj_planner.core.interpolation import TrajectoryPoints
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.urdf import FrameNames, urdf
-from rrr_traj_planner.core.wireframe import skeleton
-from rrr_traj_planner.nodes.marker_messages import MOST_POINTS, plan_markers
-from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf import FrameNames, urdf
+from rrr_traj_planner.core.arm.wireframe import skeleton
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.nodes.output.marker_messages import MOST_POINTS, plan_markers
+from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from std_msgs.msg import String
 from visualization_msgs.msg import Marker, MarkerArray

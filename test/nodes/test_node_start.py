@@ -20,7 +20,7 @@ import signal
 
 from own_limits import own_limits
 import pytest
-from rrr_traj_planner.nodes.parameter_files import speaks_of
+from rrr_traj_planner.nodes.parameters.parameter_files import speaks_of
 from scripts import CONFIG, Script, script
 import yaml
 

@@ -20,9 +20,9 @@ import re
 
 from own_limits import own_limits
 import pytest
+from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.model import JOINT_NAMES
-from rrr_traj_planner.nodes.parameter_names import check_given, unused
+from rrr_traj_planner.nodes.parameters.names import check_given, unused
 
 OWN = own_limits('base', 'lift', 'bend')
 NAMES = OWN['joint_names']

@@ -27,13 +27,13 @@ from rcl_interfaces.msg import ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import JOINT_NAMES, RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import JOINT_NAMES, RobotModel
-from rrr_traj_planner.nodes.configuration import ArmConfig, PlannerConfig
-from rrr_traj_planner.nodes.declared_parameters import DeclaredParameters, descriptor
-from rrr_traj_planner.nodes.parameters import ARM, check_value, PLANNER, rows_of
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.nodes.parameters.configuration import ArmConfig, PlannerConfig
+from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters, descriptor
+from rrr_traj_planner.nodes.parameters.table import ARM, check_value, PLANNER, rows_of
 import yaml
 
 CONFIG = Path(__file__).parents[2] / 'config'

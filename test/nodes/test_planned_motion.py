@@ -18,10 +18,10 @@ from __future__ import annotations
 
 import numpy as np
 from plan_requests import plan_request, points_of, START, TABLE_6_1
-from rrr_traj_planner.core.interpolation import Interpolant, TrajectoryPoints
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.nodes.arm_messages import nanoseconds
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.nodes.arm_node.arm_messages import nanoseconds
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from scripts import Script, script
 from sensor_msgs.msg import JointState

@@ -38,10 +38,10 @@ from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner.planners import registry
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from scripts import CONFIG
@@ -212,7 +212,7 @@ def test_answer_that_cannot_be_written_is_no_success(ros, monkeypatch):
     def broken(*_):
         raise RuntimeError('no message')
 
-    monkeypatch.setattr('rrr_traj_planner.nodes.planner_node.success', broken)
+    monkeypatch.setattr('rrr_traj_planner.nodes.planner_node.node.success', broken)
     made(ros)
     published = ros.listen(JointTrajectory, 'planned_trajectory', LATCHED)
     is_refused(plan(ros), CODES.FAILURE, 'internal error, RuntimeError: no message')
@@ -295,7 +295,7 @@ def test_max_deviation_reaches_the_request(ros, monkeypatch):
         seen.append(request.max_deviation)
         raise InvalidInputError('seen')
 
-    monkeypatch.setattr('rrr_traj_planner.nodes.planner_node.plan', noting)
+    monkeypatch.setattr('rrr_traj_planner.nodes.planner_node.node.plan', noting)
     made(ros, max_deviation=0.2)
     plan(ros)
     plan(ros, max_deviation=0.01)

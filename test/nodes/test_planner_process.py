@@ -34,12 +34,12 @@ from plan_requests import (
 )
 import pytest
 from rcl_interfaces.srv import GetParameters
-from rrr_traj_planner.core.incoming_trajectory import check_trajectory
-from rrr_traj_planner.core.interpolation import Interpolant
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.nodes.arm_messages import incoming_trajectory
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.control.trajectory_validation import check_trajectory
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.nodes.arm_node.arm_messages import incoming_trajectory
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from scripts import CONFIG, python, Script, script
 
@@ -57,7 +57,7 @@ from rrr_traj_planner.planners.registry import register
 def broken(task): raise RuntimeError('no idea')
 @register('endless')
 def endless(task): print('begun', flush=True); threading.Event().wait()
-from rrr_traj_planner.nodes.planner import main
+from rrr_traj_planner.nodes.scripts.planner import main
 sys.exit(main())
 """
 

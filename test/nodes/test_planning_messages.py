@@ -22,10 +22,8 @@ from builtin_interfaces.msg import Time
 import numpy as np
 from plan_requests import NAMES, plan_request, points_of, stamps, START, TABLE_6_1
 import pytest
-from rrr_traj_planner.core.arm_settings import ArmSettings
-from rrr_traj_planner.core.control import ControllerGains
-from rrr_traj_planner.core.controlled_arm import ControlledArm
-from rrr_traj_planner.core.encoder import EncoderSettings
+from rrr_traj_planner.core.arm.model import JOINT_NAMES
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
 from rrr_traj_planner.core.errors import (
     ConvergenceError,
     InvalidInputError,
@@ -35,18 +33,20 @@ from rrr_traj_planner.core.errors import (
     TimingError,
     UnreachableError,
 )
-from rrr_traj_planner.core.interpolation import TrajectoryPoints
-from rrr_traj_planner.core.model import JOINT_NAMES
-from rrr_traj_planner.nodes.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters import PLANNER, rows_of
-from rrr_traj_planner.nodes.planning_answer import (
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.core.simulation.encoder import EncoderSettings
+from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
+from rrr_traj_planner.nodes.planner_node.planning_answer import (
     failure,
     joint_trajectory,
     refusal,
     success,
     tip_path,
 )
-from rrr_traj_planner.nodes.planning_request import FrameError, planning_request
+from rrr_traj_planner.nodes.planner_node.planning_request import FrameError, planning_request
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 

@@ -26,10 +26,10 @@ from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import GetParameters
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.nodes import planner_node
-from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.nodes.planner_node import node as planner_node
+from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner.planners import registry
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory

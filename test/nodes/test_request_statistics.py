@@ -22,8 +22,8 @@ import numpy as np
 from plan_requests import plan_request, TABLE_6_3
 import pytest
 from rclpy.parameter import Parameter
-from rrr_traj_planner.nodes.planner_node import TrajectoryPlanner
-from rrr_traj_planner.nodes.request_statistics import CODES, RequestStatistics, WINDOW
+from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
+from rrr_traj_planner.nodes.planner_node.request_statistics import CODES, RequestStatistics, WINDOW
 from rrr_traj_planner.planners import registry
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 

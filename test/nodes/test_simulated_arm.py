@@ -21,8 +21,8 @@ import numpy as np
 from own_limits import own_limits
 import pytest
 from rcl_interfaces.msg import Log
-from rrr_traj_planner.core.dynamics import gravity_torque
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 
 
 def assert_no_jump(messages, limit=1.0):

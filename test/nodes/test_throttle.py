@@ -16,8 +16,8 @@
 
 from __future__ import annotations
 
-from rrr_traj_planner.nodes import throttle
-from rrr_traj_planner.nodes.throttle import Throttle
+from rrr_traj_planner.nodes.output import throttle
+from rrr_traj_planner.nodes.output.throttle import Throttle
 
 
 def test_each_kind_passes_once_in_a_period(monkeypatch):

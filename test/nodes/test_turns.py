@@ -18,7 +18,7 @@ from threading import Event, Thread
 from time import perf_counter, thread_time
 
 import pytest
-from rrr_traj_planner.nodes.turns import FIRST_LEVEL, Turns
+from rrr_traj_planner.nodes.planner_node.turns import FIRST_LEVEL, Turns
 
 DEADLINE = 20.0  # s
 

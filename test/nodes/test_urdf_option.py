@@ -19,9 +19,9 @@ from __future__ import annotations
 from xml.etree import ElementTree
 
 from rclpy.node import Node
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.urdf import FrameNames, urdf
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf import FrameNames, urdf
 from scripts import CONFIG, Script, script
 
 COMMAND = (*script('simulated_arm'), '--urdf')

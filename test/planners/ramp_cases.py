@@ -18,9 +18,9 @@ from dataclasses import replace
 
 import numpy as np
 from random_cases import random_model
-from rrr_traj_planner.core.dynamics import gravity_torque
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask

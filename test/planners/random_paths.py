@@ -21,20 +21,20 @@ from functools import cache, cached_property
 
 import numpy as np
 from random_cases import random_model
-from rrr_traj_planner.core import path_design
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.cancellation import never
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.largest_radii import largest_radii
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.path_trajectory import ArmPath
-from rrr_traj_planner.core.postures import ELBOWS, Posture
-from rrr_traj_planner.core.workspace_check import check_workspace
-from rrr_traj_planner.planners.followable import followable
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.postures import ELBOWS, Posture
+from rrr_traj_planner.core.path import design as path_design
+from rrr_traj_planner.core.path.largest_radii import largest_radii
+from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.path_timing.least_time import fastest_along, PathTask
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.sampling_jerk_limit import followable
 
 PLANNERS = ('line_arc', 'line_polynomial')
 NONE = np.full(3, np.inf)

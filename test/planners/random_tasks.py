@@ -21,10 +21,10 @@ from functools import cached_property
 
 import numpy as np
 from random_cases import random_model
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.request import PlanningRequest
 

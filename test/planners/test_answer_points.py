@@ -20,9 +20,9 @@ from functools import cache
 import numpy as np
 from pinocchio_arm import PinocchioArm
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest

@@ -19,13 +19,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from random_paths import Measured, measured, PathCase, PLANNERS, random_case
-from rrr_traj_planner.core.dynamics import inverse_dynamics
-from rrr_traj_planner.core.interpolation import Interpolant
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.postures import posture_of
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.kinematics.postures import posture_of
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.planners.path_timing.planner import SMALLER, WORTH_IT
 from rrr_traj_planner.planners.request import PlanningRequest
 

@@ -20,7 +20,7 @@ from measured_plans import outcomes
 import numpy as np
 import pytest
 from random_tasks import random_task
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.planners.planning import plan
 
 

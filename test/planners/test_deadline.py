@@ -21,10 +21,10 @@ import pickle
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.cancellation import step
 from rrr_traj_planner.core.errors import TimeLimitError
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners.deadline import Deadline, GRACE, part_of
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids

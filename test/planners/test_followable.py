@@ -19,11 +19,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from random_cases import random_model
-from rrr_traj_planner.core.dynamics import inverse_dynamics
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.planners.followable import acceleration_scale, CRUISE, followable
+from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, CRUISE, followable
 
 NONE = np.full(3, np.inf)
 PERIOD = 0.01

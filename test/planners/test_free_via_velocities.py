@@ -18,13 +18,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, TimingError
-from rrr_traj_planner.core.gauss import gauss
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.septic import SEPTIC
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.motion_laws.gauss import gauss
+from rrr_traj_planner.core.motion_laws.septic import SEPTIC
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest
 from rrr_traj_planner.planners.transitions.motion_law import via_problem_of

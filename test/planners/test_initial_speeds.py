@@ -19,8 +19,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from random_paths import PathCase, PLANNERS, random_case
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.planners.path_timing.constraints import (
     ACCELERATION,
     all_bounds,

@@ -19,8 +19,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from ramp_cases import ARM, bounds, LIMITS, NONE, random_motion
-from rrr_traj_planner.core.dynamics import inverse_dynamics
-from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE
 

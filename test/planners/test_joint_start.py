@@ -29,7 +29,11 @@ from ramp_cases import (
     share_of,
     slow_start,
 )
-from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix, inverse_dynamics
+from rrr_traj_planner.core.dynamics.rigid_body import (
+    gravity_torque,
+    inertia_matrix,
+    inverse_dynamics,
+)
 from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.start import (

@@ -20,8 +20,8 @@ from functools import cache
 import numpy as np
 import pytest
 from ramp_cases import all_free, ARM, bounds, LIMITS, NONE, random_motion, share_of
-from rrr_traj_planner.core.dynamics import inverse_dynamics
-from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.margins import LARGER, Margins, MOST_VELOCITY_MARGIN

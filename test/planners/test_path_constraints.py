@@ -19,7 +19,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from random_paths import NONE, random_case
-from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.planners.path_timing.constraints import (
     limited,
     PathConstraints,

@@ -17,7 +17,7 @@
 import numpy as np
 import pytest
 from random_paths import random_case
-from rrr_traj_planner.core.limits import JointLimits
+from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.planners.path_timing.constraints import (
     ACCELERATION,
     JERK,

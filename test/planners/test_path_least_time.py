@@ -20,8 +20,8 @@ import numpy as np
 from phase_plane import least_time
 import pytest
 from random_paths import Measured, NONE, PathCase, random_case
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.planners.path_timing.least_time import fastest_along, PathTask
 from rrr_traj_planner.planners.request import PlanningRequest
 

@@ -17,8 +17,12 @@
 import numpy as np
 import pytest
 from random_paths import random_case
-from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix, inverse_dynamics
-from rrr_traj_planner.core.sampling import STEP_OVERSHOOT
+from rrr_traj_planner.core.dynamics.rigid_body import (
+    gravity_torque,
+    inertia_matrix,
+    inverse_dynamics,
+)
+from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
 from rrr_traj_planner.planners.path_timing.table import PARTS, PathTable
 
 SEEDS = range(16)

@@ -22,9 +22,9 @@ import sys
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 

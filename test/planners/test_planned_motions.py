@@ -23,8 +23,8 @@ from measured_plans import broken, EXACT, MISSING, outcomes, via_points
 import numpy as np
 import pytest
 from random_tasks import random_task
-from rrr_traj_planner.core.dynamics import inverse_dynamics
-from rrr_traj_planner.core.interpolation import Interpolant
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner
 

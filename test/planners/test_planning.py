@@ -20,6 +20,8 @@ from hard_cases import HARD_CASES, NOT_FOR_APPROACH_A
 import numpy as np
 import pytest
 from random_tasks import Measured, random_task, Task
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import (
     ConvergenceError,
     InvalidInputError,
@@ -29,9 +31,7 @@ from rrr_traj_planner.core.errors import (
     TimingError,
     UnreachableError,
 )
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners import planning
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids, Registered

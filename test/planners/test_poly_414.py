@@ -18,12 +18,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError, TimingError
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.planners.methods.poly_414 import planned
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.poly_414 import planned
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest, T_ACC
 from thesis_cases import POINTS
 

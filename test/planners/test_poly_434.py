@@ -19,13 +19,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from random_tasks import random_task
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError, TimingError
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_torque import stretch_for_torque
-from rrr_traj_planner.core.trajectory import times_within
-from rrr_traj_planner.planners import poly_434
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.trajectory.torque import stretch_for_torque
+from rrr_traj_planner.core.trajectory.trajectory import times_within
+from rrr_traj_planner.planners.methods import poly_434
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 from thesis_cases import POINTS

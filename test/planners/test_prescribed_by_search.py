@@ -18,11 +18,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.cycloid import transition
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import TimingError
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.motion_laws.cycloid import transition
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused
 from rrr_traj_planner.planners.request import PlanningRequest

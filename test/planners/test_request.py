@@ -16,9 +16,9 @@
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
 from rrr_traj_planner.planners.registry import planner, planner_ids, register
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest
 from rrr_traj_planner.planners.transitions.motion_law import via_problem_of

@@ -17,7 +17,7 @@
 import numpy as np
 import pytest
 from ramp_cases import bounds, LIMITS, random_motion, random_step, shifted, stepped
-from rrr_traj_planner.core.ramps import Ramps
+from rrr_traj_planner.core.motion_laws.ramps import Ramps
 from rrr_traj_planner.planners.joint_timing.start import (
     LEAST_RAMPS,
     rest_to_rest_legs,

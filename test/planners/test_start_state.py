@@ -18,11 +18,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import JointRangeError, RrrPlannerError, StartStateError
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.postures import Posture, posture_of
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.postures import Posture, posture_of
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest

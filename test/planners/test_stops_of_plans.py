@@ -18,13 +18,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.desired_motion import through
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_points import MotionPoints
-from rrr_traj_planner.core.stopping import stop
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.stopping.stop import stop
+from rrr_traj_planner.core.trajectory.reference_trajectory import through
+from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 

@@ -16,10 +16,10 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.cycloid_transitions import CYCLOID
-from rrr_traj_planner.core.quartic import QUARTIC
-from rrr_traj_planner.core.septic import SEPTIC
-from rrr_traj_planner.planners.straddled_motion import (
+from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
+from rrr_traj_planner.core.motion_laws.septic import SEPTIC
+from rrr_traj_planner.planners.blends.blend_motion import (
     changes_of_velocity,
     excess,
     is_kept,

@@ -16,8 +16,8 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.straddled_motion import excess
-from rrr_traj_planner.planners.straddled_timing import fastest, total_time
+from rrr_traj_planner.planners.blends.blend_motion import excess
+from rrr_traj_planner.planners.blends.blend_timing import fastest, total_time
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 

@@ -16,11 +16,11 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.law_434 import Law434
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.planners.symmetric_434 import fastest_symmetric, least_time, Loads
-from rrr_traj_planner.planners.torque_434 import law_for_torque, Segment
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.motion_laws.lin_434 import Law434
+from rrr_traj_planner.planners.stops.symmetric_434 import fastest_symmetric, least_time, Loads
+from rrr_traj_planner.planners.stops.torque_434 import law_for_torque, Segment
 
 RNG = np.random.default_rng(621)
 FREE = 1e-9  # a load that never binds

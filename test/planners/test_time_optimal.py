@@ -29,17 +29,21 @@ import numpy as np
 import pytest
 from ramp_cases import blocked_task, is_connected
 from random_tasks import Measured, random_task, Task
-from rrr_traj_planner.core.dynamics import gravity_torque, inertia_matrix, inverse_dynamics
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import (
+    gravity_torque,
+    inertia_matrix,
+    inverse_dynamics,
+)
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, TimingError
-from rrr_traj_planner.core.interpolation import Interpolant
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.motion_torque import stretch_for_torque
-from rrr_traj_planner.planners import time_optimal
-from rrr_traj_planner.planners.followable import CRUISE
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.core.trajectory.torque import stretch_for_torque
+from rrr_traj_planner.planners.methods import time_optimal
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest
+from rrr_traj_planner.planners.sampling_jerk_limit import CRUISE
 from thesis_cases import POINTS
 
 NONE = np.full(3, np.inf)

@@ -21,7 +21,7 @@ import pytest
 from ramp_cases import ARM, bounds, flat, FREE, LIMITS, NONE, random_motion, slow_start
 from random_cases import central_difference
 from random_paths import random_case
-from rrr_traj_planner.core.dynamics import gravity_torque
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.planners.path_timing.constraints import PathConstraints, QUANTITIES
 from rrr_traj_planner.planners.path_timing.start import paced_along
 from rrr_traj_planner.planners.path_timing.table import PathTable

@@ -21,8 +21,8 @@ import os
 import browser
 import numpy as np
 import pytest
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.report.attempts import Attempt, attempts, Task
 from rrr_traj_planner.report.page import write_page

@@ -20,11 +20,11 @@ from math import pi
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core import cycloid
-from rrr_traj_planner.core.gauss import GAUSS
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.quartic import QUARTIC
-from rrr_traj_planner.core.septic import SEPTIC
+from rrr_traj_planner.core.motion_laws import cycloid
+from rrr_traj_planner.core.motion_laws.gauss import GAUSS
+from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
+from rrr_traj_planner.core.motion_laws.septic import SEPTIC
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.report.attempts import planned
 from rrr_traj_planner.report.coefficients import Coefficients, coefficients

@@ -24,13 +24,13 @@ import time
 
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.parameter_files import planner_config
+from rrr_traj_planner.nodes.parameters.parameter_files import planner_config
 
 ROOT = Path(__file__).parents[2]
 DEADLINE = 120.0  # s; nothing here takes so long
 PROMPT = 2.0      # s, in which a signal is to end it
 
-RUN = 'import sys; from rrr_traj_planner.nodes.report import main; sys.exit(main())'
+RUN = 'import sys; from rrr_traj_planner.nodes.scripts.report import main; sys.exit(main())'
 HEAVY = ('arm: thesis_arm.yaml\nplanner_id: line_arc\n'
          'via_points: [[0.2, 0.8, 0.5], [0.5, 1.0, 1.0], [0.8, 1.2, 0.6]]\n')
 

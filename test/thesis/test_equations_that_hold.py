@@ -18,7 +18,7 @@ from comparison import length, rate, ROUNDING
 import numpy as np
 import pytest
 from random_cases import ARMS, random_states
-from rrr_traj_planner.core.dynamics import kinetic_energy
+from rrr_traj_planner.core.dynamics.rigid_body import kinetic_energy
 import table_5_1
 
 T_ACC, T_1 = 0.5, 1.3                                 # s

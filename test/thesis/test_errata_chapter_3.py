@@ -19,7 +19,7 @@ from math import factorial
 from comparison import differ, length, rate, ROUNDING
 import numpy as np
 import pytest
-from rrr_traj_planner.core.cycloid import CycloidPiece
+from rrr_traj_planner.core.motion_laws.cycloid import CycloidPiece
 
 RADIUS = 1.7        # m
 TIMES = np.linspace(0.1, 0.9, 9)

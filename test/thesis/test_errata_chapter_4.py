@@ -17,7 +17,7 @@
 from comparison import differ, rate, ROUNDING
 import numpy as np
 import pytest
-from rrr_traj_planner.core.cycloid import cruise, general_transition, transition
+from rrr_traj_planner.core.motion_laws.cycloid import cruise, general_transition, transition
 
 # A transition: duration [s], position [rad], velocities [rad/s].
 DURATION, START, V0, V1 = 1.7, 0.4, -0.3, 0.9

@@ -22,7 +22,7 @@ import numpy as np
 from pinocchio_arm import PinocchioArm
 import pytest
 from random_cases import ARMS, random_states
-from rrr_traj_planner.core.dynamics import (
+from rrr_traj_planner.core.dynamics.rigid_body import (
     coriolis_torque,
     gravity_torque,
     inertia_matrix,

@@ -20,9 +20,9 @@ from comparison import differ, DIFFERENCES, rate, ROUNDING
 import numpy as np
 import pytest
 from random_cases import ARMS, random_states
-from rrr_traj_planner.core.kinematics import jacobian
-from rrr_traj_planner.core.link_motion import link_motion
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import jacobian
+from rrr_traj_planner.core.kinematics.link_motion import link_motion
 import table_5_1
 
 K = np.array([0.0, 0.0, 1.0])

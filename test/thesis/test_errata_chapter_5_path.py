@@ -17,11 +17,11 @@
 from comparison import differ, length, ROUNDING
 import numpy as np
 import pytest
-from rrr_traj_planner.core.dynamics import inverse_dynamics
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.kinematics import jacobian, jacobian_rate
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.kinematics.forward import jacobian, jacobian_rate
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 
 # Three points whose lines differ in length, as those of table 6.1 do [m].
 BEFORE, VIA, AFTER = np.array([[1.02, 0.59, 0.97], [0.46, 0.55, 1.44], [0.45, 0.38, 1.45]])

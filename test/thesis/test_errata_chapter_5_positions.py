@@ -21,9 +21,9 @@ import numpy as np
 from pinocchio_arm import PinocchioArm
 import pytest
 from random_cases import ARMS, random_states
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.kinematics import forward_kinematics
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 import table_5_1
 
 

@@ -18,10 +18,10 @@ from comparison import differ
 import numpy as np
 from pinocchio_arm import PinocchioArm
 import pytest
-from rrr_traj_planner.core.inverse_kinematics import inverse_kinematics
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
-from rrr_traj_planner.core.postures import ELBOWS
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.kinematics.postures import ELBOWS
 import table_5_1
 import thesis_cases as thesis
 

@@ -19,10 +19,10 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from rrr_traj_planner.core import equations
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.dynamics import equations
 from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, Limits, TORQUE
 from rrr_traj_planner.planners.solver.ramps import Grid
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace

@@ -20,9 +20,9 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
-from rrr_traj_planner.core.ramps import RampShape
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.motion_laws.ramps import RampShape
+from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 

@@ -23,10 +23,10 @@ as can be. If there is a way that leaves room for a cell of the grid, it is foun
 from __future__ import annotations
 
 import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
-from rrr_traj_planner.core.dynamics import gravity_torque
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.planners.request import JointTask
 from scipy import sparse
 from scipy.sparse import csgraph

@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.dynamics import gravity_torque
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables

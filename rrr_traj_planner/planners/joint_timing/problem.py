@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, ReadOnlyArrays
-from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.within_limits import fitted

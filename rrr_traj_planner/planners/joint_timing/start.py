@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.feasible_path import (

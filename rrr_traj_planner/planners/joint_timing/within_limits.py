@@ -18,9 +18,9 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
-from rrr_traj_planner.core.motion_torque import peak_torque
-from rrr_traj_planner.core.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.torque import peak_torque
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import torque_stretch
 

@@ -16,7 +16,7 @@
 #ifndef RRR_TRAJ_PLANNER_RAMPS_H
 #define RRR_TRAJ_PLANNER_RAMPS_H
 
-/* Of a unit ramp, see core/ramps.py: what its rise adds to the way at its end and half-way, to the
+/* Of a unit ramp, see core/motion_laws/ramps.py: what its rise adds to the way at its end and half-way, to the
  * speed half-way, and its peak of jerk. */
 typedef struct {
     double whole, way, speed, peak;

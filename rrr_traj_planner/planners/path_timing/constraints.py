@@ -20,8 +20,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.limits import JointLimits
 from rrr_traj_planner.planners.path_timing.table import Demand, PathTable
 from rrr_traj_planner.planners.solver.limits import Limits, PATH
 from rrr_traj_planner.planners.solver.ramps import Grid, States, Variables

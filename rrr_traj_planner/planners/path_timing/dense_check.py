@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.ramps import RampShape
+from rrr_traj_planner.core.motion_laws.ramps import RampShape
 from rrr_traj_planner.planners.joint_timing.dense_check import ROUNDING
 from rrr_traj_planner.planners.path_timing.constraints import (
     ACCELERATION,

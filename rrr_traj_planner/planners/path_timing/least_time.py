@@ -25,11 +25,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.limits import JointLimits
-from rrr_traj_planner.core.motion_torque import squared_stretch
-from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
-from rrr_traj_planner.core.workspace_check import place_on_path
+from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
+from rrr_traj_planner.core.path.workspace_check import place_on_path
+from rrr_traj_planner.core.trajectory.torque import squared_stretch
 from rrr_traj_planner.planners.path_timing.constraints import (
     all_bounds,
     PathConstraints,

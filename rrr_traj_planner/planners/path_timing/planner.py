@@ -21,13 +21,12 @@ from collections.abc import Callable
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cancellation import ShouldStop, step
-from rrr_traj_planner.core.cartesian_path import CartesianPath
 from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
-from rrr_traj_planner.core.largest_radii import largest_radii
-from rrr_traj_planner.core.path_trajectory import ArmPath, PathTrajectory
-from rrr_traj_planner.core.workspace_check import check_workspace
+from rrr_traj_planner.core.path.cartesian_path import CartesianPath
+from rrr_traj_planner.core.path.largest_radii import largest_radii
+from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
+from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.deadline import part_of
-from rrr_traj_planner.planners.followable import followable
 from rrr_traj_planner.planners.path_timing.least_time import (
     kept,
     nearly_fastest_along,
@@ -35,6 +34,7 @@ from rrr_traj_planner.planners.path_timing.least_time import (
     Timed,
 )
 from rrr_traj_planner.planners.request import CartesianTask
+from rrr_traj_planner.planners.sampling_jerk_limit import followable
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 
 Family = Callable[[Array, ArrayLike, ShouldStop], CartesianPath]

@@ -21,9 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics import inverse_dynamics
-from rrr_traj_planner.core.path_trajectory import ArmPath
-from rrr_traj_planner.core.sampling import STEP_OVERSHOOT
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
 from scipy.interpolate import CubicSpline
 
 INTERVALS = 64  # of each piece

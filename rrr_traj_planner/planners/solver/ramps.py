@@ -27,8 +27,8 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.ramps import Ramps, RampShape
+from rrr_traj_planner.core.motion_laws.ramps import Ramps, RampShape
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 
 
 class Variables(NamedTuple):

@@ -20,9 +20,9 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.limit_check import POSITION_TOLERANCE
-from rrr_traj_planner.core.motion_torque import squared_stretch, torque_grid
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.torque import squared_stretch, torque_grid
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.transitions import segment_motion

@@ -17,11 +17,11 @@
 from __future__ import annotations
 
 import numpy as np
-from rrr_traj_planner.core.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
-from rrr_traj_planner.core.motion_torque import peak_holding_torque, stretch_for_torque
-from rrr_traj_planner.core.pieces import TransitionFunction
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
+from rrr_traj_planner.core.trajectory.torque import peak_holding_torque, stretch_for_torque
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import LEAST_VELOCITY, ViaProblem

@@ -16,8 +16,8 @@
 
 from __future__ import annotations
 
-from rrr_traj_planner.core.pieces import TransitionFunction
-from rrr_traj_planner.core.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.registry import JointPlanner
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.fastest import fastest

@@ -21,9 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.cycloid_transitions import CYCLOID
-from rrr_traj_planner.core.pieces import Pieces, TransitionFunction
-from rrr_traj_planner.core.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.trajectory.pieces import Pieces, TransitionFunction
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
 from rrr_traj_planner.planners.transitions.reach import largest_cruise
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw

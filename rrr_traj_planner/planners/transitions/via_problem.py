@@ -20,8 +20,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray, ReadOnlyArrays
-from rrr_traj_planner.core.cycloid_transitions import CYCLOID
-from rrr_traj_planner.core.pieces import TransitionFunction
+from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 LEAST_VELOCITY = 1e-9  # rad/s: bounds of a via velocity that must be zero

@@ -1,0 +1,151 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The arm in lines, to be drawn: its joints in space, rods between them, a trail of the tip."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from math import cos, dist, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array, IntArray
+
+Point = tuple[float, float, float]
+
+
+class Rod(NamedTuple):
+    """A rod that lies along z of its own frame."""
+
+    centre: Point                                   # [m]
+    quaternion: tuple[float, float, float, float]   # x, y, z, w
+    length: float                                   # [m]
+
+
+def skeleton(model: RobotModel, q: Sequence[float]) -> tuple[Point, Point, Point, Point]:
+    """
+    Return where base, shoulder, elbow and tip are; for one state, in floats.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q : sequence of 3 floats
+        Joint positions [rad].
+
+    Returns
+    -------
+    tuple of 4 points
+        Base frame [m].
+
+    """
+    c1, s1, q23 = cos(q[0]), sin(q[0]), q[1] + q[2]
+    r, h = model.a2 * cos(q[1]), model.d1 + model.a2 * sin(q[1])
+    r_tip, h_tip = r + model.d4 * sin(q23), h - model.d4 * cos(q23)
+    return ((0.0, 0.0, 0.0), (0.0, 0.0, model.d1), (c1 * r, s1 * r, h),
+            (c1 * r_tip, s1 * r_tip, h_tip))
+
+
+def rod(start: Point, end: Point) -> Rod:
+    """
+    Return the rod from one point to another.
+
+    Parameters
+    ----------
+    start, end : tuple of 3 floats
+        [m].
+
+    Returns
+    -------
+    Rod
+        Not turned where the points are the same.
+
+    """
+    length = dist(start, end)
+    centre = (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]), 0.5 * (start[2] + end[2]))
+    if length == 0.0:
+        return Rod(centre, (0.0, 0.0, 0.0, 1.0), 0.0)
+    x, y, z = ((b - a) / length for a, b in zip(start, end))
+    # A rod has no sense of direction: of the two, the turn by at most a right angle.
+    if z < 0.0:
+        x, y, z = -x, -y, -z
+    w = sqrt(0.5 * (1.0 + z))
+    return Rod(centre, (-0.5 * y / w, 0.5 * x / w, 0.0, w), length)
+
+
+class Trail:
+    """
+    Where a point has been: its last places, each a step from the one before.
+
+    Parameters
+    ----------
+    step : float
+        Least distance between places [m].
+    most : int
+        How many are kept; older ones are forgotten.
+
+    Attributes
+    ----------
+    places : deque of points
+        From the oldest to the newest [m].
+
+    """
+
+    def __init__(self, step: float, most: int) -> None:
+        self.step = step
+        self.places: deque[Point] = deque(maxlen=most)
+
+    def add(self, place: Point) -> None:
+        """
+        Note where the point is, if it has moved by a step.
+
+        Parameters
+        ----------
+        place : tuple of 3 floats
+            [m].
+
+        """
+        if not self.places or dist(place, self.places[-1]) >= self.step:
+            self.places.append(place)
+
+    def clear(self) -> None:
+        """Forget all places."""
+        self.places.clear()
+
+
+def picked(count: int, most: int, wanted: Array | IntArray | None = None) -> IntArray:
+    """
+    Return which of many points to draw: evenly spread, ends included.
+
+    Parameters
+    ----------
+    count : int
+        How many there are.
+    most : int
+        How many to draw at most, beside those that are wanted.
+    wanted : ndarray of int, optional
+        Points to draw in any case.
+
+    Returns
+    -------
+    ndarray of int
+        Increasing, without repetition.
+
+    """
+    even = np.arange(count) if count <= most else np.linspace(0, count - 1, most).round()
+    chosen = np.union1d(even, np.zeros(0) if wanted is None else wanted)
+    return chosen.astype(np.int64)

@@ -1,0 +1,290 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+How a new trajectory takes over from the running one without a jump in what is commanded.
+
+Where its first point lies ahead, one segment leads there from the present command, as in
+joint_trajectory_controller, if it keeps the limits. Where it does not, or the first point is due
+or past (that controller then jumps onto the trajectory), we are gentler, here and here alone: the
+command joins by a quintic the earliest later point that can be met on schedule within the ranges
+and the velocity, acceleration and torque limits. Where none can, it goes to the last point as soon
+as the limits allow, by one quintic or by a stop and a move; where that point is outside a range,
+the arm stops.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.errors import told_apart
+from rrr_traj_planner.core.nanoseconds import nanoseconds
+from rrr_traj_planner.core.states import Desired
+from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
+from rrr_traj_planner.core.stopping.point_to_point import moved_on
+from rrr_traj_planner.core.stopping.stop import Stop, stop
+from rrr_traj_planner.core.stopping.task import from_state
+from rrr_traj_planner.core.trajectory.interpolation import hermite
+from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion, through
+from rrr_traj_planner.core.trajectory.trajectory_points import led_in, MotionPoints, segment_orders
+
+# A command this near to a trajectory is on it [rad], [rad/s].
+POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
+
+# Limits are kept on this many steps of a join, to this relative tolerance.
+STEPS, LIMIT_TOLERANCE = 32, 1e-6
+
+# A last point is outside a range by more than this part of its end, or of 1 rad: positions are
+# rounded to four digits.
+ROUNDED = 1e-4
+
+# Points that are tried at once.
+BATCH = 256
+
+# Times in which the last point is gone to late, from the time on that it has [s].
+LATER = 1.15 ** np.arange(64.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Takeover:
+    """
+    The instant at which a new trajectory takes over.
+
+    Parameters
+    ----------
+    now : float
+        [s].
+    command : tuple of 9 floats
+        Positions [rad], velocities [rad/s], accelerations [rad/s^2] commanded now.
+    limits : JointLimits
+        Kept where a trajectory has to be joined.
+    model : RobotModel
+        The arm.
+    running : DesiredMotion, optional
+        What is followed now; None: only the command is known.
+
+    """
+
+    now: float
+    command: Desired
+    limits: JointLimits
+    model: RobotModel
+    running: DesiredMotion | None = None
+
+    @property
+    def states(self) -> tuple[Array, Array, Array]:
+        """Position, velocity and acceleration of the command, shape (3,) each."""
+        q, qd, qdd = np.reshape(self.command, (3, 3))
+        return q, qd, qdd
+
+
+class Replacement(NamedTuple):
+    """
+    What the arm follows from now on.
+
+    Attributes
+    ----------
+    motion : DesiredMotion
+        Starting from the command, or already under way where the command is on it.
+    warnings : tuple of str
+        What a stop on the way could not keep.
+
+    """
+
+    motion: DesiredMotion
+    warnings: tuple[str, ...] = ()
+
+
+def replacement(takeover: Takeover, points: MotionPoints, origin_ns: int,
+                least_lead: float) -> Replacement:
+    """
+    Return what the arm follows from now on.
+
+    Parameters
+    ----------
+    takeover : Takeover
+        The present.
+    points : MotionPoints
+        The new trajectory.
+    origin_ns : int
+        What the points' times are counted from [ns].
+    least_lead : float
+        A first point no further ahead than this is due now [s].
+
+    Returns
+    -------
+    Replacement
+        The motion, and what it breaks.
+
+    """
+    motion = through(points, origin_ns)
+    if motion.start > takeover.now + least_lead:
+        whole = led_in(points, takeover.now - motion.origin, takeover.states)
+        if _lead_keeps_limits(takeover, whole):
+            return Replacement(through(whole, origin_ns))
+    elif _is_on(takeover, motion, points):
+        return Replacement(motion)
+    i = _first_in_reach(takeover, motion)
+    return Replacement(_joined(takeover, motion, i)) if i >= 0 else _gone_to(takeover, motion)
+
+
+def _lead_keeps_limits(takeover: Takeover, whole: MotionPoints) -> bool:
+    """
+    Return whether the segment that leads in does.
+
+    Lines step in velocity by their nature, those of a stream of single points all the time;
+    others must not step by more than the acceleration limit gives in the segment's time.
+    """
+    T = np.diff(whole.times[:2])
+    known = int(segment_orders(whole)[0] + 1) // 2
+    if known == 1 and len(whole.times) > 2:
+        rate = (whole.positions[1] - whole.positions[0]) / T
+        step = np.abs(rate - whole.velocities[0])
+        if (step > takeover.limits.max_acceleration * T).any():
+            return False
+    ends = (whole.positions, whole.velocities, whole.accelerations)[:known]
+    return bool(_within_limits(takeover, T, tuple(x[1:2] for x in ends))[0])
+
+
+def _is_on(takeover: Takeover, motion: DesiredMotion, points: MotionPoints) -> bool:
+    """Return whether the command is on the motion now; on a line, its velocity may differ."""
+    state = motion.end_state if motion.end <= takeover.now else motion(takeover.now)
+    gap = np.abs(np.subtract(state, takeover.command))
+    if gap[:3].max() > POSITION_TOLERANCE:
+        return False
+    i = int(np.searchsorted(points.times, takeover.now - motion.origin, side='right')) - 1
+    orders = segment_orders(points)
+    linear = 0 <= i < len(orders) and orders[i] == 1
+    return linear or bool(gap[3:6].max() <= VELOCITY_TOLERANCE)
+
+
+def _first_in_reach(takeover: Takeover, motion: DesiredMotion) -> int:
+    """Return the index of the earliest later knot that can be met on schedule, or -1."""
+    time = takeover.now - motion.origin
+    states = motion.states()
+    for first in range(int(np.searchsorted(motion.knots, time, side='right')),
+                       len(motion.knots), BATCH):
+        batch = slice(first, first + BATCH)
+        met = _within_limits(takeover, motion.knots[batch] - time,
+                             tuple(s[batch] for s in states))
+        if met.any():
+            return first + int(np.argmax(met))
+    return -1
+
+
+def _within_limits(takeover: Takeover, T: Array, ends: tuple[Array, ...]) -> BoolArray:
+    """
+    Return which ends can be met after times T (n,) within the limits.
+
+    By quintics, or by cubics or lines where less is known of the ends. Where the command or an
+    end itself exceeds a limit, that much is allowed.
+    """
+    starts = takeover.states[:len(ends)]
+    x = (np.linspace(0.0, 1.0, STEPS + 1) * T[:, np.newaxis])[..., np.newaxis]
+    c = np.stack(np.broadcast_arrays(*hermite(T[:, np.newaxis], starts, ends)))
+    values = []  # position, velocity, acceleration, (n, STEPS + 1, 3) each
+    for _ in range(3):
+        value = np.zeros((len(T), STEPS + 1, 3))
+        for coefficient in c[::-1]:
+            value = value * x + coefficient[:, np.newaxis]
+        values.append(value)
+        c = c[1:] * np.arange(1, len(c))[:, np.newaxis, np.newaxis]  # the next derivative
+    met = np.ones(len(T), dtype=bool)
+    for value, (low, high) in zip(values, _bounds(takeover, ends)):
+        met &= ((value >= low[:, np.newaxis] - LIMIT_TOLERANCE)
+                & (value <= high[:, np.newaxis] + LIMIT_TOLERANCE)).all(axis=(1, 2))
+    i = np.flatnonzero(met)
+    q, qd, qdd = (v[i] for v in values)
+    torque = np.abs(inverse_dynamics(takeover.model, q, qd, qdd))
+    allowed = np.maximum(torque[:, :1], torque[:, -1:])
+    met[i] = (torque <= np.maximum(takeover.limits.max_effort, allowed)
+              * (1.0 + LIMIT_TOLERANCE)).all(axis=(1, 2))
+    return met
+
+
+def _bounds(takeover: Takeover, ends: tuple[Array, ...]) -> list[tuple[Array, Array]]:
+    """Return bounds on position, velocity and acceleration, (n, 3) each."""
+    limits, starts = takeover.limits, takeover.states
+    bounds = [(np.minimum(limits.min_position, np.minimum(starts[0], ends[0])),
+               np.maximum(limits.max_position, np.maximum(starts[0], ends[0])))]
+    for n, limit in enumerate((limits.max_velocity, limits.max_acceleration), start=1):
+        end = np.abs(ends[n]) if n < len(ends) else np.zeros_like(ends[0])
+        most = np.maximum(limit, np.maximum(np.abs(starts[n]), end)) * (1.0 + LIMIT_TOLERANCE)
+        bounds.append((-most, most))
+    return bounds
+
+
+def _joined(takeover: Takeover, motion: DesiredMotion, i: int) -> DesiredMotion:
+    """Return a quintic from the command to knot i, and the motion from there."""
+    time = takeover.now - motion.origin
+    join = hermite(float(motion.knots[i]) - time, takeover.states,
+                   tuple(s[i] for s in motion.states()))
+    return DesiredMotion(
+        np.append(time, motion.knots[i:]),
+        np.concatenate((np.stack(join, axis=-1)[np.newaxis], motion.coefficients[i:])),
+        motion.final, motion.origin_ns, motion.final_velocity, motion.final_acceleration)
+
+
+def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
+    """
+    Return a quintic to the motion's end, later than on schedule, or a stop and a move there.
+
+    Where the motion has a velocity at its end, the quintic leads to where it would be by then.
+    Where gravity alone asks too much of a motor on the way, or the end is outside a range, the arm
+    stays where it has stopped.
+    """
+    outside = _ends_outside(takeover, motion)
+    if outside:
+        stopped, warnings = _stopped(takeover)
+        return Replacement(stopped, warnings + outside)
+    due = motion.end - takeover.now
+    T = max(due, LEAST_TIME) * LATER
+    q, qd, qdd = np.reshape(motion.end_state, (3, 3))
+    q = q + qd * (T - due)[:, np.newaxis]
+    met = _within_limits(takeover, T, (q, np.tile(qd, (len(T), 1)), np.tile(qdd, (len(T), 1))))
+    if met.any():
+        i = int(np.argmax(met))
+        late = DesiredMotion(T[i:i + 1], np.zeros((0, 3, 6)), q[i], nanoseconds(takeover.now),
+                             qd, qdd)
+        return Replacement(_joined(takeover, late, 0))
+    stopped, warnings = _stopped(takeover)
+    moved, torque = moved_on(stopped, motion.final, takeover.limits, takeover.model)
+    told = tuple(
+        f"the way to the trajectory's end takes {name} {torque[i]:.1f} N m, limit "
+        f'{takeover.limits.max_effort[i]:.1f} N m: holding'
+        for i, name in enumerate(takeover.model.joint_names)
+        if torque[i] > takeover.limits.max_effort[i] * (1.0 + LIMIT_TOLERANCE))
+    return Replacement(stopped if told else moved, warnings + told)
+
+
+def _stopped(takeover: Takeover) -> Stop:
+    """Return a stop from the present."""
+    running = takeover.running or from_state(takeover.command, nanoseconds(takeover.now))
+    return stop(running, takeover.now, takeover.limits, takeover.model)
+
+
+def _ends_outside(takeover: Takeover, motion: DesiredMotion) -> tuple[str, ...]:
+    """Return a sentence for each joint that a motion leaves outside its range."""
+    low, high = takeover.limits.min_position, takeover.limits.max_position
+    return tuple(
+        'the trajectory would end with {} at {} rad, range [{}, {}] rad: holding'.format(
+            name, *told_apart(float(q), float(a), float(b)))
+        for name, q, a, b in zip(takeover.model.joint_names, motion.final, low, high)
+        if not a - ROUNDED * max(1.0, abs(a)) <= q <= b + ROUNDED * max(1.0, abs(b)))

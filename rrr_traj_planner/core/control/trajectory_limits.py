@@ -1,0 +1,181 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Where a trajectory leaves the joints' ranges or limits, at its points and between them.
+
+Between points run polynomials, which may go beyond the points. Their extremes are found by their
+Bernstein form: on an interval a polynomial is never beyond its Bernstein coefficients, and an
+interval whose coefficients may hold an extreme is halved (de Casteljau) until they meet it; see
+Farouki, The Bernstein polynomial basis: a centennial retrospective, CAGD 29 (2012), section 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import comb
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion, through
+from rrr_traj_planner.core.trajectory.trajectory_points import led_in, MotionPoints
+
+# What is beyond a range by no more than this part of its end, or of 1 rad, or beyond a limit by no
+# more than this part of it, is not worth a word: positions are rounded to four digits, and the
+# quintics through samples of a motion at its limit exceed it by up to 0.1 %.
+POSITION_TOLERANCE, LIMIT_TOLERANCE = 1e-4, 2e-3
+
+# Numbers that miss their bounds by less than this many times the width between them are not taken
+# for degrees.
+NEAR = 1.0
+
+# Extremes are found to this part of the bound that they exceed.
+ACCURACY = 1e-6
+
+# From coefficients of 1, s, ..., s^5 to Bernstein's on [0, 1]: C(i, k) / C(5, k).
+BERNSTEIN = np.array([[comb(i, k) / comb(5, k) for i in range(6)] for k in range(6)])
+
+
+class Excess(NamedTuple):
+    """A range or limit that a joint leaves."""
+
+    joint: int
+    quantity: str
+    value: float
+    low: float
+    high: float
+    in_degrees: bool  # whether the numbers that were sent would be within it, taken as degrees
+
+    def text(self, joint_names: Sequence[str]) -> str:
+        """
+        Return a sentence for people.
+
+        Parameters
+        ----------
+        joint_names : sequence of str
+            The joints' names.
+
+        Returns
+        -------
+        str
+            Joint, value, range or limit, unit.
+
+        """
+        unit = {'position': 'rad', 'velocity': 'rad/s', 'acceleration': 'rad/s^2'}[self.quantity]
+        bound = (f'goes to {self.value:.6g} rad, range [{self.low:.6g}, {self.high:.6g}] rad'
+                 if self.quantity == 'position' else
+                 f'reaches {abs(self.value):.6g} {unit}, limit {self.high:.6g} {unit}')
+        return (f'{joint_names[self.joint]} {bound}'
+                + (' (in degrees?)' if self.in_degrees else ''))
+
+
+def excesses(points: MotionPoints, limits: JointLimits, time: float = np.inf,
+             command: ArrayLike = ()) -> list[Excess]:
+    """
+    Return the ranges and limits that a trajectory leaves: position, velocity, acceleration.
+
+    The segment that leads from the command to a first point ahead belongs to it, but for its
+    acceleration. Lines have no acceleration, and steps of velocity between them are not looked at.
+    Where degrees explain a joint's positions, its velocity and acceleration are left out.
+
+    Parameters
+    ----------
+    points : MotionPoints
+        The trajectory as it was received.
+    limits : JointLimits
+        Ranges and limits.
+    time : float
+        When it takes over, on its own time [s].
+    command : array_like, shape (9,)
+        Positions [rad], velocities [rad/s], accelerations [rad/s^2] commanded then.
+
+    Returns
+    -------
+    list of Excess
+        By quantity, then joint, with the furthest value of each. Empty for a sound trajectory.
+
+    """
+    forms = list(_bernstein_forms(through(points)))
+    if time < points.times[0]:
+        q, qd, qdd = np.reshape(command, (3, 3))
+        forms[:2] = _bernstein_forms(through(led_in(points, time, (q, qd, qdd))))[:2]
+    sent = (points.positions, points.velocities[points.has_velocity],
+            points.accelerations[points.has_acceleration])
+    found: list[Excess] = []
+    for quantity, form, numbers, low, high in zip(
+            ('position', 'velocity', 'acceleration'), forms, sent,
+            (limits.min_position, -limits.max_velocity, -limits.max_acceleration),
+            (limits.max_position, limits.max_velocity, limits.max_acceleration)):
+        for j, bounds in enumerate(zip(low.tolist(), high.tolist())):
+            value = _furthest(form[:, j], *_with_room(quantity, *bounds))
+            if value is not None and not any(e.joint == j and e.in_degrees for e in found):
+                found.append(Excess(j, quantity, value, *bounds,
+                                    _explained_by_degrees(numbers[:, j], *bounds)))
+    return found
+
+
+def _bernstein_forms(motion: DesiredMotion) -> tuple[Array, Array, Array]:
+    """Return Bernstein coefficients of position, velocity, acceleration, (n, 3, 6 to 4)."""
+    T = np.diff(motion.knots)[:, np.newaxis, np.newaxis]
+    q = (motion.coefficients * T ** np.arange(6.0)) @ BERNSTEIN
+    qd = 5.0 * np.diff(q) / T
+    rest = np.broadcast_to(motion.final[:, np.newaxis], (1, 3, 6))
+    return np.concatenate((q, rest)), qd, 4.0 * np.diff(qd) / T
+
+
+def _with_room(quantity: str, low: float, high: float) -> tuple[float, float]:
+    """Return what a value may be before it is worth a word."""
+    if quantity != 'position':
+        return low * (1.0 + LIMIT_TOLERANCE), high * (1.0 + LIMIT_TOLERANCE)
+    return (low - POSITION_TOLERANCE * max(1.0, abs(low)),
+            high + POSITION_TOLERANCE * max(1.0, abs(high)))
+
+
+def _furthest(form: Array, low: float, high: float) -> float | None:
+    """Return the value furthest beyond a bound, or None where all are within."""
+    above, below = _largest(form, high), -_largest(-form, -low)
+    if above <= high and below >= low:
+        return None
+    return above if not below < low or above - high >= low - below else below
+
+
+def _largest(form: Array, least: float) -> float:
+    """Return the largest value on [0, 1] of polynomials (n, m + 1), if it is above a least one."""
+    best = least
+    while True:
+        best = max(best, float(form[:, [0, -1]].max(initial=best)))
+        form = form[form.max(axis=1, initial=-np.inf) > best + ACCURACY * abs(best)]
+        if len(form) == 0:
+            return best
+        form = _halved(form)
+
+
+def _halved(form: Array) -> Array:
+    """Return Bernstein coefficients on both halves of the interval (de Casteljau)."""
+    left, right = [form[:, 0]], [form[:, -1]]
+    while form.shape[1] > 1:
+        form = 0.5 * (form[:, 1:] + form[:, :-1])
+        left.append(form[:, 0])
+        right.append(form[:, -1])
+    return np.concatenate((np.stack(left, axis=1), np.stack(right[::-1], axis=1)))
+
+
+def _explained_by_degrees(sent: Array, low: float, high: float) -> bool:
+    """Return whether numbers are far from bounds as they are, and all within them as degrees."""
+    far, as_degrees = NEAR * (high - low), np.radians(sent)
+    return bool(((sent < low - far) | (sent > high + far)).any()
+                and ((as_degrees >= low) & (as_degrees <= high)).all())

@@ -1,0 +1,143 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Joint positions from tip positions, in any posture, and the nearest of them."""
+
+from __future__ import annotations
+
+from math import atan2, ceil, cos, hypot, pi, sin, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.errors import told_apart, UnreachableError
+from rrr_traj_planner.core.kinematics.postures import (
+    EDGE_TOLERANCE,
+    Elbow,
+    ELBOWS,
+    Shoulder,
+    SHOULDERS,
+)
+from rrr_traj_planner.core.scalars import one_of
+
+
+def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'up',
+                       previous: ArrayLike | None = None,
+                       shoulder: Shoulder = 'front') -> Array:
+    """
+    Return joint positions that bring the tip to a point (5.8-5.12 corrected).
+
+    On joint axis 1, where any theta_1 will do, theta_1 keeps its previous value, or is 0
+    without one.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    position : array_like, shape (3,)
+        Tip position in the base frame [m].
+    elbow : {'up', 'down'}
+        Branch: theta_3 = gamma - 90 deg, or 270 deg - gamma.
+    previous : array_like, shape (3,), optional
+        Joint positions [rad] of the point before.
+    shoulder : {'front', 'back'}
+        Branch: theta_1 = atan2(y, x), or half a turn from it, with the arm over its shoulder.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Joint positions [rad], each in (-pi, pi] but for theta_3, in [-pi/2, 3 pi/2].
+
+    Raises
+    ------
+    InvalidInputError
+        If the position is malformed or the posture unknown.
+    UnreachableError
+        If the point is outside the workspace; with the distance by which it misses.
+
+    """
+    x, y, z = finite_array('position', position, (3,)).tolist()
+    one_of('elbow', elbow, ELBOWS)
+    one_of('shoulder', shoulder, SHOULDERS)
+    a2, d4 = model.a2, model.d4
+    r, h = hypot(x, y), z - model.d1
+    back = shoulder == 'back'
+    kept = 0.0 if previous is None else float(finite_array('previous', previous, (3,))[0])
+    if r <= EDGE_TOLERANCE:
+        theta_1 = kept
+    else:
+        theta_1 = _wrapped(atan2(y, x) + (pi if back else 0.0))
+    W = _distance_in_reach(model, (x, y, z), hypot(r, h))
+    # Half-angle and tangent forms of 5.9 and 5.11: exact to rounding at the workspace's edges too.
+    least, most = model.reach
+    gamma = 2.0 * atan2(sqrt((W - least) * (W + least)), sqrt((most - W) * (most + W)))
+    lift = atan2(d4 * sin(gamma), a2 - d4 * cos(gamma))
+    rise = atan2(h, -r if back else r)
+    if elbow == 'up':
+        return np.array([theta_1, _wrapped(rise + lift), gamma - pi / 2])
+    return np.array([theta_1, _wrapped(rise - lift), 1.5 * pi - gamma])
+
+
+def nearest_solution(model: RobotModel, position: ArrayLike, q: ArrayLike) -> Array:
+    """
+    Return the joint positions that bring the tip to a point and are nearest to given ones.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    position : array_like, shape (3,)
+        Tip position in the base frame [m].
+    q : array_like, shape (3,)
+        Joint positions [rad].
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Of all postures and whole turns, those whose furthest joint has the shortest way [rad].
+
+    Raises
+    ------
+    InvalidInputError
+        If the position is malformed.
+    UnreachableError
+        If the point is outside the workspace.
+
+    """
+    near = finite_array('q', q, (3,))
+    found = [inverse_kinematics(model, position, elbow, near, shoulder)
+             for shoulder in SHOULDERS for elbow in ELBOWS]
+    turned = [x + 2.0 * pi * np.round((near - x) / (2.0 * pi)) for x in found]
+    return min(turned, key=lambda x: float(np.abs(x - near).max()))
+
+
+def _distance_in_reach(model: RobotModel, point: tuple[float, float, float], W: float) -> float:
+    """Return W, moved onto the workspace's edge where rounding put it outside."""
+    least, most = model.reach
+    if W > most + EDGE_TOLERANCE or W < least - EDGE_TOLERANCE:
+        far = W > most
+        distance, bound = told_apart(W, most if far else least)
+        side = (f"beyond the arm's reach of {bound} m" if far
+                else f'nearer than the arm can fold, {bound} m')
+        miss = W - most if far else least - W
+        raise UnreachableError(
+            f'({point[0]:.6g}, {point[1]:.6g}, {point[2]:.6g}) m is {distance} m from the '
+            f'shoulder, {side}: it misses by {miss:.6g} m', distance=miss)
+    return min(max(W, least), most)
+
+
+def _wrapped(angle: float) -> float:
+    """Return the angle in (-pi, pi]."""
+    return angle - 2.0 * pi * ceil((angle - pi) / (2.0 * pi))

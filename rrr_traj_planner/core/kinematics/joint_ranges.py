@@ -1,0 +1,125 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Joint ranges: whole turns that bring joints into them, and the error of one that is outside."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.errors import JointRangeError, told_apart
+from rrr_traj_planner.core.kinematics.postures import Posture
+
+TURN = 2.0 * pi
+
+# A joint this close to an end of its range is at that end: a via point taught there must not be
+# refused for the rounding of its coordinates.
+RANGE_TOLERANCE = 1e-9  # rad
+
+
+def whole_turns(q: Array, limits: JointLimits, start: Array | None = None) -> Array:
+    """
+    Return what whole turns are to be added to each joint for a motion to be in its range.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, 3)
+        Joint positions [rad], each at most half a turn from the one before.
+    limits : JointLimits
+        The ranges.
+    start : ndarray, shape (3,), optional
+        Where the motion begins [rad]: the turns that lead there, in range or not. None: of those
+        that keep the range the ones with which the motion begins nearest to 0.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Angles [rad]; where none fits, the one that brings the motion's middle nearest to the
+        range's.
+
+    """
+    if start is not None:
+        return np.asarray(TURN * np.round((start - q[0]) / TURN))
+    lowest, highest = q.min(axis=0), q.max(axis=0)
+    least = np.ceil((limits.min_position - lowest - RANGE_TOLERANCE) / TURN)
+    most = np.floor((limits.max_position - highest + RANGE_TOLERANCE) / TURN)
+    turns = np.clip(np.round(-q[0] / TURN), least, most)
+    if (least > most).any():
+        with np.errstate(invalid='ignore'):  # infinite ends
+            centre = 0.5 * (limits.min_position + limits.max_position - lowest - highest)
+        centred = np.round(np.where(np.isfinite(centre), centre, -q[0]) / TURN)
+        turns = np.where(least <= most, turns, centred)
+    return np.asarray(TURN * turns)
+
+
+def out_of_range(q: Array, limits: JointLimits) -> BoolArray:
+    """
+    Return where joints are out of their ranges by more than rounding.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, 3)
+        Joint positions [rad].
+    limits : JointLimits
+        The ranges.
+
+    Returns
+    -------
+    ndarray of bool, shape (n, 3)
+        True where a joint is out of its range.
+
+    """
+    outside: BoolArray = ((q < limits.min_position - RANGE_TOLERANCE)
+                          | (q > limits.max_position + RANGE_TOLERANCE))
+    return outside
+
+
+def range_error(model: RobotModel, limits: JointLimits, where: str, joint: int, value: float,
+                posture: Posture, via_point: int = -1) -> JointRangeError:
+    """
+    Return the error of a joint that would leave its range.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        The ranges.
+    where : str
+        The place, for people.
+    joint : int
+        Which joint.
+    value : float
+        Where it would be [rad].
+    posture : Posture
+        In which posture.
+    via_point : int
+        Index of the via point to blame, -1 where none is.
+
+    Returns
+    -------
+    JointRangeError
+        To be raised.
+
+    """
+    name, low, high = model.joint_names[joint], *(
+        float(x[joint]) for x in (limits.min_position, limits.max_position))
+    at, lowest, highest = told_apart(value, low, high)
+    return JointRangeError(
+        f'{where}: {name} would be at {at} rad ({posture}), limits {lowest} to {highest} rad',
+        name, value, low if value < low else high, via_point)

@@ -1,0 +1,111 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Whole turns of one joint at consecutive points, in its range and of least time together."""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.kinematics.joint_ranges import RANGE_TOLERANCE, TURN
+from rrr_traj_planner.core.kinematics.travel_time import way_time
+
+MOST_TURNS = 5  # of a point that are tried: the nearest ones, however wide the range is
+
+# Of turns that take equally long, those of least travel are taken, then those that begin nearest
+# to 0: what a radian counts beside a second.
+TRAVEL, BEGINNING = 1e-6, 1e-9  # s/rad
+
+
+def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
+                     begun: bool) -> Array:
+    """
+    Return one joint's positions at points with the turns that keep its range and take least time.
+
+    A shortest path by dynamic programming, linear in the number of points: for each two turns of
+    a point and the next, and whether the joint rests at the former, the best way there is kept.
+
+    Parameters
+    ----------
+    limits : JointLimits
+        Range, velocity and acceleration.
+    joint : int
+        The joint.
+    q : ndarray, shape (m,)
+        Its positions with any turns, at most half a turn from one to the next [rad].
+    others : ndarray, shape (m - 1,)
+        The least time from each point to the next, that other joints take [s].
+    begun : bool
+        Whether the first position is given with its turns.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        Positions [rad]; where no turn keeps the range, nearest to it.
+
+    """
+    values, allowed = _options(limits, joint, q, begun)
+    cost = np.where(allowed, 0.0, np.inf)
+    if len(q) == 1:
+        return values[0, [np.argmin(cost[0] + BEGINNING * np.abs(values[0]))]]
+    ways = values[1:, np.newaxis] - values[:-1, :, np.newaxis]  # from point, turn, to turn
+    least = others[:, np.newaxis, np.newaxis]
+    times = np.stack([np.maximum(way_time(limits, joint, np.abs(ways), n), least)
+                      + TRAVEL * np.abs(ways) for n in range(3)], axis=1)
+    # Of ways to a turn (second axis) by a turn of the point before it (first axis), and of
+    # whether the joint rests at the latter (third axis).
+    best = np.full((*ways.shape[1:], 2), np.inf)
+    best[..., 1] = (cost[0] + BEGINNING * np.abs(values[0]))[:, np.newaxis] + cost[1]
+    came = []
+    for i in range(len(ways) - 1):
+        rests = np.sign(ways[i])[:, :, np.newaxis] * np.sign(ways[i + 1]) <= 0.0
+        best, origin = _step(best, times[i], rests, cost[i + 2])
+        came.append(origin)
+    best = best + np.stack([times[-1, 1], times[-1, 2]], axis=-1)
+    before, last, rest = (int(k) for k in np.unravel_index(best.argmin(), best.shape))
+    chosen = [last, before]
+    for origin in reversed(came):
+        former, rest = divmod(int(origin[chosen[-1], chosen[-2], rest]), 2)
+        chosen.append(former)
+    return np.asarray(values[np.arange(len(q)), chosen[::-1]])
+
+
+def _step(best: Array, times: Array, rests: BoolArray, cost: Array) -> tuple[Array, Array]:
+    """Return the best ways to the turns of the next point, and by which they came."""
+    reached, origin = [], []
+    for rest in (0, 1):  # at the point between
+        way = best + np.stack([times[rest], times[rest + 1]], axis=-1)
+        total = np.where(rests[:, np.newaxis] == rest, np.moveaxis(way, 2, 1)[..., np.newaxis],
+                         np.inf)  # turn before, rest before, turn between, turn after
+        flat = total.reshape(-1, *total.shape[2:])
+        origin.append(flat.argmin(axis=0))
+        reached.append(flat.min(axis=0) + cost)
+    return np.stack(reached, axis=-1), np.stack(origin, axis=-1)
+
+
+def _options(limits: JointLimits, joint: int, q: Array, begun: bool) -> tuple[Array, BoolArray]:
+    """Return positions with the turns that are tried at each point, and which are in range."""
+    low, high = limits.min_position[joint], limits.max_position[joint]
+    first = np.ceil((low - q - RANGE_TOLERANCE) / TURN)
+    last = np.floor((high - q + RANGE_TOLERANCE) / TURN)
+    none = first > last
+    first[none] = last[none] = np.round((0.5 * (low + high) - q[none]) / TURN)
+    if begun:
+        first[0] = last[0] = 0.0
+    nearest = np.clip(0.0, first, last)
+    first = np.maximum(first, np.minimum(nearest - MOST_TURNS // 2, last - (MOST_TURNS - 1)))
+    last = np.minimum(last, first + (MOST_TURNS - 1))
+    turns = first[:, np.newaxis] + np.arange(int((last - first).max()) + 1)
+    return q[:, np.newaxis] + TURN * turns, turns <= last[:, np.newaxis]

@@ -1,0 +1,106 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The four postures that bring the tip to a point: elbow up or down, shoulder front or back."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.forward import radial_distance
+
+Elbow = Literal['up', 'down']
+Shoulder = Literal['front', 'back']
+ELBOWS: tuple[Elbow, Elbow] = ('up', 'down')
+SHOULDERS: tuple[Shoulder, Shoulder] = ('front', 'back')
+
+# A point that misses the edge of the workspace or joint axis 1, where postures meet, by no more
+# than rounding of its coordinates is on it.
+EDGE_TOLERANCE = 1e-9  # m
+
+
+class Posture(NamedTuple):
+    """
+    A branch of the inverse kinematics.
+
+    Parameters
+    ----------
+    elbow : {'up', 'down'}
+        By the sign of cos theta_3 (5.10): up where theta_3 is within a right angle of 0. With
+        the shoulder at the front, the elbow is then above the line from shoulder to tip.
+    shoulder : {'front', 'back'}
+        Front where joint 1 turns the arm's plane towards the tip, back where the arm reaches
+        over its shoulder: joint 1 is half a turn away.
+
+    """
+
+    elbow: Elbow = 'up'
+    shoulder: Shoulder = 'front'
+
+    def __str__(self) -> str:
+        """Return the posture for an error's message."""
+        return f'elbow {self.elbow}' + (', shoulder back' if self.shoulder == 'back' else '')
+
+
+def posture_of(model: RobotModel, q: Array) -> Posture:
+    """
+    Return the posture that joint positions have.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q : ndarray, shape (3,)
+        Joint positions [rad].
+
+    Returns
+    -------
+    Posture
+        Where two meet, up before down and front before back.
+
+    """
+    return postures_of(model, q, 0.0)[0]
+
+
+def postures_of(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
+    """
+    Return every posture that joint positions have, or that is no more than a tolerance away.
+
+    Postures meet where the arm is stretched or folded, and where the tip is on joint axis 1.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q : ndarray, shape (3,)
+        Joint positions [rad].
+    tolerance : float
+        Of joint 3 from the angle at which elbows meet [rad]; times the arm's reach, of the tip
+        from joint axis 1.
+
+    Returns
+    -------
+    list of Posture
+        The posture of the positions themselves first.
+
+    """
+    bend, r = float(np.cos(q[2])), float(radial_distance(model, q))
+    elbows = ELBOWS if bend >= 0.0 else ELBOWS[::-1]
+    shoulders = SHOULDERS if r >= -EDGE_TOLERANCE else SHOULDERS[::-1]
+    return [Posture(elbow, shoulder)
+            for shoulder in shoulders[:2 if abs(r) <= tolerance * model.reach[1] else 1]
+            for elbow in elbows[:2 if abs(bend) <= tolerance else 1]]

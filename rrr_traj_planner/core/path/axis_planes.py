@@ -1,0 +1,150 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Pieces of a path in a vertical plane through joint axis 1: there joint 1 stands still."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.kinematics.along_path import PathPoints
+from rrr_traj_planner.core.kinematics.postures import EDGE_TOLERANCE, Posture
+from rrr_traj_planner.core.path.cartesian_path import CartesianPath
+
+IN_PLANE = 1e-12  # of the path's extent, by which rounding may put a point off a plane
+
+
+class AxisPlanes(NamedTuple):
+    """
+    The beginning and the end of a path where they lie in a plane through the axis.
+
+    A line that begins or ends on joint axis 1 does, and a path all of whose via points do.
+    """
+
+    first: float  # azimuth [rad] of the first plane, its positive side the path's
+    last: float
+    before: float = -np.inf  # m along the path: what comes before lies in the first plane
+    after: float = np.inf    # m along the path: what comes after lies in the last plane
+
+    def points(self, path: CartesianPath, s: Array, left: bool | BoolArray = False) -> PathPoints:
+        """
+        Return a path's points, with the planes in which they lie.
+
+        Parameters
+        ----------
+        path : CartesianPath
+            The path.
+        s, left
+            As when it is called.
+
+        Returns
+        -------
+        PathPoints
+            For the inverse kinematics.
+
+        """
+        if self.before == -np.inf and self.after == np.inf:
+            return PathPoints(*path(s, left))
+        plane = np.full(len(s), np.nan)
+        plane[(s < self.before) | (left & (s == self.before))] = self.first
+        plane[(s > self.after) | (~np.asarray(left) & (s == self.after))] = self.last
+        return PathPoints(*path(s, left), plane)
+
+
+def axis_planes(path: CartesianPath, posture: Posture, theta_1: float) -> AxisPlanes:
+    """
+    Return which parts of a path lie in a vertical plane through joint axis 1.
+
+    Parameters
+    ----------
+    path : CartesianPath
+        The path.
+    posture : Posture
+        In which the arm begins to follow it.
+    theta_1 : float
+        Where joint 1 is [rad] if all of the path lies on the axis and any angle will do.
+
+    Returns
+    -------
+    AxisPlanes
+        The parts.
+
+    """
+    outward = common_plane(path.points)
+    if outward is not None:
+        azimuth = _azimuth(outward) if outward.any() else theta_1 - (
+            np.pi if posture.shoulder == 'back' else 0.0)
+        return AxisPlanes(azimuth, azimuth, before=np.inf)
+    planes, on_axis = AxisPlanes(0.0, 0.0), np.hypot(
+        *path.points[[0, -1], :2].T) <= EDGE_TOLERANCE
+    if not on_axis.any():
+        return planes
+    before, after = path.zone_ends[0, 0], path.zone_ends[-1, 1]
+    if on_axis[0] and before > 0.0:
+        planes = planes._replace(first=_azimuth(path(before)[0]), before=float(before))
+    if on_axis[1] and after < path.length:
+        planes = planes._replace(last=_azimuth(path(after)[0]), after=float(after))
+    return planes
+
+
+def common_plane(points: Array) -> Array | None:
+    """
+    Return the vertical plane through joint axis 1 in which points lie.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Points [m].
+
+    Returns
+    -------
+    ndarray, shape (2,), or None
+        Unit vector in the plane (x, y), towards the first point that is not on the axis, zero
+        where all are on it; None where points are in different planes.
+
+    """
+    r = np.hypot(points[:, 0], points[:, 1])
+    off_axis = r > EDGE_TOLERANCE
+    if not off_axis.any():
+        return np.zeros(2)
+    outward = np.asarray(points[r.argmax(), :2] / r.max())
+    across = points[off_axis, :2] @ (outward[1], -outward[0])
+    if (np.abs(across) > IN_PLANE * np.ptp(points, axis=0).max()).any():
+        return None
+    return outward if points[off_axis.argmax(), :2] @ outward > 0.0 else -outward
+
+
+def passes_axis(points: Array) -> bool:
+    """
+    Return whether a path may pass joint axis 1 from one side to the other, joint 1 at rest.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Via points [m].
+
+    Returns
+    -------
+    bool
+        True where all are in a vertical plane through the axis, on both sides of it.
+
+    """
+    outward = common_plane(points)
+    return outward is not None and bool((points[:, :2] @ outward < -EDGE_TOLERANCE).any())
+
+
+def _azimuth(p: Array) -> float:
+    return float(np.arctan2(p[1], p[0]))

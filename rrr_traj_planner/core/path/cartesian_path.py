@@ -1,0 +1,224 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A path of the tip: straight lines and curved zones through every via point; no time in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import (
+    Array,
+    BoolArray,
+    IntArray,
+    make_read_only,
+    parameter_values,
+    ReadOnlyArrays,
+)
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.path.deviation import polyline_deviation
+from rrr_traj_planner.core.path.tangent_lines import Tangents
+
+# A zone no longer than this, between lines that differ no more, is left out.
+SHORTEST_ZONE = 1e-13  # m
+SMALLEST_TURN = 5e-13  # rad, to either side of the via point
+ROUNDING = 1e-9        # of the path's length, by which a place may be outside
+
+
+class Zones(Protocol):
+    """Curved zones of least radius 1, each in a plane of its own, the via point its origin."""
+
+    before: Array  # length before the via point, in least radii, shape (k,)
+    after: Array
+
+    def at(self, zone: IntArray, sigma: Array) -> Array:
+        """
+        Return x along the tangent and y along the normal, and three derivatives.
+
+        Parameters
+        ----------
+        zone : ndarray of int, shape (m,)
+            Which zone.
+        sigma : ndarray, shape (m,)
+            Length from the via point, in least radii.
+
+        Returns
+        -------
+        ndarray, shape (4, 2, m)
+            Position and derivatives by sigma.
+
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class CartesianPath(ReadOnlyArrays):
+    """
+    Lines and curved zones, one zone at each interior via point, by arc length s.
+
+    Made by `line_arc` and `line_polynomial` in `path_design`.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Via points [m].
+    radii_asked, radii : ndarray, shape (n - 2,)
+        Least radius of each zone [m]: asked for, and used where that would overlap a neighbour.
+    lines : Tangents
+        The n - 1 lines between the zones.
+    tangent, normal : ndarray, shape (n - 2, 3)
+        Unit vectors of the path at the interior via points (5.56, 5.64).
+    zones : Zones
+        Shapes of the zones.
+
+    """
+
+    points: Array
+    radii_asked: Array
+    radii: Array
+    lines: Tangents
+    tangent: Array
+    normal: Array
+    zones: Zones
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        super().__post_init__()
+        make_read_only((self.via_s, self.zone_ends))
+
+    @cached_property
+    def _bounds(self) -> Array:
+        """Places where the pieces begin and end: line, zone, line, ..., line."""
+        before, after = self._zone_lengths
+        widths = np.zeros(2 * len(self.lines.direction) - 1)
+        widths[::2] = np.maximum(self.lines.length, 0.0)
+        widths[1::2] = before + after
+        return np.concatenate(([0.0], np.cumsum(widths)))
+
+    @cached_property
+    def _zone_lengths(self) -> tuple[Array, Array]:
+        """Lengths of the zones before and after their via points [m]."""
+        before, after = self.radii * self.zones.before, self.radii * self.zones.after
+        none = (before + after <= 2.0 * SHORTEST_ZONE) & (self.lines.angle <= SMALLEST_TURN)
+        return np.where(none, 0.0, before), np.where(none, 0.0, after)
+
+    @property
+    def length(self) -> float:
+        """Length of the path [m]."""
+        return float(self._bounds[-1])
+
+    @cached_property
+    def via_s(self) -> Array:
+        """Places of the via points along the path [m], shape (n,)."""
+        inner = self._bounds[1:-1:2] + self._zone_lengths[0]
+        return np.concatenate(([0.0], inner, self._bounds[-1:]))
+
+    @cached_property
+    def zone_ends(self) -> Array:
+        """Places where each zone begins and ends [m], shape (n - 2, 2); equal where none is."""
+        return np.stack((self._bounds[1:-1:2], self._bounds[2:-1:2]), axis=1)
+
+    @property
+    def joins(self) -> Array:
+        """Places where pieces meet [m], increasing; where curvature steps if zones are arcs."""
+        ends = self.zone_ends[self.zone_ends[:, 1] > self.zone_ends[:, 0]]
+        joins = np.unique(ends)
+        return joins[(joins > 0.0) & (joins < self.length)]
+
+    @property
+    def shrunk(self) -> IntArray:
+        """Numbers of the via points whose radius is less than what was asked for."""
+        return np.flatnonzero(self.radii < self.radii_asked) + 1
+
+    @cached_property
+    def deviation(self) -> Array:
+        """Largest distance from the polyline near each interior via point [m]."""
+        return polyline_deviation(self.points, lambda s: self(s)[0], self.via_s, self.zone_ends)
+
+    def __call__(self, s: ArrayLike, left: bool | BoolArray = False) -> tuple[
+            Array, Array, Array, Array]:
+        """
+        Return position and its first three derivatives by arc length.
+
+        Parameters
+        ----------
+        s : array_like, shape (m,) or ()
+            Places along the path [m].
+        left : bool or ndarray of bool, shape (m,)
+            At a join, the values of the piece that ends there instead of the one that begins.
+
+        Returns
+        -------
+        tuple of ndarray, shape (m, 3) or (3,)
+            p [m], dp/ds [1], d2p/ds2 [1/m], d3p/ds3 [1/m^2].
+
+        Raises
+        ------
+        InvalidInputError
+            If a place is not on the path by more than rounding.
+
+        """
+        places = parameter_values('s', s)
+        flat = self._on_path(np.atleast_1d(places))
+        # Of pieces without length none is found: from the left and from the right alike.
+        inner = self._bounds[1:-1]
+        piece = np.where(left, np.searchsorted(inner, flat, side='left'),
+                         np.searchsorted(inner, flat, side='right'))
+        values = np.zeros((4, len(flat), 3))
+        self._fill_lines(values, flat, piece)
+        self._fill_zones(values, flat, piece)
+        if places.ndim == 0:
+            values = values[:, 0]
+        return values[0], values[1], values[2], values[3]
+
+    def _on_path(self, s: Array) -> Array:
+        """Return places moved onto the path where rounding put them outside."""
+        room = ROUNDING * self.length
+        bad = ~((s >= -room) & (s <= self.length + room))
+        if bad.any():
+            place, first, last = told_apart(s[bad][0], 0.0, self.length)
+            raise InvalidInputError(f's is {place} m, must be on the path, {first} to {last} m')
+        return np.clip(s, 0.0, self.length)
+
+    def _fill_lines(self, values: Array, s: Array, piece: IntArray) -> None:
+        """Enter the samples on lines."""
+        at = np.flatnonzero(piece % 2 == 0)
+        line = piece[at] // 2
+        way = (s[at] - self._bounds[piece[at]])[:, np.newaxis]
+        values[0, at] = self.lines.start[line] + way * self.lines.direction[line]
+        values[1, at] = self.lines.direction[line]
+
+    def _fill_zones(self, values: Array, s: Array, piece: IntArray) -> None:
+        """Enter the samples in curved zones."""
+        at = np.flatnonzero(piece % 2 == 1)
+        if not len(at):
+            return
+        zone = piece[at] // 2
+        rho = self.radii[zone]
+        x, y = np.moveaxis(self.zones.at(zone, self._sigma(s[at], piece[at])), 1, 0)
+        power = rho ** (1.0 - np.arange(4.0))[:, np.newaxis]
+        values[:, at] = ((power * x)[..., np.newaxis] * self.tangent[zone]
+                         + (power * y)[..., np.newaxis] * self.normal[zone])
+        values[0, at] += self.points[zone + 1]
+
+    def _sigma(self, s: Array, piece: IntArray) -> Array:
+        """Return lengths from the via point in radii, at the ends of a zone exactly its own."""
+        zone = piece // 2
+        first, last = -self.zones.before[zone], self.zones.after[zone]
+        sigma = np.clip((s - self.via_s[zone + 1]) / self.radii[zone], first, last)
+        sigma = np.where(s == self._bounds[piece], first, sigma)
+        return np.where(s == self._bounds[piece + 1], last, sigma)

@@ -1,0 +1,112 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Joint positions along a path of the tip, with their derivatives by arc length."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array, finite_array, joint_values
+from rrr_traj_planner.core.errors import LimitViolationError, told_apart, UnreachableError
+from rrr_traj_planner.core.kinematics.along_path import JointPath, PathPoints, unlimited_joint_path
+from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error, whole_turns
+from rrr_traj_planner.core.kinematics.postures import EDGE_TOLERANCE, Posture
+
+# A tip this near to joint axis 1 or to an edge of the workspace would need joints that turn at
+# once for the tip to move on.
+LEAST_CLEARANCE = EDGE_TOLERANCE  # m
+
+
+def joint_path(model: RobotModel, limits: JointLimits,
+               derivatives: tuple[Array, Array, Array, Array], posture: Posture,
+               start: ArrayLike | None = None) -> JointPath:
+    """
+    Return joint positions along a path, in one posture and without a jump.
+
+    Whole turns are added to each joint for the path as a whole, so that it is in its range.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Ranges of the joints.
+    derivatives : tuple of ndarray, shape (n, 3)
+        Position of the tip and three derivatives by arc length, in the path's order, no two
+        samples half a revolution of joint 1 apart.
+    posture : Posture
+        The posture.
+    start : array_like, shape (3,), optional
+        As in `whole_turns`.
+
+    Returns
+    -------
+    JointPath
+        Joint positions and derivatives.
+
+    Raises
+    ------
+    InvalidInputError
+        If a shape is wrong.
+    UnreachableError
+        If a sample is outside the workspace, or on its edge.
+    LimitViolationError
+        If a sample is on joint axis 1, or a joint leaves its range; with the sample's number.
+
+    """
+    points = PathPoints(*(joint_values(n, v) for n, v in zip(PathPoints._fields, derivatives)))
+    refuse_singular(model, points.p)
+    path = unlimited_joint_path(model, points, posture)
+    begun = None if start is None else finite_array('start', start, (3,))
+    path = path._replace(q=path.q + whole_turns(path.q, limits, begun))
+    for i, j in np.argwhere(out_of_range(path.q, limits)).tolist():
+        raise range_error(model, limits, f'sample {i}', j, float(path.q[i, j]), posture)
+    return path
+
+
+def refuse_singular(model: RobotModel, p: Array) -> None:
+    """
+    Refuse samples from which the arm could not move the tip on.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    p : ndarray, shape (n, 3)
+        Positions of the tip [m].
+
+    Raises
+    ------
+    UnreachableError
+        If a sample is outside the workspace, or on its edge.
+    LimitViolationError
+        If a sample is on joint axis 1.
+
+    """
+    W = np.linalg.norm(p - (0.0, 0.0, model.d1), axis=1)
+    least, most = model.reach
+    miss = np.maximum(W - most, least - W) + LEAST_CLEARANCE
+    for i in np.flatnonzero(miss > 0.0):
+        distance, lowest, highest = told_apart(W[i], least, most)
+        raise UnreachableError(
+            f'sample {i} is {distance} m from the shoulder, must be within {lowest} to '
+            f'{highest} m', distance=max(float(miss[i]) - LEAST_CLEARANCE, 0.0))
+    r = np.hypot(p[:, 0], p[:, 1])
+    for i in np.flatnonzero(r < LEAST_CLEARANCE):
+        raise LimitViolationError(
+            f'sample {i} is on joint axis 1: {model.joint_names[0]} would have to turn at once',
+            model.joint_names[0], float(r[i]), LEAST_CLEARANCE)

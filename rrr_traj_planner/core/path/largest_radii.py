@@ -1,0 +1,111 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The largest radii whose path stays within a deviation from the polyline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import never, ShouldStop
+from rrr_traj_planner.core.errors import ConvergenceError
+from rrr_traj_planner.core.path.cartesian_path import CartesianPath
+from rrr_traj_planner.core.path.design import check_points
+from rrr_traj_planner.core.scalars import positive
+
+# A turn so slight that its radius would be more than this many times the polyline's length.
+MOST_LENGTHS = 10.0
+ROUNDS = 30
+MOST_POWER = 4.0  # of the radius that a deviation is thought to grow with
+TOLERANCE = 1e-4  # relative, by which the deviation may stay below the one allowed
+
+
+def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: ArrayLike,
+                  max_deviation: float, should_stop: ShouldStop = never) -> CartesianPath:
+    """
+    Return the path with the largest radii that keep a deviation at every point.
+
+    Parameters
+    ----------
+    family : callable
+        `line_arc` or `line_polynomial`.
+    points : array_like, shape (n, 3)
+        Via points [m].
+    max_deviation : float
+        Largest distance between path and polyline [m].
+    should_stop : callable
+        Asked in every round; once it answers True, radii only shrink, and only where they must.
+
+    Returns
+    -------
+    CartesianPath
+        Its `radii` are the largest; its `deviation` is at the bound but where a radius was
+        limited by a neighbouring zone, or by MOST_LENGTHS.
+
+    Raises
+    ------
+    InvalidInputError
+        If the deviation is not positive, or no path passes the points without a stop.
+    ConvergenceError
+        If the radii were not found.
+
+    """
+    points = check_points(points)
+    max_deviation = positive('max_deviation', max_deviation, 'm')
+    legs = np.diff(points, axis=0)
+    lengths = np.linalg.norm(legs, axis=1)
+    u = legs / lengths[:, np.newaxis]
+    half = 0.5 * np.linalg.norm(u[1:] - u[:-1], axis=1)  # sine of half the turn
+    most = np.full(len(points) - 2, MOST_LENGTHS * lengths.sum())
+    # The deviation of an arc between long legs, and half the leg that an arc needs.
+    with np.errstate(divide='ignore'):
+        radii = np.minimum(max_deviation / (1.0 - np.sqrt(np.maximum(1.0 - half ** 2, 0.0))),
+                           np.minimum(lengths[1:], lengths[:-1]) / (2.0 * half))
+    return _adjusted(family, points, np.minimum(radii, most), most, max_deviation, should_stop)
+
+
+def _adjusted(family: Callable[[Array, ArrayLike], CartesianPath], points: Array, radii: Array,
+              most: Array, max_deviation: float, should_stop: ShouldStop) -> CartesianPath:
+    """Return the path after its radii are scaled until they use the deviation up."""
+    power, before = np.ones(len(radii)), None
+    for round_ in range(2 * ROUNDS):
+        path = family(points, radii)
+        power = power if before is None else _power(before, path, power)
+        before = path
+        # What was shrunk stays so: from here it can only become smaller.
+        most = np.where(path.radii < path.radii_asked, path.radii, most)
+        with np.errstate(divide='ignore'):
+            factor = max_deviation * (1.0 - 0.5 * TOLERANCE) / path.deviation
+        wanted = np.minimum(path.radii * np.clip(factor, 0.5, 2.0) ** (1.0 / power), most)
+        kept = path.deviation <= max_deviation
+        # Neighbours may rob each other of room: after some time radii only shrink.
+        settled = should_stop() or round_ >= ROUNDS
+        if kept.all() and (settled or (wanted <= path.radii * (1.0 + TOLERANCE)).all()):
+            return path
+        radii = np.where(kept, path.radii, wanted) if settled else wanted
+    raise ConvergenceError(
+        f'largest radii not found: deviation is {path.deviation.tolist()} m after {2 * ROUNDS} '
+        f'rounds, {max_deviation:.6g} m wanted')
+
+
+def _power(before: CartesianPath, path: CartesianPath, known: Array) -> Array:
+    """Return the powers of the radii that deviations grow with, from two paths."""
+    with np.errstate(divide='ignore', invalid='ignore'):
+        larger = np.log(path.radii / before.radii)
+        found = np.log(path.deviation / before.deviation) / larger
+    told = np.isfinite(found) & (np.abs(larger) > TOLERANCE)
+    return np.where(told, np.clip(found, 1.0, MOST_POWER), known)

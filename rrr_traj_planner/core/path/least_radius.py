@@ -1,0 +1,221 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The least radius of an arc at a given tip speed, and the largest speed on it (5.4.1)."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.dynamics.rigid_body import (
+    coriolis_torque,
+    gravity_torque,
+    inertia_matrix,
+)
+from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, told_apart
+from rrr_traj_planner.core.kinematics.forward import jacobian, jacobian_rate
+from rrr_traj_planner.core.scalars import not_negative, positive
+
+Floats: TypeAlias = NDArray[np.floating[Any]]
+
+UNIT_TOLERANCE = 1e-9     # of the directions' lengths and of their right angle
+SINGULAR = 1e-9           # relative volume of the Jacobian below which a pose is singular
+ROUNDING = 1e-12          # relative, for a limit that is just met
+
+
+class Bound(NamedTuple):
+    """The extreme value of a radius or a speed, and the limit that stops it there."""
+
+    value: float
+    joint: int     # -1 where nothing stops it
+    quantity: str  # 'effort', 'acceleration', 'velocity', or empty
+
+
+class _Row(NamedTuple):
+    """A quantity of one joint that is affine in x and must stay within its limit."""
+
+    joint: int
+    quantity: str
+    unit: str
+    base: float
+    slope: float
+    limit: float
+
+
+def least_radius(model: RobotModel, limits: JointLimits, q: ArrayLike, tangent: ArrayLike,
+                 normal: ArrayLike, speed: float) -> Bound:
+    """
+    Return the least radius of curvature that the arm can pass at a constant tip speed.
+
+    The problem of 5.56-5.62: minimise rho (5.55) with the tip's velocity v T, its acceleration
+    (v^2 / rho) N and every torque in its limit. Torques and joint accelerations are affine in
+    1 / rho, so the answer has a closed form. Joint velocity and acceleration limits are kept
+    too; infinite ones do not bind. Larger radii are feasible too wherever the straight line is.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits.
+    q : array_like, shape (3,)
+        Joint positions at the via point [rad].
+    tangent, normal : array_like, shape (3,)
+        Unit vectors of the path there, at a right angle.
+    speed : float
+        Of the tip, constant [m/s].
+
+    Returns
+    -------
+    Bound
+        Radius [m], 0 where nothing limits it, and which limit of which joint is met there.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is malformed.
+    LimitViolationError
+        If no radius is feasible at this speed, or the pose is singular.
+
+    """
+    q, T, N = _checked(q, tangent, normal)
+    speed = not_negative('speed', speed, 'm/s')
+    J = _regular_jacobian(model, q)
+    qd = speed * np.linalg.solve(J, T)
+    straight = np.linalg.solve(J, -jacobian_rate(model, q, qd) @ qd)
+    bend = speed ** 2 * np.linalg.solve(J, N)
+    H = inertia_matrix(model, q)
+    torque = H @ straight + coriolis_torque(model, q, qd) + gravity_torque(model, q)
+    rows = (_rows('velocity', 'rad/s', qd, np.zeros(3), limits.max_velocity)
+            + _rows('acceleration', 'rad/s^2', straight, bend, limits.max_acceleration)
+            + _rows('effort', 'N m', torque, H @ bend, limits.max_effort))
+    most = _largest(model, rows, f'at {speed:.6g} m/s')
+    return most._replace(value=1.0 / most.value if most.value > 0.0 else np.inf)
+
+
+def largest_speed(model: RobotModel, limits: JointLimits, q: ArrayLike, tangent: ArrayLike,
+                  normal: ArrayLike, radius: float) -> Bound:
+    """
+    Return the largest constant tip speed at which the arm can pass an arc.
+
+    Torques and joint accelerations are affine in the square of the speed. Lower speeds are
+    feasible too wherever the pose can be held at rest.
+
+    Parameters
+    ----------
+    model, limits, q, tangent, normal
+        As in `least_radius`.
+    radius : float
+        Of the arc [m]; infinite for a straight line.
+
+    Returns
+    -------
+    Bound
+        Speed [m/s], infinite where nothing limits it, and which limit is met there.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is malformed.
+    LimitViolationError
+        If no speed is feasible, or the pose is singular.
+
+    """
+    q, T, N = _checked(q, tangent, normal)
+    radius = positive('radius', radius, 'm', may_be_infinite=True)
+    J = _regular_jacobian(model, q)
+    rate = np.linalg.solve(J, T)  # qd for 1 m/s
+    change = np.linalg.solve(J, N / radius - jacobian_rate(model, q, rate) @ rate)
+    torque = inertia_matrix(model, q) @ change + coriolis_torque(model, q, rate)
+    rows = (_rows('velocity', 'rad^2/s^2', np.zeros(3), rate ** 2, limits.max_velocity ** 2)
+            + _rows('acceleration', 'rad/s^2', np.zeros(3), change, limits.max_acceleration)
+            + _rows('effort', 'N m', gravity_torque(model, q), torque, limits.max_effort))
+    most = _largest(model, rows, f'on a radius of {radius:.6g} m')
+    return most._replace(value=float(np.sqrt(most.value)))
+
+
+def _rows(quantity: str, unit: str, base: Floats, slope: Floats, limit: Floats) -> list[_Row]:
+    """Return a row for each joint that has a limit."""
+    return [_Row(j, quantity, unit, float(base[j]), float(slope[j]), float(limit[j]))
+            for j in range(3) if np.isfinite(limit[j])]
+
+
+def _largest(model: RobotModel, rows: list[_Row], where: str) -> Bound:
+    """Return the largest x >= 0 at which |base + slope x| <= limit in every row."""
+    least, most = Bound(0.0, -1, ''), Bound(np.inf, -1, '')
+    first = None
+    for row in rows:
+        low, high = _interval(row)
+        if low > high or high < 0.0:
+            raise _violation(model, row, max(least.value, 0.0), where)
+        if low > least.value:
+            least, first = Bound(low, row.joint, row.quantity), row
+        if high < most.value:
+            most = Bound(high, row.joint, row.quantity)
+    if first is not None and least.value > most.value * (1.0 + ROUNDING):
+        raise _violation(model, first, most.value, where)
+    return most
+
+
+def _interval(row: _Row) -> tuple[float, float]:
+    """Return between which x a row keeps its limit; an empty interval where it never does."""
+    room = row.limit * (1.0 + ROUNDING)
+    if row.slope == 0.0:
+        return (-np.inf, np.inf) if abs(row.base) <= room else (np.inf, -np.inf)
+    ends = (-room - row.base) / row.slope, (room - row.base) / row.slope
+    return min(ends), max(ends)
+
+
+def _violation(model: RobotModel, row: _Row, x: float, where: str) -> LimitViolationError:
+    """Return the error of a joint that cannot keep its limit."""
+    value, limit, unit = abs(row.base + row.slope * x), row.limit, row.unit
+    name = model.joint_names[row.joint]
+    needed, most = told_apart(value, limit)
+    return LimitViolationError(
+        f'{where} {name} would need {row.quantity} {needed} {unit} at the least, limit '
+        f'{most} {unit}', name, value, limit)
+
+
+def _checked(q: ArrayLike, tangent: ArrayLike, normal: ArrayLike) -> tuple[Array, Array, Array]:
+    """Return the pose and the directions, checked."""
+    q = finite_array('q', q, (3,))
+    T, N = finite_array('tangent', tangent, (3,)), finite_array('normal', normal, (3,))
+    for name, vector in (('tangent', T), ('normal', N)):
+        length = float(np.linalg.norm(vector))
+        if abs(length - 1.0) > UNIT_TOLERANCE:
+            raise InvalidInputError(f'{name} has length {length:.12g}, must have 1')
+    if abs(float(T @ N)) > UNIT_TOLERANCE:
+        raise InvalidInputError(
+            f'tangent and normal are not at a right angle: their product is {T @ N:.3g}')
+    return q, T, N
+
+
+def _regular_jacobian(model: RobotModel, q: Array) -> Array:
+    """Return the Jacobian of a pose that is not singular."""
+    J = jacobian(model, q)
+    reach = model.reach[1]
+    radius = abs(float(model.a2 * np.cos(q[1]) + model.d4 * np.sin(q[1] + q[2])))
+    for joint, size, why in ((0, radius / reach, 'the tip is on joint axis 1'),
+                             (2, abs(float(np.cos(q[2]))), 'the arm is stretched or folded')):
+        if size <= SINGULAR:
+            name = model.joint_names[joint]
+            raise LimitViolationError(
+                f'{why}: {name} at {q[joint]:.6g} rad cannot give the tip every velocity',
+                name, size, SINGULAR)
+    return J

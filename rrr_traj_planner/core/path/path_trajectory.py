@@ -1,0 +1,265 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A motion along a path of the tip: the path's geometry, and its length as a function of time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import (
+    Array,
+    BoolArray,
+    make_read_only,
+    parameter_values,
+    ReadOnlyArrays,
+)
+from rrr_traj_planner.core.kinematics.along_path import (
+    joint_path_but_turns,
+    JointPath,
+    unlimited_joint_path,
+)
+from rrr_traj_planner.core.kinematics.joint_ranges import whole_turns
+from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
+from rrr_traj_planner.core.path.cartesian_path import CartesianPath
+from rrr_traj_planner.core.scalars import positive
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile
+from rrr_traj_planner.core.trajectory.torque import maximum_over_time
+from rrr_traj_planner.core.trajectory.trajectory import Peaks, times_within, Trajectory
+
+STEPS_PER_PIECE = 24   # of the path, at which whole turns of the joints are remembered
+STEPS_PER_KNOT = 6     # of the time between knots, at which extremes are looked for
+FAR = 1e2              # rad: makes positions positive, as what maxima are looked for must be
+LEAST_STEP = 1e-6      # rad/s^2: what is less is rounding
+BEFORE = 1e-9          # s before a knot, where what steps there still has its old value
+
+
+@dataclass(frozen=True, eq=False)
+class ArmPath(ReadOnlyArrays):
+    """
+    A path of the tip as one arm follows it, in one posture.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Whose ranges say how many whole turns each joint has made.
+    path : CartesianPath
+        The path, within the workspace and the ranges.
+    posture : Posture
+        The posture.
+    start : ndarray, shape (3,), optional
+        As in `whole_turns`.
+
+    """
+
+    model: RobotModel
+    limits: JointLimits
+    path: CartesianPath
+    posture: Posture
+    start: Array | None = None
+
+    @cached_property
+    def _planes(self) -> AxisPlanes:
+        """Where joint 1 stands still in a plane with its axis."""
+        return axis_planes(
+            self.path, self.posture, 0.0 if self.start is None else float(self.start[0]))
+
+    @cached_property
+    def _turning(self) -> tuple[Array, Array]:
+        """Places along the path, and joint positions there with their whole turns."""
+        knots = np.unique(np.concatenate((self.path.via_s, self.path.joins)))
+        share = np.arange(STEPS_PER_PIECE) / STEPS_PER_PIECE
+        s = (knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * share).ravel()
+        s = np.concatenate((s, knots[-1:]))
+        q = unlimited_joint_path(self.model, self._planes.points(self.path, s), self.posture).q
+        return s, q + whole_turns(q, self.limits, self.start)
+
+    def __call__(self, s: Array, left: bool | BoolArray = False) -> JointPath:
+        """
+        Return joint positions and their derivatives by arc length.
+
+        Parameters
+        ----------
+        s : ndarray, shape (m,)
+            Places along the path [m], in any order.
+        left : bool or ndarray of bool, shape (m,)
+            At a join, the values of the piece that ends there.
+
+        Returns
+        -------
+        JointPath
+            Of shape (m, 3) each.
+
+        """
+        found = joint_path_but_turns(
+            self.model, self._planes.points(self.path, s, left), self.posture)
+        places, known = self._turning
+        near = np.stack([np.interp(s, places, known[:, j]) for j in range(3)], axis=1)
+        turns = np.round((near - found.q) / (2.0 * np.pi))
+        return found._replace(q=found.q + 2.0 * np.pi * turns)
+
+
+class PathTrajectory(Trajectory):
+    """
+    A motion of the tip along a path.
+
+    Parameters
+    ----------
+    arm_path : ArmPath
+        The path in joint space.
+    progress : JointProfile
+        Length of the path behind the tip [m] over time; from 0 to all of it.
+    via_times : ndarray
+        When each via point is passed [s].
+    join_times : ndarray
+        When each join of the path is passed [s].
+    note : str
+        See `Trajectory`.
+
+    """
+
+    def __init__(self, arm_path: ArmPath, progress: JointProfile, via_times: Array,
+                 join_times: Array, note: str = '') -> None:
+        self.arm_path, self.progress, self.note = arm_path, progress, note
+        self.via_times, self.join_times = via_times, _at_knots(progress, join_times)
+        make_read_only((self.via_times, self.join_times))
+        self.duration = progress.duration
+
+    def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """Return position, velocity, acceleration and jerk; see `Trajectory`."""
+        times = parameter_values('t', t)
+        found = self._with_speed(np.atleast_1d(times))[1:]
+        return tuple(v[0] for v in found) if times.ndim == 0 else found
+
+    def _with_speed(self, t: Array) -> tuple[Array, Array, Array, Array, Array]:
+        """Return the tip's speed [m/s], (n, 1), then what a call returns, at n times."""
+        s, sd, sdd, sddd = (
+            f[:, np.newaxis] for f in self.progress(np.clip(t, 0.0, self.duration)))
+        length = self.arm_path.path.length
+        q, dq, ddq, dddq = self.arm_path(np.clip(s[:, 0], 0.0, length))
+        qd = dq * sd
+        qdd = ddq * sd ** 2 + dq * sdd
+        qddd = sd * (dddq * sd ** 2 + 3.0 * ddq * sdd) + dq * sddd
+        resting = (t < 0.0) | (t >= self.duration)
+        for derivative in (qd, qdd, qddd):
+            derivative[resting] = 0.0
+        return sd, q, qd, qdd, qddd
+
+    @property
+    def knots(self) -> Array:
+        """Return the ends of the pieces of progress; see `Trajectory`."""
+        return self.progress.knots
+
+    @property
+    def step_times(self) -> Array:
+        """When joins are passed at which curvature steps [s]; see `Trajectory`."""
+        stepping = self.acceleration_steps().max(axis=1, initial=0.0) > LEAST_STEP
+        return np.asarray(self.join_times[stepping])
+
+    def peaks(self) -> Peaks:
+        """Return the extremes over the continuous motion, both sides of what steps included."""
+        return self._peaks
+
+    @cached_property
+    def _peaks(self) -> Peaks:
+        return self._measured(lambda sd, q, qd, qdd: np.zeros((len(sd), 0)))[0]
+
+    def maxima(self, quantities: Callable[[Array, Array, Array, Array], Array]) -> Array:
+        """
+        Return the maxima of further quantities, found along with the peaks, which are kept.
+
+        Parameters
+        ----------
+        quantities : callable
+            Of the tip's speed, (n, 1), positions, velocities and accelerations, (n, 3): values
+            of shape (n, K).
+
+        Returns
+        -------
+        ndarray, shape (K,)
+            Over the continuous motion.
+
+        """
+        self.__dict__['_peaks'], found = self._measured(quantities)
+        return found
+
+    def _measured(self, quantities: Callable[[Array, Array, Array, Array], Array]) -> tuple[
+            Peaks, Array]:
+        grid = times_within(self, STEPS_PER_KNOT)
+        grid = np.unique(np.concatenate((grid, self.knots[1:] - BEFORE)))
+
+        def values(t: Array) -> Array:
+            sd, q, qd, qdd, qddd = self._with_speed(t)
+            return np.concatenate((np.abs(qd), np.abs(qdd), np.abs(qddd), FAR - q, FAR + q,
+                                   quantities(sd, q, qd, qdd)), axis=1)
+
+        found = maximum_over_time(values, grid).value
+        velocity, acceleration, jerk, least, most = found[:15].reshape(5, 3)
+        return Peaks(velocity=velocity, acceleration=acceleration, jerk=jerk,
+                     min_position=FAR - least, max_position=most - FAR), found[15:]
+
+    def stretched(self, factor: float) -> PathTrajectory:
+        """Return the same path run through at another rate; see `Trajectory`."""
+        factor = positive('factor', factor)
+        slower = PathTrajectory(self.arm_path, self.progress.stretched(factor),
+                                self.via_times * factor, self.join_times * factor, self.note)
+        if '_peaks' in self.__dict__:  # they are dear
+            p = self._peaks
+            slower.__dict__['_peaks'] = Peaks(
+                p.velocity / factor, p.acceleration / factor ** 2, p.jerk / factor ** 3,
+                p.min_position, p.max_position)
+        return slower
+
+    def noted(self, note: str) -> PathTrajectory:
+        """
+        Return the same motion with a note.
+
+        Parameters
+        ----------
+        note : str
+            What there is to be said of it.
+
+        Returns
+        -------
+        PathTrajectory
+            Otherwise the same.
+
+        """
+        found = copy(self)
+        found.note = note
+        return found
+
+    def acceleration_steps(self) -> Array:
+        """Return by how much joint accelerations step at the joins [rad/s^2], (joins, 3)."""
+        joins, speed = self.arm_path.path.joins, self.progress(self.join_times)[1]
+        change = self.arm_path(joins).ddq - self.arm_path(joins, left=True).ddq
+        return np.asarray(np.abs(change) * speed[:, np.newaxis] ** 2)
+
+
+def _at_knots(progress: JointProfile, times: Array) -> Array:
+    """Return the knots nearest to times: to rounding, a join's time might be before its knot."""
+    knots = progress.knots
+    after = np.clip(np.searchsorted(knots, times), 1, len(knots) - 1)
+    before = times - knots[after - 1] <= knots[after] - times
+    return np.asarray(knots[after - before])

@@ -1,0 +1,216 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What strains the simulated arm: motors at their limits, joints on their stops."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf
+from typing import NamedTuple
+
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.simulation.joint_stops import Contact
+from rrr_traj_planner.core.states import Triple
+
+# A motor is saturated where more than this is wanted of it, as a part of its limit. A motion that
+# is planned at the limit wants up to 1.004 of it while it is followed.
+SATURATED = 1.01
+
+# A joint hits its stop at this speed [rad/s], and is pressed against it with this part of its
+# motor's limit, or of the motor's torque where that has none. A motion that ends there touches it
+# more gently, with the noise of encoders of 1e-5 rad too.
+HIT, PRESSED = 0.05, 0.05
+
+# No stop is pressed with less, whatever the motor [N m].
+LEAST_PRESSURE = 1e-3
+
+NONE: Triple = (0.0, 0.0, 0.0)
+
+
+STOP_TEXTS = {'hit': 'hit {} at {:.4g} rad/s', 'pressed': 'is pressed against {} with {:.4g} N m'}
+
+
+class Finding(NamedTuple):
+    """Something to be told of a joint."""
+
+    kind: str
+    joint: str
+    text: str
+
+
+class Condition(NamedTuple):
+    """What strained the arm during some steps, for each joint."""
+
+    saturated: tuple[int, int, int] = (0, 0, 0)  # steps with a saturated motor
+    wanted: Triple = NONE                        # the largest torque that was wanted then [N m]
+    hit: Triple = NONE      # the largest speed at which a stop was hit [rad/s]; upper stops: > 0
+    pressed: Triple = NONE  # the largest torque against a stop [N m]; upper stops: > 0
+
+    def joined(self, other: Condition) -> Condition:
+        """
+        Return what strained the arm during these steps and others.
+
+        Parameters
+        ----------
+        other : Condition
+            Of the others.
+
+        Returns
+        -------
+        Condition
+            Steps added, the larger of each value.
+
+        """
+        a, b, c = (m + n for m, n in zip(self.saturated, other.saturated))
+        return Condition((a, b, c), *(_larger(x, y) for x, y in zip(self[1:], other[1:])))
+
+    def motors(self, joint_names: Sequence[str], limits: JointLimits) -> list[Finding]:
+        """
+        Return which motors were saturated.
+
+        Parameters
+        ----------
+        joint_names : sequence of str
+            The joints' names.
+        limits : JointLimits
+            The motors' limits.
+
+        Returns
+        -------
+        list of Finding
+            Joint, torque wanted, limit, unit.
+
+        """
+        return [Finding('saturated', name,
+                        f'{name} needs {abs(wanted):.4g} N m to follow, its motor is saturated at '
+                        f'{limit:.4g} N m')
+                for name, wanted, limit in zip(joint_names, self.wanted, limits.max_effort)
+                if wanted]
+
+    def stops(self, joint_names: Sequence[str], limits: JointLimits) -> list[Finding]:
+        """
+        Return which stops were hit or pressed.
+
+        Parameters
+        ----------
+        joint_names : sequence of str
+            The joints' names.
+        limits : JointLimits
+            The ranges, at whose ends stops or bumpers begin.
+
+        Returns
+        -------
+        list of Finding
+            Joint, stop, speed or torque, unit.
+
+        """
+        found = []
+        for name, *strains, low, high in zip(joint_names, self.hit, self.pressed,
+                                             limits.min_position, limits.max_position):
+            for (kind, text), x in zip(STOP_TEXTS.items(), strains):
+                if x:
+                    side, end = ('upper', high) if x > 0.0 else ('lower', low)
+                    stop = f'its {side} stop ({end:.6g} rad)'
+                    found.append(Finding(kind, name, f'{name} {text.format(stop, abs(x))}'))
+        return found
+
+
+SOUND = Condition()
+
+
+class ConditionMonitor:
+    """
+    Takes note of what strains an arm until it is asked.
+
+    Attributes
+    ----------
+    max_effort : tuple of 3 floats
+        The motors' limits [N m]; may be infinite, and may be set at any time.
+
+    """
+
+    def __init__(self) -> None:
+        self.max_effort: Triple = (inf, inf, inf)
+        self._condition = SOUND
+
+    def take(self) -> Condition:
+        """
+        Return what has strained the arm since the last call.
+
+        Returns
+        -------
+        Condition
+            `SOUND` itself where nothing has.
+
+        """
+        condition, self._condition = self._condition, SOUND
+        return condition
+
+    def cut(self, wanted: Triple) -> None:
+        """
+        Note a step for which motors could not give all that was wanted.
+
+        Parameters
+        ----------
+        wanted : tuple of 3 floats
+            Torques, at least one beyond its limit [N m].
+
+        """
+        over = [abs(x) > SATURATED * limit for x, limit in zip(wanted, self.max_effort)]
+        if any(over):
+            a, b, c = (int(x) for x in over)
+            self._note(Condition((a, b, c), wanted=_where(over, wanted)))
+
+    def touched(self, at: Contact, before: Contact, velocity: Triple, reaction: Triple,
+                torque: Triple) -> None:
+        """
+        Note a step at whose end joints touch their stops.
+
+        Parameters
+        ----------
+        at, before : tuple of 3 ints
+            Which stops are touched after the step and before it: 1 lower, -1 upper, 0 none.
+        velocity : tuple of 3 floats
+            Before the step [rad/s].
+        reaction : tuple of 3 floats
+            The stops' torques, mean over the step [N m].
+        torque : tuple of 3 floats
+            What acted on the joints besides [N m].
+
+        """
+        hit = [side and not was and -side * w > HIT for side, was, w in zip(at, before, velocity)]
+        least = [max(PRESSED * (limit if limit < inf else abs(x)), LEAST_PRESSURE)
+                 for limit, x in zip(self.max_effort, torque)]
+        pressed = [side and was and side * x > y
+                   for side, was, x, y in zip(at, before, reaction, least)]
+        if any(hit) or any(pressed):
+            n1, n2, n3 = reaction
+            self._note(Condition(
+                hit=_where(hit, velocity), pressed=_where(pressed, (-n1, -n2, -n3))))
+
+    def _note(self, condition: Condition) -> None:
+        self._condition = self._condition.joined(condition)
+
+
+def _where(chosen: Sequence[object], values: Triple) -> Triple:
+    """Return the values that are chosen, and 0 for the others."""
+    a, b, c = (x if choice else 0.0 for choice, x in zip(chosen, values))
+    return a, b, c
+
+
+def _larger(x: Triple, y: Triple) -> Triple:
+    """Return the value of larger magnitude of each joint."""
+    a, b, c = (max(pair, key=abs) for pair in zip(x, y))
+    return a, b, c

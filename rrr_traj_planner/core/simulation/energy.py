@@ -1,0 +1,109 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Where the arm's energy comes from and goes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+from rrr_traj_planner.core.dynamics.equations import Terms
+from rrr_traj_planner.core.states import Triple
+
+
+@dataclass
+class EnergyLedger:
+    """
+    Work done on the arm, and energy lost, since the account was opened [J].
+
+    The energy in the arm (motion, height, bumpers' springs) changes by `supplied - dissipated`.
+
+    Parameters
+    ----------
+    motors, disturbance : float
+        Work of the motors and of the disturbance.
+    payload : float
+        Energy that came with changes of the arm itself (its payload, its bumpers), less what went.
+    viscous, coulomb : float
+        Lost in friction.
+    stops : float
+        Lost in impacts on hard stops and in bumpers.
+
+    """
+
+    motors: float = 0.0
+    disturbance: float = 0.0
+    payload: float = 0.0
+    viscous: float = 0.0
+    coulomb: float = 0.0
+    stops: float = 0.0
+
+    @property
+    def supplied(self) -> float:
+        """All that came in."""
+        return self.motors + self.disturbance + self.payload
+
+    @property
+    def dissipated(self) -> float:
+        """All that was lost."""
+        return self.viscous + self.coulomb + self.stops
+
+    def clear(self) -> None:
+        """Open the account anew."""
+        for entry in fields(self):
+            setattr(self, entry.name, 0.0)
+
+
+def kinetic(t: Terms, w: tuple[float, ...]) -> float:
+    """
+    Return the kinetic energy.
+
+    Parameters
+    ----------
+    t : Terms
+        The equations' terms at the pose.
+    w : tuple of 3 floats
+        Joint velocities [rad/s].
+
+    Returns
+    -------
+    float
+        [J].
+
+    """
+    w1, w2, w3 = w
+    energy: float = (0.5 * (t.H11 * w1 * w1 + t.H22 * w2 * w2 + t.H33 * w3 * w3)
+                     + t.H23 * w2 * w3)
+    return energy
+
+
+def work(torque: Triple, before: tuple[float, ...], after: tuple[float, ...]) -> float:
+    """
+    Return the work of torques that are held while the joints move.
+
+    Parameters
+    ----------
+    torque : tuple of 3 floats
+        [N m].
+    before, after : tuple of floats
+        States, or positions [rad].
+
+    Returns
+    -------
+    float
+        [J], exact.
+
+    """
+    return (torque[0] * (after[0] - before[0]) + torque[1] * (after[1] - before[1])
+            + torque[2] * (after[2] - before[2]))

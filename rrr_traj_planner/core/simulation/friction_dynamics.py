@@ -1,0 +1,258 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+A time step of an arm with friction, bumpers and hard stops, from event to event.
+
+Between events no joint changes between rest and motion, reaches a hard stop, or meets or leaves
+its bumper, so that the motion is smooth. Events are located to 1e-12 rad or rad/s; friction and
+stops then decide together which joints rest (`reactions`). A joint that rests breaks loose at the
+start of a step only: up to a step late, without any error of energy, since rest does no work.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf
+from typing import NamedTuple
+
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.dynamics.equations import Constants, Terms
+from rrr_traj_planner.core.simulation.energy import EnergyLedger, kinetic
+from rrr_traj_planner.core.simulation.friction_step import Load, Lost, rates, resisted_step
+from rrr_traj_planner.core.simulation.joint_stops import Contact, contact, FREE, held, permitted
+from rrr_traj_planner.core.simulation.root_finding import event, PAST
+from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+from rrr_traj_planner.core.simulation.stiction import Range, resting_accelerations
+from rrr_traj_planner.core.states import State, Triple
+
+# A step is interrupted by at most this many events; what touches or rests then waits for its end.
+MOST_EVENTS = 16
+
+# A joint that would be back at its hard stop within this part of a step has not left it.
+SHORTEST_REBOUND = 0.05
+
+
+class Bounds(NamedTuple):
+    """Where joints' ranges end [rad]."""
+
+    low: Triple
+    high: Triple
+
+
+class ResistedMotion:
+    """
+    What torques do to an arm with friction and bumpers.
+
+    Parameters
+    ----------
+    k : Constants
+        The arm's constants.
+    terms : callable
+        The equations' terms at a state.
+    bounds : Bounds
+        Ends of the joints' ranges: hard stops, or where bumpers begin [rad].
+    friction : Friction
+        Of the joints.
+    bumper : SoftStops
+        Of all joints.
+    ledger : EnergyLedger
+        Where losses are entered.
+
+    """
+
+    def __init__(self, k: Constants, terms: Callable[[State], Terms],
+                 bounds: Bounds, friction: Friction, bumper: SoftStops,
+                 ledger: EnergyLedger) -> None:
+        self._constants, self._terms, self._ledger = k, terms, ledger
+        self._low, self._high = bounds
+        self._bumper = bumper
+        (v1, v2, v3), (c1, c2, c3) = friction.viscous.tolist(), friction.coulomb.tolist()
+        self._viscous, self._coulomb = (v1, v2, v3), (c1, c2, c3)
+
+    def step(self, state: State, torque: Triple, h: float) -> State:
+        """
+        Return the state after a time step.
+
+        Parameters
+        ----------
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
+        torque : tuple of 3 floats
+            Of motors and disturbance [N m], held over the step.
+        h : float
+            Length of the step [s].
+
+        Returns
+        -------
+        tuple of 6 floats
+            Positions and velocities.
+
+        """
+        hard, left = self._hard_stops(state), h
+        for _ in range(MOST_EVENTS):
+            t = self._terms(state)
+            state, load, slip = self._settled(t, state, torque, hard, SHORTEST_REBOUND * h)
+            taken, state = self._until_event(t, state, load, slip, left, hard)
+            left -= taken
+            if left <= 0.0:
+                break
+        t = self._terms(state)
+        if left > 0.0:
+            state = self._waited(t, state, torque, left, hard)
+            t = self._terms(state)
+        w = self._after_impact(t, state[3:], contact(state, *hard))
+        return state[:3] + _at_rest(w, self._coulomb)
+
+    def _hard_stops(self, state: State) -> Bounds:
+        """Return where the arm may be: one beyond a stop (it was moved) may not go further."""
+        (l1, l2, l3), (u1, u2, u3), x = self._low, self._high, self._bumper.width
+        q1, q2, q3 = state[:3]
+        return Bounds((min(l1 - x, q1), min(l2 - x, q2), min(l3 - x, q3)),
+                      (max(u1 + x, q1), max(u2 + x, q2), max(u3 + x, q3)))
+
+    def _after_impact(self, t: Terms, w: Triple, at: Contact) -> Triple:
+        """Return the velocities that hard stops permit, and enter what that takes."""
+        if at == FREE:
+            return w
+        after = permitted(t, w, at)
+        self._ledger.stops += kinetic(t, w) - kinetic(t, after)
+        return after
+
+    def _settled(self, t: Terms, state: State, torque: Triple, hard: Bounds,
+                 shortest: float) -> tuple[State, Load, Contact]:
+        """Return the state after impacts, what acts from there on, and which joints slide."""
+        at = contact(state, *hard)
+        w = _at_rest(self._after_impact(t, state[3:], at), self._coulomb)
+        (w1, w2, w3), (c1, c2, c3) = w, self._coulomb
+        q, lock = state[:3], FREE
+        slip = _signs(w, self._coulomb)
+        load = self._load(state, torque, slip)
+        if at != FREE or 0.0 in w:
+            x, _ = rates(load, t, q, w)
+            ranges = (_range(c1, w1, x[0], at[0], shortest), _range(c2, w2, x[1], at[1], shortest),
+                      _range(c3, w3, x[2], at[2], shortest))
+            a = resting_accelerations(t, x, ranges)
+            lock = (_locked(a[0], ranges[0]), _locked(a[1], ranges[1]), _locked(a[2], ranges[2]))
+            w, lock = self._brought_to_rest(t, w, lock, at)
+            slip = _signs((w[0] or a[0], w[1] or a[1], w[2] or a[2]), self._coulomb)
+            load = self._load(state, torque, slip)._replace(lock=lock)
+        return q + w, load, slip
+
+    def _brought_to_rest(self, t: Terms, w: Triple, lock: Contact,
+                         at: Contact) -> tuple[Triple, Contact]:
+        """Return velocities with the joints that rest at rest, and those joints."""
+        after = held(t, w, lock)
+        if (at[1] and at[1] * after[1] < 0.0) or (at[2] and at[2] * after[2] < 0.0):
+            # stopping one joint has thrown the other into its stop
+            lock, after = (lock[0], 1, 1), (after[0], 0.0, 0.0)
+        if after != w:
+            self._ledger.stops += kinetic(t, w) - kinetic(t, after)
+        return after, lock
+
+    def _load(self, state: State, torque: Triple, slip: Contact) -> Load:
+        """Return what acts while joints slide as they do."""
+        (c1, c2, c3), (s1, s2, s3), (n1, n2, n3) = self._coulomb, slip, torque
+        sides = self._bumper.sides(state, self._low, self._high)
+        edges = self._low
+        if sides != FREE:
+            e1, e2, e3 = (low if side > 0 else high
+                          for side, low, high in zip(sides, self._low, self._high))
+            edges = (e1, e2, e3)
+        return Load((n1 - c1 * s1, n2 - c2 * s2, n3 - c3 * s3), self._viscous, FREE, sides, edges,
+                    self._bumper)
+
+    def _until_event(self, t: Terms, state: State, load: Load, slip: Contact, h: float,
+                     hard: Bounds) -> tuple[float, State]:
+        """Return the time until something changes, or h, and the state then."""
+        def trial(x: float) -> tuple[State, Lost]:
+            return resisted_step(self._constants, t, state, load, x)
+
+        taken, (after, lost) = h, trial(h)
+        room = self._room(after, load, slip, hard)
+        if room < 0.0:
+            first = max(self._room(state, load, slip, hard), 0.0)
+            taken, (after, lost) = event(
+                trial, lambda s: self._room(s[0], load, slip, hard), first, h, room)
+        self._enter(lost, slip, state, after)
+        return taken, _inside(after, hard)
+
+    def _room(self, state: State, load: Load, slip: Contact, hard: Bounds) -> float:
+        """Return how far the arm is from the next event [rad], [rad/s]; negative past it."""
+        room = min(s * w if s else inf for s, w in zip(slip, state[3:]))
+        for i, q in enumerate(state[:3]):
+            if load.lock[i]:
+                continue
+            room = min(room, q - hard.low[i], hard.high[i] - q)
+            if self._bumper.width:
+                side = load.sides[i]
+                if side:
+                    room = min(room, side * (load.edges[i] - q))
+                else:
+                    room = min(room, q - self._low[i], self._high[i] - q)
+        return room
+
+    def _waited(self, t: Terms, state: State, torque: Triple, h: float, hard: Bounds) -> State:
+        """Return the state after a time in which all that touches or rests stays still."""
+        at = contact(state, *hard)
+        c, w = self._coulomb, state[3:]
+        lock = (int(at[0] or c[0] and abs(w[0]) <= PAST), int(at[1] or c[1] and abs(w[1]) <= PAST),
+                int(at[2] or c[2] and abs(w[2]) <= PAST))
+        before = state[:3] + self._brought_to_rest(t, w, lock, FREE)[0]
+        slip = _signs(before[3:], c)
+        load = self._load(before, torque, slip)._replace(lock=lock)
+        after, lost = resisted_step(self._constants, t, before, load, h)
+        self._enter(lost, slip, before, after)
+        return _inside(after, hard)
+
+    def _enter(self, lost: Lost, slip: Contact, before: State, after: State) -> None:
+        """Enter what a stretch of motion has lost."""
+        (c1, c2, c3), (s1, s2, s3), ledger = self._coulomb, slip, self._ledger
+        ledger.viscous += lost.viscous
+        ledger.stops += lost.bumpers
+        ledger.coulomb += (c1 * s1 * (after[0] - before[0]) + c2 * s2 * (after[1] - before[1])
+                           + c3 * s3 * (after[2] - before[2]))
+
+
+def _at_rest(w: Triple, coulomb: Triple) -> Triple:
+    """Return velocities, exactly zero where they are next to it and friction can hold them."""
+    (w1, w2, w3), (c1, c2, c3) = w, coulomb
+    return (0.0 if c1 and -PAST <= w1 <= PAST else w1, 0.0 if c2 and -PAST <= w2 <= PAST else w2,
+            0.0 if c3 and -PAST <= w3 <= PAST else w3)
+
+
+def _range(coulomb: float, w: float, x: float, side: int, shortest: float) -> Range:
+    """Return the reactions that friction and a hard stop can give a joint [N m]."""
+    friction = coulomb if w == 0.0 else 0.0
+    if w != 0.0 and side * w > -side * x * 0.5 * shortest:  # it is leaving its stop
+        side = 0
+    return (-inf if side < 0 else -friction, inf if side > 0 else friction)
+
+
+def _locked(a: float, limits: Range) -> int:
+    return int(a == 0.0 and limits[0] < limits[1])
+
+
+def _signs(w: Triple, coulomb: Triple) -> Contact:
+    """Return the directions in which joints with Coulomb friction slide."""
+    return ((w[0] > 0.0) - (w[0] < 0.0) if coulomb[0] else 0,
+            (w[1] > 0.0) - (w[1] < 0.0) if coulomb[1] else 0,
+            (w[2] > 0.0) - (w[2] < 0.0) if coulomb[2] else 0)
+
+
+def _inside(state: State, hard: Bounds) -> State:
+    """Return the state with joints beyond a hard stop set back onto it."""
+    (l1, l2, l3), (u1, u2, u3) = hard
+    q1, q2, q3 = state[:3]
+    return (min(max(q1, l1), u1), min(max(q2, l2), u2), min(max(q3, l3), u3)) + state[3:]

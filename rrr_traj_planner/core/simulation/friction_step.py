@@ -1,0 +1,135 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+One step in time with friction and bumpers, while no joint changes between rest and motion.
+
+The method is that of `time_step`; the energy lost is integrated along with the state, to the same
+order.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import NamedTuple
+
+from rrr_traj_planner.core.dynamics.equations import accelerations, Constants, Terms, terms
+from rrr_traj_planner.core.simulation.joint_stops import Contact, FREE, held
+from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+from rrr_traj_planner.core.states import State, Triple
+
+
+class Load(NamedTuple):
+    """What acts on the joints, and how, until something changes."""
+
+    torque: Triple    # constant: motors and disturbance, less Coulomb friction [N m]
+    viscous: Triple   # [N m s/rad]
+    lock: Contact     # not 0 for each joint that is held still
+    sides: Contact    # 1 for each joint in its lower bumper, -1 in its upper one
+    edges: Triple     # where those bumpers begin [rad]
+    bumper: SoftStops
+
+
+class Lost(NamedTuple):
+    """Energy that became heat during a step [J], or the power [W]."""
+
+    viscous: float
+    bumpers: float
+
+
+def rates(load: Load, t: Terms, q: Triple, w: Triple) -> tuple[Triple, Lost]:
+    """
+    Return accelerations and losses at a state.
+
+    Parameters
+    ----------
+    load : Load
+        What acts on the joints.
+    t : Terms
+        The equations' terms at the pose.
+    q, w : tuple of 3 floats
+        Positions [rad] and velocities [rad/s].
+
+    Returns
+    -------
+    accelerations : tuple of 3 floats
+        [rad/s^2].
+    losses : Lost
+        [W].
+
+    """
+    (n1, n2, n3), (v1, v2, v3), (w1, w2, w3) = load.torque, load.viscous, w
+    n = (n1 - v1 * w1, n2 - v2 * w2, n3 - v3 * w3)
+    lost = 0.0
+    if load.sides != FREE:
+        pushes = [0.0, 0.0, 0.0]
+        for i, side in enumerate(load.sides):
+            if side:
+                push, heat = load.bumper.push(side * (load.edges[i] - q[i]), -side * w[i])
+                pushes[i] = side * push
+                lost += heat
+        n = (n[0] + pushes[0], n[1] + pushes[1], n[2] + pushes[2])
+    a = accelerations(t, w1, w2, w3, *n)
+    if load.lock != FREE:
+        a = held(t, a, load.lock)
+    return a, Lost(v1 * w1 * w1 + v2 * w2 * w2 + v3 * w3 * w3, lost)
+
+
+def resisted_step(k: Constants, t: Terms, state: State, load: Load,
+                  h: float) -> tuple[State, Lost]:
+    """
+    Return the state after a time step, and what was lost on the way.
+
+    Parameters
+    ----------
+    k : Constants
+        The arm's constants.
+    t : Terms
+        The equations' terms at the state.
+    state : tuple of 6 floats
+        Positions [rad] and velocities [rad/s]; those of joints that are held must be 0.
+    load : Load
+        What acts on the joints.
+    h : float
+        Length of the step [s].
+
+    Returns
+    -------
+    state : tuple of 6 floats
+        Positions [rad] and velocities [rad/s].
+    losses : Lost
+        [J].
+
+    """
+    if all(load.lock):
+        return state, Lost(0.0, 0.0)
+    q, w, half = state[:3], state[3:], 0.5 * h
+    a, lost_a = rates(load, t, q, w)
+    middle = _along(q, half, _along(w, 0.5 * half, a))
+    t = terms(k, middle[1], middle[2], sin, cos)
+    b, lost_b = rates(load, t, middle, _along(w, half, a))
+    c, lost_c = rates(load, t, middle, _along(w, half, b))
+    end = _along(q, h, _along(w, half, c))
+    d, lost_d = rates(load, terms(k, end[1], end[2], sin, cos), end, _along(w, h, c))
+    sixth = h / 6.0
+    (a1, a2, a3), (b1, b2, b3), (c1, c2, c3), (d1, d2, d3) = a, b, c, d
+    mean = _along(w, sixth, (a1 + b1 + c1, a2 + b2 + c2, a3 + b3 + c3))
+    return _along(q, h, mean) + _along(w, sixth, (
+        a1 + 2.0 * (b1 + c1) + d1, a2 + 2.0 * (b2 + c2) + d2, a3 + 2.0 * (b3 + c3) + d3)), Lost(
+        *(sixth * (l1 + 2.0 * (l2 + l3) + l4)
+          for l1, l2, l3, l4 in zip(lost_a, lost_b, lost_c, lost_d)))
+
+
+def _along(x: Triple, h: float, rate: Triple) -> Triple:
+    return x[0] + h * rate[0], x[1] + h * rate[1], x[2] + h * rate[2]

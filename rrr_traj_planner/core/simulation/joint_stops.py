@@ -1,0 +1,130 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Hard joint stops: the arm may leave them, never pass them, and loses energy when it hits them.
+
+A stop gives whatever impulse or torque keeps its joint from moving on, and no more. Both cases
+are one problem: the permitted velocities (at an impact) or accelerations (at rest against a
+stop) that are nearest to the free ones, measured by kinetic energy. That is Moreau's law of
+inelastic impact and Gauss's principle of least constraint; since it is a projection, a stop
+never adds energy.
+"""
+
+from __future__ import annotations
+
+from rrr_traj_planner.core.dynamics.equations import Terms
+from rrr_traj_planner.core.states import State, Triple
+
+# For each joint: 1 at its lower stop, -1 at its upper one, 0 free.
+Contact = tuple[int, int, int]
+
+FREE: Contact = (0, 0, 0)
+
+
+def contact(state: State, low: Triple, high: Triple) -> Contact:
+    """
+    Return which joints are at, or beyond, a stop.
+
+    Parameters
+    ----------
+    state : tuple of 6 floats
+        Positions [rad] and velocities [rad/s].
+    low, high : tuple of 3 floats
+        Where the stops are [rad].
+
+    Returns
+    -------
+    tuple of 3 ints
+        1 at the lower stop, -1 at the upper one, 0 between.
+
+    """
+    q1, q2, q3 = state[:3]
+    return (_side(q1, low[0], high[0]), _side(q2, low[1], high[1]), _side(q3, low[2], high[2]))
+
+
+def permitted(t: Terms, x: Triple, at: Contact) -> Triple:
+    """
+    Return the permitted joint rates nearest to the free ones.
+
+    Minimises (y - x)' H (y - x) over y that moves no joint further into its stop. Joint 1 is
+    inertially uncoupled (H12 = H13 = 0).
+
+    Parameters
+    ----------
+    t : Terms
+        The equations' terms at the pose.
+    x : tuple of 3 floats
+        Free velocities [rad/s] or accelerations [rad/s^2].
+    at : tuple of 3 ints
+        The stops in contact.
+
+    Returns
+    -------
+    tuple of 3 floats
+        Rates; exactly 0.0 for a joint that its stop holds.
+
+    """
+    (x1, x2, x3), (s1, s2, s3) = x, at
+    if s1 * x1 < 0.0:
+        x1 = 0.0
+    stopped_2, stopped_3 = s2 * x2 < 0.0, s3 * x3 < 0.0
+    if not (stopped_2 or stopped_3):
+        return x1, x2, x3
+    if stopped_2:
+        other = x3 + t.H23 / t.H33 * x2  # the rate that joint 3's own momentum keeps
+        if s3 * other >= 0.0:
+            return x1, 0.0, other
+    if stopped_3:
+        other = x2 + t.H23 / t.H22 * x3
+        if s2 * other >= 0.0:
+            return x1, other, 0.0
+    return x1, 0.0, 0.0
+
+
+def held(t: Terms, x: Triple, lock: Contact) -> Triple:
+    """
+    Return accelerations with some joints held still, whatever that takes.
+
+    Parameters
+    ----------
+    t : Terms
+        The equations' terms at the pose.
+    x : tuple of 3 floats
+        Free accelerations [rad/s^2].
+    lock : tuple of 3 ints
+        Not 0 for each joint that is held.
+
+    Returns
+    -------
+    tuple of 3 floats
+        Accelerations [rad/s^2].
+
+    """
+    (x1, x2, x3), (s1, s2, s3) = x, lock
+    if s1:
+        x1 = 0.0
+    if s2 and s3:
+        return x1, 0.0, 0.0
+    if s2:
+        return x1, 0.0, x3 + t.H23 / t.H33 * x2
+    if s3:
+        return x1, x2 + t.H23 / t.H22 * x3, 0.0
+    return x1, x2, x3
+
+
+def _side(q: float, low: float, high: float) -> int:
+    if q <= low:
+        return 1
+    return -1 if q >= high else 0

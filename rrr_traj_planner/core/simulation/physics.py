@@ -1,0 +1,263 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The arm's physics: forward dynamics in fixed steps, between hard joint stops.
+
+A step that meets a stop is taken up to the impact exactly, and goes on from there without the
+energy that the stop has taken. An arm with friction or bumpers is `resisted_motion`'s.
+"""
+
+from __future__ import annotations
+
+from math import copysign, cos, sin
+
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.equations import (
+    accelerations,
+    constants,
+    Terms,
+    terms,
+    torques,
+)
+from rrr_traj_planner.core.simulation.condition import ConditionMonitor
+from rrr_traj_planner.core.simulation.energy import EnergyLedger, kinetic
+from rrr_traj_planner.core.simulation.friction_dynamics import Bounds, ResistedMotion
+from rrr_traj_planner.core.simulation.joint_stops import Contact, contact, FREE, held, permitted
+from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+from rrr_traj_planner.core.simulation.time_step import free_step, held_step
+from rrr_traj_planner.core.states import State, Triple
+
+# A step is interrupted by at most this many impacts; joints at a stop then wait there for its end.
+MOST_IMPACTS = 8
+
+# Bisections of a step at an impact: 1 ms / 2^40 is 1e-15 s.
+BISECTIONS = 40
+
+# A joint that would be back at its stop within this part of a step has not left it. Without this
+# bound, two joints at their stops hand an ever smaller velocity to and fro.
+SHORTEST_REBOUND = 0.05
+
+
+class ArmPhysics:
+    """
+    An arm between its stops: what a torque does to its state over a time step.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    low, high : tuple of 3 floats
+        Where the stops are [rad]; infinite where there is none.
+    friction : Friction, optional
+        Of the joints; none by default.
+    soft_stops : SoftStops, optional
+        Bumpers, from low and high on outwards; none by default.
+    ledger : EnergyLedger, optional
+        Where losses are entered.
+    monitor : ConditionMonitor, optional
+        What is told of stops that are touched.
+
+    Attributes
+    ----------
+    ledger : EnergyLedger
+        The same.
+
+    """
+
+    def __init__(self, model: RobotModel, low: Triple, high: Triple,
+                 friction: Friction | None = None, soft_stops: SoftStops | None = None,
+                 ledger: EnergyLedger | None = None,
+                 monitor: ConditionMonitor | None = None) -> None:
+        self.low, self.high, self._monitor = low, high, monitor or ConditionMonitor()
+        self.ledger = EnergyLedger() if ledger is None else ledger
+        self._constants = constants(model)
+        self._bumper, friction = soft_stops or SoftStops(), friction or Friction()
+        self._viscous, self._coulomb = friction.viscous.tolist(), friction.coulomb.tolist()
+        self._resisted = None if friction.is_none and not self._bumper.width else ResistedMotion(
+            self._constants, self.terms, Bounds(low, high), friction, self._bumper, self.ledger)
+
+    def bumper_energy(self, state: State) -> float:
+        """
+        Return what the bumpers' springs hold.
+
+        Parameters
+        ----------
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
+
+        Returns
+        -------
+        float
+            [J].
+
+        """
+        return self._bumper.energy(state, self.low, self.high)
+
+    def terms(self, state: State) -> Terms:
+        """
+        Return the terms of the equations of motion at a state.
+
+        Parameters
+        ----------
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
+
+        Returns
+        -------
+        Terms
+            As from `equations.terms`.
+
+        """
+        return terms(self._constants, state[1], state[2], sin, cos)
+
+    def step(self, t: Terms, state: State, torque: Triple, h: float) -> State:
+        """
+        Return the state after a time step.
+
+        Parameters
+        ----------
+        t : Terms
+            The terms at the state (`terms(state)`).
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
+        torque : tuple of 3 floats
+            Of motors and disturbance [N m], held over the step.
+        h : float
+            Length of the step [s], positive.
+
+        Returns
+        -------
+        tuple of 6 floats
+            Positions and velocities; no joint further beyond a stop than it was before.
+
+        """
+        if self._resisted is not None:
+            return self._watched(t, state, self._resisted.step(state, torque, h), torque, h)
+        (l1, l2, l3), (u1, u2, u3) = self.low, self.high
+        q1, q2, q3 = state[:3]
+        if l1 < q1 < u1 and l2 < q2 < u2 and l3 < q3 < u3:
+            after = free_step(self._constants, t, state, torque, h)
+            q1, q2, q3 = after[:3]
+            if l1 <= q1 <= u1 and l2 <= q2 <= u2 and l3 <= q3 <= u3:
+                return after
+        return self._watched(t, state, self._step_with_stops(state, torque, h), torque, h)
+
+    def _watched(self, t: Terms, state: State, after: State, torque: Triple, h: float) -> State:
+        """Tell the monitor of stops that are touched after a step, and return the state then."""
+        (q1, q2, q3, w1, w2, w3), low, high = state, self.low, self.high
+        freely = (q1 + h * w1, q2 + h * w2, q3 + h * w3, w1, w2, w3)
+        a, b = contact(after, low, high), contact(freely, low, high)  # b: it may have left again
+        if a != FREE or b != FREE:
+            at = (a[0] or b[0], a[1] or b[1], a[2] or b[2])
+            v1, v2, v3 = after[3:]
+            net = torques(t, w1, w2, w3, (v1 - w1) / h, (v2 - w2) / h, (v3 - w3) / h)
+            r1, r2, r3 = (
+                _beyond(total - own + viscous * v, coulomb) for total, own, v, viscous, coulomb in
+                zip(net, torque, after[3:], self._viscous, self._coulomb))
+            self._monitor.touched(
+                at, contact(state, low, high), state[3:], (r1, r2, r3), torque)
+        return after
+
+    def _step_with_stops(self, state: State, torque: Triple, h: float) -> State:
+        """Step from stop to stop: up to each impact exactly, and on without the lost energy."""
+        # A joint that starts beyond a stop (the stop was moved) may stay there, not go further.
+        (l1, l2, l3), (u1, u2, u3), (q1, q2, q3) = self.low, self.high, state[:3]
+        low = (min(l1, q1), min(l2, q2), min(l3, q3))
+        high = (max(u1, q1), max(u2, q2), max(u3, q3))
+        left = h
+        for _ in range(MOST_IMPACTS):
+            t, at = self.terms(state), contact(state, low, high)
+            w = state[3:]
+            state, lock = _after_impact(t, state, torque, at, SHORTEST_REBOUND * h)
+            self._enter_impact(t, w, state[3:])
+            taken, state = self._until_impact(t, state, torque, left, lock, low, high)
+            left -= taken
+            if left <= 0.0:
+                break
+        at = contact(state, low, high)
+        t = self.terms(state)
+        if left > 0.0:
+            w = held(t, state[3:], at)
+            self._enter_impact(t, state[3:], w)
+            state = held_step(self._constants, t, state[:3] + w, torque, left, at)
+            state = _within(state, low, high)
+            t, at = self.terms(state), contact(state, low, high)
+        w = permitted(t, state[3:], at)
+        self._enter_impact(t, state[3:], w)
+        return state[:3] + w
+
+    def _enter_impact(self, t: Terms, before: Triple, after: Triple) -> None:
+        """Enter the energy that stops have taken."""
+        if after != before:
+            self.ledger.stops += kinetic(t, before) - kinetic(t, after)
+
+    def _until_impact(self, t: Terms, state: State, torque: Triple, h: float, lock: Contact,
+                      low: Triple, high: Triple) -> tuple[float, State]:
+        """Return the time [s] until a joint reaches a stop, or h, and the state then."""
+        k = self._constants
+        after = held_step(k, t, state, torque, h, lock)
+        if _overshoot(after, low, high) <= 0.0:
+            return h, after
+        before, taken = 0.0, h
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (before + taken)
+            trial = held_step(k, t, state, torque, middle, lock)
+            if _overshoot(trial, low, high) > 0.0:
+                taken, after = middle, trial
+            else:
+                before = middle
+        return taken, _within(after, low, high)
+
+
+def _after_impact(t: Terms, state: State, torque: Triple, at: Contact,
+                  shortest: float) -> tuple[State, Contact]:
+    """
+    Return the state after what impacts there are, and the joints that rest at their stops.
+
+    A joint rests that is pressed into its stop and has no velocity, or leaves it with so little
+    that it would be back within the shortest time [s].
+    """
+    if at == FREE:
+        return state, FREE
+    w1, w2, w3 = permitted(t, state[3:], at)
+    a1, a2, a3 = accelerations(t, w1, w2, w3, *torque)
+    s1, s2, s3 = at
+    reach = 0.5 * shortest
+    slow = (s1 if s1 * w1 <= -s1 * a1 * reach else 0, s2 if s2 * w2 <= -s2 * a2 * reach else 0,
+            s3 if s3 * w3 <= -s3 * a3 * reach else 0)
+    pressed = permitted(t, (a1, a2, a3), slow)
+    lock = (s1 if slow[0] and pressed[0] == 0.0 else 0, s2 if slow[1] and pressed[1] == 0.0 else 0,
+            s3 if slow[2] and pressed[2] == 0.0 else 0)
+    w1, w2, w3 = held(t, (w1, w2, w3), lock)
+    if s2 * w2 < 0.0 or s3 * w3 < 0.0:  # stopping one joint has thrown the other into its stop
+        lock, w2, w3 = (lock[0], s2, s3), 0.0, 0.0
+    return state[:3] + (w1, w2, w3), lock
+
+
+def _beyond(torque: float, friction: float) -> float:
+    """Return the part of a torque that friction cannot account for."""
+    return copysign(max(abs(torque) - friction, 0.0), torque)
+
+
+def _overshoot(state: State, low: Triple, high: Triple) -> float:
+    """Return by how much the joint furthest beyond a stop is beyond it [rad]."""
+    return max(max(q - u, d - q) for q, d, u in zip(state, low, high))
+
+
+def _within(state: State, low: Triple, high: Triple) -> State:
+    """Return the state with joints beyond a stop set back onto it."""
+    (l1, l2, l3), (u1, u2, u3), (q1, q2, q3, *_) = low, high, state
+    return (min(max(q1, l1), u1), min(max(q2, l2), u2), min(max(q3, l3), u3)) + state[3:]

@@ -1,0 +1,79 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Whether a time step is short enough for friction and bumpers."""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+
+# The method is stable up to 2.8 times the inverse of a decay's rate, or of a frequency; at 1 it
+# is also accurate.
+LARGEST = 1.0
+
+POSES = 24
+
+
+def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
+               step: float) -> None:
+    """
+    Refuse friction or bumpers that a time step cannot follow.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm, with what it carries.
+    friction : Friction
+        Of its joints.
+    soft_stops : SoftStops
+        Of all joints.
+    step : float
+        [s].
+
+    Raises
+    ------
+    InvalidInputError
+        If viscous friction slows a joint in some pose within less than a step, or a bumper throws
+        it back so.
+
+    """
+    bumper = soft_stops.stiffness if soft_stops.width else 0.0
+    if not friction.viscous.any() and not bumper:
+        return
+    inverse = np.linalg.inv(inertia_matrix(model, _poses()))
+    decay = float(np.abs(np.linalg.eigvals(inverse * friction.viscous)).max())  # [1/s]
+    if decay * step > LARGEST:
+        raise InvalidInputError(
+            f'friction.viscous is {friction.viscous.tolist()} N m s/rad, too much for '
+            f'a physics step of {step:g} s: at most '
+            f'{told_apart(LARGEST / (decay * step), 1.0, digits=3)[0]} times that')
+    squared = float(np.abs(np.linalg.eigvals(inverse)).max()) * bumper  # [1/s^2]
+    if squared * step ** 2 > LARGEST:
+        stiffness, most = told_apart(bumper, bumper * LARGEST / (squared * step ** 2), digits=3)
+        raise InvalidInputError(
+            f'soft_stops.stiffness is {stiffness} N m/rad, must be at most {most} N m/rad with '
+            f'a physics step of {step:g} s')
+
+
+def _poses() -> Array:
+    """Return positions of the joints that inertia depends on, all round, shape (n, 3)."""
+    angles = np.linspace(-np.pi, np.pi, POSES, endpoint=False)
+    q2, q3 = (x.ravel() for x in np.meshgrid(angles, angles))
+    return np.column_stack((np.zeros_like(q2), q2, q3))

@@ -1,0 +1,112 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Joints at rest: whether friction and stops keep them there, and else how they set off.
+
+Each joint's reaction lies in a range: Coulomb friction gives a resting joint anything in
+[-c, c], a stop pushes away from itself as hard as it must. A joint stays at rest with a reaction
+inside its range, or moves against the reaction at the range's end. Both are the conditions of
+one strictly convex problem (Gauss's principle of least constraint with dry friction), which has
+exactly one solution; with two coupled joints, nine cases hold it.
+"""
+
+from __future__ import annotations
+
+from math import isinf
+
+from rrr_traj_planner.core.dynamics.equations import Terms
+from rrr_traj_planner.core.states import Triple
+
+# Least and largest reaction [N m], not above and not below 0; (0, 0) for a joint that moves.
+Range = tuple[float, float]
+
+NO_REACTION: Range = (0.0, 0.0)
+
+
+def resting_accelerations(t: Terms, x: Triple, ranges: tuple[Range, Range, Range]) -> Triple:
+    """
+    Return the accelerations of an arm some of whose joints may stay at rest.
+
+    Finds a with r = H (a - x) such that a_i = 0 and r_i in its range, or a_i > 0 and r_i at the
+    lower end, or a_i < 0 and r_i at the upper one.
+
+    Parameters
+    ----------
+    t : Terms
+        The equations' terms at the pose.
+    x : tuple of 3 floats
+        Accelerations without reactions [rad/s^2].
+    ranges : tuple of 3 pairs of floats
+        Least and largest reaction of each joint [N m]; may be infinite.
+
+    Returns
+    -------
+    tuple of 3 floats
+        Accelerations [rad/s^2]; exactly 0.0 for a joint that stays at rest.
+
+    """
+    (x1, x2, x3), (range_1, range_2, range_3) = x, ranges
+    a1 = _single(t.H11, x1, range_1)
+    if range_2 == range_3 == NO_REACTION:
+        return a1, x2, x3
+    return a1, *_pair((t.H22, t.H23, t.H33), (x2, x3), range_2, range_3)
+
+
+def _single(inertia: float, x: float, limits: Range) -> float:
+    """Return the acceleration of one joint that nothing is coupled to."""
+    low, high = limits
+    reaction = -inertia * x
+    if reaction < low:
+        return x + low / inertia
+    return x + high / inertia if reaction > high else 0.0
+
+
+def _pair(H: Triple, x: tuple[float, float], range_2: Range,
+          range_3: Range) -> tuple[float, float]:
+    """Return the accelerations of two coupled joints."""
+    (H22, H23, H33), (x2, x3) = H, x
+    if _within(-H22 * x2 - H23 * x3, range_2) and _within(-H23 * x2 - H33 * x3, range_3):
+        return 0.0, 0.0
+    if range_2 != NO_REACTION:
+        a3 = _single(H33, x3 + H23 / H33 * x2, range_3)
+        if _within(H23 * (a3 - x3) - H22 * x2, range_2):
+            return 0.0, a3
+    if range_3 != NO_REACTION:
+        a2 = _single(H22, x2 + H23 / H22 * x3, range_2)
+        if _within(H23 * (a2 - x2) - H33 * x3, range_3):
+            return a2, 0.0
+    return _both_moving(H, x, range_2, range_3)
+
+
+def _both_moving(H: Triple, x: tuple[float, float], range_2: Range,
+                 range_3: Range) -> tuple[float, float]:
+    """Return the case whose directions fit; on the edge between two, the one that fits best."""
+    H22, H23, H33 = H
+    det = H22 * H33 - H23 * H23
+    best, least = (0.0, 0.0), float('inf')
+    for sign_2, r2 in zip((1.0, -1.0), range_2):
+        for sign_3, r3 in zip((1.0, -1.0), range_3):
+            if isinf(r2) or isinf(r3):
+                continue
+            a = (x[0] + (H33 * r2 - H23 * r3) / det, x[1] + (H22 * r3 - H23 * r2) / det)
+            wrong = max(-sign_2 * a[0] if range_2 != NO_REACTION else 0.0,
+                        -sign_3 * a[1] if range_3 != NO_REACTION else 0.0)
+            if wrong < least:
+                best, least = a, wrong
+    return best
+
+
+def _within(value: float, limits: Range) -> bool:
+    return limits[0] <= value <= limits[1]

@@ -1,0 +1,122 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+One step in time of qdd = f(q, qd): the equations of motion integrated to fourth order.
+
+Nyström's method, the Runge-Kutta method for second-order equations: its two inner stages share
+one position, so that three evaluations of the equations' terms make a step. The joints' torques
+are held over a step, as a digital controller holds them.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+from rrr_traj_planner.core.dynamics.equations import accelerations, Constants, Terms, terms
+from rrr_traj_planner.core.simulation.joint_stops import Contact, FREE, held
+from rrr_traj_planner.core.states import State, Triple
+
+
+def free_step(k: Constants, t: Terms, state: State, torque: Triple, h: float) -> State:
+    """
+    Return the state after a time step of an arm without stops.
+
+    Parameters
+    ----------
+    k : Constants
+        The arm's constants.
+    t : Terms
+        The equations' terms at the state.
+    state : tuple of 6 floats
+        Positions [rad] and velocities [rad/s].
+    torque : tuple of 3 floats
+        Joint torques [N m], held over the step.
+    h : float
+        Length of the step [s].
+
+    Returns
+    -------
+    tuple of 6 floats
+        Positions [rad] and velocities [rad/s].
+
+    """
+    q1, q2, q3, w1, w2, w3 = state
+    n1, n2, n3 = torque
+    half = 0.5 * h
+    eighth = 0.5 * half * half
+    a1, a2, a3 = accelerations(t, w1, w2, w3, n1, n2, n3)
+    t = terms(k, q2 + half * w2 + eighth * a2, q3 + half * w3 + eighth * a3, sin, cos)
+    b1, b2, b3 = accelerations(t, w1 + half * a1, w2 + half * a2, w3 + half * a3, n1, n2, n3)
+    c1, c2, c3 = accelerations(t, w1 + half * b1, w2 + half * b2, w3 + half * b3, n1, n2, n3)
+    t = terms(k, q2 + h * (w2 + half * c2), q3 + h * (w3 + half * c3), sin, cos)
+    d1, d2, d3 = accelerations(t, w1 + h * c1, w2 + h * c2, w3 + h * c3, n1, n2, n3)
+    sixth = h / 6.0
+    return (q1 + h * (w1 + sixth * (a1 + b1 + c1)),
+            q2 + h * (w2 + sixth * (a2 + b2 + c2)),
+            q3 + h * (w3 + sixth * (a3 + b3 + c3)),
+            w1 + sixth * (a1 + 2.0 * (b1 + c1) + d1),
+            w2 + sixth * (a2 + 2.0 * (b2 + c2) + d2),
+            w3 + sixth * (a3 + 2.0 * (b3 + c3) + d3))
+
+
+def held_step(k: Constants, t: Terms, state: State, torque: Triple, h: float,
+              lock: Contact) -> State:
+    """
+    Return the state after a time step in which stops hold some joints still.
+
+    The same method as `free_step`, with the held joints' accelerations zero.
+
+    Parameters
+    ----------
+    k, t, state, torque, h
+        As in `free_step`.
+    lock : tuple of 3 ints
+        Not 0 for each joint that is held; its velocity must be 0.
+
+    Returns
+    -------
+    tuple of 6 floats
+        Positions [rad] and velocities [rad/s].
+
+    """
+    if lock == FREE:
+        return free_step(k, t, state, torque, h)
+
+    def acceleration(at: Terms, w: Triple) -> Triple:
+        return held(at, accelerations(at, *w, *torque), lock)
+
+    q, w = state[:3], state[3:]
+    a = acceleration(t, w)
+    middle = _moved(q, w, a, 0.5 * h)
+    t = terms(k, middle[1], middle[2], sin, cos)
+    b = acceleration(t, _added(w, a, 0.5 * h))
+    c = acceleration(t, _added(w, b, 0.5 * h))
+    end = _moved(q, w, c, h)
+    d = acceleration(terms(k, end[1], end[2], sin, cos), _added(w, c, h))
+    sixth = h / 6.0
+    return _moved(q, w, _added(_added(a, b, 1.0), c, 1.0), h, sixth) + _added(
+        w, _added(_added(a, d, 1.0), _added(b, c, 1.0), 2.0), sixth)
+
+
+def _moved(q: Triple, w: Triple, a: Triple, h: float, share: float | None = None) -> Triple:
+    """Return q + h (w + share a); the share is h / 2 for a constant acceleration."""
+    share = 0.5 * h if share is None else share
+    return (q[0] + h * (w[0] + share * a[0]), q[1] + h * (w[1] + share * a[1]),
+            q[2] + h * (w[2] + share * a[2]))
+
+
+def _added(x: Triple, y: Triple, factor: float) -> Triple:
+    """Return x + factor y."""
+    return x[0] + factor * y[0], x[1] + factor * y[1], x[2] + factor * y[2]

@@ -1,0 +1,131 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Moves of all joints from rest to rest, on a line in joint space, as fast as the limits allow.
+
+All joints follow one quintic, 10 s^3 - 15 s^4 + 6 s^5 of the way with s = t / T.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
+from rrr_traj_planner.core.trajectory.interpolation import hermite
+from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
+
+# Peaks of the quintic over distance d and time T: 1.875 d/T, 5.7735 d/T^2, 60 d/T^3.
+PEAK_VELOCITY, PEAK_ACCELERATION, PEAK_JERK = 15.0 / 8.0, 10.0 / 3.0 ** 0.5, 60.0
+
+# A move that asks too much torque is slowed by this factor, at most so often. Where none fits,
+# the quickest is taken that asks hardly more than the gentlest.
+SLOWING, SLOWINGS, HARDLY_MORE = 1.2, 40, 1.1
+
+SAMPLES = 41
+
+
+class Move(NamedTuple):
+    """
+    A motion that ends with a move.
+
+    Attributes
+    ----------
+    motion : DesiredMotion
+        The motion.
+    peak_torque : ndarray, shape (3,)
+        Of the move [N m]; beyond the limits where no duration keeps them.
+
+    """
+
+    motion: DesiredMotion
+    peak_torque: Array
+
+
+def moved_on(motion: DesiredMotion, target: Array, limits: JointLimits,
+             model: RobotModel) -> Move:
+    """
+    Return a motion that ends at rest, and then a move to a target.
+
+    Parameters
+    ----------
+    motion : DesiredMotion
+        It ends at rest.
+    target : ndarray, shape (3,)
+        Positions [rad].
+    limits : JointLimits
+        Velocity, acceleration and jerk limits are kept, and those of torque where that is
+        possible.
+    model : RobotModel
+        The arm, for its torques.
+
+    Returns
+    -------
+    Move
+        At rest at the target in the end.
+
+    """
+    start, zero = motion.final, np.zeros(3)
+    if (start == target).all():
+        return Move(motion, zero)
+    T, peak_torque = _duration(start, target, limits, model)
+    move = np.stack(hermite(T, (start, zero, zero), (target, zero, zero)), axis=-1)
+    return Move(DesiredMotion(np.append(motion.knots, motion.knots[-1] + T),
+                              np.concatenate((motion.coefficients, move[np.newaxis])),
+                              target, motion.origin_ns), peak_torque)
+
+
+def quickest(share: Array) -> int:
+    """
+    Return which of motions to take, the quicker ones first.
+
+    Parameters
+    ----------
+    share : ndarray, shape (n,)
+        The largest share of a limit that each takes.
+
+    Returns
+    -------
+    int
+        The first that keeps the limits; if none does, the first that exceeds them hardly more
+        than the gentlest does.
+
+    """
+    least = float(share.min())
+    return int(np.argmax(share <= (1.0 if least <= 1.0 else HARDLY_MORE * least)))
+
+
+def _duration(start: Array, target: Array, limits: JointLimits,
+              model: RobotModel) -> tuple[float, Array]:
+    """Return how long a move takes [s], and its largest torques [N m]."""
+    distance = np.abs(target - start)
+    least = max(LEAST_TIME, float(np.max((
+        PEAK_VELOCITY * distance / limits.max_velocity,
+        np.sqrt(PEAK_ACCELERATION * distance / limits.max_acceleration),
+        np.cbrt(PEAK_JERK * distance / limits.max_jerk)))))
+    T = least * SLOWING ** np.arange(SLOWINGS)
+    s = np.linspace(0.0, 1.0, SAMPLES)[:, np.newaxis]
+    q = start + (10.0 - 15.0 * s + 6.0 * s ** 2) * s ** 3 * (target - start)
+    qd = 30.0 * (s * (1.0 - s)) ** 2 * (target - start) / T[:, np.newaxis, np.newaxis]
+    qdd = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) * (target - start) / (
+        T[:, np.newaxis, np.newaxis] ** 2)
+    torque = np.abs(inverse_dynamics(model, np.broadcast_to(q, qd.shape), qd, qdd))
+    share = (torque / limits.max_effort).max(axis=(1, 2))
+    i = quickest(share)
+    return float(T[i]), torque[i].max(axis=0)

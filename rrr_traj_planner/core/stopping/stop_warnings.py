@@ -1,0 +1,116 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a stop cannot keep, in words: a sentence for each joint, with values, limits and units."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.stopping.task import StopTask
+from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
+
+# What a joint slower than this does at the end of its range is not worth a word [rad/s], nor is
+# one so little outside its range [rad].
+SLOW, NEAR = 0.01, 1e-3
+
+# A limit is exceeded from this part of it on; torques are looked at so often.
+TOLERANCE, SAMPLES = 1e-4, 241
+
+
+def harder(task: StopTask, q: Array, qd: Array, needed: Array) -> list[str]:
+    """
+    Tell of joints that have to brake harder than their limits.
+
+    Parameters
+    ----------
+    task : StopTask
+        The task.
+    q, qd, needed : ndarray, shape (3,)
+        Positions [rad], velocities [rad/s] and decelerations [rad/s^2]; of these, infinite where
+        a joint is too fast at the end of its range, 0 where its own is enough.
+
+    Returns
+    -------
+    list of str
+        A sentence for each of them.
+
+    """
+    limits, told = task.limits, []
+    for i, name in enumerate(task.model.joint_names):
+        if needed[i] > limits.max_acceleration[i] * (1.0 + TOLERANCE) and (
+                abs(qd[i]) > SLOW):
+            how = (f'brakes with {needed[i]:.4g} rad/s^2, limit '
+                   f'{limits.max_acceleration[i]:.4g} rad/s^2, to rest inside it'
+                   if needed[i] < inf else 'meets its end')
+            told.append(f'{name} moves at {qd[i]:.4g} rad/s at {q[i]:.6g} rad, range '
+                        f'{_range(limits, i)} rad: it {how}')
+    return told
+
+
+def torques_beyond(task: StopTask, motion: DesiredMotion) -> list[str]:
+    """
+    Tell of joints whose motors cannot give what a stop asks for.
+
+    Parameters
+    ----------
+    task : StopTask
+        The task.
+    motion : DesiredMotion
+        The stop.
+
+    Returns
+    -------
+    list of str
+        A sentence for each of them.
+
+    """
+    q, qd, qdd, _ = motion.at(np.linspace(task.now, motion.end, SAMPLES))
+    peak = np.maximum(np.abs(inverse_dynamics(task.model, q, qd, qdd)).max(axis=0),
+                      np.abs(gravity_torque(task.model, motion.final)))
+    return [f'stopping asks {name} for {peak[i]:.1f} N m, limit '
+            f'{task.limits.max_effort[i]:.1f} N m'
+            for i, name in enumerate(task.model.joint_names)
+            if peak[i] > task.limits.max_effort[i] * (1.0 + TOLERANCE)]
+
+
+def outside(task: StopTask, q: Array) -> list[str]:
+    """
+    Tell of joints outside their ranges.
+
+    Parameters
+    ----------
+    task : StopTask
+        The task.
+    q : ndarray, shape (3,)
+        Positions [rad].
+
+    Returns
+    -------
+    list of str
+        A sentence for each of them.
+
+    """
+    limits = task.limits
+    beyond = np.maximum(q - limits.max_position, limits.min_position - q)
+    return [f'{name} is at {q[i]:.6g} rad, outside its range {_range(limits, i)} rad: it goes '
+            f'back inside' for i, name in enumerate(task.model.joint_names) if beyond[i] > NEAR]
+
+
+def _range(limits: JointLimits, i: int) -> str:
+    return f'[{limits.min_position[i]:.6g}, {limits.max_position[i]:.6g}]'

@@ -1,0 +1,314 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What the arm's controller follows: polynomials in time, at one instant or at many."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+
+import numpy as np
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.conversion import float_array
+from rrr_traj_planner.core.nanoseconds import nanoseconds, SECOND
+from rrr_traj_planner.core.states import Desired
+from rrr_traj_planner.core.trajectory.trajectory_points import (
+    FLOAT_EPSILON,
+    MotionPoints,
+    segment_coefficients,
+    segment_orders,
+)
+
+
+class DesiredMotion:
+    """
+    A motion of polynomials, one after another.
+
+    After its last knot it rests; where it has a velocity there, whoever follows it has to brake
+    from `end_state` (`stopping.stop`).
+
+    Which of them is in force is decided in whole nanoseconds, as in joint_trajectory_controller:
+    exactly at a knot it is the one that begins there.
+
+    Parameters
+    ----------
+    knots : ndarray, shape (n,)
+        Strictly increasing times [s] since the origin.
+    coefficients : ndarray, shape (n - 1, 3, 6)
+        For each interval and joint, of 1, x, ..., x^5 with x the time since its knot [s].
+    final : ndarray, shape (3,)
+        Position at the last knot [rad], which is held.
+    origin_ns : int
+        What the knots are counted from [ns].
+    final_velocity, final_acceleration : ndarray, shape (3,), optional
+        With which it arrives at the last knot [rad/s], [rad/s^2]; None: it comes to rest there.
+
+    Attributes
+    ----------
+    ends_moving : bool
+        Whether it has a velocity at its last knot.
+
+    """
+
+    def __init__(self, knots: Array, coefficients: Array, final: Array, origin_ns: int = 0,
+                 final_velocity: Array | None = None,
+                 final_acceleration: Array | None = None) -> None:
+        self.knots, self.coefficients, self.final = knots, coefficients, final
+        self.origin_ns = origin_ns
+        self._knots_ns = [nanoseconds(knot) for knot in knots.tolist()]
+        zero = np.zeros(3)
+        self.arrive(zero if final_velocity is None else final_velocity,
+                    zero if final_acceleration is None else final_acceleration)
+        # One knot alone is a rest that has no beginning.
+        self._rests_from = self._knots_ns[-1] if len(knots) > 1 else -np.inf
+        self._rest = rest(final)
+        # The interval found last [ns], its beginning [s], and its coefficients.
+        self._low = self._high = 0
+        self._begin = 0.0
+        self._current: list[float] = []
+
+    def arrive(self, velocity: Array, acceleration: Array) -> None:
+        """
+        Say with which velocity and acceleration the motion arrives at its last knot.
+
+        Parameters
+        ----------
+        velocity, acceleration : ndarray, shape (3,)
+            [rad/s], [rad/s^2].
+
+        """
+        self.final_velocity, self.final_acceleration = velocity, acceleration
+        self.ends_moving = bool(velocity.any())  # asked at every step of simulations
+
+    @property
+    def origin(self) -> float:
+        """Return what the knots are counted from [s]."""
+        return self.origin_ns / SECOND
+
+    @property
+    def start(self) -> float:
+        """When the motion begins [s]."""
+        return self.origin + float(self.knots[0])
+
+    @property
+    def end(self) -> float:
+        """When the motion comes to rest, or ends [s]."""
+        return self.origin + float(self.knots[-1])
+
+    @property
+    def end_ns(self) -> int:
+        """Return the same [ns]."""
+        return self.origin_ns + self._knots_ns[-1]
+
+    @property
+    def end_state(self) -> Desired:
+        """Position, velocity and acceleration with which it arrives at its last knot."""
+        q1, q2, q3, w1, w2, w3, a1, a2, a3 = np.concatenate(
+            (self.final, self.final_velocity, self.final_acceleration)).tolist()
+        return q1, q2, q3, w1, w2, w3, a1, a2, a3
+
+    def __call__(self, t: float) -> Desired:
+        """
+        Return the desired state at a time.
+
+        Parameters
+        ----------
+        t : float
+            [s]; before the first knot the motion is as at that knot, after the last it rests.
+
+        Returns
+        -------
+        tuple of 9 floats
+            Positions [rad], velocities [rad/s], accelerations [rad/s^2].
+
+        """
+        t -= self.origin
+        return self.elapsed(nanoseconds(t), t)
+
+    def command(self, now: int) -> Desired:
+        """
+        Return the desired state at a time of a clock.
+
+        Parameters
+        ----------
+        now : int
+            [ns].
+
+        Returns
+        -------
+        tuple of 9 floats
+            As `__call__`.
+
+        """
+        n = now - self.origin_ns
+        return self.elapsed(n, n / SECOND)
+
+    def elapsed(self, n: int, t: float) -> Desired:
+        """
+        Return the desired state after a time since the origin.
+
+        Parameters
+        ----------
+        n : int
+            The time, to choose a polynomial by [ns].
+        t : float
+            The same time, to evaluate it at [s].
+
+        Returns
+        -------
+        tuple of 9 floats
+            As `__call__`.
+
+        """
+        if n >= self._rests_from:
+            return self._rest
+        if not self._low <= n < self._high:
+            t = self._find(n, t)
+        x = t - self._begin
+        a0, a1, a2, a3, a4, a5, b0, b1, b2, b3, b4, b5, c0, c1, c2, c3, c4, c5 = self._current
+        return (
+            a0 + x * (a1 + x * (a2 + x * (a3 + x * (a4 + x * a5)))),
+            b0 + x * (b1 + x * (b2 + x * (b3 + x * (b4 + x * b5)))),
+            c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5)))),
+            a1 + x * (2.0 * a2 + x * (3.0 * a3 + x * (4.0 * a4 + x * (5.0 * a5)))),
+            b1 + x * (2.0 * b2 + x * (3.0 * b3 + x * (4.0 * b4 + x * (5.0 * b5)))),
+            c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * (5.0 * c5)))),
+            2.0 * a2 + x * (6.0 * a3 + x * (12.0 * a4 + x * (20.0 * a5))),
+            2.0 * b2 + x * (6.0 * b3 + x * (12.0 * b4 + x * (20.0 * b5))),
+            2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5))))
+
+    def at(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """
+        Return the motion at many times.
+
+        Parameters
+        ----------
+        t : array_like, shape (...)
+            Times [s]; before the first knot the motion is as at that knot, from the last one on
+            it is as it arrives there.
+
+        Returns
+        -------
+        tuple of ndarray, shape (..., 3)
+            Position [rad], velocity [rad/s], acceleration [rad/s^2], jerk [rad/s^3].
+
+        """
+        t = np.clip(float_array('t', t) - self.origin, self.knots[0], self.knots[-1])
+        if len(self.coefficients) == 0:
+            still = np.zeros(t.shape + (3,))
+            return (still + self.final, still + self.final_velocity,
+                    still + self.final_acceleration, still)
+        i = np.clip(np.searchsorted(self.knots, t, side='right') - 1, 0,
+                    len(self.coefficients) - 1)
+        c, x = np.moveaxis(self.coefficients[i], -1, 0), (t - self.knots[i])[..., np.newaxis]
+        derivatives = []
+        for _ in range(4):
+            value = np.zeros(c.shape[1:])
+            for coefficient in c[::-1]:
+                value = value * x + coefficient
+            derivatives.append(value)
+            c = c[1:] * np.arange(1, len(c)).reshape((-1,) + (1,) * (c.ndim - 1))
+        q, qd, qdd, qddd = derivatives
+        return q, qd, qdd, qddd
+
+    def states(self) -> tuple[Array, Array, Array]:
+        """
+        Return the state with which the motion goes on from each knot, and arrives at the last.
+
+        Returns
+        -------
+        tuple of ndarray, shape (n, 3)
+            Positions [rad], velocities [rad/s], accelerations [rad/s^2].
+
+        """
+        c = self.coefficients
+        return (np.vstack((c[:, :, 0], self.final)),
+                np.vstack((c[:, :, 1], self.final_velocity)),
+                np.vstack((2.0 * c[:, :, 2], self.final_acceleration)))
+
+    def _find(self, n: int, t: float) -> float:
+        """Make the interval around a time the current one, and return the time, not before all."""
+        knots = self._knots_ns
+        i = max(bisect_right(knots, n) - 1, 0)
+        self._low, self._high = knots[i], knots[i + 1]
+        self._begin = float(self.knots[i])
+        self._current = self.coefficients[i].ravel().tolist()
+        return max(t, float(self.knots[0]))
+
+
+def through(points: MotionPoints, origin_ns: int = 0) -> DesiredMotion:
+    """
+    Return the motion through points.
+
+    Parameters
+    ----------
+    points : MotionPoints
+        The points.
+    origin_ns : int
+        What their times are counted from [ns].
+
+    Returns
+    -------
+    DesiredMotion
+        Lines, cubics and quintics between them.
+
+    """
+    coefficients = segment_coefficients(points, segment_orders(points))
+    motion = DesiredMotion(points.times, coefficients, points.positions[-1], origin_ns)
+    moving = np.abs(points.velocities[-1]) > FLOAT_EPSILON
+    if moving.any():  # joints without a velocity stand, as where all do
+        acceleration = motion.at(motion.end)[2] if len(coefficients) else points.accelerations[-1]
+        motion.arrive(np.where(moving, points.velocities[-1], 0.0),
+                      np.where(moving, acceleration, 0.0))
+    return motion
+
+
+def holding(q: ArrayLike, now: int = 0) -> DesiredMotion:
+    """
+    Return the motion that stays where it is.
+
+    Parameters
+    ----------
+    q : array_like, shape (3,)
+        Positions [rad].
+    now : int
+        When it begins [ns].
+
+    Returns
+    -------
+    DesiredMotion
+        A motion of one knot.
+
+    """
+    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), finite_array('q', q, (3,)), now)
+
+
+def rest(q: ArrayLike) -> Desired:
+    """
+    Return the desired state of an arm that rests.
+
+    Parameters
+    ----------
+    q : array_like, shape (3,)
+        Positions [rad].
+
+    Returns
+    -------
+    tuple of 9 floats
+        The positions, then zeros.
+
+    """
+    q1, q2, q3 = finite_array('q', q, (3,)).tolist()
+    return q1, q2, q3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

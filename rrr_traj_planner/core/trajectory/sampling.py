@@ -1,0 +1,216 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The points of a message: a motion sampled so that controllers rebuild it within its limits."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.scalars import positive, whole_number
+from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+
+NANOSECOND = 1e-9
+
+# No regular sample is nearer to a via point's than this part of the period.
+LEAST_GAP = 0.1
+
+# The quintic of an interval in which acceleration steps has the mean and the first moment of the
+# acceleration, and swings beyond what is on both sides. Where the step is at one end of it, it
+# overshoots on the other side by 37 % of the step, and its jerk is 9 times the step over the
+# interval; where it is a sixth from the end, on the other side alone too, but least, by 5 %.
+STEP_SHARE, STEP_OVERSHOOT = 1.0 / 6.0, 0.0501
+STEP_GAP = 0.3  # of the period, between a step and a regular point: in less time jerk is higher
+
+# More points than this, where nothing else is said, are refused: they would fill the memory.
+MOST_POINTS = 200_000
+
+
+class SampleTimes(NamedTuple):
+    """When a motion is sampled, shape (n,) each."""
+
+    exact: Array   # [s]
+    stamps: Array  # the same in whole nanoseconds, strictly increasing
+
+    def with_further(self, times: Array) -> SampleTimes:
+        """
+        Return these times and further ones between them.
+
+        Parameters
+        ----------
+        times : ndarray, shape (k,)
+            [s], at least two nanoseconds from these and from each other.
+
+        Returns
+        -------
+        SampleTimes
+            All of them, in order.
+
+        """
+        stamps = np.round(times / NANOSECOND)
+        exact = np.interp(stamps, self.stamps, self.exact)  # see `sample_times` on rounding
+        return SampleTimes(np.sort(np.append(self.exact, exact)),
+                           np.sort(np.append(self.stamps, stamps)))
+
+
+def sample(trajectory: Trajectory, period: float,
+           most_points: int = MOST_POINTS) -> TrajectoryPoints:
+    """
+    Return points at every period, at every via time and at the end.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    period : float
+        Time between points [s], positive.
+    most_points : int
+        How many points there may be.
+
+    Returns
+    -------
+    TrajectoryPoints
+        At `sample_times`; the first and the last point exactly at rest.
+
+    Raises
+    ------
+    InvalidInputError
+        If the period is not positive, or there would be too many points.
+
+    """
+    return points_at(trajectory, sample_times(trajectory, period, most_points))
+
+
+def points_at(trajectory: Trajectory, times: SampleTimes) -> TrajectoryPoints:
+    """
+    Return the states of a motion as points.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    times : SampleTimes
+        When, from its start to its end.
+
+    Returns
+    -------
+    TrajectoryPoints
+        Times in whole nanoseconds; the first and the last point exactly at rest.
+
+    """
+    q, qd, qdd, _ = trajectory(times.exact)
+    for derivative in (qd, qdd):
+        derivative[[0, -1]] = 0.0
+    return TrajectoryPoints(times.stamps * NANOSECOND, q, qd, qdd)
+
+
+def sample_times(trajectory: Trajectory, period: float,
+                 most_points: int = MOST_POINTS) -> SampleTimes:
+    """
+    Return when a motion is sampled: at every period, at every via time and at the end.
+
+    No regular point is nearer than a tenth of a period to a via time, nor nearer than three tenths
+    to a step of acceleration: it gives way to one half a period before the step and one half a
+    period after it. See `STEP_SHARE` for what a quintic makes of steps.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    period : float
+        Time between points [s], positive.
+    most_points : int
+        How many points there may be.
+
+    Returns
+    -------
+    SampleTimes
+        Times and stamps.
+
+    Raises
+    ------
+    InvalidInputError
+        If the period is not positive, or there would be too many points.
+
+    """
+    period = positive('period', period, 's')
+    most_points = whole_number('most_points', most_points, least=1)
+    check_size(trajectory.duration, period, most_points)
+    fixed = np.sort(np.concatenate(([0.0], trajectory.via_times, [trajectory.duration])))
+    fixed = fixed[np.concatenate(([True], np.diff(fixed) >= 1.5 * NANOSECOND))]
+    fixed[-1] = trajectory.duration
+    regular: Array = period * np.arange(1.0, int(trajectory.duration / period) + 1)
+    gap, steps = LEAST_GAP * period, trajectory.step_times
+    beside = _beside_steps(steps, regular, period)
+    kept = regular[_distance(regular, steps) >= STEP_GAP * period]
+    between = np.round(np.sort(np.concatenate((kept, beside))) / NANOSECOND) * NANOSECOND
+    between = between[(_distance(between, fixed) >= gap) & (between > 0.0)
+                      & (between < trajectory.duration)]
+    # Regular points share the rounding of the via points' stamps, which a controller would
+    # otherwise see as a step of velocity in the short gap between the two.
+    fixed_stamps = np.round(fixed / NANOSECOND)
+    exact = np.concatenate((fixed, np.interp(between, fixed_stamps * NANOSECOND, fixed)))
+    stamps = np.concatenate((fixed_stamps, np.round(between / NANOSECOND)))
+    check_size(trajectory.duration, period, most_points, len(stamps))
+    return SampleTimes(np.sort(exact), np.sort(stamps))
+
+
+def _beside_steps(steps: Array, regular: Array, period: float) -> Array:
+    """Return times half a period from steps that a regular point gives way to, far from others."""
+    near = steps[_distance(steps, regular) < STEP_GAP * period]
+    beside = np.sort(np.concatenate((near - 0.5 * period, near + 0.5 * period)))
+    beside = beside[_distance(beside, steps) >= LEAST_GAP * period]
+    return beside[np.diff(beside, prepend=-np.inf) >= LEAST_GAP * period]
+
+
+def _distance(times: Array, others: Array) -> Array:
+    """Return how far each time is from the nearest of others, which increase [s]."""
+    if not len(others):
+        return np.full(len(times), np.inf)
+    after = np.searchsorted(others, times)
+    return np.minimum(np.abs(times - others[np.maximum(after - 1, 0)]),
+                      np.abs(others[np.minimum(after, len(others) - 1)] - times))
+
+
+def check_size(duration: float, period: float, most_points: int = MOST_POINTS,
+               points: float | None = None) -> None:
+    """
+    Refuse a motion that has too many points.
+
+    Parameters
+    ----------
+    duration : float
+        How long it lasts, or the least that it can [s].
+    period : float
+        Time between points [s], positive.
+    most_points : int
+        How many points there may be.
+    points : float, optional
+        How many it has; None: as many as there are periods, and one.
+
+    Raises
+    ------
+    InvalidInputError
+        If there are more.
+
+    """
+    points = duration / period + 1.0 if points is None else points
+    if not points < most_points + 1:
+        raise InvalidInputError(
+            f'a motion of {duration:.6g} s with a point every {period:.6g} s has more than '
+            f'{most_points} points')

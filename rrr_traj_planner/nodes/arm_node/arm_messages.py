@@ -1,0 +1,152 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Between ROS messages and the arm's own values."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Sequence
+
+from builtin_interfaces.msg import Duration, Time
+from rrr_traj_planner.core.control.trajectory_validation import IncomingPoint, IncomingTrajectory
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.nanoseconds import SECOND
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory
+
+# No disturbance is larger: more only serves to blow up the simulation [N m].
+LARGEST_DISTURBANCE = 1e5
+
+
+def disturbance_torque(message: JointState,
+                       joint_names: Sequence[str]) -> tuple[float, float, float]:
+    """
+    Return the torques that a message puts on the joints, in the arm's order.
+
+    Parameters
+    ----------
+    message : JointState
+        Names and efforts, nothing else; joints that are not named have no disturbance.
+    joint_names : sequence of str
+        The arm's joints.
+
+    Returns
+    -------
+    tuple of 3 floats
+        [N m].
+
+    Raises
+    ------
+    InvalidInputError
+        If a name is unknown or repeats, sizes differ, there is a position or velocity, or an
+        effort is not finite or too large.
+
+    """
+    if len(message.position) or len(message.velocity):
+        raise InvalidInputError('a disturbance has efforts alone, no positions or velocities')
+    if len(message.name) != len(message.effort):
+        raise InvalidInputError(f'a disturbance has {len(message.name)} names and '
+                                f'{len(message.effort)} efforts, must be as many')
+    torque = dict.fromkeys(joint_names, 0.0)
+    for i, (name, effort) in enumerate(zip(message.name, message.effort)):
+        if name not in torque or name in message.name[:i]:
+            raise InvalidInputError(f"a disturbance names joint '{name}', must name distinct "
+                                    f'joints of {", ".join(joint_names)}')
+        if not abs(effort) <= LARGEST_DISTURBANCE:
+            shown, low, high = told_apart(effort, -LARGEST_DISTURBANCE, LARGEST_DISTURBANCE)
+            raise InvalidInputError(f'the disturbance of {name} is {shown} N m, must be in '
+                                    f'[{low}, {high}] N m')
+        torque[name] = float(effort)
+    n1, n2, n3 = torque.values()
+    return n1, n2, n3
+
+
+def incoming_trajectory(message: JointTrajectory) -> IncomingTrajectory:
+    """
+    Return the content of a message, nothing checked.
+
+    Parameters
+    ----------
+    message : JointTrajectory
+        The message.
+
+    Returns
+    -------
+    IncomingTrajectory
+        Its names, stamp and points.
+
+    """
+    return IncomingTrajectory(
+        message.joint_names, nanoseconds(message.header.stamp),
+        [IncomingPoint(nanoseconds(p.time_from_start), p.positions, p.velocities,
+                       p.accelerations, p.effort) for p in message.points])
+
+
+def nanoseconds(time: Time | Duration) -> int:
+    """
+    Return a time or duration message in nanoseconds.
+
+    Parameters
+    ----------
+    time : Time or Duration
+        The message.
+
+    Returns
+    -------
+    int
+        [ns].
+
+    """
+    return int(time.sec) * SECOND + int(time.nanosec)
+
+
+class JointStateMessage:
+    """
+    A joint state message, made once and filled again for each publication.
+
+    Parameters
+    ----------
+    joint_names : sequence of str
+        The joints.
+
+    """
+
+    def __init__(self, joint_names: Sequence[str]) -> None:
+        self._message = JointState(name=list(joint_names))
+
+    def filled(self, stamp: int, position: Sequence[float], velocity: Sequence[float],
+               effort: Sequence[float] = ()) -> JointState:
+        """
+        Return the message with new content.
+
+        Parameters
+        ----------
+        stamp : int
+            When the joints were like this [ns].
+        position, velocity, effort : sequence of float
+            [rad], [rad/s], [N m]; an effort may be left out.
+
+        Returns
+        -------
+        JointState
+            The same object each time.
+
+        """
+        message = self._message
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
+        message.position = array('d', position)
+        message.velocity = array('d', velocity)
+        message.effort = array('d', effort)
+        return message

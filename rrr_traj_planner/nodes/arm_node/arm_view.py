@@ -1,0 +1,146 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What the arm's node publishes to be looked at: its description and its markers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import dist
+from time import monotonic
+from typing import Any
+
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rrr_traj_planner.core.arm.urdf import urdf
+from rrr_traj_planner.core.arm.wireframe import skeleton, Trail
+from rrr_traj_planner.nodes.output.marker_messages import arm_markers
+from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
+from std_msgs.msg import String
+from visualization_msgs.msg import MarkerArray
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+# The tip's trail: steps, and what counts as moved, are parts of the arm's reach.
+# More points would hold up the node: rclpy takes some 10 us for each.
+TRAIL_STEP, TRAIL_POINTS, MOVED = 1.0 / 80.0, 200, 1e-6
+
+SECOND = 1_000_000_000  # ns
+STILL_PERIOD = 1.0      # s, between messages while nothing moves
+
+
+def description(config: ArmConfig) -> str:
+    """
+    Return the URDF of an arm.
+
+    Parameters
+    ----------
+    config : ArmConfig
+        The arm; a payload is no part of it.
+
+    Returns
+    -------
+    str
+        XML.
+
+    """
+    settings = config.settings
+    return urdf(settings.model, settings.limits, config.frames, settings.friction)
+
+
+class ArmView:
+    """
+    Publishes `robot_description` when it changes, and `markers` again and again.
+
+    Parameters
+    ----------
+    node : Node
+        The arm's.
+    config : ArmConfig
+        The arm.
+    q : sequence of 3 floats
+        Where it is [rad].
+
+    Notes
+    -----
+    Both topics are transient local: who subscribes late gets the last message. Markers go out
+    on steady time: `marker_rate` times a second, but once a second while nothing moves.
+
+    """
+
+    def __init__(self, node: Node, config: ArmConfig, q: Sequence[float]) -> None:
+        self._model, self._frame = config.settings.model, config.frames.base
+        reach = self._model.reach[1]
+        self._trail = Trail(TRAIL_STEP * reach, TRAIL_POINTS)
+        self._moved = MOVED * reach
+        self._joints = skeleton(self._model, q)
+        self._shown: Any = None  # the joints of the last message
+        self._shown_at = 0.0     # steady time [s]
+        self._description = ''
+        self._describe = node.create_publisher(String, 'robot_description', LATCHED).publish
+        self._draw = node.create_publisher(MarkerArray, 'markers', LATCHED).publish
+        self._rate = 0.0
+        self._timer = node.create_timer(STILL_PERIOD, self._show, autostart=False,
+                                        clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.configure(config)
+
+    def moved(self, q: Sequence[float]) -> None:
+        """
+        Take note of where the arm is.
+
+        Parameters
+        ----------
+        q : sequence of 3 floats
+            [rad].
+
+        """
+        if self._rate > 0.0:
+            self._joints = skeleton(self._model, q)
+            self._trail.add(self._joints[-1])
+
+    def restart(self) -> None:
+        """Forget where the tip has been."""
+        self._trail.clear()
+        self._shown = None
+
+    def configure(self, config: ArmConfig) -> None:
+        """
+        Put changed parameters in force.
+
+        Parameters
+        ----------
+        config : ArmConfig
+            The arm; model and frames are the old ones.
+
+        """
+        text = description(config)
+        if text != self._description:
+            self._description = text
+            self._describe(String(data=text))
+        if config.marker_rate != self._rate:
+            self._rate = config.marker_rate
+            self._timer.cancel()
+            if self._rate > 0.0:
+                self._timer.timer_period_ns = round(SECOND / self._rate)
+                self._timer.reset()
+
+    def _show(self) -> None:
+        """Publish the markers, unless they are nearly the last ones, and those are not old."""
+        if self._shown is not None and monotonic() - self._shown_at < STILL_PERIOD and all(
+                dist(a, b) <= self._moved for a, b in zip(self._shown, self._joints)):
+            return
+        self._shown, self._shown_at = self._joints, monotonic()
+        self._draw(arm_markers(self._model, self._frame, self._joints, self._trail.places))

@@ -1,0 +1,238 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The node `simulated_arm`: the arm and its controller against the clock, on ROS topics."""
+
+from __future__ import annotations
+
+from time import monotonic_ns
+from typing import Any
+
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.node import Node
+from rrr_traj_planner.core.control.tolerances import TIMED_OUT
+from rrr_traj_planner.core.control.trajectory_limits import excesses
+from rrr_traj_planner.core.control.trajectory_validation import (
+    check_trajectory,
+    motion_points,
+    MovingEndError,
+)
+from rrr_traj_planner.core.errors import RrrPlannerError
+from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.nodes.arm_node.arm_diagnostics import ArmDiagnostics
+from rrr_traj_planner.nodes.arm_node.arm_log import ArmLog
+from rrr_traj_planner.nodes.arm_node.arm_messages import (
+    disturbance_torque,
+    incoming_trajectory,
+    JointStateMessage,
+)
+from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, OwnClock
+from rrr_traj_planner.nodes.arm_node.arm_view import ArmView
+from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
+from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
+from rrr_traj_planner.nodes.parameters.table import ARM
+from rrr_traj_planner.nodes.process.node_start import NodeStart
+from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool, Trigger
+from trajectory_msgs.msg import JointTrajectory
+
+QUEUE_DEPTH = 10
+
+# The same kind of warning is logged no more often than this [s].
+WARNING_PERIOD = 1.0
+
+MOVING_END_HINT = (
+    '; a stream of points that end while moving needs '
+    'allow_nonzero_velocity_at_trajectory_end: true')
+
+NOT_THE_CLOCK = 'the arm follows a clock; only with publish_clock is it one that can stand'
+
+
+class SimulatedArm(Node):
+    """
+    An arm that follows trajectories as joint_trajectory_controller would have it.
+
+    Simulated time is the node's clock, or with `publish_clock` the arm's own (`arm_time.py`):
+    physics and control run in whole steps, and what is published carries the time of the last.
+
+    Parameters
+    ----------
+    **kwargs
+        For `rclpy.node.Node`, such as context and parameter_overrides.
+
+    Notes
+    -----
+    Subscribes `joint_trajectory` and `disturbance` (names and efforts, held until the next one);
+    publishes `joint_states` (position and velocity as the encoders tell them, the motors'
+    torque), `desired_joint_states` (what the controller follows) and `~/tracking_error` (the
+    second less the first), all three with the same stamp; `diagnostics` once a second;
+    `robot_description` and `markers` (the arm and where its tip has been), transient local;
+    serves `~/reset`, `~/hold`, `~/pause` and `~/step`. Parameters: see `parameters.py`.
+
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__('simulated_arm', **kwargs)
+        self._parameters_declared = DeclaredParameters(
+            self, ARM, ArmConfig.from_values, self._configure)
+        config = self._parameters_declared.config
+        self._joint_names = config.settings.model.joint_names
+        self._arm = ControlledArm(config.settings, config.initial_positions)
+        self._log = ArmLog(self, self._joint_names)
+        self._view = ArmView(self, config, self._arm.seen)
+        self._publishers_of_states = [
+            (JointStateMessage(self._joint_names),
+             self.create_publisher(JointState, topic, QUEUE_DEPTH).publish)
+            for topic in ('joint_states', 'desired_joint_states', '~/tracking_error')]
+        self.create_subscription(
+            JointTrajectory, 'joint_trajectory', self._follow, QUEUE_DEPTH)
+        self.create_subscription(JointState, 'disturbance', self._disturb, QUEUE_DEPTH)
+        for name, type_, answer in (('reset', Trigger, self._reset), ('hold', Trigger, self._hold),
+                                    ('step', Trigger, self._single_step),
+                                    ('pause', SetBool, self._pause)):
+            self.create_service(type_, f'~/{name}', answer)
+        self._time = OwnClock(
+            self, self._arm, self._publish, config.real_time_factor
+        ) if config.publish_clock else FollowedClock(self, self._arm, self._publish)
+        self._diagnostics = ArmDiagnostics(self, self._arm, self._time)
+        # The timer runs on steady time, whatever the clock does.
+        self._timer = self.create_timer(
+            self._period(config), self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self._start = NodeStart(
+            self, self._parameters_declared, config.settings.limits,
+            f'follows {self.resolve_topic_name("joint_trajectory")}', kwargs.get('cli_args'))
+
+    def _tick(self) -> None:
+        """Let time go on, and say what has gone wrong meanwhile."""
+        self._time.tick()
+        self._view.moved(self._arm.seen[:3])
+        condition = self._arm.monitor.take()
+        self._diagnostics.look(condition)
+        self._log.strained(condition, self._arm.settings.limits)
+        if self._arm.violation:
+            log = self.get_logger()
+            for line in self._arm.violation:
+                (log.warning if line == TIMED_OUT else log.error)(line)
+            self._arm.violation = ()
+        if self._arm.stop_warnings:
+            self.get_logger().warning(
+                '; '.join(self._arm.stop_warnings), throttle_duration_sec=WARNING_PERIOD)
+            self._arm.stop_warnings = ()
+
+    def _publish(self) -> None:
+        """Publish how the arm is."""
+        stamp, arm = self._time.reached(), self._arm
+        q, w = arm.seen[:3], arm.seen[3:]
+        self._view.moved(q)
+        desired = arm.desired
+        fields = ((q, w, arm.torque), (desired[:3], desired[3:6]), (
+            [a - b for a, b in zip(desired, q)], [a - b for a, b in zip(desired[3:6], w)]))
+        for (message, publish), values in zip(self._publishers_of_states, fields):
+            publish(message.filled(stamp, *values))
+
+    def _follow(self, message: JointTrajectory) -> None:
+        """Take over a trajectory, or say why not and go on as before."""
+        self._time.catch_up()
+        trajectory, arm = incoming_trajectory(message), self._arm
+        try:
+            check_trajectory(trajectory, self._joint_names, self._time.now(),
+                             self._parameters_declared.config.rules)
+            points = motion_points(trajectory, self._joint_names, arm.desired[:3])
+        except RrrPlannerError as error:
+            self._log.refused(str(error) + (
+                MOVING_END_HINT if isinstance(error, MovingEndError) else ''))
+            return
+        origin_ns = trajectory.stamp - self._time.epoch if trajectory.stamp != 0 else arm.now
+        self._log.exceeded(excesses(
+            points, arm.settings.limits, (arm.now - origin_ns) / SECOND, arm.desired))
+        arm.follow(points, origin_ns)
+        self._log.followed(len(trajectory.points), arm.motion.end - arm.time)
+
+    def _disturb(self, message: JointState) -> None:
+        """Put torques on the joints, or say why not."""
+        self._time.catch_up()
+        try:
+            self._arm.disturbance = disturbance_torque(message, self._joint_names)
+        except RrrPlannerError as error:
+            self._log.refused(str(error))
+
+    def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Put the arm back to its initial positions, at rest."""
+        self._time.catch_up()
+        q = self._parameters_declared.config.initial_positions
+        self._arm.reset(q)
+        self._view.restart()
+        response.success = True
+        response.message = f'at rest at {_positions(q)} rad'
+        return response
+
+    def _hold(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Stop the arm inside its ranges, as fast as its limits allow."""
+        self._time.catch_up()
+        self._arm.hold()
+        motion = self._arm.motion
+        response.success = True
+        response.message = (f'at rest in {motion.end - self._arm.time:.3f} s at '
+                            f'{_positions(motion.final)} rad')
+        return response
+
+    def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        """Let time stand, or go on."""
+        pace = self._time.pace
+        if pace is None:
+            response.success, response.message = False, NOT_THE_CLOCK
+            return response
+        pace.restart(monotonic_ns(), self._time.now(), paused=request.data)
+        response.success = True
+        response.message = (f'time {"stands" if request.data else "goes on"} at '
+                            f'{self._time.now() / SECOND:.3f} s')
+        return response
+
+    def _single_step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Simulate one step while time stands."""
+        if isinstance(self._time, OwnClock) and self._time.pace.paused:
+            self._time.single_step()
+            response.success = True
+            response.message = f'stepped to {self._time.now() / SECOND:.3f} s'
+        else:
+            response.success = False
+            response.message = (NOT_THE_CLOCK if self._time.pace is None
+                                else 'time does not stand; call ~/pause first')
+        return response
+
+    def _configure(self, config: ArmConfig) -> None:
+        """Put changed parameters in force."""
+        self._arm.configure(config.settings)
+        self._view.configure(config)
+        self._timer.timer_period_ns = round(SECOND * self._period(config))
+
+    def _period(self, config: ArmConfig) -> float:
+        """Put rates in force, and return the wall time between ticks [s]."""
+        step, rate = config.settings.step, config.publish_rate
+        if rate * step > 1.0 + 1e-9:
+            self.get_logger().warning(
+                f'publish_rate is {rate:g} Hz, but the arm has a new state every physics_step, '
+                f'{step:g} s: states are published at {1.0 / step:g} Hz')
+        return self._time.period(rate, config.real_time_factor)
+
+    def destroy_node(self) -> None:
+        """Leave the node's name to others."""
+        self._start.end()
+        super().destroy_node()
+
+
+def _positions(q: Any) -> str:
+    return '(' + ', '.join(f'{x:.4f}' for x in q) + ')'

@@ -1,0 +1,256 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The demonstration's client: asks the planner, drives the arm, records what it did."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from time import monotonic, sleep
+from typing import Any
+
+import numpy as np
+from rcl_interfaces.srv import GetParameters
+from rclpy.client import Client as ServiceClient
+from rclpy.node import Node
+from rclpy.parameter import parameter_value_to_python
+from rclpy.time import Time
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.postures import posture_of
+from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.nodes.demo.messages import plan_request, trajectory_points
+from rrr_traj_planner.nodes.demo.recording import demo_recorder
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.parameters.configuration_files import Task
+from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
+from rrr_traj_planner.nodes.process.entry import StartError
+from rrr_traj_planner.nodes.process.node_claim import is_claimed
+from rrr_traj_planner.nodes.process.node_start import KEEP_APART
+from rrr_traj_planner.nodes.process.processes import ending
+from rrr_traj_planner.nodes.recording.bag import Bag
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory
+
+NODES = ('trajectory_planner', 'simulated_arm')
+
+PATIENCE = 20.0       # s that a node is given to appear or to answer
+ASK_AGAIN = 5.0       # s after which a service is asked again
+HEAD_START = 0.5      # s between sending a trajectory and its start
+SETTLING = 0.5        # s that is recorded after the end
+PROGRESS_PERIOD = 0.5  # s
+AT_START = 1e-6       # rad
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What was asked, planned and done."""
+
+    task: Task
+    config: PlannerConfig
+    response: Any             # PlanTrajectory.Response
+    planned: TrajectoryPoints
+    recorded: TrajectoryPoints  # of the arm; time 0 is the motion's start
+    torque: Array             # of the motors, at the recorded points [N m]
+
+
+class Client(Node):
+    """Talks to both nodes."""
+
+    def __init__(self) -> None:
+        super().__init__('demo')
+        self._ended: Callable[[], tuple[str, int] | None] = lambda: None
+        self._states: list[JointState] = []
+        self.create_subscription(JointState, 'joint_states', self._states.append, 100)
+        self._send = self.create_publisher(JointTrajectory, 'joint_trajectory', 10)
+        self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
+        self._ask = self.create_client(GetParameters, 'trajectory_planner/get_parameters')
+
+    def run(self, task: Task, ended: Callable[[], tuple[str, int] | None],
+            bag: Bag | None = None) -> Run:
+        """
+        Plan a task and run it on the arm.
+
+        Parameters
+        ----------
+        task : Task
+            The via points.
+        ended : callable
+            Tells which node's process has ended, if one has.
+        bag : Bag, optional
+            Records what comes by.
+
+        Returns
+        -------
+        Run
+            The whole story.
+
+        Raises
+        ------
+        StartError
+            If a node does not appear or ends, or the plan is refused.
+        KeyboardInterrupt
+            After SIGINT or SIGTERM.
+
+        """
+        self._ended = ended
+        print('waiting for planner and arm ...', flush=True)
+        self._wait(lambda: len(self._claimed()) == len(NODES), 'planner and arm to start')
+        self._wait(self._plan.service_is_ready, 'the planner')
+        self._wait(lambda: self._states and self._send.get_subscription_count(), 'the arm')
+        self._check_alone()
+        if bag is not None:
+            self._wait(demo_recorder(self, bag).is_connected, 'the topics to record')
+        config = self._planner_config()
+        response = self._planned(plan_request(task))
+        print(f'planned {len(task.via_points)} via points with '
+              f"'{task.planner_id or config.default_planner_id}' in "
+              f'{1e3 * response.planning_time:.0f} ms: {response.via_times[-1]:.3f} s, '
+              f'{len(response.trajectory.points)} points', flush=True)
+        planned = trajectory_points(response.trajectory)
+        self._go_to(planned.positions[0], task, config)
+        start = self._drive(response.trajectory, 'driving')
+        recorded, torque = _recorded(list(self._states), config, start)
+        return Run(task, config, response, planned, recorded, torque)
+
+    def check_free(self) -> None:
+        """
+        Refuse to run where the demonstration's nodes would not be the only ones of their names.
+
+        Raises
+        ------
+        StartError
+            If one runs already.
+
+        """
+        for name in self._claimed():
+            raise StartError(f'a node {name} runs already: {KEEP_APART}')
+
+    def _claimed(self) -> list[str]:
+        """Return which nodes run on this machine."""
+        prefix, domain = self.get_namespace().rstrip('/'), self.context.get_domain_id()
+        names = [f'{prefix}/{node}' for node in NODES]
+        return [name for name in names if is_claimed(domain, name)]
+
+    def _check_alone(self) -> None:
+        """Refuse to share topics with nodes of another machine: all would answer and drive."""
+        found = self.get_node_names_and_namespaces()
+        if max(self._send.get_subscription_count(), self.count_publishers('joint_states'),
+               *(found.count((node, self.get_namespace())) for node in NODES)) > 1:
+            raise StartError(f'another planner or arm is running here: {KEEP_APART}')
+
+    def _planner_config(self) -> PlannerConfig:
+        """Return the planner's parameters, asked of the node itself."""
+        names = self._parameter_values(['joint_names'])['joint_names']
+        return PlannerConfig.from_values(self._parameter_values(list(rows_of(PLANNER, names))))
+
+    def _parameter_values(self, names: list[str]) -> dict[str, Any]:
+        answer = self._answer(self._ask, GetParameters.Request(names=names))
+        return dict(zip(names, map(parameter_value_to_python, answer.values)))
+
+    def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
+        """Bring the arm to the start of the motion, if it is elsewhere."""
+        state = self._states[-1]
+        if np.abs(_in_order([state], config, 'position')[0] - q).max() <= AT_START:
+            return
+        request = plan_request(replace(
+            task, via_points=task.via_points[:1], segment_durations=np.array([])))
+        request.elbow = posture_of(config.model, q).elbow
+        request.start_state.name = list(state.name)
+        request.start_state.position = list(state.position)
+        self._drive(self._planned(request).trajectory, 'moving to the first via point')
+
+    def _planned(self, request: PlanTrajectory.Request) -> Any:
+        response = self._answer(self._plan, request)
+        if response.error_code != response.SUCCESS:
+            raise StartError(f'the planner refuses ({response.error_code}): {response.message}')
+        return response
+
+    def _answer(self, client: ServiceClient, request: Any) -> Any:
+        """
+        Return a service's answer.
+
+        An answer that a service sends before it has found its client is lost: after a while it
+        is asked again.
+        """
+        self._wait(client.service_is_ready, client.srv_name)
+        asked: list[Any] = []
+
+        def answered() -> Any:
+            if len(asked) * ASK_AGAIN <= monotonic() - begun:
+                asked.append(client.call_async(request))
+            return next((future for future in asked if future.done()), None)
+
+        begun = monotonic()
+        self._wait(answered, f'an answer of {client.srv_name}')
+        return next(future for future in asked if future.done()).result()
+
+    def _drive(self, trajectory: JointTrajectory, what: str) -> float:
+        """Send a trajectory, wait for its end, and return when it started [s]."""
+        start = self.get_clock().now().nanoseconds + int(HEAD_START * 1e9)
+        trajectory.header.stamp = Time(nanoseconds=start).to_msg()
+        last = trajectory.points[-1].time_from_start
+        duration = last.sec + 1e-9 * last.nanosec
+        self._states.clear()
+        self._send.publish(trajectory)
+        shown = -1.0
+        begin = start * 1e-9
+
+        def over() -> bool:
+            nonlocal shown
+            now = _stamp(self._states[-1]) - begin if self._states else -HEAD_START
+            if now - shown >= PROGRESS_PERIOD and now >= 0.0 and shown < duration:
+                shown = now
+                print(f'{what}: {min(now, duration):5.2f} of {duration:.2f} s', flush=True)
+            return now >= duration + SETTLING
+
+        # On a busy machine the arm's time runs slower than the clock; it only must not stand.
+        self._wait(over, 'the arm to go on', lambda: self._states and _stamp(self._states[-1]))
+        return begin
+
+    def _wait(self, ready: Callable[[], Any], what: str,
+              progress: Callable[[], Any] = lambda: None) -> None:
+        """Wait as long as there is progress; say what did not come, or which node ended."""
+        reached, deadline = progress(), monotonic() + PATIENCE
+        while not ready():
+            if progress() != reached:
+                reached, deadline = progress(), monotonic() + PATIENCE
+            if not self.context.ok():
+                raise KeyboardInterrupt
+            ended = self._ended()
+            if ended is not None:
+                raise StartError(ending(*ended))
+            if monotonic() > deadline:
+                raise StartError(f'waited {PATIENCE:.0f} s for {what} in vain')
+            sleep(0.02)
+
+
+def _recorded(states: list[JointState], config: PlannerConfig,
+              start: float) -> tuple[TrajectoryPoints, Array]:
+    """Return recorded states with times from the start, and the torques."""
+    times = np.array([_stamp(s) for s in states]) - start
+    fresh = np.concatenate(([True], np.diff(times) > 0.0))
+    q, qd, torque = (_in_order(states, config, f)[fresh]
+                     for f in ('position', 'velocity', 'effort'))
+    return TrajectoryPoints(times[fresh], q, qd), torque
+
+
+def _in_order(states: list[JointState], config: PlannerConfig, field: str) -> Array:
+    order = [list(states[0].name).index(n) for n in config.model.joint_names]
+    return np.array([getattr(s, field) for s in states])[:, order]
+
+
+def _stamp(state: JointState) -> float:
+    return float(state.header.stamp.sec + 1e-9 * state.header.stamp.nanosec)

@@ -1,0 +1,273 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The demonstration's figures, each with its bound, and the table that shows them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import told_apart
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.inverse import nearest_solution
+from rrr_traj_planner.core.path.deviation import distance_from_polyline
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.core.trajectory.limit_check import TOLERANCE
+from rrr_traj_planner.nodes.demo.client import Run
+from rrr_traj_planner.planners.registry import planner, Registered
+
+PLANNED_BOUND = 1e-9  # rad
+REACHED_BOUND = 2e-3  # m
+FINAL_BOUND = 1e-3    # m
+
+
+class Figure(NamedTuple):
+    """A figure and the bound that it must keep."""
+
+    name: str
+    value: float
+    bound: float
+    unit: str
+
+    @property
+    def kept(self) -> bool:
+        """Whether the figure is inside its bound."""
+        return bool(self.value <= self.bound)
+
+    @property
+    def text(self) -> str:
+        """Return a line for people."""
+        value, bound = told_apart(self.value, self.bound)
+        return f'{self.name} is {value} {self.unit}, bound {bound} {self.unit}'
+
+
+def figures(run: Run) -> list[Figure]:
+    """
+    Return every figure of a run.
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    list of Figure
+        With their bounds.
+
+    """
+    found = []
+    last = len(run.task.via_points) - 1
+    missed = _planner(run).misses_via_points
+    for i, (planned, reached) in enumerate(zip(planned_errors(run), reached_errors(run))):
+        if missed and 0 < i < last:  # passed by at a distance, as the message says
+            continue
+        found += [Figure(f'via point {i}: planned error', planned, PLANNED_BOUND, 'rad'),
+                  Figure(f'via point {i}: error reached', reached, REACHED_BOUND, 'm')]
+    found.append(Figure('final error', final_error(run), FINAL_BOUND, 'm'))
+    if follows_path(run):
+        bound = run.config.max_deviation
+        planned, driven = deviations(run)
+        found += [Figure('planned distance from the polyline', planned, bound, 'm'),
+                  Figure('distance from the polyline', driven, bound + REACHED_BOUND, 'm')]
+    for name, peak, limit, unit in _peaks(run):
+        for joint, p, m in zip(run.config.model.joint_names, peak, limit):
+            found.append(Figure(f'{joint}: planned {name}', p, m * (1.0 + TOLERANCE), unit))
+    for joint, p, m in zip(run.config.model.joint_names, driven_torque(run),
+                           run.config.limits.max_effort):
+        # at the limit the motor is saturated
+        found.append(Figure(f'{joint}: torque driven', p, np.nextafter(m, 0.0), 'N m'))
+    return found
+
+
+def table(run: Run, found: list[Figure]) -> str:
+    """
+    Return the figures as a table.
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+    found : list of Figure
+        Its figures.
+
+    Returns
+    -------
+    str
+        Several lines.
+
+    """
+    lines = ['', f'{run.task.name}: {run.response.via_times[-1]:.3f} s', '',
+             f'{"via point":<28}{"at [s]":>9}{"planned error [rad]":>22}'
+             f'{"error reached [mm]":>21}']
+    for i, (point, t, planned, reached) in enumerate(zip(
+            run.task.via_points, run.response.via_times, planned_errors(run),
+            reached_errors(run))):
+        where = '(' + ', '.join(f'{x:g}' for x in point) + ') m'
+        lines.append(f'{i:<3}{where:<25}{t:>9.3f}{planned:>22.1e}{1e3 * reached:>21.4f}')
+    lines += [f'{"at rest":<28}{"":>9}{"":>22}{1e3 * final_error(run):>21.4f}']
+    if follows_path(run):
+        planned, driven = deviations(run)
+        lines.append(f'distance from the polyline: planned {1e3 * planned:.2f} mm, driven '
+                     f'{1e3 * driven:.2f} mm, allowed {1e3 * run.config.max_deviation:g} mm')
+    lines += [run.response.message, ''] if run.response.message else ['']
+    lines.append(f'{"peaks: planned / limit":<24}' + ''.join(
+        f'{joint:>24}' for joint in run.config.model.joint_names))
+    rows = [*_peaks(run), ('torque driven', driven_torque(run), run.config.limits.max_effort,
+                           'N m')]
+    for name, peak, limit, unit in rows:
+        label = f'{name} [{unit}]'
+        lines.append(f'{label:<24}' + ''.join(
+            f'{f"{p:.4g} / {_limit(m)}":>24}' for p, m in zip(peak, limit)))
+    kept = sum(f.kept for f in found)
+    lines += ['', f'{kept} of {len(found)} figures are inside their bounds']
+    return '\n'.join(lines)
+
+
+def follows_path(run: Run) -> bool:
+    """
+    Return whether the tip was planned along a path.
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    bool
+        False where the joints were.
+
+    """
+    return _planner(run).plan_path is not None
+
+
+def _planner(run: Run) -> Registered:
+    return planner(run.task.planner_id or run.config.default_planner_id)
+
+
+def deviations(run: Run) -> tuple[float, float]:
+    """
+    Return how far the tip was from the polyline through the via points.
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    tuple of float
+        At most [m]: as planned, and as driven.
+
+    """
+    moving = run.recorded.times >= 0.0
+    tips = (forward_kinematics(run.config.model, q) for q in (
+        run.planned.positions, run.recorded.positions[moving]))
+    planned, driven = (float(distance_from_polyline(
+        np.asarray(run.task.via_points), tip).max()) for tip in tips)
+    return planned, driven
+
+
+def planned_errors(run: Run) -> list[float]:
+    """
+    Return how far the plan is from the via points, at their times [rad].
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    list of float
+        The largest of the three joints' for each via point.
+
+    """
+    errors = []
+    for point, t in zip(run.task.via_points, run.response.via_times):
+        q = run.planned.positions[np.abs(run.planned.times - t).argmin()]
+        errors.append(float(np.abs(nearest_solution(run.config.model, point, q) - q).max()))
+    return errors
+
+
+def reached_errors(run: Run) -> list[float]:
+    """
+    Return how far the arm's tip was from the via points, at their times [m].
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    list of float
+        A distance for each via point.
+
+    """
+    q = Interpolant(run.recorded)(np.array(run.response.via_times))[0]
+    tip = forward_kinematics(run.config.model, q)
+    return [float(e) for e in np.linalg.norm(tip - run.task.via_points, axis=1)]
+
+
+def final_error(run: Run) -> float:
+    """
+    Return how far from the last via point the arm came to rest [m].
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    float
+        The distance.
+
+    """
+    tip = forward_kinematics(run.config.model, run.recorded.positions[-1])
+    return float(np.linalg.norm(tip - run.task.via_points[-1]))
+
+
+def driven_torque(run: Run) -> Array:
+    """
+    Return the largest torque that each motor gave, as recorded [N m].
+
+    Parameters
+    ----------
+    run : Run
+        What was asked, planned and done.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Magnitudes.
+
+    """
+    return np.asarray(np.abs(run.torque).max(axis=0))
+
+
+def _peaks(run: Run) -> list[tuple[str, Array, Array, str]]:
+    limits, r = run.config.limits, run.response
+    return [('velocity', np.array(r.peak_velocity), limits.max_velocity, 'rad/s'),
+            ('acceleration', np.array(r.peak_acceleration), limits.max_acceleration, 'rad/s^2'),
+            ('jerk', np.array(r.peak_jerk), limits.max_jerk, 'rad/s^3'),
+            ('torque', np.array(r.peak_effort), limits.max_effort, 'N m')]
+
+
+def _limit(value: float) -> str:
+    return 'none' if np.isinf(value) else f'{value:g}'

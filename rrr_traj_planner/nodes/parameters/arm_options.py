@@ -1,0 +1,164 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What parameters say about the simulated arm beyond its model, limits and gains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import sqrt
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.payload import Payload
+from rrr_traj_planner.core.arm.urdf import check_frames, FrameNames
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
+from rrr_traj_planner.core.control.tolerances import Tolerances
+from rrr_traj_planner.core.control.trajectory_validation import Rules
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.simulation.encoder import EncoderSettings
+from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+from rrr_traj_planner.nodes.parameters.naming import named, of_group
+
+Values = Mapping[str, Any]
+
+# How much faster than it must be the estimate of velocity is, for a controller that is stable.
+STABILITY_MARGIN = 2.0
+
+
+def physical_options(values: Values) -> dict[str, Any]:
+    """
+    Return what the arm carries, what slows it, and what limits its following.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    dict
+        Arguments of `ArmSettings`.
+
+    """
+    return {
+        'payload': of_group(Payload, 'payload', values),
+        'friction': of_group(Friction, 'friction', values),
+        'soft_stops': of_group(SoftStops, 'soft_stops', values),
+        'tolerances': tolerances(values)}
+
+
+def tolerances(values: Values) -> Tolerances:
+    """
+    Return the tolerances of following a trajectory.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    Tolerances
+        By joint, in the arm's order.
+
+    """
+    of_joints = [np.array([values[f'constraints.{joint}.{name}']
+                           for joint in values['joint_names']]) for name in ('trajectory', 'goal')]
+    with named({'trajectory': 'constraints.JOINT.trajectory', 'goal': 'constraints.JOINT.goal',
+                'stopped_velocity': 'constraints.stopped_velocity_tolerance',
+                'goal_time': 'constraints.goal_time'}):
+        return Tolerances(*of_joints, values['constraints.stopped_velocity_tolerance'],
+                          values['constraints.goal_time'], values['cmd_timeout'])
+
+
+def encoder(values: Values, gains: ControllerGains) -> EncoderSettings:
+    """
+    Return the encoders, if the controller is stable with them.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+    gains : ControllerGains
+        Of the controller that uses the velocities.
+
+    Returns
+    -------
+    EncoderSettings
+        Of all joints.
+
+    Raises
+    ------
+    InvalidInputError
+        If their estimate of velocity is too slow for the controller.
+
+    """
+    settings = of_group(EncoderSettings, 'encoder', values)
+    # Routh's criterion for the tracking loop within the controller's: bandwidth / natural
+    # frequency above (zeta + sqrt(zeta^2 + 4)) / 2.
+    zeta = gains.damping_ratio
+    least = STABILITY_MARGIN * 0.5 * (zeta + sqrt(zeta * zeta + 4.0)) * gains.natural_frequency
+    if not settings.is_true and settings.bandwidth < least:
+        bandwidth, lowest = told_apart(settings.bandwidth, least)
+        raise InvalidInputError(
+            f'encoder.bandwidth is {bandwidth} rad/s, must be at least {lowest} rad/s '
+            f'with controller.natural_frequency {gains.natural_frequency:g} rad/s and '
+            f'controller.damping_ratio {zeta:g}')
+    return settings
+
+
+def trajectory_rules(values: Values) -> Rules:
+    """
+    Return which trajectories are taken.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    Rules
+        By the names of joint_trajectory_controller's parameters.
+
+    """
+    return Rules(*(values[name] for name in Rules._fields))
+
+
+def frame_names(values: Values) -> FrameNames:
+    """
+    Return the names of the arm's frames.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    FrameNames
+        Of base, links and tip.
+
+    Raises
+    ------
+    InvalidInputError
+        If a name is empty or repeats.
+
+    """
+    frames = FrameNames(
+        values['base_frame'], tuple(values['link_names']), values['tip_frame'])
+    check_frames(frames)
+    return frames

@@ -1,0 +1,228 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What the nodes make of their parameters: frozen values, checked as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf import FrameNames
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
+from rrr_traj_planner.core.control.trajectory_validation import Rules
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.nodes.parameters.arm_options import (
+    encoder,
+    frame_names,
+    physical_options,
+    trajectory_rules,
+)
+from rrr_traj_planner.nodes.parameters.naming import named, of_group
+from rrr_traj_planner.planners.registry import planner
+
+Values = Mapping[str, Any]
+
+# The torque is held over a physics step: a controller that would undo more than all of a
+# velocity error within one is unstable, and half of that is still smooth.
+MOST_DAMPING_PER_STEP = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class PlannerConfig:
+    """The planner node's parameters: names, [s] and [m]."""
+
+    model: RobotModel
+    limits: JointLimits
+    base_frame: str
+    tip_frame: str
+    default_planner_id: str
+    sample_period: float
+    max_deviation: float
+    start_state_tolerance: float
+    max_tip_speed: float  # 0: none
+    steady_zones: bool
+    half_transition: float
+    planning_time_limit: float
+    max_points: int
+    max_via_points: int
+
+    @classmethod
+    def from_values(cls, values: Values) -> PlannerConfig:
+        """
+        Return the configuration that parameters describe.
+
+        Parameters
+        ----------
+        values : mapping
+            Each parameter's value by name.
+
+        Returns
+        -------
+        PlannerConfig
+            Checked as a whole.
+
+        Raises
+        ------
+        InvalidInputError
+            If the values contradict each other, or the default planner is unknown.
+
+        """
+        try:
+            planner(values['default_planner_id'])
+        except InvalidInputError as error:
+            raise InvalidInputError(f'default_planner_id: {error}') from None
+        return cls(
+            robot_model(values), joint_limits(values),
+            half_transition=values['poly_414.t_acc'],
+            **{name: values[name] for name in (
+                'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
+                'max_deviation', 'start_state_tolerance', 'max_tip_speed', 'steady_zones',
+                'planning_time_limit', 'max_points', 'max_via_points')})
+
+
+@dataclass(frozen=True, eq=False)
+class ArmConfig:
+    """The arm node's parameters: [Hz], [rad]."""
+
+    settings: ArmSettings
+    publish_rate: float
+    initial_positions: Array
+    rules: Rules
+    publish_clock: bool
+    real_time_factor: float
+    frames: FrameNames
+    marker_rate: float  # 0: none
+
+    @classmethod
+    def from_values(cls, values: Values) -> ArmConfig:
+        """
+        Return the configuration that parameters describe.
+
+        Parameters
+        ----------
+        values : mapping
+            Each parameter's value by name.
+
+        Returns
+        -------
+        ArmConfig
+            Checked as a whole.
+
+        Raises
+        ------
+        InvalidInputError
+            If the values contradict each other.
+
+        """
+        limits = joint_limits(values)
+        gains = of_group(ControllerGains, 'controller', values)
+        step = values['physics_step']
+        if gains.damping * step > MOST_DAMPING_PER_STEP:
+            frequency, most = told_apart(gains.natural_frequency, MOST_DAMPING_PER_STEP / (
+                2.0 * gains.damping_ratio * step))
+            raise InvalidInputError(
+                f'controller.natural_frequency is {frequency} rad/s, must be at most {most} rad/s '
+                f'with controller.damping_ratio {gains.damping_ratio:g} and physics_step '
+                f'{step:g} s')
+        with named({'step': 'physics_step'}):
+            settings = ArmSettings(robot_model(values), limits, gains, step,
+                                   encoder=encoder(values, gains), **physical_options(values))
+        return cls(settings, values['publish_rate'], _initial_positions(values, limits),
+                   trajectory_rules(values), values['publish_clock'], values['real_time_factor'],
+                   frame_names(values), values['marker_rate'])
+
+
+def robot_model(values: Values) -> RobotModel:
+    """
+    Return the arm that parameters describe.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    RobotModel
+        The arm.
+
+    Raises
+    ------
+    InvalidInputError
+        If a pose of the arm has no inertia, or names repeat.
+
+    """
+    inertia = np.array([list(values[f'arm.inertia_{i}']) for i in (1, 2, 3)])
+    parameters = {name: f'arm.{name}' for name in (
+        'd1', 'a2', 'd4', 'l2', 'l3', 'gravity', 'mass')}
+    with named(parameters):
+        return RobotModel(
+            **{name: values[parameter] for name, parameter in parameters.items()},
+            inertia=inertia, joint_names=values['joint_names'])
+
+
+def joint_limits(values: Values) -> JointLimits:
+    """
+    Return the limits that parameters describe, infinite where `has_..._limits` is false.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    JointLimits
+        The limits.
+
+    Raises
+    ------
+    InvalidInputError
+        If a range of positions is empty.
+
+    """
+    joints = [f'joint_limits.{joint}' for joint in values['joint_names']]
+    for joint in joints:
+        low, high = values[f'{joint}.min_position'], values[f'{joint}.max_position']
+        if low >= high:
+            least, most = told_apart(low, high)
+            raise InvalidInputError(f'{joint}.min_position is {least} rad, must be below '
+                                    f'{joint}.max_position, {most} rad')
+    largest = {
+        f'max_{name}': np.array([
+            values[f'{joint}.max_{name}'] if values[f'{joint}.has_{name}_limits'] else inf
+            for joint in joints])
+        for name in ('velocity', 'acceleration', 'jerk', 'effort')}
+    return JointLimits(np.array([values[f'{joint}.min_position'] for joint in joints]),
+                       np.array([values[f'{joint}.max_position'] for joint in joints]), **largest)
+
+
+def _initial_positions(values: Values, limits: JointLimits) -> Array:
+    """Return where the arm starts; refuse what its stops do not let it be in."""
+    q = finite_array('initial_positions', values['initial_positions'], (3,))
+    for i, (x, low, high) in enumerate(zip(q, limits.min_position, limits.max_position)):
+        if not low <= x <= high:
+            at, least, most = told_apart(x, low, high)
+            raise InvalidInputError(
+                f'initial_positions[{i}] is {at} rad, must be in [{least}, {most}] rad, the '
+                f"limits of {values['joint_names'][i]}")
+    return q

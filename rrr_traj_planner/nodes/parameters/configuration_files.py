@@ -1,0 +1,206 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Files of the package's config/ and of users: arms' parameters and via points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.nodes.parameters.point_tables import (
+    check_number,
+    listed_points,
+    tabulated_points,
+)
+import yaml
+
+CHECKOUT = Path(__file__).resolve().parents[2] / 'config'
+FIELDS = ('planner_id', 'via_points', 'segment_durations', 'arm')
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """
+    A via-point file.
+
+    Attributes
+    ----------
+    name : str
+        The file's, without its ending.
+    via_points : ndarray, shape (n, 3)
+        Tip positions [m].
+    arm : Path
+        The parameter file of the arm.
+    planner_id : str
+        Empty: the planner node's default.
+    segment_durations : ndarray
+        [s], empty: as fast as the limits allow.
+
+    """
+
+    name: str
+    via_points: Array
+    arm: Path
+    planner_id: str
+    segment_durations: Array
+
+
+def read_task(file: str) -> Task:
+    """
+    Return what a via-point file says, a YAML document or a table of comma-separated values (.csv).
+
+    Parameters
+    ----------
+    file : str
+        A path, or the name of a file of the package's config/.
+
+    Returns
+    -------
+    Task
+        Checked.
+
+    Raises
+    ------
+    InvalidInputError
+        If the file is missing, no YAML, or malformed; names the file, the line where there is one,
+        and what is wrong.
+
+    """
+    path = _found(file, Path.cwd())
+    try:
+        text = path.read_text(encoding='utf-8-sig')
+        content, lines = _table(text) if path.suffix.lower() == '.csv' else _document(text)
+        return Task(
+            name=path.stem, via_points=listed_points(content['via_points'], lines),
+            arm=arm_file(_text(content, 'arm') or 'thesis_arm.yaml', path.parent),
+            planner_id=_text(content, 'planner_id'),
+            segment_durations=_durations(content.get('segment_durations')))
+    except (OSError, UnicodeDecodeError, InvalidInputError) as error:
+        raise InvalidInputError(f'{path}: {" ".join(str(error).split())}') from None
+
+
+def _table(text: str) -> tuple[dict[str, Any], list[int]]:
+    """Return the content of a CSV file, as if it were a document, and no lines."""
+    points = tabulated_points(text).tolist()
+    if not points:
+        raise InvalidInputError('no via_points')
+    return {'via_points': points}, []
+
+
+def _document(text: str) -> tuple[dict[str, Any], list[int]]:
+    """Return the content of a YAML file, and in which lines its via points begin."""
+    try:
+        loader = yaml.SafeLoader(text)
+        root = loader.get_single_node()
+        content = None if root is None else loader.construct_document(root)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        raise InvalidInputError(
+            (f'line {mark.line + 1}: ' if mark else '')
+            + ', '.join(filter(None, (error.context, error.problem)))) from None
+    except yaml.YAMLError as error:
+        raise InvalidInputError(str(error)) from None
+    if not isinstance(content, dict) or not content.get('via_points'):
+        raise InvalidInputError('no via_points')
+    _check_keys(root)
+    points = next(value for key, value in root.value if key.value == 'via_points')
+    return content, [item.start_mark.line + 1 for item in points.value
+                     if isinstance(item, yaml.Node)]
+
+
+def _check_keys(root: yaml.MappingNode) -> None:
+    """Refuse keys that are unknown, or stand twice: YAML would take the last."""
+    lines: dict[str, int] = {}
+    for key, _ in root.value:
+        name, line = str(key.value), key.start_mark.line + 1
+        if name not in FIELDS:
+            raise InvalidInputError(
+                f'line {line}: unknown {name}; known are {", ".join(FIELDS)}')
+        if name in lines:
+            raise InvalidInputError(f'line {line}: {name} stands in line {lines[name]} already')
+        lines[name] = line
+
+
+def arm_file(name: str, folder: Path) -> Path:
+    """
+    Return an arm's parameter file.
+
+    Parameters
+    ----------
+    name : str
+        A path, absolute or seen from a folder, or the name of a file of the package's config/.
+    folder : Path
+        That folder.
+
+    Returns
+    -------
+    Path
+        An existing file.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is none.
+
+    """
+    return _found(name, folder)
+
+
+def _text(content: dict[str, Any], field: str) -> str:
+    value = content.get(field)
+    if value is not None and not isinstance(value, str):
+        raise InvalidInputError(f'{field} is {value!r}, must be a text')
+    return value or ''
+
+
+def _durations(value: Any) -> Array:
+    if isinstance(value, list):
+        for i, seconds in enumerate(value):
+            check_number(f'segment_durations[{i}]', seconds)
+    return finite_array('segment_durations', [] if value is None else value, (-1,))
+
+
+def _found(name: str, folder: Path) -> Path:
+    for path in (folder / name, shipped_folder() / name):
+        if path.is_file():
+            return path.resolve()
+        if path.is_dir():
+            raise InvalidInputError(f"'{name}' is a folder, must be a file")
+    shipped = ', '.join(sorted(p.name for p in shipped_folder().glob('*.yaml')))
+    raise InvalidInputError(f"no file '{name}' in {folder}, nor among the package's: {shipped}")
+
+
+def shipped_folder() -> Path:
+    """
+    Return the folder of the package's own configuration files.
+
+    Returns
+    -------
+    Path
+        share/rrr_traj_planner/config where the package is installed, config/ in a checkout or
+        without ROS.
+
+    """
+    try:
+        from ament_index_python.packages import get_package_share_path, PackageNotFoundError
+    except ImportError:
+        return CHECKOUT
+    try:
+        return Path(get_package_share_path('rrr_traj_planner')) / 'config'
+    except PackageNotFoundError:
+        return CHECKOUT

@@ -1,0 +1,164 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A node's parameters on ROS: declared from the table, checked as one whole at every change."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Generic, TypeVar
+
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rrr_traj_planner.core.errors import InvalidInputError, RrrPlannerError
+from rrr_traj_planner.nodes.parameters.names import check_given
+from rrr_traj_planner.nodes.parameters.table import check_value, Row, rows_of
+
+Config = TypeVar('Config')
+
+
+class DeclaredParameters(Generic[Config]):
+    """
+    The parameters of one node and the configuration that they make.
+
+    Parameters
+    ----------
+    node : Node
+        The node; parameters are declared on it at once.
+    role : str
+        `parameters.PLANNER` or `parameters.ARM`.
+    build : callable
+        Makes a configuration of values by name; raises an InvalidInputError where they do not
+        fit together.
+    changed : callable
+        Called with the new configuration after parameters were set.
+
+    Attributes
+    ----------
+    config : object
+        The configuration in force.
+    given : dict
+        The value of each parameter that a file, the command line or the program gives.
+    joint_names : list of str
+        The three joints.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value from a file or the command line is wrong; names parameter, value and range. If
+        a name is unknown, or a joint lacks limits of its own.
+
+    """
+
+    def __init__(self, node: Node, role: str, build: Callable[[Mapping[str, Any]], Config],
+                 changed: Callable[[Config], None]) -> None:
+        self._node, self._build, self._changed = node, build, changed
+        # rclpy has no public way to what is given but not declared.
+        self.given = {name: p.value for name, p in node._parameter_overrides.items()}
+        row = rows_of(role, ())['joint_names']
+        joint_names = self._declare(row)
+        self._rows = {row.name: row}
+        self._values = {row.name: joint_names}
+        _check_distinct(row, joint_names)
+        check_given(self.given, joint_names)
+        self.joint_names = joint_names
+        for row in rows_of(role, joint_names).values():
+            if row.name not in self._values:
+                self._values[row.name] = self._declare(row)
+                self._rows[row.name] = row
+        self.config = build(self._values)
+        node.add_on_set_parameters_callback(self._check)
+        node.add_post_set_parameters_callback(self._apply)
+
+    def _declare(self, row: Row) -> Any:
+        """Declare one parameter, and return its value from file, command line or table."""
+        # Loosely typed at first: rclpy's own refusals do not tell the range.
+        loose = ParameterDescriptor(dynamic_typing=True)
+        value = self._node.declare_parameter(row.name, row.default, loose).value
+        try:
+            check_value(row, value)
+        except RrrPlannerError as error:
+            raise InvalidInputError(f'parameter {error}') from None
+        self._node.set_descriptor(row.name, descriptor(row))
+        return _plain(value)
+
+    def _check(self, parameters: list[Parameter]) -> SetParametersResult:
+        """Refuse values that are out of range or do not fit the others."""
+        try:
+            self._build(self._with(parameters))
+        except RrrPlannerError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply(self, parameters: list[Parameter]) -> None:
+        """Put checked values in force."""
+        if any(p.name in self._rows for p in parameters):
+            self._values = self._with(parameters)
+            self.config = self._build(self._values)
+            self._changed(self.config)
+
+    def _with(self, parameters: Iterable[Parameter]) -> dict[str, Any]:
+        """Return the values in force with some replaced."""
+        values = dict(self._values)
+        for parameter in parameters:
+            row = self._rows.get(parameter.name)
+            if row is not None:
+                check_value(row, parameter.value)
+                values[parameter.name] = _plain(parameter.value)
+        return values
+
+
+def descriptor(row: Row) -> ParameterDescriptor:
+    """
+    Return what ROS tools show of a parameter.
+
+    Parameters
+    ----------
+    row : Row
+        The parameter.
+
+    Returns
+    -------
+    ParameterDescriptor
+        Type, meaning, unit, range (of single numbers), whether it can be set.
+
+    """
+    unit = f' [{row.unit}]' if row.unit else ''
+    result = ParameterDescriptor(
+        name=row.name, type=Parameter.Type.from_parameter_value(row.default).value,
+        description=row.meaning + unit, additional_constraints=f'must be {row.range_text}',
+        read_only=row.read_only)
+    if isinstance(row.default, float):
+        result.floating_point_range = [FloatingPointRange(from_value=row.low, to_value=row.high)]
+    elif isinstance(row.default, int) and not isinstance(row.default, bool):
+        result.integer_range = [
+            IntegerRange(from_value=int(row.low), to_value=int(row.high), step=1)]
+    return result
+
+
+def _check_distinct(row: Row, names: list[str]) -> None:
+    """Refuse joint names that repeat: their limits would share their parameters' names."""
+    if len(set(names)) != len(names) or '' in names:
+        raise InvalidInputError(f'parameter {row.name} is {names}, must be {row.range_text}')
+
+
+def _plain(value: Any) -> Any:
+    return list(value) if isinstance(value, (array, tuple)) else value

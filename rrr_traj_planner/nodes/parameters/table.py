@@ -1,0 +1,249 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The parameters of both nodes: one table, the checks it implies, the configurations made of it.
+
+Nothing here needs ROS: `declared_parameters.py` brings the table to a node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import inf, isfinite, pi
+from typing import Any, NamedTuple
+
+from rrr_traj_planner.core.arm.model import JOINT_NAMES, RobotModel
+from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.trajectory.sampling import MOST_POINTS
+
+PLANNER, ARM = 'planner', 'arm'
+
+# The first via point of table 6.1 [m]; the arm waits there.
+START_POINT = (1.02, 0.59, 0.97)
+
+HOW_WRITTEN = {
+    bool: '', str: '', int: ' (a whole number)', float: ' (written with a point, as 5.0)'}
+
+
+class Row(NamedTuple):
+    """A parameter, or with {joint} in its name one for each joint."""
+
+    name: str
+    default: Any  # its type is the parameter's; a tuple of three where the name has {joint}
+    meaning: str
+    unit: str = ''
+    low: float = -inf
+    high: float = inf
+    read_only: bool = False
+    nodes: tuple[str, ...] = (PLANNER, ARM)
+
+    @property
+    def range_text(self) -> str:
+        """Return what its value must be, for people."""
+        if not isinstance(self.default, list):
+            return self.item_text
+        if isinstance(self.default[0], str):
+            return f'{len(self.default)} distinct texts'
+        return f'{len(self.default)} numbers {self.item_text}'
+
+    @property
+    def item_text(self) -> str:
+        """Return what its value, or each item of a list, must be."""
+        item = self.default[0] if isinstance(self.default, list) else self.default
+        if isinstance(item, bool):
+            return 'true or false'
+        if isinstance(item, str):
+            return 'a text'
+        return f'in [{self.low:g}, {self.high:g}]' + (f' {self.unit}' if self.unit else '')
+
+
+LARGEST_SEED = 2 ** 31 - 1
+
+
+def _joint_limit(name: str, kind: str, values: tuple[Any, ...], unit: str, low: float,
+                 high: float) -> tuple[Row, Row]:
+    return (Row(f'joint_limits.{{joint}}.has_{name}_limits', (True, True, True),
+                f'whether {kind} is limited'),
+            Row(f'joint_limits.{{joint}}.max_{name}', values, f'largest {kind}', unit, low, high))
+
+
+TABLE: tuple[Row, ...] = (
+    Row('joint_names', list(JOINT_NAMES), "the joints' names, from the base", read_only=True),
+    Row('base_frame', 'base_link', 'frame of positions', read_only=True),
+    Row('tip_frame', 'tip', "frame at the arm's tip", read_only=True),
+    Row('link_names', ['link_1', 'link_2', 'link_3'], "the links' frames, in robot_description",
+        read_only=True, nodes=(ARM,)),
+    Row('arm.d1', 0.5, 'height of joint axis 2 above the base', 'm', -100.0, 100.0, True),
+    Row('arm.a2', 0.9, 'length of the upper arm', 'm', 1e-3, 100.0, True),
+    Row('arm.d4', 0.7, 'length of the forearm', 'm', 1e-3, 100.0, True),
+    Row('arm.l2', 0.5, 'joint axis 2 to centre of mass of link 2', 'm', -100.0, 100.0, True),
+    Row('arm.l3', 0.5, 'joint axis 3 to centre of mass of link 3', 'm', -100.0, 100.0, True),
+    Row('arm.mass', [40.0, 16.0, 12.0], 'masses of the links', 'kg', 0.0, 1e5, True),
+    Row('arm.inertia_1', [1.5, 0.1, 1.5], 'Ix, Iy, Iz of link 1 about its centre of mass, '
+        'in the axes of frame 1', 'kg m^2', 0.0, 1e6, True),
+    Row('arm.inertia_2', [0.12, 0.12, 0.01], 'the same of link 2', 'kg m^2', 0.0, 1e6, True),
+    Row('arm.inertia_3', [0.12, 0.12, 0.01], 'the same of link 3', 'kg m^2', 0.0, 1e6, True),
+    Row('arm.gravity', 9.81, 'acceleration of gravity, downwards', 'm/s^2', -100.0, 100.0, True),
+    Row('joint_limits.{joint}.min_position', (0.0, 0.0, -pi), 'lower end of the range', 'rad',
+        -1e3, 1e3),
+    Row('joint_limits.{joint}.max_position', (pi / 2.0, pi, 2.0 * pi), 'upper end of the range',
+        'rad', -1e3, 1e3),
+    *_joint_limit('velocity', 'velocity', (1.0, 1.0, 1.0), 'rad/s', 1e-6, 1e3),
+    *_joint_limit('acceleration', 'acceleration', (1.0, 1.0, 1.0), 'rad/s^2', 1e-6, 1e4),
+    *_joint_limit('jerk', 'jerk', (10.0, 10.0, 10.0), 'rad/s^3', 1e-6, 1e6),
+    *_joint_limit('effort', "torque of the joint's motor", (150.0, 200.0, 200.0), 'N m', 1e-6,
+                  1e6),
+    Row('default_planner_id', 'cycloid', 'planner of requests that name none', nodes=(PLANNER,)),
+    Row('sample_period', 0.01, 'time between trajectory points where a request says none', 's',
+        1e-4, 10.0, nodes=(PLANNER,)),
+    Row('max_deviation', 0.05, 'how far a Cartesian path may leave the polyline where a request '
+        'says nothing', 'm', 1e-6, 100.0, nodes=(PLANNER,)),
+    Row('start_state_tolerance', 0.01, 'a start state no further outside the ranges is on their '
+        'end, one no faster is at rest', 'rad, rad/s', 0.0, 1.0, nodes=(PLANNER,)),
+    Row('max_tip_speed', 0.0, 'bound on the speed of the tip along a Cartesian path; 0: none',
+        'm/s', 0.0, 100.0, nodes=(PLANNER,)),
+    Row('steady_zones', False, 'whether the tip keeps its speed on the curved zones of a '
+        'Cartesian path', nodes=(PLANNER,)),
+    Row('poly_414.t_acc', 0.5, 'half the length of a transition of planner poly_414', 's', 0.001,
+        100.0, nodes=(PLANNER,)),
+    Row('planning_time_limit', 1.0, 'time for a request; then the best motion is the answer, '
+        'or a refusal that says what took the time', 's', 1e-3, 3600.0, nodes=(PLANNER,)),
+    Row('max_points', MOST_POINTS, 'points that an answer may have; a request for more is refused '
+        'before they are computed', 'points', 2, 10_000_000, nodes=(PLANNER,)),
+    Row('max_via_points', 1000, 'via points that a request may have; one with more is refused '
+        'before it is looked at', 'points', 2, 100_000, nodes=(PLANNER,)),
+    Row('publish_rate', 200.0, 'rate of joint_states and desired_joint_states', 'Hz', 1.0, 1000.0,
+        nodes=(ARM,)),
+    Row('marker_rate', 10.0, 'rate of markers, in wall time; 0: none', 'Hz', 0.0, 100.0,
+        nodes=(ARM,)),
+    Row('physics_step', 0.001, 'time step of physics and control', 's', 1e-5, 0.01, True, (ARM,)),
+    Row('initial_positions', inverse_kinematics(RobotModel(), START_POINT).tolist(),
+        'where the arm starts, and rests after a reset', 'rad', -1e3, 1e3, nodes=(ARM,)),
+    Row('controller.natural_frequency', 30.0, 'of the decay of tracking errors', 'rad/s', 0.1,
+        1000.0, nodes=(ARM,)),
+    Row('controller.damping_ratio', 1.0, 'of the same; 1 is critical', '', 0.01, 10.0,
+        nodes=(ARM,)),
+    Row('payload.mass', 0.0, 'point mass at the tip', 'kg', 0.0, 1e4, nodes=(ARM,)),
+    Row('payload.known_to_controller', False, 'whether the controller reckons with it',
+        nodes=(ARM,)),
+    Row('friction.viscous', [0.0, 0.0, 0.0], 'friction of each joint against its velocity',
+        'N m s/rad', 0.0, 1e5, nodes=(ARM,)),
+    Row('friction.coulomb', [0.0, 0.0, 0.0], 'friction of each joint whatever its velocity',
+        'N m', 0.0, 1e5, nodes=(ARM,)),
+    Row('soft_stops.width', 0.0, 'bumpers between the ends of the ranges and hard stops behind '
+        'them; 0: none', 'rad', 0.0, 1.0, nodes=(ARM,)),
+    Row('soft_stops.stiffness', 1e4, 'of a bumper', 'N m/rad', 0.0, 1e6, nodes=(ARM,)),
+    Row('soft_stops.damping', 0.2, 'of a bumper, a part of its stiffness', 's/rad', 0.0, 100.0,
+        nodes=(ARM,)),
+    Row('encoder.resolution', 0.0, 'positions are seen in multiples of it; 0: any', 'rad', 0.0,
+        0.1, nodes=(ARM,)),
+    Row('encoder.noise', 0.0, 'of the positions seen, standard deviation', 'rad', 0.0, 0.1,
+        nodes=(ARM,)),
+    Row('encoder.seed', 0, 'of the noise', '', 0, LARGEST_SEED, nodes=(ARM,)),
+    Row('encoder.bandwidth', 250.0, 'of the velocities that are made of positions seen, where '
+        'they have resolution or noise', 'rad/s', 1.0, 1e4, nodes=(ARM,)),
+    Row('allow_partial_joints_goal', False, 'whether a trajectory may leave joints out; they '
+        'stay where they are', nodes=(ARM,)),
+    Row('allow_nonzero_velocity_at_trajectory_end', False, 'whether the last point of a '
+        'trajectory may have a velocity', nodes=(ARM,)),
+    Row('constraints.stopped_velocity_tolerance', 0.01, 'velocity error that is none at a '
+        "trajectory's end; 0: any", 'rad/s', 0.0, 1e3, nodes=(ARM,)),
+    Row('constraints.goal_time', 0.0, "time after a trajectory's end for meeting the goal's "
+        'tolerances; 0: any', 's', 0.0, 1e6, nodes=(ARM,)),
+    Row('constraints.{joint}.trajectory', (0.0, 0.0, 0.0), 'position error at which a trajectory '
+        'is given up; 0: none', 'rad', 0.0, 1e3, nodes=(ARM,)),
+    Row('constraints.{joint}.goal', (0.0, 0.0, 0.0), "the same from a trajectory's end and "
+        'constraints.goal_time on; 0: none', 'rad', 0.0, 1e3, nodes=(ARM,)),
+    Row('cmd_timeout', 0.0, "time after a trajectory's end after which the position is held that "
+        'the arm then has; ignored unless above constraints.goal_time; 0: never', 's', 0.0, 1e6,
+        nodes=(ARM,)),
+    Row('publish_clock', False, 'whether the arm is the clock, on /clock', read_only=True,
+        nodes=(ARM,)),
+    Row('real_time_factor', 1.0, 'simulated time to wall time where the arm is the clock; 0: as '
+        'fast as it can', '', 0.0, 1000.0, nodes=(ARM,)),
+)
+
+
+def rows_of(node: str, joint_names: Sequence[str]) -> dict[str, Row]:
+    """
+    Return the parameters of a node by their names.
+
+    Parameters
+    ----------
+    node : str
+        `PLANNER` or `ARM`.
+    joint_names : sequence of str
+        The three joints.
+
+    Returns
+    -------
+    dict
+        A row with a plain name and default for each.
+
+    """
+    rows: dict[str, Row] = {}
+    for row in TABLE:
+        if node not in row.nodes:
+            continue
+        if '{joint}' not in row.name:
+            rows[row.name] = row
+            continue
+        for joint, default in zip(joint_names, row.default):
+            name = row.name.format(joint=joint)
+            rows[name] = row._replace(name=name, default=default)
+    return rows
+
+
+def check_value(row: Row, value: Any) -> None:
+    """
+    Refuse a value of the wrong type or outside its range.
+
+    Parameters
+    ----------
+    row : Row
+        The parameter.
+    value : object
+        Its value; lists may come as any sequence.
+
+    Raises
+    ------
+    InvalidInputError
+        Naming parameter, value and range.
+
+    """
+    is_list = isinstance(row.default, list)
+    wanted = type(row.default[0] if is_list else row.default)
+    sequence = hasattr(value, '__len__') and not isinstance(value, (str, bytes))
+    items = list(value) if sequence else [value]
+    if sequence != is_list or any(type(x) is not wanted for x in items):
+        raise InvalidInputError(
+            f'{row.name} is {_shown(value)}, must be {row.range_text}{HOW_WRITTEN[wanted]}')
+    if is_list and len(items) != len(row.default):
+        raise InvalidInputError(
+            f'{row.name} has {len(items)} values, {_shown(value)}, must be {row.range_text}')
+    for i, x in enumerate(items):
+        if wanted in (int, float) and not (isfinite(x) and row.low <= x <= row.high):
+            index = f'[{i}]' if is_list else ''
+            unit = f' {row.unit}' if row.unit else ''
+            raise InvalidInputError(
+                f'{row.name}{index} is {told_apart(x, row.low, row.high)[0]}{unit}, must be '
+                f'{row.item_text}')
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, (str, bytes)) or not hasattr(value, '__len__'):
+        return repr(value)
+    return repr(list(value))

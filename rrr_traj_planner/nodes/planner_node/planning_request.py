@@ -1,0 +1,167 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""PlanTrajectory's request as the planners take it."""
+
+from __future__ import annotations
+
+from math import inf, isfinite
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import never, ShouldStop
+from rrr_traj_planner.core.errors import (
+    InvalidInputError,
+    quoted,
+    RrrPlannerError,
+    StartStateError,
+    told_apart,
+)
+from rrr_traj_planner.core.kinematics.postures import ELBOWS
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.parameters.naming import named
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from sensor_msgs.msg import JointState
+
+# Other periods would ask for answers of no use to any controller [s].
+LEAST_SAMPLE_PERIOD, LARGEST_SAMPLE_PERIOD = 1e-4, 10.0
+
+# Zones of less cannot be told from corners; more is beyond any arm [m].
+LEAST_DEVIATION, LARGEST_DEVIATION = 1e-6, 100.0
+
+# What the service and its node call the arguments of `PlanningRequest`, where that differs.
+FIELDS = {'start': 'start_state', 'velocity_scaling': 'max_velocity_scaling_factor',
+          'acceleration_scaling': 'max_acceleration_scaling_factor',
+          'half_transition': 'poly_414.t_acc'}
+
+
+class FrameError(RrrPlannerError):
+    """Via points in a frame that the node cannot transform."""
+
+
+def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
+                     should_stop: ShouldStop = never) -> PlanningRequest:
+    """
+    Return what a message asks, with the node's defaults in the empty fields.
+
+    Parameters
+    ----------
+    message : PlanTrajectory.Request
+        The message.
+    config : PlannerConfig
+        The node's parameters.
+    should_stop : callable
+        See `PlanningRequest`.
+
+    Returns
+    -------
+    PlanningRequest
+        The request, checked for form.
+
+    Raises
+    ------
+    FrameError, StartStateError, InvalidInputError
+        If the frame is another, the start state is incomplete, or a field is malformed.
+
+    """
+    frame = message.via_points.header.frame_id
+    if frame not in ('', config.base_frame):
+        raise FrameError(f'via_points are in frame {quoted(frame)}, must be in '
+                         f"'{config.base_frame}' (an empty frame_id means the same)")
+    count = len(message.via_points.poses)
+    if count > config.max_via_points:
+        raise InvalidInputError(f'{count} via points given, at most {config.max_via_points} '
+                                'allowed (max_via_points)')
+    period = message.sample_period
+    if period != 0.0 and not LEAST_SAMPLE_PERIOD <= period <= LARGEST_SAMPLE_PERIOD:
+        raise InvalidInputError('sample_period is {} s, must be 0 or in [{}, {}] s'.format(
+            *told_apart(period, LEAST_SAMPLE_PERIOD, LARGEST_SAMPLE_PERIOD)))
+    deviation = message.max_deviation
+    if deviation != 0.0 and not LEAST_DEVIATION <= deviation <= LARGEST_DEVIATION:
+        raise InvalidInputError('max_deviation is {} m, must be 0 or in [{}, {}] m'.format(
+            *told_apart(deviation, LEAST_DEVIATION, LARGEST_DEVIATION)))
+    if message.elbow not in ('', *ELBOWS):
+        raise InvalidInputError(
+            f"elbow is {quoted(message.elbow)}, must be 'up', 'down' or empty")
+    with named(FIELDS):
+        return PlanningRequest(
+            via_points=_tip_positions(message.via_points.poses),
+            start=_start(message.start_state, config),
+            planner_id=message.planner_id or config.default_planner_id,
+            segment_durations=np.array(message.segment_durations) if len(
+                message.segment_durations) else None,
+            velocity_scaling=_unless_zero(message.max_velocity_scaling_factor, 1.0),
+            acceleration_scaling=_unless_zero(message.max_acceleration_scaling_factor, 1.0),
+            sample_period=_unless_zero(period, config.sample_period),
+            elbow=message.elbow or None,
+            max_deviation=_unless_zero(deviation, config.max_deviation),
+            max_tip_speed=_unless_zero(config.max_tip_speed, inf),
+            steady_zones=config.steady_zones, half_transition=config.half_transition,
+            should_stop=should_stop, max_points=config.max_points,
+            start_state_tolerance=config.start_state_tolerance)
+
+
+def _unless_zero(value: float, default: float) -> float:
+    return default if value == 0.0 else value
+
+
+def _tip_positions(poses: Any) -> Array:
+    """Return positions; orientations are not used, but must be finite."""
+    orientations = [(p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w)
+                    for p in poses]
+    for i, orientation in enumerate(orientations):
+        if not np.isfinite(orientation).all():
+            raise _blamed(InvalidInputError(
+                f'via point {i}: orientation is {orientation}, must be finite'), i)
+    points = np.array([(p.position.x, p.position.y, p.position.z) for p in poses]).reshape(-1, 3)
+    for i in np.flatnonzero(~np.isfinite(points).all(axis=1)).tolist():
+        raise _blamed(InvalidInputError(
+            f'via point {i}: position is {tuple(points[i].tolist())} m, must be finite'), i)
+    return points
+
+
+def _blamed(error: InvalidInputError, via_point: int) -> InvalidInputError:
+    error.via_point = via_point
+    return error
+
+
+def _start(state: JointState, config: PlannerConfig) -> Array | None:
+    """Return the start's joint positions in the arm's order, None where there is no start."""
+    model, tolerance = config.model, config.start_state_tolerance
+    names, position, velocity = list(state.name), list(state.position), list(state.velocity)
+    if not (names or position or velocity):
+        return None
+    for name in model.joint_names:
+        if names.count(name) != 1:
+            raise StartStateError(f'start state names {name} {names.count(name)} times, must '
+                                  f"name each of {', '.join(model.joint_names)} once")
+    if len(position) != len(names) or len(velocity) not in (0, len(names)):
+        raise StartStateError(
+            f'start state has {len(names)} names, {len(position)} positions and '
+            f'{len(velocity)} velocities, must have a position for each name, and a velocity '
+            'for each or none')
+    order = [names.index(n) for n in model.joint_names]
+    q = [position[i] for i in order]
+    qd = [velocity[i] for i in order] if velocity else [0.0] * len(order)
+    for name, x, v in zip(model.joint_names, q, qd):
+        if not isfinite(x):
+            raise StartStateError(f'start state: {name} is at {x:g} rad, must be finite')
+        if not abs(v) <= tolerance:
+            _, most, speed = told_apart(abs(v), tolerance, v)
+            raise StartStateError(
+                f'start state: {name} moves at {speed} rad/s, must be at rest (no faster than '
+                f'start_state_tolerance, {most} rad/s)')
+    return np.array(q)

@@ -1,0 +1,121 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What the planner node says of itself: requests, refusals by code, planning times, last error."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from typing import NamedTuple
+
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+import numpy as np
+from rrr_traj_planner.nodes.output.diagnostics import diagnostics
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+
+# Planning times are remembered of so many requests: percentiles are of these.
+WINDOW = 1000
+PERCENTILES = (50, 90, 99)
+
+_RESPONSE = PlanTrajectory.Response
+CODES = {getattr(_RESPONSE, name): name for name in (
+    'SUCCESS', 'PLANNING_FAILED', 'GOAL_CONSTRAINTS_VIOLATED', 'INVALID_GOAL_CONSTRAINTS',
+    'FRAME_TRANSFORM_FAILURE', 'START_STATE_INVALID', 'NO_IK_SOLUTION', 'FAILURE')}
+
+
+class LastError(NamedTuple):
+    """A refusal, and when it was given."""
+
+    stamp: Time
+    code: int
+    message: str
+
+
+class RequestStatistics:
+    """
+    Counts answers, in bounded memory.
+
+    Attributes
+    ----------
+    answers : Counter
+        How many were given, by error code.
+    last_error : LastError or None
+        The last one that was no success.
+
+    """
+
+    def __init__(self) -> None:
+        self.answers: Counter[int] = Counter()
+        self.last_error: LastError | None = None
+        self._seconds: deque[float] = deque(maxlen=WINDOW)
+
+    def add(self, response: PlanTrajectory.Response, stamp: Time) -> None:
+        """
+        Count an answer.
+
+        Parameters
+        ----------
+        response : PlanTrajectory.Response
+            The answer.
+        stamp : Time
+            When it was given.
+
+        """
+        self.answers[response.error_code] += 1
+        self._seconds.append(response.planning_time)
+        if response.error_code != _RESPONSE.SUCCESS:
+            self.last_error = LastError(stamp, response.error_code, response.message)
+
+    def message(self, name: str, stamp: Time, busy: float) -> DiagnosticArray:
+        """
+        Return all of it as diagnostics.
+
+        Parameters
+        ----------
+        name : str
+            The node's.
+        stamp : Time
+            Now.
+        busy : float
+            For how long a request has been planned [s]; 0: none is.
+
+        Returns
+        -------
+        DiagnosticArray
+            One status: ERROR once a bug was met, else OK; refusals are no fault of the node.
+
+        """
+        requests, bugs = self.answers.total(), self.answers[_RESPONSE.FAILURE]
+        refused = requests - self.answers[_RESPONSE.SUCCESS] - bugs
+        text = f'{requests} requests answered, {refused} of them refused'
+        if bugs:
+            text += f'; {bugs} met a bug, see the log'
+        return diagnostics(
+            f'{name}: plan_trajectory', DiagnosticStatus.ERROR if bugs else DiagnosticStatus.OK,
+            text, self._values(requests, busy), stamp)
+
+    def _values(self, requests: int, busy: float) -> list[tuple[str, str]]:
+        """Return keys and values."""
+        values = [('requests', str(requests)), ('busy for [s]', f'{busy:.3f}')]
+        values += [(name, str(self.answers[code])) for code, name in CODES.items()]
+        times = np.percentile(self._seconds, PERCENTILES) if self._seconds else [
+            float('nan')] * len(PERCENTILES)
+        values += [(f'planning time, percentile {p} [s]', f'{seconds:.6f}')
+                   for p, seconds in zip(PERCENTILES, times)]
+        last = self.last_error
+        return [*values,
+                ('last error', f'{CODES[last.code]}: {last.message}' if last else ''),
+                ('last error at [s]',
+                 f'{last.stamp.sec}.{last.stamp.nanosec:09d}' if last else '')]

@@ -1,0 +1,229 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The life of a node's process: ROS starts, the node is made and spins, all is cleaned up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from threading import Event, Thread
+from typing import Any
+import warnings
+
+from rrr_traj_planner.nodes.process.entry import guarded, parse, StartError
+from rrr_traj_planner.nodes.process.signals import defer_signals, end_if_signalled, signal_arrived
+
+WATCH_PERIOD = 0.25  # s
+
+
+def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
+             arguments: Sequence[str] | None = None) -> int:
+    """
+    Run one node until it is told to end.
+
+    Parameters
+    ----------
+    name, description : str
+        The script and what it does.
+    load : callable
+        Imports the node's module and returns its class; called when `--help` is out of the way.
+    arguments : sequence of str, optional
+        The command line without the script's name; None: `sys.argv`'s.
+
+    Returns
+    -------
+    int
+        Exit code: 0 after SIGINT or SIGTERM, 1 after a start that failed.
+
+    """
+    return guarded(name, lambda: spin(load, parse(name, description, arguments)[1]))
+
+
+def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int:
+    """
+    Start ROS and a node, spin until the context is shut down, and clean up.
+
+    Parameters
+    ----------
+    load : callable
+        Imports the node's module and returns its class.
+    ros_arguments : list of str
+        As from `entry.parse`.
+
+    Returns
+    -------
+    int
+        Exit code.
+
+    """
+    from rclpy.clock import Clock, ClockType
+    from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+
+    make_node = load()
+    executor = node = None
+    try:
+        start_ros(ros_arguments)
+        executor = SingleThreadedExecutor()
+        node = made(make_node)
+        # A signal wakes the executor before it shuts the context down: on a busy machine the
+        # executor may find the context well and go to sleep for good. So it looks again.
+        node.create_timer(WATCH_PERIOD, lambda: None, clock=Clock(
+            clock_type=ClockType.STEADY_TIME))
+        executor.add_node(node)
+        executor.spin()
+    except ExternalShutdownException:
+        pass
+    except Exception:
+        if not signal_arrived():  # else ROS was shut down under what is running
+            raise
+    finally:
+        _clean_up(executor, node)
+    return 0
+
+
+@contextmanager
+def spun_in_background(make_node: Callable[[], Any], ros_arguments: list[str]) -> Iterator[Any]:
+    """
+    Start ROS and a node that a thread spins; end both.
+
+    Parameters
+    ----------
+    make_node : callable
+        The node's class.
+    ros_arguments : list of str
+        As from `entry.parse`.
+
+    Yields
+    ------
+    Node
+        The node.
+
+    Raises
+    ------
+    StartError
+        If ROS refuses.
+    KeyboardInterrupt
+        After SIGINT or SIGTERM, whatever else the body raises then.
+
+    """
+    from rclpy.executors import SingleThreadedExecutor
+
+    node = executor = thread = None
+    closing = Event()
+    try:
+        start_ros(ros_arguments)
+        node = made(make_node)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        thread = Thread(target=_spin_until, args=(closing, executor), daemon=True)
+        thread.start()
+        yield node
+    except Exception:
+        if not signal_arrived():  # else ROS was shut down under what is running
+            raise
+        raise KeyboardInterrupt from None
+    finally:
+        closing.set()
+        if executor is not None and thread is not None:
+            executor.create_task(lambda: None)  # wakes it
+            thread.join(1.0)  # an executor that is shut down while it spins may raise
+        _clean_up(executor, node)
+        end_if_signalled()
+
+
+def _spin_until(closing: Event, executor: Any) -> None:
+    import rclpy
+    try:
+        while rclpy.ok() and not closing.is_set():
+            executor.spin_once()
+    except Exception:
+        if rclpy.ok():  # else a signal has shut ROS down, of which the main thread takes note
+            raise
+
+
+def start_ros(ros_arguments: list[str]) -> None:
+    """
+    Start ROS; from then on SIGINT and SIGTERM shut its context down, and the script ends in order.
+
+    Parameters
+    ----------
+    ros_arguments : list of str
+        As from `entry.parse`.
+
+    Raises
+    ------
+    StartError
+        If an argument or a parameter file is wrong.
+
+    """
+    import rclpy
+    try:
+        rclpy.init(args=ros_arguments)
+        defer_signals()
+    except Exception as error:
+        raise StartError(f'ROS refuses to start: {_one_line(error)}') from error
+
+
+def end_ros() -> None:
+    """End ROS, and the process if a signal has arrived."""
+    import rclpy
+    rclpy.try_shutdown()
+    end_if_signalled()
+
+
+def made(make_node: Callable[[], Any]) -> Any:
+    """
+    Make a node; names and parameter files that ROS refuses are the user's to read.
+
+    Parameters
+    ----------
+    make_node : callable
+        Its class.
+
+    Returns
+    -------
+    Node
+        The node.
+
+    Raises
+    ------
+    StartError
+        If ROS refuses.
+
+    """
+    from rclpy.exceptions import NameValidationException, ParameterException
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+    try:
+        return make_node()
+    except (ParameterException, NameValidationException, rclpy_implementation.RCLError) as error:
+        if signal_arrived():  # ROS was shut down meanwhile: no fault of the node
+            raise
+        raise StartError(_one_line(error)) from error
+
+
+def _clean_up(executor: Any, node: Any) -> None:
+    """End what was started."""
+    import rclpy
+    # What a signal has kept the executor from starting is no news.
+    warnings.filterwarnings('ignore', 'coroutine .* was never awaited', RuntimeWarning)
+    if executor is not None:
+        executor.shutdown(timeout_sec=1.0)
+    if node is not None:
+        node.destroy_node()
+    rclpy.try_shutdown()
+
+
+def _one_line(error: BaseException) -> str:
+    return ' '.join(str(error).split())

@@ -1,0 +1,150 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a node says when it starts, and when another node has its name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+import sys
+from typing import Any
+
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.node import Node
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
+from rrr_traj_planner.nodes.parameters.names import unused
+from rrr_traj_planner.nodes.parameters.parameter_files import speaks_of
+from rrr_traj_planner.nodes.process.node_claim import claim
+
+SECOND = 1_000_000_000  # ns
+AT_ONCE = 0.001         # s
+WATCH_PERIOD = 1.0      # s
+
+KEEP_APART = ('end one, or give it a namespace (--ros-args -r __ns:=/NAME) or another '
+              'ROS_DOMAIN_ID')
+DEFAULT = 'no parameter file, the default arm'
+
+
+class NodeStart:
+    """
+    Logs a line when the node is first spun, and warns of another node of its name.
+
+    Parameters
+    ----------
+    node : Node
+        The node; all else that it needs is made.
+    parameters : DeclaredParameters
+        Its own.
+    limits : JointLimits
+        In force.
+    offer : str
+        What it does for others, and where.
+    arguments : sequence of str, optional
+        That ROS has been given for this node alone.
+
+    """
+
+    def __init__(self, node: Node, parameters: DeclaredParameters[Any], limits: JointLimits,
+                 offer: str, arguments: Sequence[str] | None = None) -> None:
+        self._node, self._parameters = node, parameters
+        self._name = node.get_fully_qualified_name()
+        files = parameter_files([*sys.argv, *(arguments or ())])
+        self._strange = [file for file in files if not speaks_of(Path(file), self._name)]
+        arm = ', '.join(f for f in files if f not in self._strange) or DEFAULT
+        self._text = (f'{self._name}: {arm}; {limits_text(limits, parameters.joint_names)}; '
+                      f'{offer}; ready')
+        self._claim = claim(node.context.get_domain_id(), self._name)
+        self._others = 0
+        self._timer = node.create_timer(
+            AT_ONCE, self._begin, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _begin(self) -> None:
+        """Say what the node is, and what it was given in vain; then go on watching."""
+        self._timer.timer_period_ns = round(WATCH_PERIOD * SECOND)
+        self._timer.callback = self._watch
+        log, given = self._node.get_logger(), self._parameters.given
+        log.info(self._text)
+        for text in unused([name for name in given if not self._node.has_parameter(name)],
+                           self._parameters.joint_names):
+            log.warning(text)
+        for file in self._strange:
+            log.warning(f'parameter file {file} has nothing for this node, {self._name}')
+        self._warn_of(int(self._claim is None))
+
+    def _watch(self) -> None:
+        """Look for nodes of the same name, of this machine and others."""
+        own = self._node.get_name(), self._node.get_namespace()
+        self._warn_of(self._node.get_node_names_and_namespaces().count(own) - 1)
+        if self._claim is None:
+            self._claim = claim(self._node.context.get_domain_id(), self._name)
+
+    def _warn_of(self, others: int) -> None:
+        """Warn, once, of another node of the same name: each would answer for the other."""
+        if others > self._others:
+            self._node.get_logger().warning(
+                f'another node is named {self._name}: they share topics and services; '
+                f'{KEEP_APART}')
+        self._others = max(others, int(self._claim is None))
+
+    def end(self) -> None:
+        """Leave the name to others."""
+        if self._claim is not None:
+            self._claim.close()
+
+
+def parameter_files(arguments: Sequence[str]) -> list[str]:
+    """
+    Return the parameter files that a command line names.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        The command line.
+
+    Returns
+    -------
+    list of str
+        In their order.
+
+    """
+    return [file for option, file in zip(arguments, arguments[1:]) if option == '--params-file']
+
+
+def limits_text(limits: JointLimits, joint_names: Sequence[str]) -> str:
+    """
+    Return limits in a line.
+
+    Parameters
+    ----------
+    limits : JointLimits
+        Infinite where there is none.
+    joint_names : sequence of str
+        The joints.
+
+    Returns
+    -------
+    str
+        For people.
+
+    """
+    units = (('max_velocity', 'rad/s'), ('max_acceleration', 'rad/s^2'), ('max_jerk', 'rad/s^3'),
+             ('max_effort', 'N m'))
+    return '; '.join(
+        f'{joint} {limits.min_position[i]:.4g} to {limits.max_position[i]:.4g} rad' + ''.join(
+            f', {value:.4g} {unit}' for name, unit in units
+            if (value := getattr(limits, name)[i]) < float('inf'))
+        for i, joint in enumerate(joint_names))

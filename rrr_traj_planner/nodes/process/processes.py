@@ -1,0 +1,143 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Both nodes as processes of their own: started, watched and ended together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+import signal
+import subprocess
+import sys
+from time import monotonic, sleep
+from types import TracebackType
+
+from rrr_traj_planner.nodes.process.signals import signal_arrived, signals_blocked
+
+MODULES = {'planner': 'rrr_traj_planner.nodes.scripts.planner',
+           'simulated_arm': 'rrr_traj_planner.nodes.scripts.simulated_arm'}
+
+# As -m does it, but from where this package is: -m prefers what lies in the folder.
+PLACE = str(Path(__file__).parents[2])
+RUN_MODULE = f"""\
+import runpy, sys
+sys.path[:1] = [] if {PLACE!r} in sys.path else [{PLACE!r}]
+del sys.argv[0]
+runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"""
+
+POLL_PERIOD = 0.1   # s
+PATIENCE = 1.5      # s that a process is given to end by itself
+
+
+class NodeProcesses:
+    """
+    The planner and the simulated arm; a context that ends them.
+
+    Signals must be deferred while it is open (`signals.py`).
+
+    Parameters
+    ----------
+    ros_arguments : sequence of str
+        For both, as after `--ros-args`, that word included.
+
+    """
+
+    def __init__(self, ros_arguments: Sequence[str]) -> None:
+        self._ros_arguments = list(ros_arguments)
+        self._processes: dict[str, subprocess.Popen[bytes]] = {}
+
+    def __enter__(self) -> NodeProcesses:
+        """Start both, or none."""
+        try:
+            with signals_blocked():
+                for name, module in MODULES.items():
+                    self._processes[name] = subprocess.Popen(
+                        [sys.executable, '-c', RUN_MODULE, module, *self._ros_arguments])
+        except BaseException:
+            self.stop()
+            raise
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
+                 trace: TracebackType | None) -> None:
+        """End both, whatever the reason."""
+        self.stop()
+
+    def ended(self) -> tuple[str, int] | None:
+        """
+        Return the process that has ended, if one has.
+
+        Returns
+        -------
+        tuple of str and int, or None
+            Its name and exit code.
+
+        """
+        for name, process in self._processes.items():
+            if process.poll() is not None:
+                return name, process.returncode
+        return None
+
+    def wait(self) -> tuple[str, int] | None:
+        """
+        Wait until one of them ends, or SIGINT or SIGTERM arrives.
+
+        Returns
+        -------
+        tuple of str and int, or None
+            Its name and exit code; None after a signal.
+
+        """
+        while not signal_arrived():
+            ended = self.ended()
+            if ended is not None:
+                return ended
+            sleep(POLL_PERIOD)
+        return None
+
+    def stop(self) -> None:
+        """End both: SIGINT, and SIGKILL for what does not heed it."""
+        deadline = monotonic() + PATIENCE
+        for process in self._processes.values():
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+        for process in self._processes.values():
+            try:
+                process.wait(max(deadline - monotonic(), 0.0))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+def ending(name: str, code: int) -> str:
+    """
+    Return what has become of a process.
+
+    Parameters
+    ----------
+    name : str
+        The node.
+    code : int
+        Exit code, or the negative number of the signal that has killed it.
+
+    Returns
+    -------
+    str
+        For people.
+
+    """
+    if code < 0:
+        return f'{name} was killed by {signal.Signals(-code).name}'
+    return f'{name} ended with exit code {code}'

@@ -1,0 +1,210 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Records topics in a bag: what comes by, byte for byte."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from importlib import import_module
+from time import time_ns
+from typing import Any
+
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rrr_traj_planner.nodes.recording.bag import Bag
+from rrr_traj_planner.nodes.recording.message_definitions import definition
+
+SECOND = 1_000_000_000  # ns
+QUEUE_DEPTH = 1000
+LOOKING_PERIOD = 0.1  # s
+
+PASSING = QoSProfile(depth=QUEUE_DEPTH)
+LATCHED = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Recorder:
+    """
+    Subscribes topics on a node and writes what arrives.
+
+    Parameters
+    ----------
+    node : Node
+        Spun by an executor.
+    bag : Bag
+        Where the messages go.
+    topics : iterable of (type, str)
+        Message types and names, relative ones to the node's namespace.
+    latched : iterable of (type, str)
+        The same, of topics whose publishers are transient local.
+
+    """
+
+    def __init__(self, node: Node, bag: Bag, topics: Iterable[tuple[Any, str]],
+                 latched: Iterable[tuple[Any, str]] = ()) -> None:
+        self._node, self._bag = node, bag
+        self._subscriptions: list[Any] = []
+        self._known: set[str] = set()  # topics that are subscribed, or cannot be
+        for some, qos in ((topics, PASSING), (latched, LATCHED)):
+            for kind, topic in some:
+                self._subscribe(kind, topic, qos)
+
+    def record_all(self) -> None:
+        """Subscribe every other topic that has a publisher, or that gets one later."""
+        self._look()
+        self._timer = self._node.create_timer(
+            LOOKING_PERIOD, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def _look(self) -> None:
+        """Subscribe topics that are new; hidden ones are left alone, as in rosbag2."""
+        for topic, types in self._node.get_topic_names_and_types():
+            if topic in self._known or '/_' in topic:
+                continue
+            offered = [i.qos_profile for i in self._node.get_publishers_info_by_topic(topic)]
+            if not offered:
+                continue
+            try:
+                definition(types[0])
+                self._subscribe(message_type(types[0]), topic, suiting(offered))
+            except (ImportError, AttributeError, LookupError, OSError) as error:
+                self._known.add(topic)
+                self._node.get_logger().warning(
+                    f'{topic} is not recorded, its type {types[0]} is not there: {error}')
+
+    def _subscribe(self, kind: Any, topic: str, qos: QoSProfile) -> None:
+        self._known.add(self._node.resolve_topic_name(topic))
+        self._subscriptions.append(self._node.create_subscription(
+            kind, topic, self._writer_of(kind, topic), qos, raw=True))
+
+    def is_connected(self) -> bool:
+        """Return whether it receives from every publisher that the node knows of."""
+        return all(s.get_publisher_count() >= self._node.count_publishers(s.topic_name)
+                   for s in self._subscriptions)
+
+    def _writer_of(self, kind: Any, topic: str) -> Callable[[bytes, Any], None]:
+        """Return a subscription's callback."""
+        name = self._node.resolve_topic_name(topic)
+
+        def write(message: bytes, info: Any) -> None:
+            if not self._bag.has(name):
+                text = type_name(kind)
+                self._bag.add_topic(name, text, definition(text), offered_qos(self._node, name))
+            now = time_ns()
+            self._bag.write(name, message, info['received_timestamp'] or now,
+                            info['source_timestamp'] or now)
+
+        return write
+
+
+def suiting(offered: Sequence[QoSProfile]) -> QoSProfile:
+    """
+    Return the quality of service that receives most from all publishers of a topic.
+
+    Parameters
+    ----------
+    offered : sequence of QoSProfile
+        Theirs.
+
+    Returns
+    -------
+    QoSProfile
+        Reliable and transient local, each where all of them are.
+
+    """
+    def all_are(name: str, value: Any) -> bool:
+        return all(getattr(qos, name) == value for qos in offered)
+
+    qos = QoSProfile(depth=QUEUE_DEPTH)
+    if all_are('durability', DurabilityPolicy.TRANSIENT_LOCAL):
+        qos.durability = DurabilityPolicy.TRANSIENT_LOCAL
+    if not all_are('reliability', ReliabilityPolicy.RELIABLE):
+        qos.reliability = ReliabilityPolicy.BEST_EFFORT
+    return qos
+
+
+def message_type(name: str) -> Any:
+    """
+    Return a message class.
+
+    Parameters
+    ----------
+    name : str
+        As `sensor_msgs/msg/JointState`.
+
+    Returns
+    -------
+    type
+        The class.
+
+    """
+    package, folder, kind = name.split('/')
+    return getattr(import_module(f'{package}.{folder}'), kind)
+
+
+def type_name(kind: Any) -> str:
+    """
+    Return a message type's full name.
+
+    Parameters
+    ----------
+    kind : type
+        A message class.
+
+    Returns
+    -------
+    str
+        As `sensor_msgs/msg/JointState`.
+
+    """
+    package, folder, *_ = kind.__module__.split('.')
+    return f'{package}/{folder}/{kind.__name__}'
+
+
+def offered_qos(node: Node, topic: str) -> str:
+    """
+    Return what a topic's publishers offer, for the player of a bag.
+
+    Parameters
+    ----------
+    node : Node
+        Which knows of them.
+    topic : str
+        Full name.
+
+    Returns
+    -------
+    str
+        YAML, as rosbag2 writes it.
+
+    """
+    return '\n'.join(_qos_text(info.qos_profile)
+                     for info in node.get_publishers_info_by_topic(topic))
+
+
+def _qos_text(qos: QoSProfile) -> str:
+    def duration(name: str, value: Duration) -> str:
+        sec, nanosec = divmod(value.nanoseconds, SECOND)
+        return f'  {name}:\n    sec: {sec}\n    nsec: {nanosec}'
+
+    return '\n'.join((
+        f'- history: {qos.history.short_key}', f'  depth: {qos.depth}',
+        f'  reliability: {qos.reliability.short_key}',
+        f'  durability: {qos.durability.short_key}',
+        duration('deadline', qos.deadline), duration('lifespan', qos.lifespan),
+        f'  liveliness: {qos.liveliness.short_key}',
+        duration('liveliness_lease_duration', qos.liveliness_lease_duration),
+        f'  avoid_ros_namespace_conventions: {str(qos.avoid_ros_namespace_conventions).lower()}'))

@@ -1,0 +1,96 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The script `bringup`: planner and simulated arm together; when one ends, so does the other."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+import sys
+
+from rrr_traj_planner.nodes.process.entry import guarded, parse
+from rrr_traj_planner.nodes.process.processes import ending, NodeProcesses
+from rrr_traj_planner.nodes.process.signals import defer_signals
+
+DESCRIPTION = 'Run the trajectory planner and the simulated arm, until Ctrl-C.'
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """
+    Run both nodes until SIGINT or SIGTERM, or until one of them ends.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The command line without the script's name; None: `sys.argv`'s.
+
+    Returns
+    -------
+    int
+        Exit code: 0 after a signal, else that of the node that ended.
+
+    """
+    def work() -> int:
+        options, ros_arguments = parse('bringup', DESCRIPTION, arguments, _add_options)
+        return _run(options.arm, ros_arguments)
+
+    return guarded('bringup', work)
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--arm', metavar='FILE', default='thesis_arm.yaml',
+        help="parameters of both nodes: a file, or one of the package's config/ "
+             '(default: %(default)s)')
+
+
+def _run(arm: str, ros_arguments: list[str]) -> int:
+    from rrr_traj_planner.nodes.parameters.configuration_files import arm_file
+
+    nodes = NodeProcesses(node_arguments(arm_file(arm, Path.cwd()), ros_arguments))
+    defer_signals()
+    with nodes:
+        ended = nodes.wait()
+    if ended is None:
+        return 0
+    name, code = ended
+    print(f'bringup: {ending(name, code)}', file=sys.stderr)
+    return code if code >= 0 else 128 - code
+
+
+def node_arguments(parameters: Path, ros_arguments: Sequence[str]) -> list[str]:
+    """
+    Return the ROS arguments of both nodes.
+
+    Parameters
+    ----------
+    parameters : Path
+        The arm's parameter file; what the user gives goes before it.
+    ros_arguments : sequence of str
+        The user's own.
+
+    Returns
+    -------
+    list of str
+        In the order in which they are to be read.
+
+    """
+    own = [a for a in ros_arguments if a not in ('--ros-args', '--')]
+    return ['--ros-args', '--params-file', str(parameters), *own]
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,116 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The script `demo`: plan through via points, drive the simulated arm, show how well it went."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+import sys
+
+from rrr_traj_planner.nodes.process.entry import guarded, parse
+
+DESCRIPTION = """\
+Plan a motion through the via points of a file, run it on the simulated arm and show the figures.
+
+Starts the planner and the arm, calls the planner's service, sends its answer to the arm, and
+compares what was asked, planned and reached. The exit code is 0 only if every figure is inside
+its bound."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """
+    Run the demonstration.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The command line without the script's name; None: `sys.argv`'s.
+
+    Returns
+    -------
+    int
+        Exit code: 0 if every figure is inside its bound, 1 if not, or if a step failed.
+
+    """
+    def work() -> int:
+        options, ros_arguments = parse('demo', DESCRIPTION, arguments, _add_options)
+        return _run(options, ros_arguments)
+
+    return guarded('demo', work)
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('task', nargs='?', default='table_6_1.yaml', metavar='FILE',
+                        help="via points: a file, or one of the package's config/ "
+                             '(default: %(default)s)')
+    parser.add_argument('--planner', default='', metavar='ID',
+                        help="planner id (default: the file's)")
+    parser.add_argument('--plot', type=Path, metavar='PNG',
+                        help='where the plot goes (default: demo_TASK.png); "" for none')
+    parser.add_argument('--record', type=Path, metavar='MCAP',
+                        help='write what comes by on the topics in this file, a ROS 2 bag')
+
+
+def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+    from rrr_traj_planner.nodes.demo.client import Client
+    from rrr_traj_planner.nodes.demo.table import figures, table
+    from rrr_traj_planner.nodes.parameters.configuration_files import read_task
+    from rrr_traj_planner.nodes.process.node_life import spun_in_background
+    from rrr_traj_planner.nodes.process.processes import NodeProcesses
+    from rrr_traj_planner.nodes.recording.bag import Bag
+    from rrr_traj_planner.nodes.scripts.bringup import node_arguments
+
+    task = read_task(options.task)
+    task = replace(task, planner_id=options.planner or task.planner_id)
+    with ExitStack() as stack:
+        client = stack.enter_context(spun_in_background(Client, ros_arguments))
+        client.check_free()
+        bag = None if options.record is None else stack.enter_context(Bag(options.record))
+        nodes = stack.enter_context(NodeProcesses(node_arguments(task.arm, ros_arguments)))
+        run = client.run(task, nodes.ended, bag)
+    found = figures(run)
+    print(table(run, found), flush=True)
+    if bag is not None:
+        print(f'recording: {bag.file}, {bag.count} messages', flush=True)
+    plot = Path(f'demo_{task.name}.png') if options.plot is None else options.plot
+    if str(plot) not in ('', '.'):
+        _plot(run, plot)
+    broken = [f for f in found if not f.kept]
+    for figure in broken:
+        print(f'demo: out of bounds: {figure.text}', file=sys.stderr)
+    return 1 if broken else 0
+
+
+def _plot(run: object, file: Path) -> None:
+    try:
+        from rrr_traj_planner.nodes.demo.plot import draw
+    except ImportError as error:
+        print(f'demo: no plot, matplotlib is missing ({error})', file=sys.stderr)
+        return
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        draw(run, file)  # type: ignore[arg-type]
+    except (OSError, ValueError) as error:  # ValueError: an ending that is no picture's
+        print(f'demo: no plot: {error}', file=sys.stderr)
+        return
+    print(f'plot: {file}')
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

@@ -1,0 +1,124 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The script `report`: the thesis's figures redrawn, or any plan drawn; needs no ROS."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+import sys
+
+from rrr_traj_planner.nodes.process.entry import guarded, parse, StartError
+
+DESCRIPTION = """\
+Write a page that stands alone, OUT_DIR/index.html, with its figures as PNG and CSV beside it.
+
+--thesis redraws the thesis's tables and figures from this package's own planners. --plan draws a
+plan of a via-point file: profiles against limits, torque use, path, animation, peaks; by several
+planners side by side. Starts no node. The exit code is 0 only if no planner refuses; the page then
+still shows the refusal."""
+
+NO_MATPLOTLIB = (
+    'no figures, matplotlib is missing ({error}): sudo apt install python3-matplotlib, or '
+    "pip install matplotlib (the package's extra 'figures')")
+
+MOST_BYTES = 200  # of a folder's name; file systems take 255
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """
+    Write a report.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The command line without the script's name; None: `sys.argv`'s.
+
+    Returns
+    -------
+    int
+        Exit code: 0 if the page is written and shows no refusal; 1 if not; 0 after SIGINT or
+        SIGTERM.
+
+    """
+    def work() -> int:
+        options, _ = parse('report', DESCRIPTION, arguments, _add_options)
+        if options.thesis and (options.planner or options.output):
+            print('report: --planner and --output go with --plan', file=sys.stderr)
+            return 2
+        try:
+            import matplotlib  # noqa: F401
+        except ImportError as error:
+            raise StartError(NO_MATPLOTLIB.format(error=error)) from None
+        try:
+            return _thesis(options.thesis) if options.thesis else _plan(options)
+        except OSError as error:
+            raise StartError(f'cannot write the page: {error}') from None
+
+    return guarded('report', work)
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument('--thesis', type=Path, metavar='OUT_DIR',
+                      help="redraw the thesis's tables and figures")
+    what.add_argument('--plan', metavar='FILE',
+                      help="draw a plan: via points, a file or one of the package's config/")
+    parser.add_argument('--planner', action='append', default=[], metavar='ID',
+                        help="planner id, may be repeated (default: the file's); 'all' for every "
+                             'one there is')
+    parser.add_argument('--output', type=Path, metavar='OUT_DIR',
+                        help='where the page of --plan goes (default: report_FILE); an earlier '
+                             'report there is replaced, nothing else is touched')
+
+
+def _thesis(folder: Path) -> int:
+    from rrr_traj_planner.report.thesis_report import write_thesis_report
+    print('planning and drawing ...', flush=True)
+    print(f'page: {write_thesis_report(folder)}')
+    return 0
+
+
+def _plan(options: argparse.Namespace) -> int:
+    from rrr_traj_planner.nodes.parameters.configuration_files import read_task
+    from rrr_traj_planner.nodes.parameters.parameter_files import planner_config
+    from rrr_traj_planner.planners.registry import planner_ids
+    from rrr_traj_planner.planners.request import PlanningRequest
+    from rrr_traj_planner.report.attempts import attempts, Task
+    from rrr_traj_planner.report.plan_report import write_plan_report
+
+    file = read_task(options.plan)
+    config = planner_config(file.arm)
+    request = PlanningRequest(
+        file.via_points, sample_period=config.sample_period, max_deviation=config.max_deviation,
+        segment_durations=file.segment_durations if len(file.segment_durations) else None,
+        max_tip_speed=config.max_tip_speed or float('inf'), steady_zones=config.steady_zones,
+        half_transition=config.half_transition)
+    ids = options.planner or [file.planner_id or config.default_planner_id]
+    print('planning and drawing ...', flush=True)
+    found = attempts(Task(file.name, config.model, config.limits, request),
+                     planner_ids() if 'all' in ids else ids)
+    name = file.name.encode()[:MOST_BYTES].decode(errors='ignore')
+    page = write_plan_report(options.output or Path(f'report_{name}'), found)
+    print(f'page: {page}')
+    refused = [a for a in found if a.plan is None]
+    for attempt in refused:
+        print(f'report: planner {attempt.planner_id} refuses: {attempt.refusal}', file=sys.stderr)
+    return 1 if refused else 0
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

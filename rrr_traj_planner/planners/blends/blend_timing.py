@@ -1,0 +1,202 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+The fastest times of a motion in which every via point is straddled by a transition.
+
+With the rates r = 1 / T of the lines as unknowns, velocities are linear, the total time is convex,
+and so is all that must be kept but for two bounds from the wrong side: half of both transitions
+must fit into their line, and a transition's length may be bounded by jerk. These are replaced by
+their tangents, inside what they allow, at the last times: a linear program follows the other, each
+no slower than the one before. The time's own convexity is met by tangents of 1 / r, which add up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.blends.blend_motion import excess, shortest_transitions, Straddling
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
+from scipy import sparse
+from scipy.optimize import linprog
+
+ROUNDS = 40
+GAIN = 1e-5                                # relative, below which a round is the last
+FIRST_TANGENTS = np.geomspace(1.0, 30.0, 12)  # over the first rates
+STRETCHES = 60                             # of the rest that rounding in a program leaves
+# The tangent of jerk's bound, a root, would be infinitely steep at a transition of no length, as
+# between lines of one velocity, and keep them at it for good: it is taken at no less than this
+# part of the shorter line.
+LEAST_TANGENT = 0.05
+ROOM = 1e-6                                # durations are longer than the least by this part
+
+
+def fastest(chain: ViaProblem, transitions: Array | None,
+            should_stop: Callable[[], bool]) -> Straddling:
+    """
+    Return the times of least sum within the limits on velocity, acceleration and jerk.
+
+    Parameters
+    ----------
+    chain : ViaProblem
+        The via points; no displacement zero in all joints.
+    transitions : ndarray, shape (n + 1,), optional
+        Lengths of the transitions [s]; None: free.
+    should_stop : callable
+        Asked before every round; True ends the search with what it has.
+
+    Returns
+    -------
+    Straddling
+        The times.
+
+    """
+    best = _made_feasible(chain, chain.rest_to_rest_times(), transitions)
+    program = _Program(chain, transitions, best)
+    point = best
+    for _ in range(ROUNDS):
+        solved = None if should_stop() else program.solved(point)
+        if solved is None:
+            break
+        point, found = solved, _made_feasible(chain, solved.lines, transitions)
+        gain = total_time(best) - total_time(found)
+        if gain > 0.0:
+            best = found
+        if abs(gain) < GAIN * total_time(best):
+            break
+    return best._replace(lines=best.lines * (1.0 + ROOM))
+
+
+def total_time(timing: Straddling) -> float:
+    """
+    Return the duration of a motion.
+
+    Parameters
+    ----------
+    timing : Straddling
+        Its times.
+
+    Returns
+    -------
+    float
+        [s].
+
+    """
+    return float(timing.lines.sum() + 0.5 * (timing.transitions[0] + timing.transitions[-1]))
+
+
+def _made_feasible(chain: ViaProblem, lines: Array, transitions: Array | None) -> Straddling:
+    """Return times stretched in proportion, if need be, until they keep the limits."""
+    for _ in range(STRETCHES):
+        timing = Straddling(lines, shortest_transitions(
+            chain.law, chain.displacements, lines) if transitions is None else transitions)
+        velocity, change, halves = excess(chain, timing)
+        if transitions is None:  # changes are kept; transitions shrink like the root, or slower
+            change, halves = 0.0, np.sqrt(halves) if halves > 1.0 + 1e-9 else halves ** (2.0 / 3.0)
+        factor = max(velocity, change, halves)
+        if factor <= 1.0:
+            return timing
+        lines = lines * factor
+    return Straddling(lines, timing.transitions)
+
+
+class _Rows(NamedTuple):
+    """Rows of a linear program: matrix @ unknowns <= bound."""
+
+    matrix: sparse.csr_array
+    bound: Array
+
+
+class _Program:
+    """The linear programs; unknowns: rates (n), transitions (n + 1) and times of lines (n)."""
+
+    def __init__(self, chain: ViaProblem, transitions: Array | None, start: Straddling) -> None:
+        self.chain, self.transitions = chain, transitions
+        self.unit = float(start.lines.mean())  # of time, in which all unknowns are about 1
+        self.n = len(start.lines)
+        self.tangents = [self.unit / start.lines * factor for factor in FIRST_TANGENTS]
+        D = chain.displacements / self.unit
+        n = self.n
+        velocities = sparse.diags(D.ravel()) @ sparse.kron(sparse.eye(n), np.ones((3, 1)))
+        none = sparse.csr_array((3, n))
+        self.changes = sparse.csr_array(
+            sparse.vstack((velocities, none)) - sparse.vstack((none, velocities)))
+        self.own_transition = sparse.csr_array(
+            sparse.kron(sparse.eye(n + 1), np.ones((3, 1))))
+        self.halves = sparse.csr_array(
+            0.5 * (sparse.eye(n, n + 1) + sparse.eye(n, n + 1, k=1)))
+
+    def solved(self, at: Straddling) -> Straddling | None:
+        """Return the solution of the program whose tangents are at given times; None if none."""
+        rates, unit, n = self.unit / at.lines, self.unit, self.n
+        self.tangents.append(rates)
+        rows = [self._fitting(rates), *self._times_above_tangents()]
+        rows += self._bounded_changes() if self.transitions is not None else (
+            self._long_transitions(rates, at.transitions / unit))
+        with np.errstate(divide='ignore'):
+            fastest_rates = unit * (self.chain.max_velocity / np.abs(
+                self.chain.displacements)).min(axis=1)
+        free = (np.zeros(n + 1), np.full(n + 1, np.inf))
+        low, high = free if self.transitions is None else (self.transitions / unit,) * 2
+        cost = np.concatenate((np.zeros(n), [0.5], np.zeros(n - 1), [0.5], np.ones(n)))
+        answer = linprog(
+            cost, A_ub=sparse.vstack([r.matrix for r in rows]).tocsc(),
+            b_ub=np.concatenate([r.bound for r in rows]),
+            bounds=np.column_stack((np.concatenate((1e-3 * rates, low, np.zeros(n))),
+                                    np.concatenate((fastest_rates, high, np.full(n, np.inf))))))
+        if answer.status != 0:
+            return None
+        return Straddling(unit / answer.x[:n], unit * answer.x[n:2 * n + 1])
+
+    def _row(self, by_rate: sparse.sparray | None, by_transition: sparse.sparray | None,
+             by_time: sparse.sparray | None, bound: Array) -> _Rows:
+        """Return rows from the parts for rates, transitions and times."""
+        m, n = len(bound), self.n
+        parts = [sparse.csr_array((m, size)) if part is None else part for part, size in (
+            (by_rate, n), (by_transition, n + 1), (by_time, n))]
+        return _Rows(sparse.csr_array(sparse.hstack(parts)), bound)
+
+    def _fitting(self, rates: Array) -> _Rows:
+        """Return that half of both transitions is at most 1 / r, by its tangent."""
+        return self._row(sparse.diags(1.0 / rates ** 2), self.halves, None, 2.0 / rates)
+
+    def _times_above_tangents(self) -> list[_Rows]:
+        """Return that times are at least 1 / r, by its tangents."""
+        return [self._row(sparse.diags(-1.0 / r ** 2), None, -sparse.eye(self.n),
+                          -2.0 / r) for r in self.tangents]
+
+    def _bounded_changes(self) -> list[_Rows]:
+        """Return that changes of velocity are at most what fixed transitions can do."""
+        assert self.transitions is not None
+        most = self.chain.law.largest_change(self.transitions[:, np.newaxis]).ravel()
+        return [self._row(side * self.changes, None, None, most) for side in (1.0, -1.0)]
+
+    def _long_transitions(self, rates: Array, transitions: Array) -> list[_Rows]:
+        """Return that transitions last as long as acceleration and jerk ask for."""
+        slope = np.tile(self.chain.law.slope / self.unit, self.n + 1)
+        squared = np.tile((self.chain.law.root / self.unit) ** 2, self.n + 1)
+        lines = np.append(np.append(np.inf, 1.0 / rates), np.inf)
+        now = np.repeat(np.maximum(
+            transitions, LEAST_TANGENT * np.minimum(lines[:-1], lines[1:])), 3)
+        rows = []
+        for side in (1.0, -1.0):
+            by_rate = side * sparse.diags(slope) @ self.changes
+            rows.append(self._row(by_rate, -self.own_transition, None, np.zeros(len(now))))
+            by_rate = side * sparse.diags(squared) @ self.changes
+            rows.append(self._row(by_rate, -2.0 * sparse.diags(now) @ self.own_transition,
+                                  None, -now ** 2))
+        return rows

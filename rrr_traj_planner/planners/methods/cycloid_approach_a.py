@@ -1,0 +1,190 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+`cycloid_approach_a`: the thesis's own: in every segment a transition, then a cruise (4.2, a).
+
+Each via point is left at the cruise velocity of the segment before it; a last transition brings
+the arm to rest. Durations are all there is to choose: they determine the velocities one after the
+other. A beam search chooses them, a descent by coordinates refines them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, IntArray
+from rrr_traj_planner.core.cancellation import ShouldStop
+from rrr_traj_planner.core.errors import ConvergenceError, TimingError
+from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused, within_torque
+from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, via_problem_of
+from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
+from rrr_traj_planner.planners.transitions.transition_cruise import (
+    bisected,
+    cruise_velocity,
+    stopping_bracket,
+    stopping_time,
+)
+from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
+
+BEAM = 24
+# Durations tried, over the least one from rest to rest: fine near it, on to very slow.
+GRID = np.concatenate((np.geomspace(0.4, 2.5, 36), np.geomspace(2.8, 60.0, 12)))
+REFINED_SEGMENTS = 12      # with more, the beam's answer stands
+REFINING_PASSES = 16
+REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])
+FIRST_STEP = 0.08          # relative
+STEP_REDUCTION = 0.5
+STRETCHES = np.geomspace(1.0, 30.0, 40)  # of what the search finds, tried in turn
+
+
+@register('cycloid_approach_a')
+def plan(task: JointTask) -> Trajectory:
+    """
+    Return the fastest motion of approach (a) that is found, or one of prescribed durations.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked.
+
+    Returns
+    -------
+    Trajectory
+        Within the limits.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has no acceleration limit.
+    TimingError
+        If prescribed durations are too short; with feasible ones.
+    LimitViolationError
+        If gravity alone exceeds an effort limit between the via points.
+
+    """
+    chain = via_problem_of(task)
+    if task.durations is not None:
+        return kept_or_refused(lambda durations: within_torque(
+            task, chain.law, lambda law: _motion(task, chain, law, durations)), task.durations)
+    motion = _motion(task, chain, chain.law, _fastest(task, chain))
+    if motion is None:
+        raise ConvergenceError('approach (a): the durations that were found are not feasible')
+    return slowed_for_torque(task, motion)
+
+
+def _fastest(task: JointTask, chain: ViaProblem) -> Array:
+    """Return durations of least total time, as good as the search finds them, shape (n,)."""
+    durations = _beam_search(chain, task.should_stop)
+    if len(durations) <= REFINED_SEGMENTS:
+        durations = _refined(chain, durations, task.should_stop)
+    for factor in STRETCHES:
+        task.should_stop()
+        if _motion(task, chain, chain.law, factor * durations) is not None:
+            return np.asarray(factor * durations)
+    raise TimingError(
+        'approach (a) leaves every via point at the cruise velocity of the segment before it: no '
+        'durations are found at which every joint then stays in its range')
+
+
+def _beam_search(chain: ViaProblem, should_stop: ShouldStop) -> Array:
+    """Return durations chosen one after the other; where that ends, very long ones."""
+    D, law, limit = chain.displacements, chain.law, chain.max_velocity
+    grids = np.maximum(chain.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
+    v, elapsed, chosen = np.zeros((1, 3)), np.zeros(1), np.zeros((1, 0))
+    for k in range(len(D) - 1):
+        should_stop()
+        T = grids[k]
+        next_v = cruise_velocity(law, limit, v[:, np.newaxis], T[:, np.newaxis], D[k])
+        total = elapsed[:, np.newaxis] + T
+        bound = (next_v >= chain.lowest[k]) & (next_v <= chain.highest[k])
+        beam, step = np.nonzero(bound.all(axis=-1))
+        if not len(beam):
+            return np.asarray(grids[:, -1])
+        v, elapsed = next_v[beam, step], total[beam, step]
+        chosen = np.column_stack((chosen[beam], T[step]))
+        best = _best(law, limit, v, elapsed, D[k + 1], grids[k + 1])
+        v, elapsed, chosen = v[best], elapsed[best], chosen[best]
+    last = stopping_time(law, limit, v, D[-1], grids[-1])
+    best_one = int((elapsed + last).argmin())
+    return np.append(chosen[best_one], min(last[best_one], grids[-1, -1]))
+
+
+def _best(law: TransitionLaw, limit: Array, v: Array, elapsed: Array, D: Array,
+          grid: Array) -> IntArray:
+    """Return which beams can come to rest first at the end of the next segment."""
+    low, high = stopping_bracket(law, limit, v, D, grid)
+    near = np.arange(len(v))
+    if len(v) > BEAM:  # others than these cannot be among them
+        near = np.flatnonzero(elapsed + low <= np.partition(elapsed + high, BEAM - 1)[BEAM - 1])
+    rest = bisected(law, limit, v[near], D, low[near], high[near])
+    return near[np.argsort(elapsed[near] + rest, kind='stable')[:BEAM]]
+
+
+def _refined(chain: ViaProblem, durations: Array, should_stop: ShouldStop) -> Array:
+    """Return better durations, each varied in turn by smaller and smaller steps."""
+    best, step = _total(chain, durations[np.newaxis])[0], FIRST_STEP
+    for _ in range(REFINING_PASSES):
+        if should_stop():
+            break
+        for k in range(len(durations) - 1):
+            trials = np.tile(durations, (len(REFINING_STEPS), 1))
+            trials[:, k] *= 1.0 + step * REFINING_STEPS
+            totals = _total(chain, trials)
+            if totals.min() < best:
+                best, durations = totals.min(), trials[totals.argmin()]
+        step *= STEP_REDUCTION
+    last = best - durations[:-1].sum()
+    return np.append(durations[:-1], last) if np.isfinite(best) else durations
+
+
+def _total(chain: ViaProblem, durations: Array) -> Array:
+    """Return total times of rows of durations, the last one replaced by the least."""
+    v, allowed = np.zeros((len(durations), 3)), np.ones(len(durations), dtype=bool)
+    for k in range(durations.shape[1] - 1):
+        v = cruise_velocity(chain.law, chain.max_velocity, v, durations[:, k:k + 1],
+                            chain.displacements[k])
+        allowed &= ((v >= chain.lowest[k]) & (v <= chain.highest[k])).all(axis=-1)
+        v = np.nan_to_num(v)
+    grid = np.maximum(chain.rest_to_rest_times()[-1], 1e-6) * GRID
+    last = stopping_time(chain.law, chain.max_velocity, v, chain.displacements[-1], grid)
+    return np.where(allowed, durations[:, :-1].sum(axis=1) + last, np.inf)
+
+
+def _motion(task: JointTask, chain: ViaProblem, law: TransitionLaw,
+            durations: Array) -> PiecewiseTrajectory | None:
+    """Return the motion of given durations, None if it breaks a limit other than torque's."""
+    D, T = chain.displacements, durations[:, np.newaxis]
+    v = np.zeros((len(D) + 1, 3))
+    for k in range(len(D) - 1):
+        v[k + 1] = cruise_velocity(law, chain.max_velocity, v[k], T[k], D[k])
+        if np.isnan(v[k + 1]).any():
+            return None
+    if not np.isfinite(stopping_time(law, chain.max_velocity, v[-2:-1], D[-1], T[-1]))[0]:
+        return None
+    first = np.minimum(law.least_time(np.diff(v, axis=0)), T)
+    parts = Parts(first, v[1:].copy(), np.zeros_like(first))
+    to_rest = quick_parts(law, v[-2:-1], v[-1:], T[-1:], D[-1:])
+    for part, last in zip(parts, to_rest):
+        part[-1:] = last
+    motion = trajectory(task.points, v[:-1], v[1:], T, parts)
+    peaks, limits = motion.peaks(), task.limits
+    kept = (peaks.min_position >= limits.min_position - POSITION_TOLERANCE).all() and (
+        peaks.max_position <= limits.max_position + POSITION_TOLERANCE).all()
+    return motion if kept else None

@@ -1,0 +1,142 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+`poly_434`: Lin's 4-3-4: in every segment a quartic lift-off, a cubic cruise, a quartic set-down.
+
+Approach (c) of section 4.2: "each subtrajectory is composed of three segments, namely; lift-off,
+cruise and set down", of polynomials as section 2.2.2 describes them. The thesis's visiting points
+bound the subtrajectories: they are where a lift-off begins and a set-down ends, at rest, and not
+Lin's points between these, which are free. All joints follow one law, so the arm moves straight in
+joint space. The law is the symmetric one of least time (`symmetric_434`); where torque asks for
+more time, the best that `torque_434` finds. Jerk steps at the joins and at the via points.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.motion_laws.lin_434 import Law434
+from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.stops.stops_at_via_points import (
+    may_lack_torque,
+    quick_durations,
+    stopping_motion,
+)
+from rrr_traj_planner.planners.stops.symmetric_434 import (
+    fastest_symmetric,
+    least_time,
+    Loads,
+    loads_of,
+)
+from rrr_traj_planner.planners.stops.torque_434 import law_for_torque, Segment, STARTS
+from rrr_traj_planner.planners.transitions.motion_law import torque_stretch, via_problem_of
+from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
+
+
+@register('poly_434', some_durations=True)
+def plan(task: JointTask) -> Trajectory:
+    """
+    Return the fastest 4-3-4 motion, or one of prescribed durations.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked; durations that are NaN are free.
+
+    Returns
+    -------
+    Trajectory
+        Within the limits.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has no acceleration limit.
+    TimingError
+        If prescribed durations are too short; with feasible ones.
+    LimitViolationError
+        If gravity alone exceeds an effort limit between the via points.
+
+    """
+    loads = loads_of(via_problem_of(task, QUARTIC))
+    symmetric = fastest_symmetric(loads)
+    floors = quick_durations(task, least_time(symmetric, loads))
+    lacking = may_lack_torque(task, _motion(task.points, symmetric, floors))
+    found = [_for_torque(task, k, Loads(*(load[k] for load in loads)), _nth(symmetric, k),
+                         float(floors[k])) if lacking[k] else (_nth(symmetric, k), True)
+             for k in range(len(floors))]
+    laws = Law434(*(np.array(field) for field in zip(*(law for law, _ in found))))
+    quick = np.maximum(floors, quick_durations(task, least_time(laws, loads)))
+    note = _note([task.segment_number(k) for k, (_, whole) in enumerate(found) if not whole])
+    return stopping_motion(task, quick, lambda own, durations: _motion(
+        task.points[own.start:own.stop + 1], Law434(*(field[own] for field in laws)), durations,
+        note))
+
+
+def _nth(laws: Law434, k: int) -> Law434:
+    """Return one of several laws, fields of shape ()."""
+    return Law434(*(field[k] for field in laws))
+
+
+def _motion(points: Array, laws: Law434, durations: Array, note: str = '') -> PiecewiseTrajectory:
+    """Return the motion by given laws, each of shape (n,), in given durations."""
+    columns = Law434(*(field[:, np.newaxis] for field in laws))
+    pieces = columns.pieces(durations[:, np.newaxis], points[:-1], np.diff(points, axis=0))
+    return PiecewiseTrajectory(
+        joint_profiles(pieces), np.concatenate(([0.0], np.cumsum(durations))), note)
+
+
+def _for_torque(task: JointTask, k: int, loads: Loads, law: Law434,
+                floor: float) -> tuple[Law434, bool]:
+    """
+    Return the law by which a segment takes least time, and whether the search was whole.
+
+    It is the one given where torque allows that in least time, or in the time prescribed.
+    """
+    points = task.points[k:k + 2]
+    task.should_stop()
+
+    def total(law: Law434) -> float:
+        """Return the duration that a law needs, torque included."""
+        quick = max(floor, float(quick_durations(task, least_time(law, loads))))
+        each = Law434(*(np.array([field]) for field in law))
+        return quick * max(1.0, torque_stretch(task, _motion(points, each, np.array([quick]))))
+
+    least = total(law)
+    enough = floor if task.durations is None or np.isnan(task.durations[k]) else max(
+        floor, float(task.durations[k]))
+    if least <= enough or np.isinf(least):
+        return law, True
+    segment = Segment(task.model, task.limits, points[0], points[1] - points[0], loads)
+    for start in (law, *STARTS):
+        if task.should_stop():
+            return law, False
+        other = law_for_torque(segment, start, least, floor)
+        duration = np.inf if other is None else total(other)
+        if other is not None and duration < least:
+            law, least = other, duration
+    return law, True
+
+
+def _note(segments: list[int]) -> str:
+    """Return what is to be said where planning ended before every law was found."""
+    if not segments:
+        return ''
+    return ('planning time was over before the fastest 4-3-4 law within torque was found for '
+            f'segment{"s" * (len(segments) > 1)} {", ".join(map(str, segments))}')

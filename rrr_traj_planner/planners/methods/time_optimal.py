@@ -1,0 +1,94 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+`time_optimal`: as fast as velocity, acceleration, jerk and torque allow, with continuous jerk.
+
+The acceleration is a chain of the thesis's half-period ramps, whose jerk cruises at its peak where
+a limit on jerk shapes them (`core.ramps`); node accelerations, via velocities and durations are
+optimised together, from rest at every via point on, by an interior-point method whose every
+iterate is a valid motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+from rrr_traj_planner.planners.joint_timing.least_time import fastest
+from rrr_traj_planner.planners.joint_timing.prescribed import prescribed
+from rrr_traj_planner.planners.joint_timing.start import cannot_be_held
+from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, followable
+from rrr_traj_planner.planners.solver.convergence import unconverged_note
+from rrr_traj_planner.planners.solver.ramps import grid_of
+
+RAMPS = 20            # in a segment
+RAMPS_ALONE = 32      # in a motion's only segment, which has to speed up and to slow down
+MOST_RAMPS = 40      # where neither jerk nor sampling shapes them
+SHAPED = 0.1          # part of a segment above which a full swing of acceleration shapes ramps
+SAMPLES_PER_RAMP = 1.0
+
+
+@register('time_optimal', some_durations=True)
+def plan(task: JointTask) -> Trajectory:
+    """
+    Return the fastest motion of the family, or the gentlest of prescribed durations.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked; durations that are NaN are free.
+
+    Returns
+    -------
+    Trajectory
+        Within the limits; its note says where the method ended before it converged.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has neither an acceleration nor an effort limit.
+    TimingError
+        If prescribed durations are too short; with feasible ones.
+    LimitViolationError
+        If no way between two via points is found along which the motors can hold the arm.
+
+    """
+    limits, cruise = followable(task.model, task.limits, task.points, task.sample_period)
+    task = replace(task, limits=limits)
+    grid = grid_of(_ramps(task), cruise)
+    found = fastest(task, grid) if task.durations is None else prescribed(
+        task, grid, task.durations)
+    if found is None:
+        raise cannot_be_held(task, grid)
+    trajectory = found.trajectory
+    return PiecewiseTrajectory(trajectory.profiles, trajectory.via_times,
+                               unconverged_note(found.gap, found.cost))
+
+
+def _ramps(task: JointTask) -> int:
+    """Return how many ramps a segment has: more where jerk leaves room for shorter ones."""
+    scale = acceleration_scale(task.model, task.limits, task.points)
+    D = np.abs(np.diff(task.points, axis=0))
+    T = float(np.median(np.maximum(2.0 * np.sqrt(D / scale),
+                                   D / task.limits.max_velocity).max(axis=1)))
+    swing = float((np.pi * scale / task.limits.max_jerk).max())
+    ramps = RAMPS_ALONE if len(D) == 1 else RAMPS
+    if swing >= SHAPED * T:
+        return ramps
+    return int(np.clip(T / (SAMPLES_PER_RAMP * task.sample_period), ramps, MOST_RAMPS))

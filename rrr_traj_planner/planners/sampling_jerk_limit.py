@@ -1,0 +1,109 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""How fast acceleration may change, and how, so that samples can follow a motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inertia_matrix
+from rrr_traj_planner.core.errors import InvalidInputError
+
+# Samples that a full swing of acceleration lasts; more where the acceleration that a controller
+# rebuilds from them must keep a limit.
+SAMPLES, SAMPLES_OF_LIMITED = 2.0, 4.0
+
+# Part of a ramp during which jerk is constant, and how many times as long as it must a swing has
+# to last for samples to follow jerk that rises and falls so fast.
+CRUISE, SLOW_ENOUGH = 0.6, 7.5
+
+
+class Followable(NamedTuple):
+    """What samples can follow."""
+
+    limits: JointLimits  # with finite limits on jerk
+    cruise: float        # part of a ramp during which jerk is constant
+
+
+def followable(model: RobotModel, limits: JointLimits, q: Array,
+               sample_period: float) -> Followable:
+    """
+    Return limits whose jerk keeps changes of acceleration so long that samples can follow them.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits.
+    q : ndarray, shape (n, 3)
+        Poses on the way [rad].
+    sample_period : float
+        [s].
+
+    Returns
+    -------
+    Followable
+        Jerk cruises where its limits make every swing much longer than samples do.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has neither an acceleration nor an effort limit.
+
+    """
+    samples = np.where(np.isinf(limits.max_acceleration), SAMPLES, SAMPLES_OF_LIMITED)
+    jerk = np.pi * acceleration_scale(model, limits, q) / (samples * sample_period)
+    cruise = CRUISE if (SLOW_ENOUGH * limits.max_jerk <= jerk).all() else 0.0
+    return Followable(replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk)), cruise)
+
+
+def acceleration_scale(model: RobotModel, limits: JointLimits, q: Array) -> Array:
+    """
+    Return the acceleration that each joint can have, by its limit or by its torque.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits.
+    q : ndarray, shape (n, 3)
+        Poses on the way [rad].
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        [rad/s^2].
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has neither an acceleration nor an effort limit.
+
+    """
+    lacking = np.isinf(limits.max_acceleration) & np.isinf(limits.max_effort)
+    if lacking.any():
+        raise InvalidInputError(
+            'the fastest motion needs an acceleration or an effort limit on every joint, '
+            f'{model.joint_names[int(lacking.argmax())]} has neither')
+    inertia = np.diagonal(inertia_matrix(model, q), axis1=1, axis2=2)
+    torque = limits.max_effort + np.abs(gravity_torque(model, q))
+    return np.asarray(np.minimum(limits.max_acceleration, (torque / inertia).max(axis=0)))

@@ -1,0 +1,138 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Approach (c) of section 4.2: every segment by itself lifts off, cruises and sets down.
+
+The arm rests at every via point, so the segments have nothing to do with each other: each takes
+its own least time, torque slows those alone that lack it, and any duration that is not shorter may
+be prescribed. Planners differ in the motion of a segment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.errors import TimingError
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.torque import squared_stretch, torque_grid
+from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_stretch
+
+ROOM = 1e-6                # durations are longer than the least by this part
+PLENTY = 0.8                # of the speed, up to which torque is not looked at more closely
+DURATION_TOLERANCE = 1e-7  # relative, by which prescribed durations may fall short
+
+# Returns the motion of some of the segments, one after the other, in given durations.
+SegmentMotion = Callable[[slice, Array], PiecewiseTrajectory]
+
+
+def quick_durations(task: JointTask, least: Array) -> Array:
+    """
+    Return durations in which segments are gone through, but for torque.
+
+    Parameters
+    ----------
+    task : JointTask
+        For its sample period.
+    least : ndarray, shape (n,)
+        Least durations by velocity, acceleration and jerk limits [s], 0 where nothing moves.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        [s], positive: where nothing moves, any will do.
+
+    """
+    return np.maximum(least * (1.0 + ROOM), task.sample_period * ROOM)
+
+
+def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> PiecewiseTrajectory:
+    """
+    Return the fastest motion that stops at every via point, or one of prescribed durations.
+
+    Parameters
+    ----------
+    task : JointTask
+        What is asked; durations that are NaN are free.
+    quick : ndarray, shape (n,)
+        Durations within all limits but torque's [s].
+    motion : callable
+        Returns the motion of a slice of the segments in given durations, none shorter than these;
+        in other durations the same motion, faster or slower.
+
+    Returns
+    -------
+    PiecewiseTrajectory
+        Within the limits.
+
+    Raises
+    ------
+    TimingError
+        If prescribed durations are too short; with feasible ones.
+    LimitViolationError
+        If gravity alone exceeds an effort limit between the via points.
+
+    """
+    everywhere = slice(0, len(quick))
+    stretches = np.ones(len(quick))
+    for k in np.flatnonzero(may_lack_torque(task, motion(everywhere, quick))).tolist():
+        task.should_stop()
+        stretches[k] = max(1.0, torque_stretch(task, motion(slice(k, k + 1), quick[k:k + 1])))
+    if np.isinf(stretches).any():
+        raise cannot_hold(task, motion(everywhere, quick))
+    least = quick * stretches
+    durations = least if task.durations is None else np.where(
+        np.isnan(task.durations), least, task.durations)
+    short = durations < least * (1.0 - DURATION_TOLERANCE)
+    if short.any():
+        raise _too_short(task, durations, least, np.flatnonzero(short).tolist())
+    return motion(everywhere, durations)
+
+
+def may_lack_torque(task: JointTask, motion: PiecewiseTrajectory) -> BoolArray:
+    """
+    Return which segments are to be looked at closely: others have torque to spare, and plenty.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm and its limits.
+    motion : PiecewiseTrajectory
+        Through all via points.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Segments on which torque at many points asks for more than PLENTY of the speed.
+
+    """
+    t = torque_grid(motion)
+    squared = squared_stretch(task.model, task.limits, *motion(t)[:3]).max(axis=1)
+    worst = np.zeros(len(motion.via_times) - 1)
+    np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='right'), squared)
+    np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='left'), squared)
+    return np.asarray(~(worst < PLENTY ** 2))
+
+
+def _too_short(task: JointTask, durations: Array, least: Array, short: list[int]) -> TimingError:
+    """Return the error of prescribed durations that are too short, with the least feasible."""
+    numbers = [str(task.segment_number(k)) for k in short]
+    feasible = np.maximum(durations, np.ceil(least * 1e6) / 1e6)
+    asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
+    return TimingError(
+        f'segment_durations {asked} s are too short for segment{"s" * (len(short) > 1)} '
+        f'{", ".join(numbers)}: the least feasible are {offered} s', tuple(offered))
