@@ -16,6 +16,7 @@
 
 import os
 from pathlib import Path
+import signal
 import sys
 
 import pytest
@@ -23,6 +24,9 @@ import pytest
 # Stay on this machine, and refuse values that rclpy would otherwise garble without a word.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
+
+# A shell ignores SIGINT for what it runs in the background, and so would the scripts under test.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # What is installed is what is tested, not the source tree, which Python's start puts on the path
 # and which may lack what is built.
