@@ -58,9 +58,9 @@ class Script:
     def __exit__(self, *_):
         self.children = self.children or children_of(self.process.pid)
         self.process.kill()
-        self.process.communicate()
-        for child in self.children:
+        for child in self.children:  # they hold its pipes open
             child.kill()
+        self.process.communicate()
 
     def read_until(self, text):
         """Return lines of its output, up to one that holds a text."""

@@ -72,7 +72,7 @@ def test_node_that_ends_takes_the_other_with_it(ros, name, number, code, text):
     with Script(script('bringup')) as bringup:
         assert_up(ros, states)
         children = bringup.started(2)
-        victim, = (c for c in children if f'rrr_traj_planner.nodes.{name}' in c.command)
+        victim, = (c for c in children if f'rrr_traj_planner.nodes.scripts.{name}' in c.command)
         victim.send_signal(number)
         ended, _, errors = bringup.ended()
         assert all(child.has_ended() for child in children)

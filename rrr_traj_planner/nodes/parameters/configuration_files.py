@@ -29,7 +29,7 @@ from rrr_traj_planner.nodes.parameters.point_tables import (
 )
 import yaml
 
-CHECKOUT = Path(__file__).resolve().parents[2] / 'config'
+CHECKOUT = Path(__file__).resolve().parents[3] / 'config'
 FIELDS = ('planner_id', 'via_points', 'segment_durations', 'arm')
 
 

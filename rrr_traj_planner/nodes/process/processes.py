@@ -30,7 +30,7 @@ MODULES = {'planner': 'rrr_traj_planner.nodes.scripts.planner',
            'simulated_arm': 'rrr_traj_planner.nodes.scripts.simulated_arm'}
 
 # As -m does it, but from where this package is: -m prefers what lies in the folder.
-PLACE = str(Path(__file__).parents[2])
+PLACE = str(Path(__file__).parents[3])
 RUN_MODULE = f"""\
 import runpy, sys
 sys.path[:1] = [] if {PLACE!r} in sys.path else [{PLACE!r}]
