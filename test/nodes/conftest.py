@@ -28,7 +28,6 @@ from rclpy.node import Node
 
 # Nothing here takes so long [s]; what waits longer has failed.
 DEADLINE = 20.0
-ASK_AGAIN = 6.0  # s, as clients should: the README says so
 
 
 class Listener:
@@ -109,12 +108,7 @@ class Ros:
         client = self.node.create_client(service_type, name)
         try:
             assert client.wait_for_service(DEADLINE), f'no service {name}'
-            # An answer that is sent before the client's reader is matched is lost: ask again.
-            for _ in range(int(DEADLINE / ASK_AGAIN)):
-                answer = client.call(request or service_type.Request(), timeout_sec=ASK_AGAIN)
-                if answer is not None:
-                    break
-            return answer
+            return client.call(request or service_type.Request(), timeout_sec=DEADLINE)
         finally:
             self.node.destroy_client(client)
 

@@ -21,7 +21,6 @@ from typing import Any
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rclpy.node import Node
 from rrr_traj_planner.core.control.tolerances import TIMED_OUT
 from rrr_traj_planner.core.control.trajectory_limits import excesses
 from rrr_traj_planner.core.control.trajectory_validation import (
@@ -45,6 +44,7 @@ from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.table import ARM
 from rrr_traj_planner.nodes.process.node_start import NodeStart
+from rrr_traj_planner.nodes.process.service_node import ServiceNode
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory
@@ -61,7 +61,7 @@ MOVING_END_HINT = (
 NOT_THE_CLOCK = 'the arm follows a clock; only with publish_clock is it one that can stand'
 
 
-class SimulatedArm(Node):
+class SimulatedArm(ServiceNode):
     """
     An arm that follows trajectories as joint_trajectory_controller would have it.
 

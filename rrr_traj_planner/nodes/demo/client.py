@@ -47,7 +47,6 @@ from trajectory_msgs.msg import JointTrajectory
 NODES = ('trajectory_planner', 'simulated_arm')
 
 PATIENCE = 20.0       # s that a node is given to appear or to answer
-ASK_AGAIN = 5.0       # s after which a service is asked again
 HEAD_START = 0.5      # s between sending a trajectory and its start
 SETTLING = 0.5        # s that is recorded after the end
 PROGRESS_PERIOD = 0.5  # s
@@ -179,23 +178,11 @@ class Client(Node):
         return response
 
     def _answer(self, client: ServiceClient, request: Any) -> Any:
-        """
-        Return a service's answer.
-
-        An answer that a service sends before it has found its client is lost: after a while it
-        is asked again.
-        """
+        """Return a service's answer."""
         self._wait(client.service_is_ready, client.srv_name)
-        asked: list[Any] = []
-
-        def answered() -> Any:
-            if len(asked) * ASK_AGAIN <= monotonic() - begun:
-                asked.append(client.call_async(request))
-            return next((future for future in asked if future.done()), None)
-
-        begun = monotonic()
-        self._wait(answered, f'an answer of {client.srv_name}')
-        return next(future for future in asked if future.done()).result()
+        future = client.call_async(request)
+        self._wait(future.done, f'an answer of {client.srv_name}')
+        return future.result()
 
     def _drive(self, trajectory: JointTrajectory, what: str) -> float:
         """Send a trajectory, wait for its end, and return when it started [s]."""

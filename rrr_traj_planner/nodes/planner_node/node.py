@@ -29,7 +29,6 @@ from nav_msgs.msg import Path
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import InvalidHandle
-from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rrr_traj_planner.core.cancellation import step
 from rrr_traj_planner.core.errors import ConvergenceError, quoted, RrrPlannerError
@@ -44,6 +43,7 @@ from rrr_traj_planner.nodes.planner_node.planning_request import planning_reques
 from rrr_traj_planner.nodes.planner_node.request_statistics import RequestStatistics
 from rrr_traj_planner.nodes.planner_node.turns import Turn
 from rrr_traj_planner.nodes.process.node_start import NodeStart
+from rrr_traj_planner.nodes.process.service_node import ServiceNode
 from rrr_traj_planner.planners.deadline import Deadline
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning import plan
@@ -76,7 +76,7 @@ class _Unseen(NamedTuple):
     stamp: Time  # when it was asked
 
 
-class TrajectoryPlanner(Node):
+class TrajectoryPlanner(ServiceNode):
     """
     Serves `plan_trajectory`; threads plan in turns, so that the node answers all else meanwhile.
 
