@@ -164,8 +164,8 @@ def main() -> int:
     minutes = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0
     rng = np.random.default_rng(int(sys.argv[2]) if len(sys.argv) > 2 else 0)
     nodes = {name: subprocess.Popen([
-        sys.executable, '-m', f'rrr_traj_planner.nodes.scripts.{name}', '--ros-args', '--log-level',
-        'fatal']) for name in ('planner', 'simulated_arm')}
+        sys.executable, '-m', f'rrr_traj_planner.nodes.scripts.{name}',
+        '--ros-args', '--log-level', 'fatal']) for name in ('planner', 'simulated_arm')}
     client = Client(rng)
     try:
         good = soak(client, nodes, 60.0 * minutes)
