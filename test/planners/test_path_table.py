@@ -23,7 +23,8 @@ from rrr_traj_planner.core.dynamics.rigid_body import (
     inverse_dynamics,
 )
 from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
-from rrr_traj_planner.planners.path_timing.table import PARTS, PathTable
+from rrr_traj_planner.planners.path_timing.pieces import PARTS
+from rrr_traj_planner.planners.path_timing.table import PathTable
 
 SEEDS = range(16)
 # Of each quantity's largest value on the path: dq, ddq, dddq, m, c, g. Cubics through 65 places

@@ -80,8 +80,8 @@ class ArmPath(ReadOnlyArrays):
     start: Array | None = None
 
     @cached_property
-    def _planes(self) -> AxisPlanes:
-        """Where joint 1 stands still in a plane with its axis."""
+    def planes(self) -> AxisPlanes:
+        """Return where joint 1 stands still in a plane with its axis."""
         return axis_planes(
             self.path, self.posture, 0.0 if self.start is None else float(self.start[0]))
 
@@ -92,7 +92,7 @@ class ArmPath(ReadOnlyArrays):
         share = np.arange(STEPS_PER_PIECE) / STEPS_PER_PIECE
         s = (knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * share).ravel()
         s = np.concatenate((s, knots[-1:]))
-        q = unlimited_joint_path(self.model, self._planes.points(self.path, s), self.posture).q
+        q = unlimited_joint_path(self.model, self.planes.points(self.path, s), self.posture).q
         return s, q + whole_turns(q, self.limits, self.start)
 
     def __call__(self, s: Array, left: bool | BoolArray = False) -> JointPath:
@@ -113,7 +113,7 @@ class ArmPath(ReadOnlyArrays):
 
         """
         found = joint_path_but_turns(
-            self.model, self._planes.points(self.path, s, left), self.posture)
+            self.model, self.planes.points(self.path, s, left), self.posture)
         places, known = self._turning
         near = np.stack([np.interp(s, places, known[:, j]) for j in range(3)], axis=1)
         turns = np.round((near - found.q) / (2.0 * np.pi))

@@ -24,10 +24,10 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.path.path_trajectory import ArmPath
 from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
+from rrr_traj_planner.planners.path_timing.pieces import piece_ends
 from scipy.interpolate import CubicSpline
 
 INTERVALS = 64  # of each piece
-PARTS = 8       # of the whole length: no piece is longer than one
 
 
 class Demand(NamedTuple):
@@ -58,7 +58,7 @@ class PathTable:
     Attributes
     ----------
     ends : ndarray, shape (N + 1,)
-        Places where the pieces meet [m]: joins, and what parts long pieces.
+        Places where the pieces meet [m]: joins, and what parts long pieces (`pieces`).
     places : ndarray, shape (N, INTERVALS + 1)
         Where the table has its values [m].
     values : Demand
@@ -73,7 +73,7 @@ class PathTable:
 
     def __init__(self, arm_path: ArmPath) -> None:
         path = arm_path.path
-        self.ends = _parted(np.concatenate(([0.0], path.joins, [path.length])))
+        self.ends = piece_ends(arm_path)
         self._lengths = np.diff(self.ends)
         u = np.linspace(0.0, 1.0, INTERVALS + 1)
         self.places = self.ends[:-1, np.newaxis] + self._lengths[:, np.newaxis] * u
@@ -125,10 +125,3 @@ def _spline() -> Array:
     """Return the matrix from values to the coefficients of a cubic spline through them."""
     unit = CubicSpline(np.linspace(0.0, 1.0, INTERVALS + 1), np.eye(INTERVALS + 1)).c
     return np.ascontiguousarray(unit.reshape(4 * INTERVALS, INTERVALS + 1))
-
-
-def _parted(ends: Array) -> Array:
-    """Return ends of pieces between which long ones are parted equally."""
-    counts = np.ceil(np.diff(ends) / ends[-1] * PARTS).astype(int)
-    return np.concatenate((*(np.linspace(a, b, k, endpoint=False) for a, b, k in zip(
-        ends[:-1], ends[1:], np.maximum(counts, 1))), ends[-1:]))

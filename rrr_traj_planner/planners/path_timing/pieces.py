@@ -1,0 +1,102 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Where a path is parted into pieces for its timing: finely near singular positions of the arm.
+
+Near joint axis 1, and near the edges of the workspace, joints turn within as little of the path as
+the distance to the singular position. Joint positions are analytic functions of the place but for
+that position, so that splines and ramps approximate them on every piece that is no longer than the
+distance from it to the singularity in the complex plane (Trefethen, Approximation Theory and
+Approximation Practice, 2013, chapter 8). Halving leads there in few pieces: their number grows
+with the logarithm of the distance.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.path.path_trajectory import ArmPath
+
+PARTS = 8        # of the whole length: no piece is longer than one
+NEAR = 1.5       # nor longer than this times the distance from its middle to a singularity
+SHORTEST = 1e-9  # m, of what is halved
+
+
+def piece_ends(arm_path: ArmPath) -> Array:
+    """
+    Return places where the pieces of a path meet: joins, and what parts long pieces.
+
+    Parameters
+    ----------
+    arm_path : ArmPath
+        The path in joint space.
+
+    Returns
+    -------
+    ndarray, shape (N + 1,)
+        From 0 to the path's length [m].
+
+    """
+    path = arm_path.path
+    ends = _parted(np.concatenate(([0.0], path.joins, [path.length])))
+    while True:
+        middle, width = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends)
+        long = (width > NEAR * singular_distance(arm_path, middle)) & (width > SHORTEST)
+        if not long.any():
+            return ends
+        ends = np.sort(np.append(ends, middle[long]))
+
+
+def singular_distance(arm_path: ArmPath, s: Array) -> Array:
+    """
+    Return how far away the nearest singular position is, along the path's tangent.
+
+    Parameters
+    ----------
+    arm_path : ArmPath
+        The path in joint space.
+    s : ndarray, shape (m,)
+        Places along it [m].
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        [m], in the complex plane of s: of the nearest root of r^2 = 0, with r the distance from
+        joint axis 1, and of W^2 = R^2, with W the distance from the shoulder and R the length of
+        the arm when it is stretched out or folded.
+
+    """
+    model = arm_path.model
+    points = arm_path.planes.points(arm_path.path, s)
+    p, u = points.p - (0.0, 0.0, model.d1), points.dp
+    axis = _nearest_root(p[:, :2], u[:, :2], 0.0)
+    if points.plane is not None:  # in which joint 1 stands still
+        axis = np.where(np.isfinite(points.plane), np.inf, axis)
+    return np.asarray(np.min([axis, *(_nearest_root(p, u, R) for R in model.reach)], axis=0))
+
+
+def _nearest_root(p: Array, u: Array, R: float) -> Array:
+    """Return the least |x|, x complex, with (p + x u)^2 = R^2; infinite where there is none."""
+    a, b, c = (u * u).sum(axis=1), (p * u).sum(axis=1), (p * p).sum(axis=1) - R * R
+    farther = np.abs(np.abs(b) + np.sqrt(b * b - a * c + 0j))  # a times the other root
+    with np.errstate(divide='ignore'):
+        return np.asarray(np.abs(c) / farther)
+
+
+def _parted(ends: Array) -> Array:
+    """Return ends of pieces between which long ones are parted equally."""
+    counts = np.ceil(np.diff(ends) / ends[-1] * PARTS).astype(int)
+    return np.concatenate((*(np.linspace(a, b, k, endpoint=False) for a, b, k in zip(
+        ends[:-1], ends[1:], np.maximum(counts, 1))), ends[-1:]))
