@@ -47,7 +47,7 @@ def test_arm_is_the_clock_at_its_factor(ros):
         between = np.diff(times)
         assert (between > 0).all()
         assert (between % (5 * STEP) == 0).all()
-        assert between.min() == 5 * STEP  # some may be lost: while both sides meet, in bursts
+        assert between.min() == 5 * STEP  # older ones of a burst are lost, beyond ten
 
 
 def test_arm_runs_as_fast_as_it_can_and_answers_meanwhile(ros):
@@ -79,7 +79,9 @@ def test_any_rate_keeps_an_outside_clock_s_time(ros, rate, spread):
     ros.node.create_timer(0.005, advance)
     arm.actual.wait_for(lambda m: stamp(m) > 103 * SECOND - SECOND // 10)
     gaps = np.diff([stamp(m) for m in arm.actual.messages[1:]])
-    assert np.abs(gaps[gaps < 2.0 * SECOND / rate] - SECOND / rate).max(initial=0.0) <= spread + 1
+    whole = gaps[gaps < 1.5 * SECOND / rate]  # else states between were lost, of a burst
+    assert whole.size
+    assert np.abs(whole - SECOND / rate).max() <= spread + 1
 
 
 def test_seldom_published_states_are_on_time(ros):
@@ -95,7 +97,8 @@ def test_clock_is_published_often_however_seldom_states_are(ros):
     Arm(ros, publish_clock=True, publish_rate=1.0, real_time_factor=4.0)
     clock.wait_for(lambda m: clock_time(m) >= SECOND)
     gaps = np.diff([clock_time(m) for m in clock.messages])
-    assert gaps.min() == SECOND // 100  # some may be lost
+    assert (gaps % (SECOND // 100) == 0).all()
+    assert gaps.min() == SECOND // 100  # the older ones of a burst are lost
 
 
 def test_rate_that_no_step_can_keep_is_told(ros):

@@ -30,7 +30,8 @@ from rrr_traj_planner.planners.registry import planner
 
 MOST_REFUSALS = 0.11
 HIT = 1e-9            # rad at the via points; rad, rad/s, rad/s^2 across a knot
-MOST_JERKY = 0.15     # of the motions: short ones, or where jerk steps
+MOST_NOTES = {'poly_434': 5}  # of 38 motions, of what the points make a controller do; others none
+TOLD_JERK = 1.1       # times its limit, of the quintic through the points
 LIMIT_ROOM = 1e-6     # relative
 BETWEEN_POINTS = 1e-3  # relative, of the quintic through the sampled points
 NANOSECOND = 1e-9
@@ -64,7 +65,7 @@ def test_via_points_are_hit_and_hardly_anything_is_said_of_points(planner_id):
     assert {m.plan.trajectory.note for m in motions.values()} == {''}
     said = {m.plan.note for m in motions.values() if m.plan.note}
     assert all('reach a jerk of' in note or '0.1 % slower' in note for note in said)
-    assert len(said) <= MOST_JERKY * len(motions)
+    assert len(said) <= MOST_NOTES.get(planner_id, 0)
 
 
 @pytest.mark.parametrize('planner_id', MISSING)
@@ -152,6 +153,25 @@ def test_quintic_through_the_points_keeps_velocity_acceleration_and_torque_limit
                    (np.abs(torque).max(axis=0) - room * m.task.limits.max_effort).max())
 
     assert broken(motions, excess) == {}
+
+
+def test_jerk_through_the_points_is_told_just_where_it_exceeds_its_limit_by_a_tenth(motions):
+    for m in motions.values():
+        ratio = (quintic_jerk(m.plan.points) / m.task.limits.max_jerk).max()
+        assert ('reach a jerk of' in m.plan.note) == (ratio > TOLD_JERK)
+
+
+def quintic_jerk(points):
+    """Return each joint's largest jerk, of 21 a piece (fifth-order polynomials)."""
+    h = np.diff(points.times)[:, np.newaxis]
+    q, (v0, v1), (a0, a1) = np.diff(points.positions, axis=0), *(
+        (x[:-1], x[1:]) for x in (points.velocities, points.accelerations))
+    c3 = (20.0 * q - (8.0 * v1 + 12.0 * v0) * h - (3.0 * a0 - a1) * h ** 2) / (2.0 * h ** 3)
+    c4 = (-30.0 * q + (14.0 * v1 + 16.0 * v0) * h + (3.0 * a0 - 2.0 * a1) * h ** 2) / (
+        2.0 * h ** 4)
+    c5 = (12.0 * q - 6.0 * (v1 + v0) * h + (a1 - a0) * h ** 2) / (2.0 * h ** 5)
+    t = h * np.linspace(0.0, 1.0, 21)[:, np.newaxis, np.newaxis]
+    return np.abs(6.0 * c3 + 24.0 * c4 * t + 60.0 * c5 * t ** 2).max(axis=(0, 1))
 
 
 def test_points_stand_at_every_via_time_and_no_two_are_too_close(motions):
