@@ -56,11 +56,15 @@ class Script:
         return self
 
     def __exit__(self, *_):
+        self._kill()
+        self.process.communicate()
+
+    def _kill(self):
+        """End it and what it started, which holds its pipes open too."""
         self.children = self.children or children_of(self.process.pid)
         self.process.kill()
-        for child in self.children:  # they hold its pipes open
+        for child in self.children:
             child.kill()
-        self.process.communicate()
 
     def read_until(self, text):
         """Return lines of its output, up to one that holds a text."""
@@ -71,7 +75,7 @@ class Script:
         return self._read_until(text, self.process.stderr)
 
     def _read_until(self, text, stream):
-        deadline = Timer(DEADLINE, self.process.kill)  # then there is nothing more to read
+        deadline = Timer(DEADLINE, self._kill)  # then there is nothing more to read
         deadline.start()
         try:
             lines = []
