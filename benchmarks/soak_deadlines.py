@@ -36,8 +36,8 @@ from time import perf_counter, process_time
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / 'test' / 'nodes'))
-from plan_requests import plan_request  # noqa: E402, I100
+sys.path.insert(0, str(Path(__file__).parents[1] / 'test'))
+from helpers.plan_requests import plan_request  # noqa: E402, I100
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig  # noqa: E402
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of  # noqa: E402
 from rrr_traj_planner.nodes.planner_node.node import _answer, turns  # noqa: E402

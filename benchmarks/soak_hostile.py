@@ -17,7 +17,7 @@ How planning takes hostile requests: no bug, sound answers, the same answer to t
 
     python benchmarks/soak_hostile.py [REQUESTS [SEED]]
 
-The requests are those of the tests (`test/nodes/hostile_requests.py`), from message to message.
+The requests are those of the tests (`test/helpers/hostile_requests.py`), from message to message.
 Failures are printed and counted; the exit code is 1 if there were any.
 """
 
@@ -33,11 +33,11 @@ import warnings
 from hypothesis import given, HealthCheck, Phase, seed, settings
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / 'test' / 'nodes'))
-from hostile_requests import answered, assert_sound, CODES, hostile_requests  # noqa: E402, I100
+sys.path.insert(0, str(Path(__file__).parents[1] / 'test'))
+from helpers import hostile_requests as hostile  # noqa: E402, I100
 
-NAMES = {getattr(CODES, name): name for name in dir(CODES)
-         if name.isupper() and isinstance(getattr(CODES, name), int)}
+NAMES = {getattr(hostile.CODES, name): name for name in dir(hostile.CODES)
+         if name.isupper() and isinstance(getattr(hostile.CODES, name), int)}
 SHOWN = 20  # failures are printed in full up to so many
 EVERY = 4   # one request in so many is planned twice
 
@@ -58,12 +58,12 @@ class Soak:
             warnings.simplefilter('always')
             started = perf_counter()
             try:
-                response = answered(request)
+                response = hostile.answered(request)
                 self._note_time(perf_counter() - started, request)
                 self.codes[NAMES[response.error_code]] += 1
-                assert_sound(request, response)
+                hostile.assert_sound(request, response)
                 if self.codes.total() % EVERY == 0:
-                    assert answered(request) == response, 'another answer to the same request'
+                    assert hostile.answered(request) == response, 'the same request, another answer'
             except Exception as error:
                 self.codes[f'bug: {type(error).__name__}'] += 1
                 self.failures.append(f'{traceback.format_exc()}\n{request}')
@@ -98,7 +98,7 @@ def main() -> int:
     @seed(number)
     @settings(max_examples=requests, database=None, deadline=None, phases=[Phase.generate],
               suppress_health_check=list(HealthCheck))
-    @given(hostile_requests())
+    @given(hostile.hostile_requests())
     def run(request) -> None:
         soak.try_one(request)
         if soak.codes.total() % 500 == 0:

@@ -19,9 +19,9 @@ from __future__ import annotations
 from configparser import ConfigParser
 from pathlib import Path
 
+from helpers.places import ROOT
 import pytest
 
-ROOT = Path(__file__).parents[1]
 SOURCES = [str(ROOT / name) for name in ('rrr_traj_planner', 'test', 'benchmarks', 'setup.py')]
 
 

@@ -16,13 +16,12 @@
 
 import ast
 from graphlib import CycleError, TopologicalSorter
-from pathlib import Path
 import sys
 
+from helpers.places import ROOT
 import pytest
 from rrr_traj_planner.planners.registry import planner_ids
 
-ROOT = Path(__file__).parents[1]
 PACKAGE = 'rrr_traj_planner'
 MODULES = {
     '.'.join(path.relative_to(ROOT).with_suffix('').parts): ast.parse(path.read_text())

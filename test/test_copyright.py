@@ -16,12 +16,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 import re
 
+from helpers.places import ROOT
 import pytest
 
-ROOT = Path(__file__).parents[1]
 FOLDERS = ('rrr_traj_planner', 'rrr_traj_planner_interfaces', 'test', 'benchmarks', 'scripts')
 FILES = [ROOT / 'setup.py', *sorted(
     file for folder in FOLDERS for kind in ('*.py', '*.cmake')

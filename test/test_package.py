@@ -17,15 +17,14 @@
 from __future__ import annotations
 
 import ast
-from pathlib import Path
 import sys
 from xml.etree import ElementTree
 
 from catkin_pkg.package import parse_package
+from helpers.places import ROOT
 from lxml import etree
 import pytest
 
-ROOT = Path(__file__).parents[1]
 PACKAGE = 'rrr_traj_planner'
 PACKAGES = ('.', 'rrr_traj_planner_interfaces')
 XML = ElementTree.parse(ROOT / 'package.xml').getroot()

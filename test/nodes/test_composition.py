@@ -19,10 +19,12 @@ from __future__ import annotations
 import signal
 from threading import Condition
 
-from arm_in_ros import at, moving
+from helpers.arm_in_ros import at, moving
+from helpers.own_limits import own_limits
+from helpers.places import CONFIG
+from helpers.plan_requests import NEAR, plan_request
+from helpers.scripts import Script, script
 import numpy as np
-from own_limits import own_limits
-from plan_requests import NEAR, plan_request
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rrr_traj_planner.core.arm.model import RobotModel
@@ -30,7 +32,6 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
-from scripts import CONFIG, Script, script
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger

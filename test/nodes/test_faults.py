@@ -21,15 +21,15 @@ import signal
 from threading import Event
 from time import monotonic, sleep
 
-from arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
 from builtin_interfaces.msg import Duration, Time
+from helpers.arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
+from helpers.plan_requests import NEAR, plan_request
+from helpers.scripts import python, Script, script
 import numpy as np
-from plan_requests import NEAR, plan_request
 import pytest
 from rcl_interfaces.srv import GetParameters
 from rosgraph_msgs.msg import Clock
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
-from scripts import python, Script, script
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint

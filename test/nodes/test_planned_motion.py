@@ -16,14 +16,14 @@
 
 from __future__ import annotations
 
+from helpers.plan_requests import plan_request, points_of, START, TABLE_6_1
+from helpers.scripts import Script, script
 import numpy as np
-from plan_requests import plan_request, points_of, START, TABLE_6_1
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
 from rrr_traj_planner.nodes.arm_node.arm_messages import nanoseconds
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
-from scripts import Script, script
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 

@@ -16,13 +16,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 import re
 
-from scripts import python, Script, script
+from helpers.places import ROOT
+from helpers.scripts import python, Script, script
 from sensor_msgs.msg import JointState
 
-README = Path(__file__).parents[2] / 'README.md'
+README = ROOT / 'README.md'
 
 
 def test_client_s_trajectory_reaches_an_arm_that_is_found_late(ros):

@@ -17,8 +17,9 @@
 from dataclasses import replace
 from functools import cache
 
+from helpers.pinocchio_arm import PinocchioArm
+from helpers.thesis_cases import POINTS
 import numpy as np
-from pinocchio_arm import PinocchioArm
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
@@ -26,7 +27,6 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
-from thesis_cases import POINTS
 
 ARM, LIMITS = RobotModel(), JointLimits()
 TORQUE = replace(LIMITS, max_acceleration=np.full(3, np.inf), max_jerk=np.full(3, 100.0))

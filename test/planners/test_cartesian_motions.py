@@ -16,9 +16,9 @@
 
 from dataclasses import replace
 
+from helpers.random_paths import Measured, measured, PathCase, PLANNERS, random_case
 import numpy as np
 import pytest
-from random_paths import Measured, measured, PathCase, PLANNERS, random_case
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics

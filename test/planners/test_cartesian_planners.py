@@ -16,9 +16,9 @@
 
 from dataclasses import replace
 
+from helpers.random_paths import NONE, PLANNERS
 import numpy as np
 import pytest
-from random_paths import NONE, PLANNERS
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import (

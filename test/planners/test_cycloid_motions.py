@@ -16,10 +16,10 @@
 
 from dataclasses import replace
 
-from measured_plans import outcomes
+from helpers.measured_plans import outcomes
+from helpers.random_tasks import random_task
 import numpy as np
 import pytest
-from random_tasks import random_task
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.planners.planning import plan
 

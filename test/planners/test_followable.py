@@ -16,9 +16,9 @@
 
 from dataclasses import replace
 
+from helpers.random_cases import random_model
 import numpy as np
 import pytest
-from random_cases import random_model
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics

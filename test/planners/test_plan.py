@@ -20,6 +20,7 @@ import re
 import subprocess
 import sys
 
+from helpers.places import ROOT
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -28,7 +29,7 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
-README = Path(__file__).parents[2] / 'README.md'
+README = ROOT / 'README.md'
 NAMES = ('base', 'shoulder', 'elbow')
 POINTS = [(1.02, 0.59, 0.97), (0.46, 0.55, 1.44), (0.45, 0.38, 1.45)]
 HEADS = ['time [s]', *(f'{name} {quantity}' for quantity in (

@@ -19,10 +19,10 @@ Each task is planned once; every claim is then tested on all plans, by evaluatin
 grid of 20 points a sample that meets every knot.
 """
 
-from measured_plans import broken, EXACT, MISSING, outcomes, via_points
+from helpers.measured_plans import broken, EXACT, MISSING, outcomes, via_points
+from helpers.random_tasks import random_task
 import numpy as np
 import pytest
-from random_tasks import random_task
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.planners.planning import plan

@@ -16,10 +16,11 @@
 
 from dataclasses import replace
 
-from hard_cases import HARD_CASES, NOT_FOR_APPROACH_A
+from helpers.hard_cases import HARD_CASES, NOT_FOR_APPROACH_A
+from helpers.random_tasks import Measured, random_task, Task
+from helpers.thesis_cases import POINTS
 import numpy as np
 import pytest
-from random_tasks import Measured, random_task, Task
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import (
@@ -36,7 +37,6 @@ from rrr_traj_planner.planners import planning
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids, Registered
 from rrr_traj_planner.planners.request import PlanningRequest
-from thesis_cases import POINTS
 
 ARM, LIMITS = RobotModel(), JointLimits()
 STRONG = replace(LIMITS, max_effort=[150.0, 250.0, 200.0])  # joint 2 as table 6.3 needs it

@@ -16,9 +16,10 @@
 
 from dataclasses import replace
 
+from helpers.random_tasks import random_task
+from helpers.thesis_cases import ANGLE_TOLERANCE, POINTS
 import numpy as np
 import pytest
-from random_tasks import random_task
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import LimitViolationError, StartStateError, UnreachableError
@@ -27,7 +28,6 @@ from rrr_traj_planner.core.kinematics.postures import Posture, posture_of
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.via_points import check_start, holding_failure, joint_via_points
-from thesis_cases import ANGLE_TOLERANCE, POINTS
 
 ARM, LIMITS = RobotModel(), JointLimits()
 WIDE = JointLimits(min_position=[-np.pi] * 3, max_position=[np.pi, np.pi, 2.0 * np.pi],

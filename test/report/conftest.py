@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import os
 
-import browser
+from helpers import browser
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits

@@ -17,9 +17,9 @@
 from __future__ import annotations
 
 from math import pi, sqrt
-from pathlib import Path
 import re
 
+from helpers.places import DOCS
 import numpy as np
 import pytest
 from rrr_traj_planner.report.claim_figures import LIMIT_TIMES, of_plan, of_transitions
@@ -30,7 +30,7 @@ from rrr_traj_planner.report.excitation import (
     share_above,
 )
 
-DOCUMENT = (Path(__file__).parents[2] / 'docs' / 'claims.md').read_text()
+DOCUMENT = (DOCS / 'claims.md').read_text()
 ROWS = {row[0]: row[1:] for row in (
     [cell.strip(' `') for cell in line.strip('|').split('|')]
     for line in DOCUMENT.splitlines() if line.startswith('| `'))}

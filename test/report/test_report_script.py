@@ -16,17 +16,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 import signal
 import subprocess
 import sys
 import time
 
+from helpers.places import ROOT
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.parameter_files import planner_config
 
-ROOT = Path(__file__).parents[2]
 DEADLINE = 120.0  # s; nothing here takes so long
 PROMPT = 2.0      # s, in which a signal is to end it
 

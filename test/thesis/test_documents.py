@@ -19,9 +19,9 @@ from itertools import chain
 from pathlib import Path
 import re
 
+from helpers.places import ROOT
 import pytest
 
-ROOT = Path(__file__).parents[2]
 ERRATA = (ROOT / 'docs' / 'errata.md').read_text()
 EQUATIONS = (ROOT / 'docs' / 'equations.md').read_text()
 DOCUMENTS = {'errata.md': ERRATA, 'equations.md': EQUATIONS}
@@ -112,7 +112,7 @@ def test_every_function_named_in_a_document_exists():
 
 
 def test_a_name_that_does_not_exist_would_be_noticed():
-    assert missing_tests('`test/core/test_cycloid.py::test_nothing_of_the_kind`') != []
+    assert missing_tests('`test/core/motion_laws/test_cycloid.py::test_nothing_of_the_kind`') != []
     assert missing_tests('`test/core/test_nothing.py::test_nothing_of_the_kind`') != []
     assert missing_functions('`core.cycloid.nothing`, `core.nothing.ramp`, `core.cycloid`') == [
         'core.cycloid.nothing', 'core.nothing.ramp', 'core.cycloid']

@@ -14,12 +14,12 @@
 
 """Numbered equations that hold as printed and have no function of the package to test them by."""
 
-from comparison import length, rate, ROUNDING
+from helpers import table_5_1
+from helpers.comparison import length, rate, ROUNDING
+from helpers.random_cases import ARMS, random_states
 import numpy as np
 import pytest
-from random_cases import ARMS, random_states
 from rrr_traj_planner.core.dynamics.rigid_body import kinetic_energy
-import table_5_1
 
 T_ACC, T_1 = 0.5, 1.3                                 # s
 DELTA_B, DELTA_C, B = -0.35, 0.8, 0.6                 # rad

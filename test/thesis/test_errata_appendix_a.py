@@ -16,7 +16,7 @@
 
 from math import factorial
 
-from comparison import differ, rate
+from helpers.comparison import differ, rate
 import numpy as np
 from numpy.polynomial import Polynomial
 import pytest

@@ -14,7 +14,7 @@
 
 """Appendix C as printed and as corrected: the seventh order, against a solved linear system."""
 
-from comparison import differ
+from helpers.comparison import differ
 import numpy as np
 from numpy.polynomial import Polynomial
 import pytest

@@ -16,7 +16,7 @@
 
 from math import factorial
 
-from comparison import differ, length, rate, ROUNDING
+from helpers.comparison import differ, length, rate, ROUNDING
 import numpy as np
 import pytest
 from rrr_traj_planner.core.motion_laws.cycloid import CycloidPiece

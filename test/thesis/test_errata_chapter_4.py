@@ -14,7 +14,7 @@
 
 """Chapter 4 as printed and as corrected: normalised time, transition, cruise."""
 
-from comparison import differ, rate, ROUNDING
+from helpers.comparison import differ, rate, ROUNDING
 import numpy as np
 import pytest
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, general_transition, transition

@@ -17,11 +17,11 @@
 from math import cos, sin
 from typing import NamedTuple
 
-from comparison import differ
+from helpers.comparison import differ
+from helpers.pinocchio_arm import PinocchioArm
+from helpers.random_cases import ARMS, random_states
 import numpy as np
-from pinocchio_arm import PinocchioArm
 import pytest
-from random_cases import ARMS, random_states
 from rrr_traj_planner.core.dynamics.rigid_body import (
     coriolis_torque,
     gravity_torque,

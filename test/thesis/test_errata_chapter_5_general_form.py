@@ -14,11 +14,11 @@
 
 """Equation 5.34, the general form of the torques, as printed and as corrected."""
 
-from comparison import differ
+from helpers.comparison import differ
+from helpers.pinocchio_arm import PinocchioArm
+from helpers.random_cases import ARMS, central_difference, random_states
 import numpy as np
-from pinocchio_arm import PinocchioArm
 import pytest
-from random_cases import ARMS, central_difference, random_states
 
 # Fourth-order differences of functions whose scale is about 100.
 DIFFERENCES = 1e-6

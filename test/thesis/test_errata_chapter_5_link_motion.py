@@ -16,14 +16,14 @@
 
 from math import cos, sin
 
-from comparison import differ, DIFFERENCES, rate, ROUNDING
+from helpers import table_5_1
+from helpers.comparison import differ, DIFFERENCES, rate, ROUNDING
+from helpers.random_cases import ARMS, random_states
 import numpy as np
 import pytest
-from random_cases import ARMS, random_states
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import jacobian
 from rrr_traj_planner.core.kinematics.link_motion import link_motion
-import table_5_1
 
 K = np.array([0.0, 0.0, 1.0])
 

@@ -14,7 +14,7 @@
 
 """Section 5.4 as printed and as corrected: directions at the via point, and the optimisation."""
 
-from comparison import differ, length, ROUNDING
+from helpers.comparison import differ, length, ROUNDING
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits

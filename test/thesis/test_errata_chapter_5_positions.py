@@ -16,15 +16,15 @@
 
 from math import acos, atan, atan2, cos, hypot, pi, sin
 
-from comparison import differ, rate, ROUNDING
+from helpers import table_5_1
+from helpers.comparison import differ, rate, ROUNDING
+from helpers.pinocchio_arm import PinocchioArm
+from helpers.random_cases import ARMS, random_states
 import numpy as np
-from pinocchio_arm import PinocchioArm
 import pytest
-from random_cases import ARMS, random_states
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
-import table_5_1
 
 
 def states(seed, n=20):

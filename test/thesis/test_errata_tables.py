@@ -14,16 +14,16 @@
 
 """Tables 6.3, B.1 and B.3 as printed and as corrected, and what gravity says to them."""
 
-from comparison import differ
+from helpers import table_5_1
+from helpers import thesis_cases as thesis
+from helpers.comparison import differ
+from helpers.pinocchio_arm import PinocchioArm
 import numpy as np
-from pinocchio_arm import PinocchioArm
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.postures import ELBOWS
-import table_5_1
-import thesis_cases as thesis
 
 TURN = 2.0 * np.pi
 POINTS = {name: point for name, (point, _, _) in thesis.POINTS.items()}

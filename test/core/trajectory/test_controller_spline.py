@@ -1,0 +1,121 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a controller's quintics through points do, against closed forms and Pinocchio."""
+
+from dataclasses import replace
+
+from helpers.pinocchio_arm import PinocchioArm
+import numpy as np
+import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.trajectory.controller_spline import spline_excess
+from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+
+ARM = RobotModel()
+NONE = np.full(3, np.inf)
+WIDE = JointLimits(min_position=-NONE, max_position=NONE, max_velocity=NONE,
+                   max_acceleration=NONE, max_jerk=NONE, max_effort=NONE)
+TIMES = [0.0, 0.5, 2.5, 3.0]  # the arm moves between the middle two
+FROM, TO = np.array([0.3, 1.2, 0.1]), np.array([1.1, 0.7, 0.4])
+
+
+def there():
+    """Return points at rest: quintics from rest to rest over 2 s, and two that stand still."""
+    rest = np.zeros((4, 3))
+    return Interpolant(TrajectoryPoints(TIMES, [FROM, FROM, TO, TO], rest, rest))
+
+
+def from_rest_to_rest(x):
+    """Return q, qd, qdd, qddd of the quintic from rest to rest at a share of its 2 s, by hand."""
+    D, T = TO - FROM, 2.0
+    return (FROM + D * (10.0 * x ** 3 - 15.0 * x ** 4 + 6.0 * x ** 5),
+            D / T * (30.0 * x ** 2 - 60.0 * x ** 3 + 30.0 * x ** 4),
+            D / T ** 2 * (60.0 * x - 180.0 * x ** 2 + 120.0 * x ** 3),
+            D / T ** 3 * (60.0 - 360.0 * x + 360.0 * x ** 2))
+
+
+@pytest.mark.parametrize('joint', range(3))
+@pytest.mark.parametrize(('limit', 'largest', 'power', 'places'), [
+    ('max_velocity', 15.0 / 8.0 / 2.0, 1.0, [0.5]),
+    ('max_acceleration', 10.0 / np.sqrt(3.0) / 4.0, 0.5, [0.2113, 0.7887])])
+def test_what_exceeds_a_limit_asks_to_be_slowed_by_its_ratio(joint, limit, largest, power, places):
+    # From rest to rest: velocity 15/8 D/T at the middle, acceleration 10/sqrt(3) D/T^2.
+    largest = largest * abs(TO - FROM)[joint]
+    for part in (0.9993, 0.9, 0.5):  # of the largest; the first is within the tolerance
+        bound = NONE.copy()
+        bound[joint] = part * largest
+        found = spline_excess(ARM, replace(WIDE, **{limit: bound}), there())
+        expected = 1.0 if part > 0.999 else part ** -power
+        assert found.stretch == pytest.approx([1.0, expected, 1.0], rel=1e-3)
+        if expected > 1.0:
+            assert np.abs(found.place[1] - places).min() <= 0.02
+
+
+def test_largest_torque_is_pinocchio_s():
+    arm = PinocchioArm(ARM)
+    tau = np.array([arm.inverse_dynamics(*from_rest_to_rest(x)[:3])
+                    for x in np.linspace(0.0, 1.0, 401)])
+    largest = np.abs(tau).max(axis=0)
+    found = spline_excess(ARM, WIDE, there())
+    assert found.effort == pytest.approx(largest, rel=5e-3)  # in four steps of the interval
+    tight = spline_excess(ARM, replace(WIDE, max_effort=0.995 * largest), there())
+    assert tight.effort == pytest.approx(largest, rel=1e-3)
+
+
+@pytest.mark.parametrize('joint', [0, 1])  # of joint 3 gravity asks most on this way
+def test_what_exceeds_a_torque_fits_once_it_is_slowed_as_asked(joint):
+    arm = PinocchioArm(ARM)
+    states = [from_rest_to_rest(x)[:3] for x in np.linspace(0.0, 1.0, 201)]
+    largest = np.abs([arm.inverse_dynamics(*s) for s in states]).max(axis=0)
+    holding = np.abs([arm.gravity_torque(s[0]) for s in states]).max(axis=0)
+    limit = NONE.copy()
+    limit[joint] = 0.5 * (largest[joint] + holding[joint])
+    factor = spline_excess(ARM, replace(WIDE, max_effort=limit), there()).stretch[1]
+    assert factor > 1.0
+    slowed = np.abs([arm.inverse_dynamics(q, qd / factor, qdd / factor ** 2)
+                     for q, qd, qdd in states]).max(axis=0)
+    assert slowed[joint] == pytest.approx(limit[joint], rel=1e-3)
+
+
+def test_gravity_beyond_a_torque_asks_for_infinite_time():
+    found = spline_excess(ARM, replace(WIDE, max_effort=[np.inf, 1.0, np.inf]), there())
+    assert np.isinf(found.stretch).all()
+
+
+def test_what_leaves_a_range_is_told():
+    # The same position and 1 rad/s at both points, 0.5 s apart: the quintic's basis functions of
+    # the two velocities, x - 6 x^3 + 8 x^4 - 3 x^5 and -4 x^3 + 7 x^4 - 3 x^5, times 0.5 rad.
+    zero = np.zeros((2, 3))
+    v = np.array([[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    x = np.linspace(0.0, 1.0, 100_001)
+    beyond = 0.5 * (x - 10.0 * x ** 3 + 15.0 * x ** 4 - 6.0 * x ** 5).max()
+    found = spline_excess(ARM, replace(WIDE, max_position=np.zeros(3)),
+                          Interpolant(TrajectoryPoints([0.0, 0.5], zero, v, zero)))
+    assert found.outside == pytest.approx([beyond], rel=1e-2)
+    assert found.stretch.tolist() == [1.0]  # no slower motion would stay within
+
+
+def test_peak_jerk_is_exact():
+    # 60 D/T^3 at the ends of a quintic from rest to rest.
+    assert there().peak_jerks() == pytest.approx(
+        np.outer([0.0, 1.0, 0.0], 60.0 * np.abs(TO - FROM) / 8.0), rel=1e-9, abs=1e-9)
+    rng = np.random.default_rng(8)
+    for _ in range(20):
+        states = rng.uniform(-1.0, 1.0, (3, 2, 3))
+        spline = Interpolant(TrajectoryPoints([0.0, 0.7], *states))
+        t = np.linspace(0.0, 0.7, 4001)
+        dense = np.abs(np.gradient(spline(t)[2], t, axis=0, edge_order=2)).max(axis=0)
+        assert spline.peak_jerks()[0] == pytest.approx(dense, rel=1e-4)

@@ -1,0 +1,141 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The installed scripts as processes, and the processes that they start."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+import select
+import signal
+import subprocess
+import sys
+from threading import Timer
+from time import monotonic
+
+from ament_index_python.packages import get_package_prefix
+
+# Nothing here takes so long [s]; what waits longer has failed.
+DEADLINE = 60.0
+
+
+def script(name):
+    """Return what `ros2 run` executes."""
+    return [str(Path(get_package_prefix('rrr_traj_planner'), 'lib', 'rrr_traj_planner', name))]
+
+
+def python(code):
+    """Return a command that runs a piece of Python, with what is installed and no other module."""
+    return [sys.executable, '-c', f'import sys; del sys.path[0]  # the folder\n{code}']
+
+
+class Script:
+    """A running script; leaving the context ends it and what it started."""
+
+    def __init__(self, command, *arguments, cwd=None, new_group=False):
+        self.process = subprocess.Popen(
+            [*command, *map(str, arguments)], cwd=cwd, text=True, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE, start_new_session=new_group)
+        self.children = []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._kill()
+        self.process.communicate()
+
+    def _kill(self):
+        """End it and what it started, which holds its pipes open too."""
+        self.children = self.children or children_of(self.process.pid)
+        self.process.kill()
+        for child in self.children:
+            child.kill()
+
+    def read_until(self, text):
+        """Return lines of its output, up to one that holds a text."""
+        return self._read_until(text, self.process.stdout)
+
+    def read_errors_until(self, text):
+        """Return lines of its errors, the log among them, up to one that holds a text."""
+        return self._read_until(text, self.process.stderr)
+
+    def _read_until(self, text, stream):
+        deadline = Timer(DEADLINE, self._kill)  # then there is nothing more to read
+        deadline.start()
+        try:
+            lines = []
+            for line in stream:
+                lines.append(line)
+                if text in line:
+                    return lines
+            raise AssertionError(f'no {text!r}, but {lines}, and at the end {self.ended()}')
+        finally:
+            deadline.cancel()
+
+    def started(self, count):
+        """Return the processes that it has started, if they are as many as expected."""
+        self.children = children_of(self.process.pid)
+        assert len(self.children) == count
+        return self.children
+
+    def wait_for_children(self, count):
+        """Return the processes that it starts, as soon as they are as many as expected."""
+        deadline = monotonic() + DEADLINE
+        while len(self.children) < count and monotonic() < deadline:
+            self.children = children_of(self.process.pid)
+        return self.started(count)
+
+    def ended(self):
+        """Return exit code, output and errors."""
+        output, errors = self.process.communicate(timeout=DEADLINE)
+        return self.process.returncode, output, errors
+
+
+class Child:
+    """A process that another one has started."""
+
+    def __init__(self, pid):
+        self.pid = pid
+        self._handle = os.pidfd_open(pid)  # never another process that has got its number
+        self.command = Path(f'/proc/{pid}/cmdline').read_text().split('\0')
+
+    def __del__(self):
+        os.close(self._handle)
+
+    def send_signal(self, number):
+        signal.pidfd_send_signal(self._handle, number)
+
+    def kill(self):
+        """End it, if it runs."""
+        try:
+            self.send_signal(signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+
+    def has_ended(self):
+        """Return whether it ends before the deadline."""
+        poll = select.poll()
+        poll.register(self._handle, select.POLLIN)
+        return bool(poll.poll(1e3 * DEADLINE))
+
+
+def children_of(pid):
+    """Return the processes that a process has started and that still run."""
+    try:
+        pids = Path(f'/proc/{pid}/task/{pid}/children').read_text().split()
+    except FileNotFoundError:
+        return []
+    return [Child(int(p)) for p in pids]

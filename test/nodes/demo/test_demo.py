@@ -1,0 +1,139 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The script `demo`, end to end: plan, drive, table, plot, exit code; refused and interrupted."""
+
+from __future__ import annotations
+
+import re
+import signal
+
+from helpers.scripts import DEADLINE, Script, script
+from matplotlib.image import imread
+import pytest
+
+UNREACHABLE = 'via_points: [[1.02, 0.59, 0.97], [3.0, 0.0, 0.5]]\n'
+PNG = b'\x89PNG\r\n\x1a\n'
+
+
+@pytest.mark.parametrize(('arguments', 'name', 'seconds'), [
+    ((), 'table_6_1', 2.850), (('table_6_3.yaml',), 'table_6_3', 3.490)])
+def test_demo_runs_its_task_and_shows_it(tmp_path, arguments, name, seconds):
+    with Script(script('demo'), *arguments, cwd=tmp_path) as demo:
+        demo.read_until('driving:')
+        children = demo.started(2)
+        code, output, errors = demo.ended()
+        assert all(child.has_ended() for child in children)
+    assert code == 0, errors
+    shown = float(re.search(rf'^{name}: (\S+) s$', output, re.MULTILINE)[1])
+    assert shown == pytest.approx(seconds, abs=5e-3)  # the reference solution's
+    for text in ('error reached [mm]', 'at rest', 'torque driven [N m]', 'joint_3',
+                 '22 of 22 figures are inside their bounds', f'plot: demo_{name}.png'):
+        assert text in output
+    assert 'Traceback' not in errors
+    file = tmp_path / f'demo_{name}.png'
+    assert file.read_bytes().startswith(PNG)
+    picture = imread(file)
+    assert min(picture.shape[:2]) >= 1000
+    assert (picture[..., :3].min(axis=2) < 0.9).mean() > 0.02  # more than an empty frame
+    assert [f.name for f in tmp_path.iterdir()] == [file.name]
+
+
+@pytest.mark.parametrize('planner_id', ['line_arc', 'line_polynomial'])
+@pytest.mark.parametrize('task', ['table_6_1', 'table_6_3'])
+def test_demo_drives_the_tip_along_paths_of_both_tables(tmp_path, task, planner_id):
+    arguments = ('--planner', planner_id, '--plot', '', f'{task}.yaml')
+    with Script(script('demo'), *arguments, cwd=tmp_path) as demo:
+        code, output, errors = demo.ended()
+    assert code == 0, errors  # tip at the via points to 2 mm, within the deviation, in all limits
+    planned, driven, allowed = map(float, re.search(
+        r'distance from the polyline: planned (\S+) mm, driven (\S+) mm, allowed (\S+) mm',
+        output).groups())
+    assert allowed == 50.0
+    assert 10.0 <= planned <= allowed
+    assert driven == pytest.approx(planned, abs=0.1)
+    assert '24 of 24 figures are inside their bounds' in output
+    assert ('joint accelerations step' in output) == (planner_id == 'line_arc')
+
+
+def test_demo_of_a_path_that_the_arm_cannot_hold_says_where(tmp_path):
+    points = (tmp_path / 'heavy.yaml')
+    points.write_text('planner_id: line_arc\narm: thesis_arm.yaml\n'
+                      'via_points: [[0.2, 0.8, 0.5], [0.5, 1.0, 1.0], [0.8, 1.2, 0.6]]\n')
+    with Script(script('demo'), 'heavy.yaml', cwd=tmp_path) as demo:
+        code, _, errors = demo.ended()
+    assert code == 1
+    assert ('demo: the planner refuses (-14): via point 2: joint_2 needs 218.9 N m to hold, limit '
+            '200 N m\n') in errors
+
+
+def test_demo_with_points_out_of_reach_shows_the_refusal(tmp_path):
+    (tmp_path / 'far.yaml').write_text(UNREACHABLE)
+    with Script(script('demo'), 'far.yaml', cwd=tmp_path) as demo:
+        demo.read_until('waiting for planner and arm')
+        children = demo.started(2)
+        code, output, errors = demo.ended()
+        assert all(child.has_ended() for child in children)
+    assert code == 1
+    assert ('demo: the planner refuses (-31): via point 1: (3, 0, 0.5) m is 3 m from the '
+            "shoulder, beyond the arm's reach of 1.6 m: it misses by 1.4 m\n") in errors
+    assert 'Traceback' not in errors
+    assert not list(tmp_path.glob('*.png'))
+
+
+@pytest.mark.parametrize(('number', 'when'), [
+    (signal.SIGINT, 'waiting for planner and arm'), (signal.SIGTERM, 'driving:')])
+def test_signal_ends_the_demo_and_its_nodes(tmp_path, number, when):
+    with Script(script('demo'), cwd=tmp_path) as demo:
+        demo.read_until(when)
+        children = demo.started(2)
+        demo.process.send_signal(number)
+        code, output, errors = demo.ended()
+        assert all(child.has_ended() for child in children)
+    assert code == 0
+    assert 'Traceback' not in errors
+    assert 'figures' not in output
+    assert not list(tmp_path.glob('*.png'))
+
+
+def test_node_that_dies_ends_the_demo(tmp_path):
+    with Script(script('demo'), '--planner', 'cycloid_approach_a', cwd=tmp_path) as demo:
+        demo.read_until("planned 3 via points with 'cycloid_approach_a' in ")
+        children = demo.started(2)
+        arm, = (c for c in children if 'rrr_traj_planner.nodes.scripts.simulated_arm' in c.command)
+        arm.kill()
+        code, _, errors = demo.ended()
+        assert all(child.has_ended() for child in children)
+    assert code == 1
+    assert errors.endswith('demo: simulated_arm was killed by SIGKILL\n')
+
+
+@pytest.mark.parametrize(('arguments', 'code', 'text'), [
+    (('nowhere.yaml',), 1, "demo: no file 'nowhere.yaml' in "),
+    (('thesis_arm.yaml',), 1, 'thesis_arm.yaml: no via_points'),
+    (('--planner',), 2, 'expected one argument')])
+def test_wrong_arguments_are_told(arguments, code, text):
+    with Script(script('demo'), *arguments) as demo:
+        ended, _, errors = demo.ended()
+    assert ended == code
+    assert text in errors
+    assert 'Traceback' not in errors
+
+
+def test_help_tells_the_options():
+    with Script(script('demo'), '--help') as demo:
+        output, errors = demo.process.communicate(timeout=DEADLINE)
+    assert (demo.process.returncode, errors) == (0, '')
+    for text in ('--planner ID', '--plot PNG', '--ros-args'):
+        assert text in output

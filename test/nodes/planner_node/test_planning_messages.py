@@ -1,0 +1,201 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""PlanTrajectory's request and response: conversions without a node."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from builtin_interfaces.msg import Time
+from helpers.plan_requests import NAMES, plan_request, points_of, stamps, START, TABLE_6_1
+import numpy as np
+import pytest
+from rrr_traj_planner.core.arm.model import JOINT_NAMES
+from rrr_traj_planner.core.control.computed_torque import ControllerGains
+from rrr_traj_planner.core.errors import (
+    ConvergenceError,
+    InvalidInputError,
+    LimitViolationError,
+    RrrPlannerError,
+    StartStateError,
+    TimingError,
+    UnreachableError,
+)
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.core.simulation.encoder import EncoderSettings
+from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
+from rrr_traj_planner.nodes.planner_node.planning_answer import (
+    failure,
+    joint_trajectory,
+    refusal,
+    success,
+    tip_path,
+)
+from rrr_traj_planner.nodes.planner_node.planning_request import FrameError, planning_request
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+
+CODES = PlanTrajectory.Response
+
+
+@pytest.fixture(scope='module')
+def config():
+    return PlannerConfig.from_values(
+        {name: row.default for name, row in rows_of(PLANNER, JOINT_NAMES).items()})
+
+
+def test_empty_fields_take_the_node_s_defaults(config):
+    request = planning_request(plan_request(), config)
+    np.testing.assert_array_equal(request.via_points, TABLE_6_1)
+    assert (request.planner_id, request.sample_period, request.max_deviation) == (
+        'cycloid', 0.01, 0.05)
+    assert (request.velocity_scaling, request.acceleration_scaling) == (1.0, 1.0)
+    assert request.start is request.segment_durations is request.elbow is None
+
+
+def test_every_field_is_taken_over(config):
+    request = planning_request(plan_request(
+        frame='base_link', start=START, planner_id='gauss', segment_durations=[1.0, 2.0, 3.0],
+        max_velocity_scaling_factor=0.5, max_acceleration_scaling_factor=0.25,
+        sample_period=0.002, elbow='down', max_deviation=0.3), config)
+    np.testing.assert_array_equal(request.start, START)
+    np.testing.assert_array_equal(request.segment_durations, (1.0, 2.0, 3.0))
+    assert (request.planner_id, request.sample_period, request.max_deviation) == (
+        'gauss', 0.002, 0.3)
+    assert (request.velocity_scaling, request.acceleration_scaling, request.elbow) == (
+        0.5, 0.25, 'down')
+
+
+def test_start_is_brought_into_the_arm_s_order(config):
+    request = planning_request(plan_request(start={
+        'name': [NAMES[2], 'tool', NAMES[0], NAMES[1]], 'position': [0.3, 9.0, 0.1, 0.2]}), config)
+    assert request.start.tolist() == [0.1, 0.2, 0.3]
+
+
+def test_start_at_rest_within_noise_and_no_faster(config):
+    def start(speed):
+        return plan_request(start={'position': START, 'velocity': [0.0, speed, 0.0]})
+
+    assert planning_request(start(-0.01), config).start is not None
+    with pytest.raises(StartStateError, match='joint_2 moves at -0.011 rad/s, must be at rest '):
+        planning_request(start(-0.011), config)
+
+
+def test_speed_a_hair_above_the_tolerance_is_told_from_it(config):
+    with pytest.raises(StartStateError, match=(
+            r'^start state: joint_2 moves at -0\.0100000001 rad/s, must be at rest \(no faster '
+            r'than start_state_tolerance, 0\.01 rad/s\)$')):
+        planning_request(plan_request(
+            start={'position': START, 'velocity': [0.0, -0.0100000001, 0.0]}), config)
+    loose = replace(config, start_state_tolerance=0.2)
+    assert planning_request(plan_request(
+        start={'position': START, 'velocity': [0.0, -0.2, 0.0]}), loose).start is not None
+
+
+@pytest.mark.parametrize('encoder', [
+    {'noise': 1e-6}, {'noise': 1e-5}, {'resolution': 1e-4}, {'resolution': 1e-4, 'seed': 4}])
+def test_an_arm_parked_at_the_end_of_a_range_is_never_refused_for_its_encoders(config, encoder):
+    arm = ControlledArm(ArmSettings(
+        config.model, config.limits, ControllerGains(30.0, 1.0),
+        encoder=EncoderSettings(**encoder)), (0.0, 1.34567, 0.12345))
+    outside = 0
+    for _ in range(25):
+        arm.advance(37)
+        seen = arm.seen
+        outside += seen[0] < 0.0
+        request = planning_request(plan_request(TABLE_6_1, start={
+            'position': seen[:3], 'velocity': seen[3:]}), config)
+        first = plan(config.model, config.limits, request).points.positions[0]
+        assert first.tolist() == [max(seen[0], 0.0), *seen[1:3]]
+    assert outside > 3 or 'resolution' in encoder
+
+
+@pytest.mark.parametrize(('field', 'wrong', 'text'), [
+    ('max_velocity_scaling_factor', 2.0, 'is 2.0, must be in (0, 1]'),
+    ('max_acceleration_scaling_factor', -1.0, 'is -1.0, must be in (0, 1]'),
+    ('segment_durations', [0.0, 1.0], '[0] is 0.0 s, must be finite and at least 1e-09 s'),
+    ('elbow', 'left', "is 'left', must be 'up', 'down' or empty")])
+def test_errors_name_the_service_s_fields(config, field, wrong, text):
+    message = plan_request()
+    setattr(message, field, wrong)
+    with pytest.raises(InvalidInputError) as caught:
+        planning_request(message, config)
+    assert str(caught.value) == f'{field}{"" if text.startswith("[") else " "}{text}'
+
+
+def test_another_frame_is_refused(config):
+    with pytest.raises(FrameError, match="in frame 'tool', must be in 'base_link'"):
+        planning_request(plan_request(frame='tool'), config)
+
+
+@pytest.mark.parametrize(('error', 'code', 'via_point'), [
+    (FrameError('x'), CODES.FRAME_TRANSFORM_FAILURE, -1),
+    (StartStateError('x'), CODES.START_STATE_INVALID, -1),
+    (InvalidInputError('x', 3), CODES.INVALID_GOAL_CONSTRAINTS, 3),
+    (UnreachableError('x', 0.5, 1), CODES.NO_IK_SOLUTION, 1),
+    (LimitViolationError('x', 'joint_2', 2.0, 1.0, 2), CODES.GOAL_CONSTRAINTS_VIOLATED, 2),
+    (TimingError('x', (1.0, 2.0)), CODES.PLANNING_FAILED, -1),
+    (RrrPlannerError('x'), CODES.PLANNING_FAILED, -1)])
+def test_each_error_has_its_code(error, code, via_point):
+    response = refusal(error)
+    assert (response.error_code, response.message, response.failed_via_point) == (
+        code, 'x', via_point)
+
+
+@pytest.mark.parametrize('error', [KeyError('x'), ConvergenceError('x')])
+def test_a_bug_is_named_by_its_kind(error):
+    response = failure(error)
+    assert (response.error_code, response.failed_via_point) == (CODES.FAILURE, -1)
+    assert response.message == f'internal error, {type(error).__name__}: {error}'
+
+
+def test_codes_are_moveit_s():
+    assert (CODES.SUCCESS, CODES.PLANNING_FAILED, CODES.GOAL_CONSTRAINTS_VIOLATED,
+            CODES.INVALID_GOAL_CONSTRAINTS, CODES.FRAME_TRANSFORM_FAILURE,
+            CODES.START_STATE_INVALID, CODES.NO_IK_SOLUTION, CODES.FAILURE) == (
+        1, -1, -14, -16, -21, -26, -31, 99999)
+
+
+def test_plan_is_written_as_it_is(config):
+    found = plan(config.model, config.limits, planning_request(plan_request(), config))
+    response = success(found, config)
+    motion = points_of(response.trajectory)
+    for field in ('positions', 'velocities', 'accelerations'):
+        np.testing.assert_array_equal(getattr(motion, field), getattr(found.points, field))
+    np.testing.assert_allclose(motion.times, found.points.times, atol=1e-12)
+    assert response.via_times.tolist() == found.via_times.tolist()
+    assert response.peak_jerk.tolist() == found.peaks.jerk.tolist()
+    assert response.peak_effort.tolist() == found.effort.tolist()
+
+
+def test_times_are_whole_nanoseconds_also_after_hours(config):
+    times = np.array([0.0, 0.999999999, 1.0, 12345.678901234, 2e6 + 1e-9])
+    zeros = np.zeros((len(times), 3))
+    message = joint_trajectory(TrajectoryPoints(times, zeros, zeros, zeros), config)
+    assert stamps(message).tolist() == [
+        0, 999_999_999, 1_000_000_000, 12_345_678_901_234, 2_000_000_000_000_001]
+    assert all(0 <= p.time_from_start.nanosec < 10 ** 9 for p in message.points)
+
+
+def test_path_is_the_tip_s(config):
+    points = TrajectoryPoints([0.0, 1.0], [START, START + (0.0, 0.1, 0.0)])
+    path = tip_path(points, config, Time(sec=7))
+    first, second = (p.pose.position for p in path.poses)
+    assert (first.x, first.y, first.z) == pytest.approx(TABLE_6_1[0])
+    assert second.z > first.z
+    assert (path.header.frame_id, path.header.stamp.sec) == ('base_link', 7)

@@ -1,0 +1,148 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Ways along which the arm can be held, against the parts of a fine grid and dense evaluation."""
+
+from dataclasses import replace
+from functools import cache
+
+from helpers.ramp_cases import ARM, blocked_task, is_connected, LIMITS, NONE, share_of
+import numpy as np
+import pytest
+from rrr_traj_planner.planners.joint_timing.feasible_path import gravity_share, holdable_way
+from rrr_traj_planner.planners.request import JointTask
+
+SEEDS = range(48)
+LEGS = 8
+RANGE = 1e-9    # rad
+GAP = 0.03      # of an effort limit
+# How much longer than another way the one that is found may be, lengths weighted by what is left
+# of the torque: by the eight directions of a grid's steps (1.082), and by the room along legs that
+# take the place of steps, of which at least 0.7 is kept where it can be.
+LONGER = 1.082 / np.sqrt(0.7)
+
+
+@cache
+def found(seed, most_legs=LEGS):
+    """Return a task whose straight way is blocked, and the way that is found."""
+    task = blocked_task(seed)
+    return task, holdable_way(task, *task.points, most_legs)
+
+
+def dense(corners, looks=1001):
+    """Return points of the legs between corners."""
+    return np.concatenate(np.linspace(corners[:-1], corners[1:], looks, axis=1))
+
+
+def weighted_length(task, corners, least_room=0.0):
+    """Return a way's length in the plane of joints 2 and 3, over the root of the room left."""
+    q = dense(corners, 101)
+    room = 1.0 - 0.5 * (share_of(task, q[1:]) + share_of(task, q[:-1]))
+    steps = np.hypot(*np.diff(q[:, 1:], axis=0).T)
+    return float((steps / np.sqrt(room)).sum()) if room.min() > least_room else np.inf
+
+
+def test_the_random_tasks_are_of_both_sorts():
+    there = [found(seed)[1] is not None for seed in SEEDS]
+    assert sum(there) >= 30
+    assert there.count(False) >= 8
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_a_way_is_found_where_cells_with_room_connect_the_poses_and_nowhere_else(seed):
+    task, way = found(seed)
+    if is_connected(task, room=2.0):
+        assert way is not None
+    if not is_connected(task, room=-2.0):
+        assert way is None
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+@pytest.mark.parametrize('most_legs', [3, LEGS, 40])
+def test_ways_can_be_held_all_along_within_the_ranges_from_end_to_end(seed, most_legs):
+    task, way = found(seed, most_legs)
+    if way is None:
+        return
+    assert 2 <= len(way) <= most_legs + 1
+    assert (way[[0, -1]] == task.points).all()
+    q = dense(way)
+    assert share_of(task, q).max() < 1.0
+    assert (q >= task.limits.min_position - RANGE).all()
+    assert (q <= task.limits.max_position + RANGE).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_there_is_a_way_back_where_there_is_one_there(seed):
+    task, way = found(seed, 40)
+    back = holdable_way(task, *task.points[::-1], 40)
+    assert (back is None) == (way is None)
+
+
+@pytest.mark.parametrize('seed', SEEDS[::3])
+def test_joint_1_goes_evenly_and_its_range_does_not_matter(seed):
+    task, way = found(seed)
+    aside = np.array([2.5, 0.0, 0.0])
+    limits = replace(task.limits, min_position=task.limits.min_position + aside,
+                     max_position=task.limits.max_position + aside)
+    other = holdable_way(replace(task, limits=limits, points=task.points + aside),
+                         *(task.points + aside), LEGS)
+    if way is None:
+        assert other is None
+        return
+    assert other == pytest.approx(way + aside, abs=1e-12)
+    assert (np.diff(way[:, 0]) * (way[-1, 0] - way[0, 0]) >= 0.0).all()
+
+
+def test_where_joint_1_moves_alone_the_way_is_straight():
+    q = np.array([[0.2, 1.4, 0.1], [1.2, 1.4, 0.1]])
+    assert holdable_way(JointTask(ARM, LIMITS, q, None, 0.01), *q, LEGS) == pytest.approx(q)
+
+
+@pytest.mark.parametrize('seed', SEEDS[::3])
+def test_one_leg_is_enough_where_gravity_does_not_matter_and_only_there(seed):
+    task, _ = found(seed)
+    assert holdable_way(task, *task.points, 1) is None
+    free = replace(task, limits=replace(task.limits, max_effort=NONE))
+    assert (holdable_way(free, *free.points, LEGS) == free.points).all()
+
+
+def test_ways_are_hardly_longer_than_others_weighted_by_the_room_that_they_leave():
+    ratios = {}
+    for seed in SEEDS:
+        task, way = found(seed)
+        if way is None:
+            continue
+        # others of two and three legs, not through gaps narrower than the cells of a coarse grid
+        rng = np.random.default_rng(seed)
+        low, high = task.limits.min_position, task.limits.max_position
+        others = [np.vstack((task.points[0], rng.uniform(low, high, (corners, 3)),
+                             task.points[1])) for corners in (1, 2) for _ in range(100)]
+        least = min(weighted_length(task, other, least_room=GAP) for other in others)
+        if np.isfinite(least):
+            ratios[seed] = weighted_length(task, way) / least
+    assert len(ratios) >= 15
+    assert {seed: ratio for seed, ratio in ratios.items() if ratio > LONGER} == {}
+
+
+@pytest.mark.parametrize('seed', SEEDS[::6])
+def test_share_is_the_largest_part_of_a_limit_and_infinite_outside_the_ranges(seed):
+    task, rng = blocked_task(seed), np.random.default_rng(seed)
+    low, high = task.limits.min_position, task.limits.max_position
+    q = rng.uniform(low, high, (50, 3))
+    assert gravity_share(task.model, task.limits, q) == pytest.approx(share_of(task, q))
+    for j in range(3):
+        for end, sign in ((low, -1.0), (high, 1.0)):
+            outside = q[0].copy()
+            outside[j] = end[j] + 1e-8 * sign
+            assert gravity_share(task.model, task.limits, outside) == np.inf

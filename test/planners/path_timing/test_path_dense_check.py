@@ -1,0 +1,141 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Dense checks of a motion along a path: against a denser evaluation, and by laws."""
+
+from helpers.random_paths import random_case
+import numpy as np
+import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.planners.path_timing.constraints import (
+    ACCELERATION,
+    JERK,
+    limited,
+    PathConstraints,
+    Progress,
+    QUANTITIES,
+    SPEED,
+    TORQUE,
+    VELOCITY,
+)
+from rrr_traj_planner.planners.path_timing.dense_check import dense_check
+from rrr_traj_planner.planners.path_timing.start import paced_along
+from rrr_traj_planner.planners.path_timing.table import PathTable
+from rrr_traj_planner.planners.solver.ramps import Grid, restored, stretched
+
+SEEDS = range(8)
+DENSE = 300          # evaluations a ramp
+# What is allowed for between two looks, an eighth of the bend, is a bound: of the largest value,
+# it exceeds what is there by no more than this.
+ALLOWED = 0.1
+
+
+def random_look(seed, ramps=6):
+    """Return a table, a grid and a motion that no limits have shaped."""
+    rng = np.random.default_rng(seed)
+    table, grid = PathTable(random_case(seed).arm_path), Grid(ramps, (0.0, 0.6)[seed % 2])
+    speeds = rng.uniform(0.2, 0.4, len(table.ends))
+    speeds[[0, -1]] = 0.0
+    m = paced_along(grid, table.ends, speeds)
+    m = m._replace(inner=m.inner + rng.normal(0.0, 0.1, m.inner.shape),
+                   a=rng.normal(0.0, 0.1, m.a.shape))
+    return table, grid, restored(grid, table.ends[:, np.newaxis], m)
+
+
+def look(table, grid, m, bounds):
+    """Return what a dense check finds."""
+    N, steady = len(m.T), np.zeros(len(m.T), bool)
+    constraints = PathConstraints(table, JointLimits(), np.inf, grid,
+                                  np.zeros((N, 2 * grid.n + 1, QUANTITIES)), steady)
+    return dense_check(constraints.problem, m, bounds)
+
+
+def dense(table, grid, m):
+    """Return the limited quantities at many times of each piece, in their order."""
+    profile = grid.profiles(table.ends[:, np.newaxis], m)[0]
+    starts = np.concatenate(([0.0], np.cumsum(m.T)[:-1]))
+    t = starts[:, np.newaxis] + m.T[:, np.newaxis] * np.linspace(0.0, 1.0, grid.n * DENSE + 1)
+    at = Progress(*(f.reshape(t.shape) for f in profile(t.ravel())))
+    at = at._replace(s=np.clip(at.s, table.ends[:-1, np.newaxis], table.ends[1:, np.newaxis]))
+    return limited(table(at.s), at)
+
+
+def exceeded_bounds(x, part=0.8):
+    """Return a part of the largest magnitudes, no bound on every fifth and on the last."""
+    bounds = part * np.abs(x).max(axis=(0, 1))
+    bounds[::5] = bounds[-1] = np.inf
+    return bounds
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_excess_is_that_of_a_dense_evaluation_of_each_piece(seed):
+    table, grid, m = random_look(seed)
+    x = np.abs(dense(table, grid, m))
+    bounds = exceeded_bounds(x)
+    found = look(table, grid, m, bounds).excess
+    assert found.shape == (len(m.T), 2 * grid.n + 1, QUANTITIES)
+    peaks, largest = x.max(axis=1), x.max(axis=(0, 1))
+    wanted = np.where(peaks > bounds, peaks - bounds, 0.0)
+    assert (found.max(axis=1) >= wanted - 1e-3 * largest).all()
+    assert (found.max(axis=1) <= wanted + ALLOWED * largest).all()
+    assert wanted.max() > 0.0
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_excess_is_told_of_the_points_it_is_near_to(seed):
+    table, grid, m = random_look(seed)
+    x = np.abs(dense(table, grid, m))
+    bounds = exceeded_bounds(x)
+    found = look(table, grid, m, bounds).excess
+    # in the order of time: nodes and the middles between them
+    order = np.argsort(np.concatenate((np.arange(grid.n + 1.0), np.arange(grid.n) + 0.5)))
+    near = DENSE // 4
+    for i, point in enumerate(order):
+        middle = i * DENSE // 2
+        beside = x[:, max(middle - near, 0):middle + near + 1].max(axis=1)
+        over = beside - bounds > ALLOWED * beside
+        assert (found[:, point][over] > 0.0).all()
+        wide = x[:, max(middle - 2 * near, 0):middle + 2 * near + 1].max(axis=1)
+        assert (found[:, point][wide < (1.0 - ALLOWED) * bounds] == 0.0).all()
+
+
+@pytest.mark.parametrize('kind', [VELOCITY, ACCELERATION, JERK, TORQUE, SPEED])
+@pytest.mark.parametrize('seed', SEEDS[:4])
+def test_a_motion_stretched_as_it_says_just_keeps_its_limits(seed, kind):
+    table, grid, m = random_look(seed)
+    bounds = np.full(QUANTITIES, np.inf)
+    bounds[kind] = 0.8 * np.abs(dense(table, grid, m)).max(axis=(0, 1))[kind]
+    if kind == TORQUE:  # no less than gravity takes, 0 of joint 1
+        bounds[kind] = 1.01 * np.abs(table.values.g).max(axis=(0, 1)) + 0.01
+    stretch = look(table, grid, m, bounds).stretch
+    assert stretch > 1.0
+    assert look(table, grid, stretched(m, stretch), bounds).stretch == pytest.approx(1.0, rel=1e-9)
+
+
+def test_a_torque_that_gravity_takes_can_be_met_by_no_slowing():
+    table, grid, m = random_look(0)
+    bounds = np.full(QUANTITIES, np.inf)
+    assert look(table, grid, m, bounds).stretch == 0.0
+    bounds[10] = 0.5 * np.abs(table.values.g[..., 1]).min()
+    assert look(table, grid, m, bounds).stretch == np.inf
+
+
+def test_a_tip_that_goes_back_is_seen():
+    table, grid, m = random_look(1)
+    bounds = np.full(QUANTITIES, np.inf)
+    assert look(table, grid, m, bounds).goes_on
+    back = m._replace(v=m.v * np.where(np.arange(len(m.v)) == 1, -1.0, 1.0)[:, np.newaxis])
+    seen = look(table, grid, restored(grid, table.ends[:, np.newaxis], back), bounds)
+    assert seen.slowest <= -0.2
+    assert not seen.goes_on

@@ -1,0 +1,315 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The interior-point method against a general solver, closed forms and its own promises."""
+
+from dataclasses import replace
+from itertools import count
+
+from helpers.ramp_cases import (
+    all_free,
+    bounds,
+    closer,
+    FREE,
+    LIMITS,
+    NONE,
+    random_motion,
+    slow_start,
+)
+from helpers.random_cases import central_difference
+import numpy as np
+import pytest
+from rrr_traj_planner.planners.solver import line_search
+from rrr_traj_planner.planners.solver.interior_point import Centre, minimise
+from rrr_traj_planner.planners.solver.library import KERNELS
+from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from scipy.optimize import minimize, nnls
+
+GAP = 6e-3  # relative: what counts as converged
+SEEDS = range(5)
+
+
+def never():
+    return False
+
+
+def solve(limits, grid, points, should_stop=never, freedom=None):
+    constraints, m = slow_start(limits, grid, points)
+    problem, seen = constraints.problem, []
+
+    def stop():  # at every iterate
+        seen.append(problem.motion(problem.arrays['variables'].copy()))
+        return should_stop()
+
+    outcome = minimise(problem, Centre(m, None), freedom or all_free(len(m.T)), stop)
+    return problem, m, seen, outcome
+
+
+def reference(limits, grid, points, start):
+    """Return the least time of one segment in which joint 1 alone moves, by SLSQP."""
+    def motion(x):
+        inner, rest = np.zeros((1, grid.n - 1, 3)), np.zeros((0, 3))
+        inner[0, :, 0] = x[:-1]
+        return Variables(inner, rest, rest, x[-1:])
+
+    def ends(x):
+        at = grid.states(points, motion(x))
+        return [at.q[0, grid.n, 0] - points[1, 0], at.qd[0, grid.n, 0]]
+
+    def room(x):
+        at = grid.states(points, motion(x))
+        return np.concatenate([(bound[0] - sign * value[0, :, 0]) for sign in (-1.0, 1.0)
+                               for value, bound in ((at.qd, limits.max_velocity),
+                                                    (at.qdd, limits.max_acceleration),
+                                                    (at.jerk, limits.max_jerk))])
+
+    x = minimize(lambda x: x[-1], np.append(start.inner[0, :, 0], start.T), method='SLSQP',
+                 constraints=[{'type': 'eq', 'fun': ends}, {'type': 'ineq', 'fun': room}],
+                 options={'maxiter': 500, 'ftol': 1e-10})
+    assert x.success
+    return x.fun
+
+
+@pytest.mark.parametrize(('v', 'a', 'J'), [(9.0, 1.0, 50.0), (0.4, 1.0, 8.0), (9.0, 9.0, 3.0)])
+@pytest.mark.parametrize('n', [6, 11])
+def test_one_segment_takes_what_a_general_solver_finds(n, v, a, J):
+    limits = replace(FREE, max_velocity=[v] * 3, max_acceleration=[a] * 3, max_jerk=[J] * 3)
+    points, grid = np.array([[0.1, 1.4, 0.0], [0.8, 1.4, 0.0]]), Grid(n)
+    _, start, _, outcome = solve(limits, grid, points)
+    least = reference(limits, grid, points, start)
+    assert outcome.converged
+    assert least * (1.0 - 1e-6) <= outcome.motion.T.sum() <= least * (1.0 + GAP)
+    assert outcome.motion.T.sum() - outcome.gap <= least * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize('n', [8, 20])
+def test_acceleration_alone_gives_full_acceleration_forth_and_back(n):
+    # n ramps, nodes at +a, then -a, 0 at both ends and half-way: D = (n / 2)(n / 2 - 1) a h^2.
+    limits = replace(FREE, max_velocity=NONE, max_acceleration=[1.0] * 3, max_jerk=NONE)
+    points = np.array([[0.0, 1.4, 0.0], [1.0, 1.4, 0.0]])
+    found = solve(limits, Grid(n), points)[3].motion
+    expected = n / np.sqrt(0.5 * n * (0.5 * n - 1.0))
+    assert found.T[0] == pytest.approx(expected, rel=GAP)
+
+
+@pytest.mark.parametrize('limits', [FREE, LIMITS, replace(
+    LIMITS, max_acceleration=NONE, max_jerk=[50.0] * 3)], ids=['free', 'all', 'torque'])
+@pytest.mark.parametrize('seed', SEEDS)
+def test_every_iterate_is_strictly_feasible_and_through_the_via_points(seed, limits):
+    grid, points, _ = random_motion(seed)
+    problem, start, seen, outcome = solve(limits, grid, points)
+    assert len(seen) > 5
+    for m in (*seen, *(c.motion for c in outcome.centres), outcome.motion):
+        assert problem.is_within(m)
+        at = grid.states(points, m)
+        assert at.q[:, grid.n] == pytest.approx(points[1:], abs=1e-10)
+        assert at.qd[:, grid.n] == pytest.approx(grid.nodes(m)[2], abs=1e-10)
+    assert outcome.motion.T.sum() <= start.T.sum()
+
+
+@pytest.mark.parametrize('part', [0.99, 0.9])
+@pytest.mark.parametrize('limits', [FREE, LIMITS], ids=['by joint', 'torque'])
+@pytest.mark.parametrize('seed', SEEDS)
+def test_limits_that_come_closer_are_kept_from_the_first_centre_on(seed, limits, part):
+    grid, points, _ = random_motion(seed)
+    wide, _, _, passed = solve(limits, grid, points)
+    close, free = bounds(closer(limits, part), grid, points).problem, all_free(len(points) - 1)
+    anew = solve(closer(limits, part), grid, points)[3].motion.T.sum()
+    assert part > 0.9 or not close.is_within(passed.centres[-3].motion)
+    for centre in passed.centres[:-2]:  # others have next to no room to come from
+        found = minimise(close, centre, free, never, former=wide)
+        assert found.within
+        for m in (found.motion, *(c.motion for c in found.centres)):
+            assert close.is_within(m)
+        assert found.motion.T.sum() == pytest.approx(anew, rel=GAP)
+
+
+def test_limits_that_cannot_be_kept_are_not_said_to_be():
+    grid, points, _ = random_motion(1)
+    wide, _, _, passed = solve(LIMITS, grid, points)
+    weak = replace(LIMITS, max_effort=[0.5] * 3)  # N m: the arm would fall
+    found = minimise(bounds(weak, grid, points).problem, passed.centres[-1],
+                     all_free(len(points) - 1), never, former=wide)
+    assert not found.within and not found.centres and not found.converged
+
+
+def test_stopped_before_closer_limits_are_kept_it_says_so():
+    grid, points, _ = random_motion(2)
+    wide, _, _, passed = solve(LIMITS, grid, points)
+    close = bounds(closer(LIMITS, 0.9), grid, points).problem
+    found = minimise(close, passed.centres[-1], all_free(len(points) - 1), lambda: True,
+                     former=wide)
+    assert not found.within and not found.centres
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_gap_bounds_what_a_longer_search_finds_where_the_problem_is_without_torque(seed):
+    grid, points, _ = random_motion(seed)
+    best = solve(FREE, grid, points)[3].motion.T.sum()
+    for stop in (2, 5, 8):
+        counter = count()
+        early = solve(FREE, grid, points, lambda counter=counter, stop=stop: next(
+            counter) >= stop)[3]
+        assert early.motion.T.sum() - early.gap <= best * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_stopped_at_once_it_returns_a_motion_within_limits_not_slower_than_its_start(seed):
+    grid, points, _ = random_motion(seed)
+    problem, start, _, outcome = solve(FREE, grid, points, lambda: True)
+    assert outcome.motion.T.sum() <= start.T.sum()
+    assert problem.is_within(outcome.motion)
+    assert not outcome.converged
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_fixed_durations_stay_and_tied_ones_keep_their_ratio(seed):
+    grid, points, _ = random_motion(seed, segments=3)
+    still = np.zeros((2, 3), bool)
+    fixed = DurationConstraints(np.array([True, False, True]), np.zeros(3),
+                                np.array([1.0, 0.0, 1.0]), still)
+    _, start, _, outcome = solve(FREE, grid, points, freedom=fixed)
+    assert outcome.motion.T[1] == start.T[1]
+    assert outcome.motion.T[[0, 2]].sum() < start.T[[0, 2]].sum()
+    tied = DurationConstraints(np.zeros(3, bool), start.T, np.ones(3), still)
+    _, start, _, outcome = solve(FREE, grid, points, freedom=tied)
+    ratio = outcome.motion.T / start.T
+    assert ratio == pytest.approx(np.full(3, ratio[0]), rel=1e-9)
+    assert ratio[0] < 1.0
+
+
+def test_velocities_that_are_still_stay_zero():
+    grid, points, _ = random_motion(4, segments=3)
+    still = np.array([[True, False, False], [False, False, True]])
+    found = solve(FREE, grid, points, freedom=all_free(3)._replace(still=still))[3].motion
+    assert np.abs(found.v[still]).max() <= 1e-12
+    assert np.abs(found.v[~still]).min() > 1e-3
+
+
+# --- Centres of the central path --------------------------------------------------------------
+
+ALL = [FREE, LIMITS, replace(LIMITS, max_acceleration=NONE, max_jerk=[50.0] * 3)]
+NAMES = ['free', 'all', 'torque']
+
+
+def count_of(problem):
+    """Return the number of constraints: no floors."""
+    return problem.arrays['slack'].size - 2 * (len(problem.points) - 1)
+
+
+@pytest.mark.parametrize('limits', ALL, ids=NAMES)
+@pytest.mark.parametrize('seed', SEEDS)
+def test_centres_are_strictly_within_limits_slowest_first_and_as_near_as_their_barriers(
+        seed, limits):
+    grid, points, _ = random_motion(seed)
+    problem, start, _, outcome = solve(limits, grid, points)
+    assert len(outcome.centres) >= 2
+    best = outcome.motion.T.sum()
+    for motion, barrier in outcome.centres:
+        assert problem.is_within(motion)
+        at = grid.states(points, motion)
+        assert at.q[:, grid.n] == pytest.approx(points[1:], abs=1e-10)
+        # the optimum is a constraint's barrier away for every constraint
+        assert motion.T.sum() - best <= count_of(problem) * barrier
+    barriers = np.array([c.barrier for c in outcome.centres])
+    assert barriers[1:] == pytest.approx(0.1 * barriers[:-1])
+    assert (np.diff([c.motion.T.sum() for c in outcome.centres]) < 0.0).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_centres_leave_more_room_the_higher_their_barrier(seed):
+    grid, points, _ = random_motion(seed)
+    problem, _, _, outcome = solve(LIMITS, grid, points)
+    room = [problem.slacks(c.motion).min() for c in outcome.centres]
+    assert (np.diff(room) < 0.0).all()
+
+
+@pytest.mark.parametrize('limits', ALL, ids=NAMES)
+@pytest.mark.parametrize('seed', SEEDS)
+def test_the_method_ends_at_the_centre_of_the_least_barrier(seed, limits):
+    grid, points, _ = random_motion(seed)
+    problem, start, _, outcome = solve(limits, grid, points)
+    wanted = outcome.centres[1]
+    found = minimise(problem, Centre(start, None), all_free(len(start.T)), never,
+                     wanted.barrier)
+    assert [c.barrier for c in found.centres] == [c.barrier for c in outcome.centres[:2]]
+    for one, other in zip(found.centres[-1].motion, wanted.motion):
+        assert (one == other).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_from_a_centre_on_it_finds_the_same_optimum(seed):
+    grid, points, _ = random_motion(seed)
+    problem, _, _, outcome = solve(LIMITS, grid, points)
+    again = minimise(problem, outcome.centres[0], all_free(len(outcome.motion.T)), never)
+    assert again.centres[0].barrier <= outcome.centres[0].barrier
+    assert again.motion.T.sum() == pytest.approx(outcome.motion.T.sum(), rel=GAP)
+
+
+@pytest.mark.parametrize('limits', ALL, ids=NAMES)
+@pytest.mark.parametrize('seed', SEEDS[:3])
+def test_returned_motions_keep_the_conditions_of_optimality(seed, limits):
+    # Those of Karush, Kuhn and Tucker, by differences of slacks and ends: as far as changes that
+    # keep the ends can use it, the objective's gradient is a sum of constraints' gradients, with
+    # positive multipliers whose products with the slacks are a centre's gap.
+    grid, points, _ = random_motion(seed, n=6)
+    problem, _, _, outcome = solve(limits, grid, points)
+    motion, barrier = outcome.centres[-1]
+    x = np.concatenate([f.ravel() for f in motion])
+
+    def by_unknowns(function):
+        return np.stack([central_difference(lambda z, unit=unit: function(
+            problem.motion(x + z * unit)), 0.0, 1e-6).ravel() for unit in np.eye(len(x))], axis=1)
+
+    def ends(m):
+        at = grid.states(points, m)
+        return np.concatenate((at.q[:, grid.n] - points[1:], at.qd[:, grid.n] - grid.nodes(m)[2]))
+
+    count = count_of(problem)
+    E, slack = by_unknowns(ends), problem.slacks(motion)[:count]
+    null = np.linalg.svd(E)[2][len(E):].T
+    rates = by_unknowns(lambda m: problem.slacks(m)[:count]) @ null
+    cost = null.T @ np.append(np.zeros(len(x) - len(motion.T)), np.ones(len(motion.T)))
+    # in multiples of barrier / slack, so that a constraint far away has no say
+    central = barrier / slack
+    parts, residual = nnls((rates * central[:, np.newaxis]).T, cost)
+    assert residual <= 1e-3 * np.linalg.norm(cost)
+    assert parts.sum() * barrier <= GAP * motion.T.sum()  # multipliers times slacks
+
+
+def test_a_step_whose_equations_are_singular_is_skipped(monkeypatch):
+    grid, points, _ = random_motion(1)
+    constraints, start = slow_start(LIMITS, grid, points)
+
+    class Singular:
+
+        def __getattr__(self, name):
+            return (lambda *_: 0) if name == 'timing_newton' else getattr(KERNELS, name)
+
+    monkeypatch.setattr(line_search, 'KERNELS', Singular())
+    outcome = minimise(constraints.problem, Centre(start, None), all_free(len(start.T)), never)
+    assert all((f == g).all() for f, g in zip(outcome.motion, start))
+    assert not outcome.converged
+
+
+def test_what_the_callback_raises_goes_on_to_the_caller():
+    grid, points, _ = random_motion(3)
+    constraints, m = slow_start(LIMITS, grid, points)
+
+    def should_stop():
+        raise KeyboardInterrupt('now')
+
+    with pytest.raises(KeyboardInterrupt, match='now'):
+        minimise(constraints.problem, Centre(m, None), all_free(len(m.T)), should_stop)

@@ -1,0 +1,325 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The kernels of the timing problem: against differences, and against a dense solve in NumPy."""
+
+from dataclasses import replace
+
+from helpers.ramp_cases import ARM, bounds, flat, FREE, LIMITS, NONE, random_motion, slow_start
+from helpers.random_cases import central_difference
+from helpers.random_paths import random_case
+import numpy as np
+import pytest
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
+from rrr_traj_planner.planners.path_timing.constraints import PathConstraints, QUANTITIES
+from rrr_traj_planner.planners.path_timing.start import paced_along
+from rrr_traj_planner.planners.path_timing.table import PathTable
+from rrr_traj_planner.planners.solver.library import KERNELS
+from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.ramps import Grid, stretched
+
+SEEDS = range(5)
+BARRIER = 1e-3
+STEP = 1e-6       # of differences by a motion's own unknowns
+SOLVED = 2e-6     # relative, to which a dense solve agrees with elimination
+
+
+class Case:
+    """A problem at an iterate with multipliers and weights of its own."""
+
+    def __init__(self, kind, seed, segments=None, durations=None, floor=False):
+        rng = np.random.default_rng(seed)
+        self.problem, self.motion = (path_problem(seed) if kind == 'path' else joint_problem(
+            FREE if kind == 'bounds' else LIMITS, seed, segments, floor))
+        N, J = len(self.motion.T), self.motion.inner.shape[-1]
+        self.durations = (durations or DurationConstraints.all_free(N, J))._replace(
+            weights=rng.uniform(0.5, 2.0, N))
+        self.arrays, self.at = self.problem.arrays, self.problem.at
+        self.problem.begin(self.motion, self.durations)
+        self.x = self.arrays['variables'].copy()
+        self.arrays['slack'][:] = self.problem.slacks(self.motion)
+        self.arrays['dual'][:] = BARRIER / self.arrays['slack'] * rng.uniform(
+            0.5, 2.0, self.arrays['slack'].size)
+        KERNELS.timing_linearise(self.at, BARRIER)
+
+    def states(self, x):
+        """Return position, velocity, acceleration and jerk at the points, (N, P, 4, J)."""
+        at = self.problem.grid.states(self.problem.points, self.problem.motion(x))
+        jerk = np.zeros_like(at.q)
+        jerk[:, self.problem.grid.n + 1:] = at.jerk
+        return np.stack((at.q, at.qd, at.qdd, jerk), axis=2)
+
+    def ends(self, x):
+        """Return what must stay 0: position and velocity at segments' ends beside the points'."""
+        n, m = self.problem.grid.n, self.problem.motion(x)
+        at = self.states(x)[:, n]
+        v1 = self.problem.grid.nodes(m)[2]
+        return np.concatenate(((at[:, 0] - self.problem.points[1:]).ravel(),
+                               (at[:, 1] - v1).ravel()))
+
+    def by_unknowns(self, function):
+        """Return a function's derivatives by every unknown, as columns."""
+        return np.stack([central_difference(
+            lambda z, unit=unit: function(self.x + z * unit), 0.0, STEP).ravel()
+            for unit in np.eye(len(self.x))], axis=1)
+
+    def newton(self, exact):
+        """Return the step, its slacks' rates and its gain, by the kernel."""
+        step = self.problem.steps[0]
+        assert KERNELS.timing_newton(self.at, exact, step.at)
+        return (self.arrays['direction 0'].copy(), self.arrays['rate 0'].copy(),
+                step.found.gain)
+
+    def dense(self, exact, g=None, g_T=None):
+        """Return the step and its gain by solving all conditions of optimality at once."""
+        N, P, _, J = self.states(self.x).shape
+        D, E = self.by_unknowns(self.states), self.by_unknowns(self.ends)
+        Q, Z = self.arrays['exact' if exact else 'hessian'], 4 * J
+        blocks = Q.reshape(N * P, Z, Z) if Q.ndim == 4 else [np.diag(q) for q in
+                                                             Q.reshape(N * P, Z)]
+        rows = D.reshape(N * P, Z, -1)
+        H = sum(d.T @ q @ d for d, q in zip(rows, blocks))
+        T = slice(len(self.x) - N, None)
+        H[T, T] += np.diag(self.arrays['hessian_T'])
+        if g is None:
+            g, g_T = self.arrays['gradient'], self.arrays['gradient_T'] + self.durations.weights
+        slope = D.T @ g.ravel()
+        slope[T] += g_T
+        basis = self.allowed()
+        h, e = basis.T @ H @ basis, E @ basis
+        K = np.block([[h, e.T], [e, np.zeros((len(e), len(e)))]])
+        scale = 1.0 / np.sqrt(np.abs(np.diag(K)) + np.abs(K).max(axis=1))
+        x = scale * np.linalg.lstsq(scale[:, np.newaxis] * K * scale, scale * np.concatenate((
+            -basis.T @ slope, np.zeros(len(e)))), rcond=None)[0]
+        step = basis @ x[:basis.shape[1]]
+        return step, -float(slope @ step)
+
+    def allowed(self):
+        """Return a basis of the changes that the durations' constraints allow."""
+        N, d = len(self.motion.T), self.durations
+        start = len(self.x) - N
+        fixed = [start + k for k in range(N) if not d.free[k]]
+        fixed += [self.motion.inner.size + i for i in np.flatnonzero(d.still.ravel())]
+        basis = np.delete(np.eye(len(self.x)), fixed, axis=1)
+        tie = np.concatenate((np.zeros(start), d.tie))
+        return np.column_stack((basis, tie)) if d.tie.any() else basis
+
+
+def joint_problem(limits, seed, segments=None, floor=False):
+    grid, points, _ = random_motion(seed, n=5 + seed % 3, segments=segments or 1 + seed % 3)
+    constraints, m = slow_start(limits, grid, points)
+    if floor:
+        constraints = bounds(limits, grid, points, 0.8 * m.T)
+    return constraints.problem, m
+
+
+def path_problem(seed):
+    case = random_case(seed, points=3)
+    table, grid = PathTable(case.arm_path), Grid(6, (0.0, 0.6)[seed % 2])
+    N = len(table.ends) - 1
+    constraints = PathConstraints(
+        table, replace(case.limits, max_jerk=[30.0] * 3), 0.7, grid,
+        np.zeros((N, 2 * grid.n + 1, QUANTITIES)), np.zeros(N, bool))
+    m = paced_along(grid, table.ends, np.concatenate(([0.0], np.full(N - 1, 0.3), [0.0])))
+    while not constraints.problem.is_within(m):
+        m = stretched(m, 1.3)
+    return constraints.problem, m
+
+
+def agree(found, expected, rel=SOLVED):
+    assert found == pytest.approx(expected, rel=rel, abs=rel * np.abs(expected).max())
+
+
+@pytest.mark.parametrize('kind', ['bounds', 'torque', 'path'])
+@pytest.mark.parametrize('seed', SEEDS)
+def test_newton_step_is_that_of_a_dense_solve_of_all_conditions(kind, seed):
+    case = Case(kind, seed)
+    for exact in ((0,) if kind == 'bounds' else (0, 1)):
+        direction, _, gain = case.newton(exact)
+        expected, promised = case.dense(exact)
+        if np.abs(case.by_unknowns(case.ends) @ expected).max() > 1e-6:
+            continue  # least squares found no solution: the exact Hessian may have none
+        agree(direction, expected, 1e-4 if kind == 'path' else SOLVED)
+        assert gain == pytest.approx(promised, rel=1e-5)
+
+
+@pytest.mark.parametrize(('free', 'tie'), [
+    ((1, 0, 0, 1), (0.0, 1.5, 0.7, 0.0)), ((0, 0, 0, 0), (1.0, 2.0, 1.0, 0.5)),
+    ((1, 0, 1, 1), (0.0, 0.0, 0.0, 0.0))])
+@pytest.mark.parametrize('kind', ['bounds', 'torque'])
+def test_durations_tied_fixed_or_with_floors_and_stops_are_those_of_a_dense_solve(
+        kind, free, tie):
+    still = np.zeros((3, 3), bool)
+    still[1, 1] = True
+    case = Case(kind, 4, segments=4, floor=True, durations=DurationConstraints(
+        np.array(free, bool), np.array(tie), np.ones(4), still))
+    direction, _, gain = case.newton(0)
+    expected, promised = case.dense(0)
+    agree(direction, expected, 1e-5)
+    assert gain == pytest.approx(promised, rel=1e-5)
+    assert gain > 0.0
+
+
+@pytest.mark.parametrize('kind', ['bounds', 'torque', 'path'])
+@pytest.mark.parametrize('seed', SEEDS)
+def test_rates_and_gain_are_differences_along_the_followed_step(kind, seed):
+    case = Case(kind, seed, floor=kind == 'bounds')
+    _, rate, gain = case.newton(0)
+    step, arrays = case.problem.steps[0], case.arrays
+    near = arrays['slack'].copy()
+    size = 1e-4 / max(step.found.steepest, 1.0)
+
+    def followed(part):
+        arrays['slack'][:] = -np.inf  # whatever is left is kept
+        assert KERNELS.timing_trial(case.at, step.at, part * size, 1.0, 0.0)
+        arrays['slack'][:] = near
+        merit = step.found.cost - BARRIER * step.found.log
+        return np.append(arrays['slack 0'], merit)
+
+    *difference, slope = central_difference(followed, 0.0, 1.0) / size
+    scale = np.abs(rate).max()
+    assert rate == pytest.approx(np.array(difference), rel=1e-3, abs=1e-6 * scale)
+    assert gain == pytest.approx(-slope, rel=1e-4)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+@pytest.mark.parametrize('kind', ['torque', 'path'])
+def test_curvature_is_the_difference_of_the_weighted_gradients(kind, seed):
+    # Torque's own second derivatives by position twice are left out but for gravity's.
+    case = Case(kind, seed)
+    arrays, problem = case.arrays, case.problem
+    N, P, E, Z = arrays['jacobian'].shape
+    found = (arrays['exact'] - arrays['hessian']).copy()
+    weights = np.zeros((N, P, E))
+    bounded = int(problem.limits.bounded.sum())
+    dual = arrays['dual'][:-2 * N].reshape(N, -1, 2)[:, bounded:]
+    weights[:, problem.limits.general] = dual[..., 0] - dual[..., 1]
+    x, states = case.x.copy(), arrays['states'].copy()
+    change = np.random.default_rng(seed).normal(size=x.size) * np.append(
+        np.ones(x.size - N), 0.1 * case.motion.T)
+    size = 1e-5
+
+    def gradient(part):
+        arrays['variables'][:] = x + part * size * change
+        KERNELS.timing_linearise(case.at, BARRIER)
+        return np.einsum('npe,npez->npz', weights, arrays['jacobian']), arrays['states'].copy()
+
+    (plus, up), (minus, down) = gradient(1.0), gradient(-1.0)
+    difference, dz = (plus - minus) / (2.0 * size), (up - down) / (2.0 * size)
+    expected = np.einsum('npyz,npz->npy', found, dz)
+    if kind == 'torque':
+        expected, difference = expected[..., 3:9], difference[..., 3:9]
+
+        def pull(q):
+            return (weights * gravity_torque(ARM, q)).sum(axis=-1)
+
+        q, e = states[..., :3], 1e-4
+        for j, k in ((1, 1), (1, 2), (2, 2)):
+            a, b = e * np.eye(3)[j], e * np.eye(3)[k]
+            second = (pull(q + a + b) - pull(q + a - b) - pull(q - a + b) + pull(q - a - b)) / (
+                4.0 * e * e)
+            assert found[..., j, k] == pytest.approx(second, abs=1e-3 * np.abs(weights).max())
+        assert (found == np.swapaxes(found, -1, -2)).all()
+    assert expected == pytest.approx(difference, rel=1e-3, abs=2e-3 * np.abs(difference).max())
+
+
+@pytest.mark.parametrize('kind', ['bounds', 'torque', 'path'])
+def test_a_correction_is_the_dense_solution_for_what_rates_leave_out(kind):
+    case = Case(kind, 3)
+    _, rate, _ = case.newton(0)
+    plain, corrected = case.problem.steps[:2]
+    size = 0.05 / max(plain.found.steepest, 1.0)
+    arrays = case.arrays
+    near = arrays['slack'].copy()
+    assert KERNELS.timing_correct(case.at, plain.at, size, corrected.at)
+    left = {}
+    for step, k in ((plain, 0), (corrected, 1)):
+        arrays['slack'][:] = -np.inf
+        assert KERNELS.timing_trial(case.at, step.at, size, 1.0, 0.0)
+        arrays['slack'][:] = near
+        left[k] = arrays[f'slack {k}'] - near - size * rate
+    weight = arrays['dual'] / near
+
+    def error(aside):
+        return float(np.sqrt((weight * aside ** 2).sum()))
+
+    assert error(left[1]) <= error(left[0]) * (1.0 + 1e-9)
+    # its condition: no change that keeps the ends leaves less of the weighted squares
+    rates = case.by_unknowns(lambda x: case.problem.slacks(case.problem.motion(x)))
+    E = case.by_unknowns(case.ends)
+    null = np.linalg.svd(E)[2][len(E):].T
+    moved = rates @ arrays['correction 1'] + left[0] / size ** 2
+    slope = null.T @ rates.T @ (weight * moved)
+    largest = error(moved) * np.sqrt(((rates @ null) ** 2 * weight[:, np.newaxis]).sum(axis=0))
+    assert (np.abs(slope) <= 1e-4 * largest).all()
+
+
+def test_accepting_a_step_moves_multipliers_and_keeps_them_positive_in_sight_of_the_centre():
+    case = Case('torque', 2)
+    _, rate, _ = case.newton(0)
+    arrays, step = case.arrays, case.problem.steps[0]
+    before, slack = arrays['dual'].copy(), arrays['slack'].copy()
+    assert KERNELS.timing_trial(case.at, step.at, 0.5 / step.found.steepest, 0.0, 0.0)
+    KERNELS.timing_accept(case.at, step.at, 1, BARRIER, 0.995, 1e6)
+    assert (arrays['variables'] == arrays['variables 0']).all()
+    # Newton for dual * slack = barrier, shortened by the part that keeps each above 1 - 0.995
+    change = (BARRIER - before * rate) / slack - before
+    part = min(1.0, 0.995 / (-change / before).max())
+    central = BARRIER / arrays['slack 0']
+    assert arrays['dual'] == pytest.approx(
+        np.clip(before + part * change, central / 1e6, central * 1e6))
+    assert (arrays['dual'] > 0.0).all()
+
+
+def test_shifts_are_what_former_limits_are_wider_by_and_go_with_the_step():
+    grid, points, m = random_motion(1)
+    wide = bounds(LIMITS, grid, points).problem
+    close = bounds(replace(LIMITS, max_velocity=0.5 * LIMITS.max_velocity), grid, points).problem
+    close.begin(m, DurationConstraints.all_free(len(m.T), 3))
+    close.shift(wide.limits)
+    arrays = close.arrays
+    assert close.shifted and close.slacks(m) == pytest.approx(wide.slacks(m))
+    shift = arrays['shift'].copy()
+    assert set(np.round(shift, 9)) == {0.0, *np.round(0.5 * LIMITS.max_velocity, 9)}
+    step = close.steps[0]
+    arrays['slack 0'][:] = 10.0
+    KERNELS.timing_close(close.at, step.at, 0.25, 0.0)
+    assert arrays['shift'] == pytest.approx(0.75 * shift)
+    assert close.shifted
+    KERNELS.timing_close(close.at, step.at, 0.0, 1.0)  # next to slacks of 10 they are small
+    assert not close.shifted and (arrays['shift'] == 0.0).all()
+    assert arrays['slack 0'] == pytest.approx(10.0 - 0.75 * shift)
+
+
+def test_a_band_that_rounding_left_indefinite_still_gives_a_finite_step():
+    case = Case('bounds', 0, segments=3)
+    case.arrays['hessian'][:] *= 1e-18
+    direction, _, _ = case.newton(0)
+    assert np.isfinite(direction).all()
+
+
+def test_limits_on_no_state_but_ranges_are_none_of_the_others():
+    grid, points, m = random_motion(2)
+    free = replace(FREE, max_velocity=NONE, max_acceleration=NONE, max_jerk=NONE)
+    assert len(bounds(free, grid, points).problem.slacks(m)) == 2 * len(m.T) * (
+        3 * (2 * grid.n - 1) + 1)
+
+
+def test_slacks_are_of_the_motion_given_and_leave_the_iterate_alone():
+    case = Case('torque', 1)
+    before = case.x.copy()
+    other = stretched(case.motion, 2.0)
+    assert (case.problem.slacks(other) != case.problem.slacks(case.motion)).any()
+    assert (case.arrays['variables'] == before).all()
+    assert flat(case.motion) == pytest.approx(before)
