@@ -63,7 +63,7 @@ class Soak:
                 self.codes[NAMES[response.error_code]] += 1
                 hostile.assert_sound(request, response)
                 if self.codes.total() % EVERY == 0:
-                    assert hostile.answered(request) == response, 'the same request, another answer'
+                    assert hostile.answered(request) == response, 'same request, another answer'
             except Exception as error:
                 self.codes[f'bug: {type(error).__name__}'] += 1
                 self.failures.append(f'{traceback.format_exc()}\n{request}')

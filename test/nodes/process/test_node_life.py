@@ -18,7 +18,8 @@ from __future__ import annotations
 
 import signal
 
-from helpers.arm_process import arm_process, ended, ROOT
+from helpers.arm_process import arm_process, ended
+from helpers.places import ROOT
 import pytest
 from sensor_msgs.msg import JointState
 
