@@ -32,12 +32,12 @@ from rrr_traj_planner import core, planners
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import ReadOnlyArrays
 from rrr_traj_planner.core.control.computed_torque import ControllerGains
 from rrr_traj_planner.core.control.replacement import Takeover
 from rrr_traj_planner.core.control.tolerances import Tolerances
 from rrr_traj_planner.core.errors import RrrPlannerError, UnreachableError
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 from rrr_traj_planner.planners.planning import plan

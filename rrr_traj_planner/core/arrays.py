@@ -12,13 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Checked, read-only arrays: what every value type of the core is made of."""
+"""Checked, read-only arrays of what callers give."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from math import isfinite
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,41 +27,6 @@ from rrr_traj_planner.core.errors import InvalidInputError, shown
 Array: TypeAlias = NDArray[np.float64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 IntArray: TypeAlias = NDArray[np.int_]
-
-
-class ReadOnlyArrays:
-    """
-    Base of values whose arrays, those in tuples too, nobody can write to.
-
-    NumPy's arrays forget that they are read-only where they are pickled or deeply copied; those
-    of such a value do not.
-    """
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only; for dataclasses that have nothing to check."""
-        make_read_only(vars(self).values())
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        """Take what was pickled or copied."""
-        vars(self).update(state)
-        make_read_only(state.values())
-
-
-def make_read_only(values: Iterable[Any]) -> None:
-    """
-    Make arrays read-only.
-
-    Parameters
-    ----------
-    values : iterable
-        Arrays, tuples of arrays, and what else there is, which is left alone.
-
-    """
-    for value in values:
-        if isinstance(value, np.ndarray):
-            value.setflags(write=False)
-        elif isinstance(value, tuple):
-            make_read_only(value)
 
 
 def finite_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = None) -> Array:

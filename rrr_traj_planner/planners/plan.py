@@ -21,8 +21,9 @@ from os import PathLike
 from typing import TextIO
 
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.trajectory.trajectory import Peaks, Trajectory
 from rrr_traj_planner.planners.columns import write_columns

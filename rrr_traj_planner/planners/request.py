@@ -24,17 +24,12 @@ from typing import Any
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import (
-    Array,
-    finite_array,
-    IntArray,
-    number_array,
-    ReadOnlyArrays,
-)
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, number_array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import InvalidInputError, shown
 from rrr_traj_planner.core.kinematics.joint_ranges import RANGE_TOLERANCE
 from rrr_traj_planner.core.kinematics.postures import Elbow, ELBOWS, Posture
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import (
     not_negative,
     one_of,

@@ -19,8 +19,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, bound_array, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array, bound_array
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import share
 
 UNITS = {

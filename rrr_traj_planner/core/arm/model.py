@@ -20,8 +20,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import finite, names, positive
 
 UNITS = {'d1': 'm', 'a2': 'm', 'd4': 'm', 'l2': 'm', 'l3': 'm', 'gravity': 'm/s^2'}

@@ -24,8 +24,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import not_negative
 from rrr_traj_planner.core.states import Desired, State
 

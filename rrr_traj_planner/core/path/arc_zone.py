@@ -18,7 +18,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
 
 class ArcZones(ReadOnlyArrays):

@@ -22,17 +22,11 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import (
-    Array,
-    BoolArray,
-    IntArray,
-    make_read_only,
-    parameter_values,
-    ReadOnlyArrays,
-)
+from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray, parameter_values
 from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.path.deviation import polyline_deviation
 from rrr_traj_planner.core.path.tangent_lines import Tangents
+from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 
 # A zone no longer than this, between lines that differ no more, is left out.
 SHORTEST_ZONE = 1e-13  # m

@@ -25,13 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import (
-    Array,
-    BoolArray,
-    make_read_only,
-    parameter_values,
-    ReadOnlyArrays,
-)
+from rrr_traj_planner.core.arrays import Array, BoolArray, parameter_values
 from rrr_traj_planner.core.kinematics.along_path import (
     joint_path_but_turns,
     JointPath,
@@ -41,6 +35,7 @@ from rrr_traj_planner.core.kinematics.joint_ranges import whole_turns
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
+from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory.torque import maximum_over_time

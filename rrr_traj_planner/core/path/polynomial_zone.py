@@ -21,8 +21,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
 from rrr_traj_planner.core.errors import ConvergenceError
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
 # The zone is a quintic in u, -1 <= u <= 1, symmetric about the via point. Its six control points
 # lie on the two lines, three on each, so that curvature is zero at both ends whatever the other

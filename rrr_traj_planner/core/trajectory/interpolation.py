@@ -20,14 +20,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import (
-    Array,
-    finite_array,
-    IntArray,
-    parameter_values,
-    ReadOnlyArrays,
-)
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, parameter_values
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,15 +22,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import (
-    Array,
-    finite_array,
-    IntArray,
-    make_read_only,
-    parameter_values,
-    ReadOnlyArrays,
-)
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, parameter_values
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory.pieces import Pieces
 from rrr_traj_planner.core.trajectory.trajectory import Peaks, Trajectory

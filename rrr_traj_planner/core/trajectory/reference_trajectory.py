@@ -16,14 +16,13 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
-
 import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.conversion import float_array
 from rrr_traj_planner.core.nanoseconds import nanoseconds, SECOND
 from rrr_traj_planner.core.states import Desired
+from rrr_traj_planner.core.trajectory.quintic_cursor import QuinticCursor
 from rrr_traj_planner.core.trajectory.trajectory_points import (
     FLOAT_EPSILON,
     MotionPoints,
@@ -59,6 +58,8 @@ class DesiredMotion:
     ----------
     ends_moving : bool
         Whether it has a velocity at its last knot.
+    elapsed : callable
+        `QuinticCursor.elapsed`: the desired state after a time since the origin.
 
     """
 
@@ -71,13 +72,7 @@ class DesiredMotion:
         zero = np.zeros(3)
         self.arrive(zero if final_velocity is None else final_velocity,
                     zero if final_acceleration is None else final_acceleration)
-        # One knot alone is a rest that has no beginning.
-        self._rests_from = self._knots_ns[-1] if len(knots) > 1 else -np.inf
-        self._rest = rest(final)
-        # The interval found last [ns], its beginning [s], and its coefficients.
-        self._low = self._high = 0
-        self._begin = 0.0
-        self._current: list[float] = []
+        self.elapsed = QuinticCursor(knots, self._knots_ns, coefficients, final).elapsed
 
     def arrive(self, velocity: Array, acceleration: Array) -> None:
         """
@@ -155,40 +150,6 @@ class DesiredMotion:
         n = now - self.origin_ns
         return self.elapsed(n, n / SECOND)
 
-    def elapsed(self, n: int, t: float) -> Desired:
-        """
-        Return the desired state after a time since the origin.
-
-        Parameters
-        ----------
-        n : int
-            The time, to choose a polynomial by [ns].
-        t : float
-            The same time, to evaluate it at [s].
-
-        Returns
-        -------
-        tuple of 9 floats
-            As `__call__`.
-
-        """
-        if n >= self._rests_from:
-            return self._rest
-        if not self._low <= n < self._high:
-            t = self._find(n, t)
-        x = t - self._begin
-        a0, a1, a2, a3, a4, a5, b0, b1, b2, b3, b4, b5, c0, c1, c2, c3, c4, c5 = self._current
-        return (
-            a0 + x * (a1 + x * (a2 + x * (a3 + x * (a4 + x * a5)))),
-            b0 + x * (b1 + x * (b2 + x * (b3 + x * (b4 + x * b5)))),
-            c0 + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5)))),
-            a1 + x * (2.0 * a2 + x * (3.0 * a3 + x * (4.0 * a4 + x * (5.0 * a5)))),
-            b1 + x * (2.0 * b2 + x * (3.0 * b3 + x * (4.0 * b4 + x * (5.0 * b5)))),
-            c1 + x * (2.0 * c2 + x * (3.0 * c3 + x * (4.0 * c4 + x * (5.0 * c5)))),
-            2.0 * a2 + x * (6.0 * a3 + x * (12.0 * a4 + x * (20.0 * a5))),
-            2.0 * b2 + x * (6.0 * b3 + x * (12.0 * b4 + x * (20.0 * b5))),
-            2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5))))
-
     def at(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
         """
         Return the motion at many times.
@@ -238,15 +199,6 @@ class DesiredMotion:
                 np.vstack((c[:, :, 1], self.final_velocity)),
                 np.vstack((2.0 * c[:, :, 2], self.final_acceleration)))
 
-    def _find(self, n: int, t: float) -> float:
-        """Make the interval around a time the current one, and return the time, not before all."""
-        knots = self._knots_ns
-        i = max(bisect_right(knots, n) - 1, 0)
-        self._low, self._high = knots[i], knots[i + 1]
-        self._begin = float(self.knots[i])
-        self._current = self.coefficients[i].ravel().tolist()
-        return max(t, float(self.knots[0]))
-
 
 def through(points: MotionPoints, origin_ns: int = 0) -> DesiredMotion:
     """
@@ -293,22 +245,3 @@ def holding(q: ArrayLike, now: int = 0) -> DesiredMotion:
 
     """
     return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), finite_array('q', q, (3,)), now)
-
-
-def rest(q: ArrayLike) -> Desired:
-    """
-    Return the desired state of an arm that rests.
-
-    Parameters
-    ----------
-    q : array_like, shape (3,)
-        Positions [rad].
-
-    Returns
-    -------
-    tuple of 9 floats
-        The positions, then zeros.
-
-    """
-    q1, q2, q3 = finite_array('q', q, (3,)).tolist()
-    return q1, q2, q3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0

@@ -21,7 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,8 +24,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from rrr_traj_planner.core.arrays import Array, finite_array, ReadOnlyArrays, truth_array
+from rrr_traj_planner.core.arrays import Array, finite_array, truth_array
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.interpolation import hermite
 
 ORDERS = (1, 3, 5)

@@ -21,7 +21,8 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.margins import Margins

@@ -19,8 +19,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, BoolArray, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 

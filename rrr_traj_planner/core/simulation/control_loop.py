@@ -1,0 +1,227 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Physics and controller of the arm, one step after another towards a desired motion."""
+
+from __future__ import annotations
+
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.control.computed_torque import computed_torque, saturated
+from rrr_traj_planner.core.dynamics.rigid_body import kinetic_energy, potential_energy
+from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
+from rrr_traj_planner.core.simulation.condition import ConditionMonitor
+from rrr_traj_planner.core.simulation.encoder import Encoder
+from rrr_traj_planner.core.simulation.energy import EnergyLedger, work
+from rrr_traj_planner.core.simulation.physics import ArmPhysics
+from rrr_traj_planner.core.states import Desired, State, Triple
+from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
+
+NO_DISTURBANCE = (0.0, 0.0, 0.0)
+
+
+class ControlLoop:
+    """
+    The simulated arm, its encoders and its controller, whose own time starts at 0.
+
+    Parameters
+    ----------
+    settings : ArmSettings
+        The arm, its limits, its controller.
+    q : array_like, shape (3,)
+        Where it rests at first [rad].
+
+    Attributes
+    ----------
+    settings : ArmSettings
+        As given, or as last set.
+    steps : int
+        Done so far.
+    state : tuple of 6 floats
+        Positions [rad] and velocities [rad/s].
+    torque : tuple of 3 floats
+        The motors' torques over the last step [N m].
+    disturbance : tuple of 3 floats
+        Torques on the joints besides the motors' [N m]; may be set at any time.
+    ledger : EnergyLedger
+        Work and losses since the arm was last put somewhere.
+    monitor : ConditionMonitor
+        What has strained the arm.
+
+    """
+
+    def __init__(self, settings: ArmSettings, q: ArrayLike) -> None:
+        self.steps, self._step_ns = 0, settings.step_ns
+        self.ledger, self.monitor = EnergyLedger(), ConditionMonitor()
+        self.disturbance: Triple = NO_DISTURBANCE
+        self.torque: Triple = NO_DISTURBANCE
+        self.state: State = (*_triple(finite_array('q', q, (3,))), 0.0, 0.0, 0.0)
+        self.enforce(settings)
+        self._encoder = self._new_encoder()
+
+    @property
+    def now(self) -> int:
+        """How long the arm has been simulated [ns]."""
+        return self.steps * self._step_ns
+
+    @property
+    def time(self) -> float:
+        """How long the arm has been simulated [s]."""
+        return self.now / SECOND
+
+    @property
+    def seen(self) -> State:
+        """Positions [rad] and velocities [rad/s] as the encoders tell them."""
+        return self.state if self._encoder is None else self._encoder.seen
+
+    @property
+    def energy(self) -> float:
+        """Energy in the arm: motion, height, bumpers' springs [J]."""
+        model, state = self.settings.loaded_model, self.state
+        return (float(kinetic_energy(model, state[:3], state[3:]) + potential_energy(
+            model, state[:3])) + self._physics.bumper_energy(state))
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the controller knows and sees the arm exactly, and nothing disturbs it."""
+        return self._plain and self.disturbance == NO_DISTURBANCE
+
+    def put(self, q: Array) -> None:
+        """
+        Put the arm somewhere, at rest, and open a new account of its energy.
+
+        Parameters
+        ----------
+        q : ndarray, shape (3,)
+            Positions [rad].
+
+        """
+        self.state = (*_triple(q), 0.0, 0.0, 0.0)
+        if self._encoder is not None:
+            self._encoder.restart(self.state)
+        self.ledger.clear()
+
+    def enforce(self, settings: ArmSettings) -> None:
+        """
+        Make the physics and the controller's model of settings.
+
+        Parameters
+        ----------
+        settings : ArmSettings
+            The settings; the encoders are left (`renew_encoder`).
+
+        """
+        self.settings = settings
+        low, high = (_triple(x) for x in (
+            settings.limits.min_position, settings.limits.max_position))
+        self._physics = ArmPhysics(settings.loaded_model, low, high, settings.friction,
+                                   settings.soft_stops, self.ledger, self.monitor)
+        self._known = ArmPhysics(settings.controller_model, low, high)
+        self._max_effort = self.monitor.max_effort = _triple(settings.limits.max_effort)
+        self._plain = settings.encoder.is_true and (
+            settings.payload.known_to_controller or settings.payload.mass == 0.0)
+
+    def advance_plainly(self, motion: DesiredMotion, steps: int) -> None:
+        """
+        Simulate an arm that is plain.
+
+        Parameters
+        ----------
+        motion : DesiredMotion
+            What to follow.
+        steps : int
+            How many steps.
+
+        """
+        # The inner loop of nearly everything that runs an arm: local names, floats, no numpy.
+        physics, desired, limit = self._physics, motion.elapsed, self._max_effort
+        h, gains = self.settings.step, self.settings.gains
+        stiffness, damping, cut = gains.stiffness, gains.damping, self.monitor.cut
+        state, torque, motors, (m1, m2, m3) = self.state, self.torque, 0.0, limit
+        step_ns = self._step_ns
+        first = self.steps * step_ns - motion.origin_ns
+        for n in range(first, first + steps * step_ns, step_ns):
+            t = physics.terms(state)
+            torque = n1, n2, n3 = computed_torque(
+                t, stiffness, damping, state, desired(n, n / 1e9))
+            if not (-m1 <= n1 <= m1 and -m2 <= n2 <= m2 and -m3 <= n3 <= m3):
+                cut(torque)
+                torque = saturated(torque, limit)
+            after = physics.step(t, state, torque, h)
+            motors += work(torque, state, after)
+            state = after
+        self.state, self.torque = state, torque
+        self.steps += steps
+        self.ledger.motors += motors
+
+    def advance_fully(self, desired: Desired) -> None:
+        """
+        Simulate a step of whatever arm it is.
+
+        Parameters
+        ----------
+        desired : tuple of 9 floats
+            Positions [rad], velocities [rad/s], accelerations [rad/s^2].
+
+        """
+        physics, state = self._physics, self.state
+        self.torque = (n1, n2, n3) = self.control(desired)
+        d1, d2, d3 = self.disturbance
+        after = physics.step(physics.terms(state), state, (n1 + d1, n2 + d2, n3 + d3),
+                             self.settings.step)
+        self.ledger.motors += work(self.torque, state, after)
+        self.ledger.disturbance += work(self.disturbance, state, after)
+        self.state = after
+        self.steps += 1
+        if self._encoder is not None:
+            self._encoder.read(after)
+
+    def control(self, desired: Desired) -> Triple:
+        """
+        Return the torques that the controller gives now.
+
+        Parameters
+        ----------
+        desired : tuple of 9 floats
+            As `advance_fully`.
+
+        Returns
+        -------
+        tuple of 3 floats
+            Within the motors' limits [N m].
+
+        """
+        gains, seen = self.settings.gains, self.seen
+        wanted = computed_torque(self._known.terms(seen), gains.stiffness, gains.damping, seen,
+                                 desired)
+        torque = saturated(wanted, self._max_effort)
+        if torque is not wanted:
+            self.monitor.cut(wanted)
+        return torque
+
+    def renew_encoder(self) -> None:
+        """Begin to read with the encoders of the settings."""
+        self._encoder = self._new_encoder()
+
+    def _new_encoder(self) -> Encoder | None:
+        """Return encoders that begin now, or none where they would tell the truth."""
+        settings = self.settings
+        return None if settings.encoder.is_true else Encoder(
+            settings.encoder, settings.step, self.state)
+
+
+def _triple(values: Array) -> Triple:
+    a, b, c = values.tolist()
+    return a, b, c

@@ -1,0 +1,51 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The package's modules as syntax trees, and the layers that they are in."""
+
+import ast
+
+from helpers.places import ROOT
+
+PACKAGE = 'rrr_traj_planner'
+FILES = sorted((ROOT / PACKAGE).rglob('*.py'))
+MODULES = {'.'.join(path.relative_to(ROOT).with_suffix('').parts): ast.parse(path.read_text())
+           for path in FILES}
+
+# Arrows point only this way: a layer sees itself and those after it.
+LAYERS = ('nodes', 'report', 'planners', 'core')
+
+
+def layer_of(module):
+    """Return a module's layer; an empty text for what lies on top of all layers."""
+    parts = module.split('.')
+    return parts[1] if len(parts) > 1 and parts[1] in LAYERS else ''
+
+
+def imports_of(module):
+    """Return the full names of what a module imports, wherever in it."""
+    names = set()
+    for node in ast.walk(MODULES[module]):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            package = module.split('.')[:-node.level] if node.level else []
+            source = '.'.join([*package, *([node.module] if node.module else [])])
+            # "from package import name" may name a module as well as what is in one.
+            names |= {f'{source}.{alias.name}' for alias in node.names}
+    return names
+
+
+def modules_of(*layers):
+    return [module for module in MODULES if layer_of(module) in layers]
