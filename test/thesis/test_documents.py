@@ -114,9 +114,10 @@ def test_every_function_named_in_a_document_exists():
 def test_a_name_that_does_not_exist_would_be_noticed():
     assert missing_tests('`test/core/motion_laws/test_cycloid.py::test_nothing_of_the_kind`') != []
     assert missing_tests('`test/core/test_nothing.py::test_nothing_of_the_kind`') != []
-    assert missing_functions('`core.cycloid.nothing`, `core.nothing.ramp`, `core.cycloid`') == [
-        'core.cycloid.nothing', 'core.nothing.ramp', 'core.cycloid']
-    assert missing_functions('`core.cycloid.CycloidPiece.at`, `core.limits.UNITS`') == []
+    wrong = ['core.motion_laws.cycloid.nothing', 'core.nothing.ramp', 'core.motion_laws.cycloid']
+    assert missing_functions(', '.join(f'`{name}`' for name in wrong)) == wrong
+    right = '`core.motion_laws.cycloid.CycloidPiece.at`, `core.arm.limits.UNITS`'
+    assert missing_functions(right) == []
 
 
 def test_every_numbered_equation_has_one_row():

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import warnings
 
-from plan_requests import NEAR, plan_request
+from helpers.plan_requests import NEAR, plan_request
 import pytest
 from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import GetParameters
