@@ -98,6 +98,14 @@ class Script:
             self.children = children_of(self.process.pid)
         return self.started(count)
 
+    def is_over_in(self, seconds):
+        """Return whether it ends within a time."""
+        try:
+            self.process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
     def ended(self):
         """Return exit code, output and errors."""
         output, errors = self.process.communicate(timeout=DEADLINE)

@@ -236,7 +236,7 @@ def _as_hard_as_needed(task: StopTask) -> tuple[DesiredMotion, list[str]]:
     room = np.maximum(np.where(qd > 0.0, high - q, q - low), 0.0)
     at_once = 2.0 * room < np.abs(qd) * INSTANT
     v, a = np.where(at_once, 0.0, qd), np.where(at_once, 0.0, qdd)
-    needed = 0.5 * v ** 2 / np.where(at_once, 1.0, room)
+    needed = np.divide(0.5 * v ** 2, room, out=np.zeros(3), where=v != 0.0)
     unlimited, n = np.full(3, inf), len(RATES)
     greatest = greatest_deceleration(v, a, task.limits.max_acceleration, unlimited)
     brakes = JointBrakes(task, np.zeros(n), tuple(np.tile(x, (n, 1)) for x in (q, v, a)),

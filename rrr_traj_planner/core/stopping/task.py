@@ -30,11 +30,14 @@ from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
 # So far beyond a range is within it [rad]; a motion may touch its ends to the other.
 POSITION_TOLERANCE, TOUCH = 1e-9, 1e-6
 
+# A joint that is outside its range may go so much further before it comes back [rad].
+OUTSIDE_ROOM = 0.05
+
 # At so many instants it is looked whether a motion stays inside.
 LOOKS = 1001
 
-# A command outside the ranges that is so far from the arm is not what has to stop [rad].
-FAR = 1e-3
+# A command so far from the arm is not what has to stop: outside the ranges, inside [rad].
+ASTRAY_OUTSIDE, ASTRAY = 1e-3, 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +103,7 @@ class StopTask:
 
     def ranges(self, q: Array) -> tuple[Array, Array]:
         """
-        Return the ranges, open on the side on which a joint is outside.
+        Return the ranges, wider by a little on the side on which a joint is outside.
 
         Parameters
         ----------
@@ -114,8 +117,8 @@ class StopTask:
 
         """
         low, high = self.limits.min_position, self.limits.max_position
-        return (np.where(q < low - POSITION_TOLERANCE, -inf, low),
-                np.where(q > high + POSITION_TOLERANCE, inf, high))
+        return (np.where(q < low - POSITION_TOLERANCE, q - OUTSIDE_ROOM, low),
+                np.where(q > high + POSITION_TOLERANCE, q + OUTSIDE_ROOM, high))
 
 
 def time_inside(motion: DesiredMotion, now: float, limits: JointLimits) -> float:
@@ -201,7 +204,7 @@ def what_moves(motion: DesiredMotion, now: int, seen: State,
     seen : tuple of 6 floats
         Measured positions [rad] and velocities [rad/s].
     limits : JointLimits
-        A command outside their ranges, and the arm not with it, is not what moves.
+        With the ranges: a command outside them must be near the arm to be what moves.
 
     Returns
     -------
@@ -210,6 +213,6 @@ def what_moves(motion: DesiredMotion, now: int, seen: State,
 
     """
     q = np.array(motion.command(now)[:3])
-    astray = ((q < limits.min_position) | (q > limits.max_position)).any() and (
-        np.abs(q - seen[:3]).max() > FAR)
+    outside = ((q < limits.min_position) | (q > limits.max_position)).any()
+    astray = np.abs(q - seen[:3]).max() > (ASTRAY_OUTSIDE if outside else ASTRAY)
     return measured(seen, now) if astray else motion

@@ -143,6 +143,17 @@ def test_hold_of_an_arm_that_was_sent_out_of_its_ranges_takes_the_torque_off_its
     np.testing.assert_allclose(arm.torque, gravity_torque(MODEL, arm.state[:3]), atol=1e-6)
 
 
+def test_hold_of_an_arm_that_is_far_from_its_command_stops_it_where_it_is():
+    arm = ControlledArm(replace(SETTINGS, limits=JointLimits(max_effort=(5.0, 200.0, 200.0))), Q)
+    arm.follow(MotionPoints([0.0, 0.5, 1.0], [Q, Q + (0.4, 0.0, 0.0), Q + (0.8, 0.0, 0.0)],
+                            *np.zeros((2, 3, 3)), [False] * 3, [False] * 3), 0)
+    arm.advance(1000)
+    where = arm.state[0]
+    assert Q[0] + 0.8 - where > 0.3  # 5 N m are too weak for it
+    arm.hold()
+    assert arm.motion.final[0] - where < 0.3
+
+
 def test_end_with_a_velocity_is_braked_within_the_limits():
     arm = ControlledArm(SETTINGS, Q)
     arm.follow(MotionPoints([1.0], [Q + 0.15], [[0.3] * 3], np.zeros((1, 3)), [True], [True]), 0)

@@ -64,7 +64,7 @@ def parabola(top, acceleration, duration=2.0):
 
 
 def test_stop_starts_from_the_command_and_ends_at_rest():
-    for command in random_commands(50):
+    for command in random_commands(20):
         motion = stopped(command).motion
         np.testing.assert_allclose(motion(NOW), command, atol=1e-12)
         assert motion(motion.end + 1e-9)[3:] == (0.0,) * 6
@@ -72,7 +72,7 @@ def test_stop_starts_from_the_command_and_ends_at_rest():
 
 
 def test_stop_keeps_acceleration_and_jerk_limits_and_ranges():
-    for command in random_commands(50):
+    for command in random_commands(20):
         motion, warnings = stopped(command)
         times, states = sampled(motion)
         assert warnings == ()
@@ -159,6 +159,13 @@ def test_joint_that_is_fast_at_the_end_of_its_range_rests_there():
     motion, warnings = stopped((np.pi / 2, 1.0, 0.2, 0.9, *(0.0,) * 5))
     assert motion.final[0] == np.pi / 2
     assert 'range [0, 1.5708] rad: it meets its end' in warnings[0]
+
+
+def test_joints_that_rest_at_the_ends_of_their_ranges_stay_while_another_brakes_hard():
+    motion, warnings = stopped((np.pi / 2, 0.0, 6.2, 0.0, 0.0, 0.9, *(0.0,) * 3))
+    np.testing.assert_allclose(motion.final, LIMITS.max_position * (1.0, 0.0, 1.0), atol=1e-12)
+    assert len(warnings) == 1
+    assert warnings[0].startswith('joint_3 moves at 0.9 rad/s at 6.2 rad')
 
 
 def test_joint_outside_its_range_stops_and_goes_back():

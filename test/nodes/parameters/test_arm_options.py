@@ -178,6 +178,18 @@ def test_end_with_a_velocity_is_braked_from_where_it_is_allowed(ros):
     arm.actual.wait_for_next(at(rest.position))
 
 
+def test_end_too_near_to_the_end_of_a_range_is_told(ros):
+    arm = Arm(ros, allow_nonzero_velocity_at_trajectory_end=True)
+    log = ros.listen(Log, '/rosout', 100)
+    arm.send((2.0, (0.05, *START[1:]), (-0.4, 0.0, 0.0)))
+    told = log.wait_for(lambda m: 'joint_1 moves at -0.4 rad/s at 0.05 rad' in m.msg)
+    # 0.4^2 / (2 * 0.05)
+    assert 'it brakes with 1.6 rad/s^2, limit 1 rad/s^2, to rest inside it' in told.msg
+    assert told.level == 30
+    rest = arm.actual.wait_for_next(lambda m: not np.any(np.abs(m.velocity) > 1e-9))
+    np.testing.assert_allclose(rest.position, (0.0, *START[1:]), atol=1e-6)
+
+
 @pytest.mark.parametrize(('name', 'value', 'text'), [
     ('payload.mass', -1.0, 'payload.mass'), ('encoder.seed', -1, 'encoder.seed'),
     ('friction.coulomb', [1.0, -1.0, 0.0],
