@@ -18,8 +18,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.cancellation import ShouldStop, step
 from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
@@ -42,6 +43,9 @@ Family = Callable[[Array, ArrayLike, ShouldStop], CartesianPath]
 DESIGN = 0.3     # of the time, for the first path: the motion takes the rest
 AGAIN = 0.4      # of the time, after which no other path is begun
 
+LEAST_PART = 1e-3  # of the largest radii: so small that a path is as good as the polyline
+HALVED = 0.5       # radii where the arm cannot follow larger ones
+
 SMALLER = 0.7    # radii, than those before
 WORTH_IT = 1e-3  # of the time, that smaller radii must gain
 STEP = 1e-3  # rad/s^2: joint accelerations that step by more are told of
@@ -62,7 +66,7 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
     -------
     PathTrajectory
         On the path whose radii are the largest that the deviation allows, or part of them where
-        the motion is faster then.
+        the arm cannot follow larger ones or the motion is faster then.
 
     Raises
     ------
@@ -83,7 +87,8 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
 def _fastest(task: CartesianTask, family: Family, path: CartesianPath,
              early: ShouldStop) -> PathTrajectory:
     """Return the fastest motion along a path, or along one of smaller radii."""
-    asked = _timing(task, path)
+    asked = _followed(task, family, path, early)
+    path = asked.arm_path.path
     timed = nearly_fastest_along(asked)
     late = part_of(task.should_stop, AGAIN)
     while len(path.radii) and not late():
@@ -101,6 +106,46 @@ def _fastest(task: CartesianTask, family: Family, path: CartesianPath,
         asked, timed = smaller, again
     timed = kept(asked, timed)
     return timed.trajectory.noted(_note(task, timed))
+
+
+def _followed(task: CartesianTask, family: Family, path: CartesianPath,
+              early: ShouldStop) -> PathTask:
+    """
+    Return what is asked of the timing along a path, or along one of smaller radii.
+
+    Where the arm cannot follow a path though it could follow the polyline, the radii around the
+    place are halved, again and again.
+    """
+    try:
+        return _timing(task, path)
+    except (UnreachableError, LimitViolationError) as error:
+        if not len(path.radii):
+            raise
+        refusal = error
+    radii, least = path.radii, LEAST_PART * path.radii
+    try:
+        nearest = _timing(task, family(task.tips, least, early))
+    except (UnreachableError, LimitViolationError):
+        raise refusal from None
+    smaller = _around(refusal, radii)
+    while not early():
+        if not (smaller & (radii > least)).any():
+            smaller = radii > least
+        radii = np.maximum(np.where(smaller, HALVED, 1.0) * radii, least)
+        path = family(task.tips, radii, early)
+        smaller = path.deviation > task.max_deviation
+        if smaller.any():
+            continue
+        try:
+            return _timing(task, path)
+        except (UnreachableError, LimitViolationError) as error:
+            smaller = _around(error, radii)
+    return nearest
+
+
+def _around(refusal: UnreachableError | LimitViolationError, radii: Array) -> BoolArray:
+    """Return which zones are at the via point nearest to where a path is refused, or beside it."""
+    return np.asarray(np.abs(np.arange(1, len(radii) + 1) - refusal.via_point) <= 1)
 
 
 def _timing(task: CartesianTask, path: CartesianPath) -> PathTask:
