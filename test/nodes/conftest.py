@@ -79,10 +79,17 @@ class Ros:
         return node
 
     def remove(self, node):
-        """End a node before the test does."""
+        """End a node early, in the thread that spins: that would else meet it half gone."""
+        removed = Event()
+
+        def remove_here():
+            self._executor.remove_node(node)
+            node.destroy_node()
+            removed.set()
+
         self._nodes.remove(node)
-        self._executor.remove_node(node)
-        node.destroy_node()
+        self._executor.create_task(remove_here)
+        assert removed.wait(DEADLINE)
 
     def listen(self, message_type, topic, qos=10):
         """Return a listener to a topic."""

@@ -19,7 +19,7 @@ from __future__ import annotations
 import signal
 from threading import Condition
 
-from helpers.arm_in_ros import at, moving
+from helpers.arm_in_ros import at, moving, stamp
 from helpers.own_limits import own_limits
 from helpers.places import CONFIG
 from helpers.plan_requests import NEAR, plan_request
@@ -203,9 +203,9 @@ def test_restarted_arm_follows_clients_that_were_there_before(ros):
         robot.states.wait_for(at(goal, 1e-4), len(robot.states.messages))
         ros.remove(robot.arm)
         assert_gone(ros, publisher.get_subscription_count)
-        count = len(robot.states.messages)
+        restarted = ros.node.get_clock().now().nanoseconds
         robot.arm = ros.add(SimulatedArm(**robot.options))
-        start = robot.states.wait_for(since=count)
+        start = robot.states.wait_for(lambda m, since=restarted: stamp(m) >= since)
         np.testing.assert_allclose(start.position, trajectory.points[0].positions, atol=1e-3)
         wait_until(ros, publisher.get_subscription_count)
     assert robot.plan(NEAR).points == trajectory.points  # to the last bit

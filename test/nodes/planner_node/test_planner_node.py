@@ -169,7 +169,7 @@ def test_node_can_be_destroyed_while_others_spin(ros, gate):
     call_async(ros, planner_id='waiting')
     assert gate.begun.wait(DEADLINE)
     thread, = planning_threads()
-    node.destroy_node()
+    ros.remove(node)
     gate.open.set()
     thread.join(DEADLINE)
     assert not thread.is_alive()

@@ -190,7 +190,7 @@ def test_plan_that_cannot_be_drawn_is_a_success_and_a_bug_in_the_log(ros, planne
 def test_node_can_be_destroyed_while_a_path_is_made(ros, planner, drawing):
     assert answered(Client(ros).ask()).error_code == CODES.SUCCESS
     assert drawing.reached.wait(DEADLINE)
-    planner.destroy_node()
+    ros.remove(planner)
     drawing.open.set()
     executor_goes_on(ros)
 
