@@ -61,7 +61,7 @@ class PathCase:
 
     @property
     def cruise(self):
-        """Return what `followable` says of the case's own limits."""
+        """Return what `sampling_jerk_limit` says of the case's own limits."""
         return followable(self.model, self.limits, self.arm_path(self.arm_path.path.via_s).q,
                           self.request.sample_period).cruise
 

@@ -64,7 +64,7 @@ class CartesianPath(ReadOnlyArrays):
     """
     Lines and curved zones, one zone at each interior via point, by arc length s.
 
-    Made by `line_arc` and `line_polynomial` in `path_design`.
+    Made by `line_arc` and `line_polynomial` in `path.design`.
 
     Parameters
     ----------

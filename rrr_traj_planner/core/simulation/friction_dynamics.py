@@ -17,7 +17,7 @@ A time step of an arm with friction, bumpers and hard stops, from event to event
 
 Between events no joint changes between rest and motion, reaches a hard stop, or meets or leaves
 its bumper, so that the motion is smooth. Events are located to 1e-12 rad or rad/s; friction and
-stops then decide together which joints rest (`reactions`). A joint that rests breaks loose at the
+stops then decide together which joints rest (`stiction`). A joint that rests breaks loose at the
 start of a step only: up to a step late, without any error of energy, since rest does no work.
 """
 

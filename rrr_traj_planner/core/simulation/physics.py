@@ -16,7 +16,7 @@
 The arm's physics: forward dynamics in fixed steps, between hard joint stops.
 
 A step that meets a stop is taken up to the impact exactly, and goes on from there without the
-energy that the stop has taken. An arm with friction or bumpers is `resisted_motion`'s.
+energy that the stop has taken. An arm with friction or bumpers is `friction_dynamics`'s.
 """
 
 from __future__ import annotations

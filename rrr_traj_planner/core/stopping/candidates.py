@@ -16,7 +16,7 @@
 Ways to bring the arm to rest, many at once: each joint by itself, or along the motion it is in.
 
 A family of candidates says when each would be at rest and how good that is (`cost`), and tells of
-some of them by how much they exceed the limits. The search for the best is in `stopping`.
+some of them by how much they exceed the limits. The search for the best is in `stop`.
 """
 
 from __future__ import annotations

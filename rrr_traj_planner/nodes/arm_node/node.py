@@ -80,7 +80,7 @@ class SimulatedArm(ServiceNode):
     torque), `desired_joint_states` (what the controller follows) and `~/tracking_error` (the
     second less the first), all three with the same stamp; `diagnostics` once a second;
     `robot_description` and `markers` (the arm and where its tip has been), transient local;
-    serves `~/reset`, `~/hold`, `~/pause` and `~/step`. Parameters: see `parameters.py`.
+    serves `~/reset`, `~/hold`, `~/pause` and `~/step`. Parameters: see `parameters.table`.
 
     """
 

@@ -44,7 +44,7 @@ class DeclaredParameters(Generic[Config]):
     node : Node
         The node; parameters are declared on it at once.
     role : str
-        `parameters.PLANNER` or `parameters.ARM`.
+        `table.PLANNER` or `table.ARM`.
     build : callable
         Makes a configuration of values by name; raises an InvalidInputError where they do not
         fit together.

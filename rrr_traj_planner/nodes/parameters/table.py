@@ -15,7 +15,7 @@
 """
 The parameters of both nodes: one table, the checks it implies, the configurations made of it.
 
-Nothing here needs ROS: `declared_parameters.py` brings the table to a node.
+Nothing here needs ROS: `declared` brings the table to a node.
 """
 
 from __future__ import annotations

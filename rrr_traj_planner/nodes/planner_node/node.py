@@ -92,7 +92,7 @@ class TrajectoryPlanner(ServiceNode):
     Serves `plan_trajectory` (rrr_traj_planner_interfaces/srv/PlanTrajectory); publishes
     `planned_trajectory`, `planned_path` and `markers` (via points, planned path) of the last
     success, transient local, and `diagnostics`
-    (diagnostic_msgs/DiagnosticArray) once a second. Parameters: see `parameters.py`.
+    (diagnostic_msgs/DiagnosticArray) once a second. Parameters: see `parameters.table`.
 
     """
 

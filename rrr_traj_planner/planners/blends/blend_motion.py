@@ -97,13 +97,13 @@ def shortest_transitions(law: TransitionLaw, displacements: Array, lines: Array)
     return np.asarray(law.least_time(changes).max(axis=1))
 
 
-def excess(chain: ViaProblem, timing: Straddling) -> Array:
+def excess(problem: ViaProblem, timing: Straddling) -> Array:
     """
     Return how far a motion is beyond what it must keep, apart from its torques.
 
     Parameters
     ----------
-    chain : ViaProblem
+    problem : ViaProblem
         The via points.
     timing : Straddling
         Times of the motion.
@@ -116,22 +116,22 @@ def excess(chain: ViaProblem, timing: Straddling) -> Array:
 
     """
     lines, transitions = timing
-    velocity = np.abs(chain.displacements) / lines[:, np.newaxis] / chain.max_velocity
-    change = np.abs(changes_of_velocity(chain.displacements, lines))
-    most = chain.law.largest_change(transitions[:, np.newaxis])
+    velocity = np.abs(problem.displacements) / lines[:, np.newaxis] / problem.max_velocity
+    change = np.abs(changes_of_velocity(problem.displacements, lines))
+    most = problem.law.largest_change(transitions[:, np.newaxis])
     with np.errstate(divide='ignore', invalid='ignore'):
         sharp = np.where(change > 0.0, change / most, 0.0)
     halves = 0.5 * (transitions[:-1] + transitions[1:])
     return np.array([velocity.max(), sharp.max(), (halves / lines).max()])
 
 
-def is_kept(chain: ViaProblem, timing: Straddling) -> bool:
+def is_kept(problem: ViaProblem, timing: Straddling) -> bool:
     """
     Return whether a motion keeps its limits, apart from its torques.
 
     Parameters
     ----------
-    chain, timing
+    problem, timing
         As in `excess`.
 
     Returns
@@ -140,7 +140,7 @@ def is_kept(chain: ViaProblem, timing: Straddling) -> bool:
         Within rounding.
 
     """
-    return bool((timing.lines > 0.0).all() and (excess(chain, timing) <= 1.0 + KEPT).all())
+    return bool((timing.lines > 0.0).all() and (excess(problem, timing) <= 1.0 + KEPT).all())
 
 
 def trajectory(points: Array, timing: Straddling,

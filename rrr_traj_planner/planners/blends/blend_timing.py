@@ -45,14 +45,14 @@ LEAST_TANGENT = 0.05
 ROOM = 1e-6                                # durations are longer than the least by this part
 
 
-def fastest(chain: ViaProblem, transitions: Array | None,
+def fastest(problem: ViaProblem, transitions: Array | None,
             should_stop: Callable[[], bool]) -> Straddling:
     """
     Return the times of least sum within the limits on velocity, acceleration and jerk.
 
     Parameters
     ----------
-    chain : ViaProblem
+    problem : ViaProblem
         The via points; no displacement zero in all joints.
     transitions : ndarray, shape (n + 1,), optional
         Lengths of the transitions [s]; None: free.
@@ -65,14 +65,14 @@ def fastest(chain: ViaProblem, transitions: Array | None,
         The times.
 
     """
-    best = _made_feasible(chain, chain.rest_to_rest_times(), transitions)
-    program = _Program(chain, transitions, best)
+    best = _made_feasible(problem, problem.rest_to_rest_times(), transitions)
+    program = _Program(problem, transitions, best)
     point = best
     for _ in range(ROUNDS):
         solved = None if should_stop() else program.solved(point)
         if solved is None:
             break
-        point, found = solved, _made_feasible(chain, solved.lines, transitions)
+        point, found = solved, _made_feasible(problem, solved.lines, transitions)
         gain = total_time(best) - total_time(found)
         if gain > 0.0:
             best = found
@@ -99,12 +99,12 @@ def total_time(timing: Straddling) -> float:
     return float(timing.lines.sum() + 0.5 * (timing.transitions[0] + timing.transitions[-1]))
 
 
-def _made_feasible(chain: ViaProblem, lines: Array, transitions: Array | None) -> Straddling:
+def _made_feasible(problem: ViaProblem, lines: Array, transitions: Array | None) -> Straddling:
     """Return times stretched in proportion, if need be, until they keep the limits."""
     for _ in range(STRETCHES):
         timing = Straddling(lines, shortest_transitions(
-            chain.law, chain.displacements, lines) if transitions is None else transitions)
-        velocity, change, halves = excess(chain, timing)
+            problem.law, problem.displacements, lines) if transitions is None else transitions)
+        velocity, change, halves = excess(problem, timing)
         if transitions is None:  # changes are kept; transitions shrink like the root, or slower
             change, halves = 0.0, np.sqrt(halves) if halves > 1.0 + 1e-9 else halves ** (2.0 / 3.0)
         factor = max(velocity, change, halves)
@@ -124,12 +124,12 @@ class _Rows(NamedTuple):
 class _Program:
     """The linear programs; unknowns: rates (n), transitions (n + 1) and times of lines (n)."""
 
-    def __init__(self, chain: ViaProblem, transitions: Array | None, start: Straddling) -> None:
-        self.chain, self.transitions = chain, transitions
+    def __init__(self, problem: ViaProblem, transitions: Array | None, start: Straddling) -> None:
+        self.problem, self.transitions = problem, transitions
         self.unit = float(start.lines.mean())  # of time, in which all unknowns are about 1
         self.n = len(start.lines)
         self.tangents = [self.unit / start.lines * factor for factor in FIRST_TANGENTS]
-        D = chain.displacements / self.unit
+        D = problem.displacements / self.unit
         n = self.n
         velocities = sparse.diags(D.ravel()) @ sparse.kron(sparse.eye(n), np.ones((3, 1)))
         none = sparse.csr_array((3, n))
@@ -148,8 +148,8 @@ class _Program:
         rows += self._bounded_changes() if self.transitions is not None else (
             self._long_transitions(rates, at.transitions / unit))
         with np.errstate(divide='ignore'):
-            fastest_rates = unit * (self.chain.max_velocity / np.abs(
-                self.chain.displacements)).min(axis=1)
+            fastest_rates = unit * (self.problem.max_velocity / np.abs(
+                self.problem.displacements)).min(axis=1)
         free = (np.zeros(n + 1), np.full(n + 1, np.inf))
         low, high = free if self.transitions is None else (self.transitions / unit,) * 2
         cost = np.concatenate((np.zeros(n), [0.5], np.zeros(n - 1), [0.5], np.ones(n)))
@@ -182,13 +182,13 @@ class _Program:
     def _bounded_changes(self) -> list[_Rows]:
         """Return that changes of velocity are at most what fixed transitions can do."""
         assert self.transitions is not None
-        most = self.chain.law.largest_change(self.transitions[:, np.newaxis]).ravel()
+        most = self.problem.law.largest_change(self.transitions[:, np.newaxis]).ravel()
         return [self._row(side * self.changes, None, None, most) for side in (1.0, -1.0)]
 
     def _long_transitions(self, rates: Array, transitions: Array) -> list[_Rows]:
         """Return that transitions last as long as acceleration and jerk ask for."""
-        slope = np.tile(self.chain.law.slope / self.unit, self.n + 1)
-        squared = np.tile((self.chain.law.root / self.unit) ** 2, self.n + 1)
+        slope = np.tile(self.problem.law.slope / self.unit, self.n + 1)
+        squared = np.tile((self.problem.law.root / self.unit) ** 2, self.n + 1)
         lines = np.append(np.append(np.inf, 1.0 / rates), np.inf)
         now = np.repeat(np.maximum(
             transitions, LEAST_TANGENT * np.minimum(lines[:-1], lines[1:])), 3)

@@ -79,41 +79,41 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    chain = via_problem_of(task)
+    problem = via_problem_of(task)
     if task.durations is not None:
         return kept_or_refused(lambda durations: within_torque(
-            task, chain.law, lambda law: _motion(task, chain, law, durations)), task.durations)
-    motion = _motion(task, chain, chain.law, _fastest(task, chain))
+            task, problem.law, lambda law: _motion(task, problem, law, durations)), task.durations)
+    motion = _motion(task, problem, problem.law, _fastest(task, problem))
     if motion is None:
         raise ConvergenceError('approach (a): the durations that were found are not feasible')
     return slowed_for_torque(task, motion)
 
 
-def _fastest(task: JointTask, chain: ViaProblem) -> Array:
+def _fastest(task: JointTask, problem: ViaProblem) -> Array:
     """Return durations of least total time, as good as the search finds them, shape (n,)."""
-    durations = _beam_search(chain, task.should_stop)
+    durations = _beam_search(problem, task.should_stop)
     if len(durations) <= REFINED_SEGMENTS:
-        durations = _refined(chain, durations, task.should_stop)
+        durations = _refined(problem, durations, task.should_stop)
     for factor in STRETCHES:
         task.should_stop()
-        if _motion(task, chain, chain.law, factor * durations) is not None:
+        if _motion(task, problem, problem.law, factor * durations) is not None:
             return np.asarray(factor * durations)
     raise TimingError(
         'approach (a) leaves every via point at the cruise velocity of the segment before it: no '
         'durations are found at which every joint then stays in its range')
 
 
-def _beam_search(chain: ViaProblem, should_stop: ShouldStop) -> Array:
+def _beam_search(problem: ViaProblem, should_stop: ShouldStop) -> Array:
     """Return durations chosen one after the other; where that ends, very long ones."""
-    D, law, limit = chain.displacements, chain.law, chain.max_velocity
-    grids = np.maximum(chain.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
+    D, law, limit = problem.displacements, problem.law, problem.max_velocity
+    grids = np.maximum(problem.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
     v, elapsed, chosen = np.zeros((1, 3)), np.zeros(1), np.zeros((1, 0))
     for k in range(len(D) - 1):
         should_stop()
         T = grids[k]
         next_v = cruise_velocity(law, limit, v[:, np.newaxis], T[:, np.newaxis], D[k])
         total = elapsed[:, np.newaxis] + T
-        bound = (next_v >= chain.lowest[k]) & (next_v <= chain.highest[k])
+        bound = (next_v >= problem.lowest[k]) & (next_v <= problem.highest[k])
         beam, step = np.nonzero(bound.all(axis=-1))
         if not len(beam):
             return np.asarray(grids[:, -1])
@@ -137,16 +137,16 @@ def _best(law: TransitionLaw, limit: Array, v: Array, elapsed: Array, D: Array,
     return near[np.argsort(elapsed[near] + rest, kind='stable')[:BEAM]]
 
 
-def _refined(chain: ViaProblem, durations: Array, should_stop: ShouldStop) -> Array:
+def _refined(problem: ViaProblem, durations: Array, should_stop: ShouldStop) -> Array:
     """Return better durations, each varied in turn by smaller and smaller steps."""
-    best, step = _total(chain, durations[np.newaxis])[0], FIRST_STEP
+    best, step = _total(problem, durations[np.newaxis])[0], FIRST_STEP
     for _ in range(REFINING_PASSES):
         if should_stop():
             break
         for k in range(len(durations) - 1):
             trials = np.tile(durations, (len(REFINING_STEPS), 1))
             trials[:, k] *= 1.0 + step * REFINING_STEPS
-            totals = _total(chain, trials)
+            totals = _total(problem, trials)
             if totals.min() < best:
                 best, durations = totals.min(), trials[totals.argmin()]
         step *= STEP_REDUCTION
@@ -154,29 +154,29 @@ def _refined(chain: ViaProblem, durations: Array, should_stop: ShouldStop) -> Ar
     return np.append(durations[:-1], last) if np.isfinite(best) else durations
 
 
-def _total(chain: ViaProblem, durations: Array) -> Array:
+def _total(problem: ViaProblem, durations: Array) -> Array:
     """Return total times of rows of durations, the last one replaced by the least."""
     v, allowed = np.zeros((len(durations), 3)), np.ones(len(durations), dtype=bool)
     for k in range(durations.shape[1] - 1):
-        v = cruise_velocity(chain.law, chain.max_velocity, v, durations[:, k:k + 1],
-                            chain.displacements[k])
-        allowed &= ((v >= chain.lowest[k]) & (v <= chain.highest[k])).all(axis=-1)
+        v = cruise_velocity(problem.law, problem.max_velocity, v, durations[:, k:k + 1],
+                            problem.displacements[k])
+        allowed &= ((v >= problem.lowest[k]) & (v <= problem.highest[k])).all(axis=-1)
         v = np.nan_to_num(v)
-    grid = np.maximum(chain.rest_to_rest_times()[-1], 1e-6) * GRID
-    last = stopping_time(chain.law, chain.max_velocity, v, chain.displacements[-1], grid)
+    grid = np.maximum(problem.rest_to_rest_times()[-1], 1e-6) * GRID
+    last = stopping_time(problem.law, problem.max_velocity, v, problem.displacements[-1], grid)
     return np.where(allowed, durations[:, :-1].sum(axis=1) + last, np.inf)
 
 
-def _motion(task: JointTask, chain: ViaProblem, law: TransitionLaw,
+def _motion(task: JointTask, problem: ViaProblem, law: TransitionLaw,
             durations: Array) -> PiecewiseTrajectory | None:
     """Return the motion of given durations, None if it breaks a limit other than torque's."""
-    D, T = chain.displacements, durations[:, np.newaxis]
+    D, T = problem.displacements, durations[:, np.newaxis]
     v = np.zeros((len(D) + 1, 3))
     for k in range(len(D) - 1):
-        v[k + 1] = cruise_velocity(law, chain.max_velocity, v[k], T[k], D[k])
+        v[k + 1] = cruise_velocity(law, problem.max_velocity, v[k], T[k], D[k])
         if np.isnan(v[k + 1]).any():
             return None
-    if not np.isfinite(stopping_time(law, chain.max_velocity, v[-2:-1], D[-1], T[-1]))[0]:
+    if not np.isfinite(stopping_time(law, problem.max_velocity, v[-2:-1], D[-1], T[-1]))[0]:
         return None
     first = np.minimum(law.least_time(np.diff(v, axis=0)), T)
     parts = Parts(first, v[1:].copy(), np.zeros_like(first))

@@ -75,30 +75,30 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit on the way.
 
     """
-    chain = via_problem_of(task, CYCLOID)
+    problem = via_problem_of(task, CYCLOID)
     if task.durations is None:
-        return _fastest(task, chain)
+        return _fastest(task, problem)
     return kept_or_refused(
         lambda durations: within_torque(
-            task, chain.law, lambda law: _motion_in(task, chain, law, durations)),
+            task, problem.law, lambda law: _motion_in(task, problem, law, durations)),
         task.durations, lambda: fastest_beside_stays(task, lambda points: plan(
             replace(task, points=points, durations=None))))
 
 
-def _fastest(task: JointTask, chain: ViaProblem) -> Trajectory:
+def _fastest(task: JointTask, problem: ViaProblem) -> Trajectory:
     """Return the fastest motion."""
-    timing = fastest(chain, None, task.should_stop)
+    timing = fastest(problem, None, task.should_stop)
     return slowed_for_torque(task, trajectory(task.points, timing, CYCLOID))
 
 
-def _motion_in(task: JointTask, chain: ViaProblem, law: TransitionLaw,
+def _motion_in(task: JointTask, problem: ViaProblem, law: TransitionLaw,
                durations: Array) -> PiecewiseTrajectory | None:
     """Return the motion of given durations, None if it breaks a limit other than torque's."""
-    lines = _lines(law, chain.displacements, durations)
+    lines = _lines(law, problem.displacements, durations)
     if lines is None:
         return None
-    timing = Straddling(lines, shortest_transitions(law, chain.displacements, lines))
-    return trajectory(task.points, timing, CYCLOID) if is_kept(chain, timing) else None
+    timing = Straddling(lines, shortest_transitions(law, problem.displacements, lines))
+    return trajectory(task.points, timing, CYCLOID) if is_kept(problem, timing) else None
 
 
 def _lines(law: TransitionLaw, D: Array, durations: Array) -> Array | None:

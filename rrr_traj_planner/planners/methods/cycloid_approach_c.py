@@ -59,10 +59,10 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    chain = via_problem_of(task, CYCLOID)
-    quick = quick_durations(task, chain.rest_to_rest_times())
-    rest = np.zeros_like(chain.displacements)
-    parts = quick_parts(chain.law, rest, rest, quick[:, np.newaxis], chain.displacements)
+    problem = via_problem_of(task, CYCLOID)
+    quick = quick_durations(task, problem.rest_to_rest_times())
+    rest = np.zeros_like(problem.displacements)
+    parts = quick_parts(problem.law, rest, rest, quick[:, np.newaxis], problem.displacements)
 
     def motion(own: slice, durations: Array) -> PiecewiseTrajectory:
         T = durations[:, np.newaxis]

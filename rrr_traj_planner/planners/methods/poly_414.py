@@ -102,20 +102,20 @@ def planned(task: JointTask, t_acc: float) -> Trajectory:
         As in `plan`.
 
     """
-    chain = via_problem_of(task, QUARTIC)
+    problem = via_problem_of(task, QUARTIC)
     if task.durations is not None:
         return kept_or_refused(
-            lambda durations: _motion_in(task, chain, t_acc, durations), task.durations,
+            lambda durations: _motion_in(task, problem, t_acc, durations), task.durations,
             lambda: fastest_beside_stays(task, lambda points: planned(
                 replace(task, points=points, durations=None), t_acc)))
-    return _fastest(task, chain, t_acc)
+    return _fastest(task, problem, t_acc)
 
 
-def _fastest(task: JointTask, chain: ViaProblem, t_acc: float) -> Trajectory:
+def _fastest(task: JointTask, problem: ViaProblem, t_acc: float) -> Trajectory:
     """Return the fastest motion."""
     full = np.full(len(task.points), 2.0 * t_acc)
-    short = _beside(full, chain.rest_to_rest_times())
-    timings = [fastest(chain, transitions, task.should_stop)
+    short = _beside(full, problem.rest_to_rest_times())
+    timings = [fastest(problem, transitions, task.should_stop)
                for transitions in ([full] if (short == full).all() else [full, short])]
     return slowed_for_torque(
         task, trajectory(task.points, min(timings, key=total_time), QUARTIC))
@@ -127,7 +127,7 @@ def _beside(transitions: Array, bounds: Array) -> Array:
     return np.asarray(np.minimum(transitions, inner))
 
 
-def _motion_in(task: JointTask, chain: ViaProblem, t_acc: float,
+def _motion_in(task: JointTask, problem: ViaProblem, t_acc: float,
                durations: Array) -> PiecewiseTrajectory | None:
     """
     Return the motion of given durations, None if it breaks a limit.
@@ -145,7 +145,7 @@ def _motion_in(task: JointTask, chain: ViaProblem, t_acc: float,
     lines[0] -= 0.5 * transitions[0]
     lines[-1] -= 0.5 * transitions[-1]
     timing = Straddling(lines, transitions)
-    if not is_kept(chain, timing):
+    if not is_kept(problem, timing):
         return None
     motion = trajectory(task.points, timing, QUARTIC)
     stretch = torque_stretch(task, motion)

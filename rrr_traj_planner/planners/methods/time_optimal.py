@@ -15,10 +15,10 @@
 """
 `time_optimal`: as fast as velocity, acceleration, jerk and torque allow, with continuous jerk.
 
-The acceleration is a chain of the thesis's half-period ramps, whose jerk cruises at its peak where
-a limit on jerk shapes them (`core.ramps`); node accelerations, via velocities and durations are
-optimised together, from rest at every via point on, by an interior-point method whose every
-iterate is a valid motion.
+The acceleration is a sequence of the thesis's half-period ramps, whose jerk cruises at its peak
+where a limit on jerk shapes them (`core.motion_laws.ramps`); node accelerations, via velocities
+and durations are optimised together, from rest at every via point on, by an interior-point method
+whose every iterate is a valid motion.
 """
 
 from __future__ import annotations

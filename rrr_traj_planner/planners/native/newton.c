@@ -12,7 +12,7 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* One Newton step on a chain of ramps: segments condensed to their borders, durations eliminated,
+/* One Newton step on a sequence of ramps: segments condensed to their borders, durations eliminated,
  * what is left solved as a band . The cost is linear in ramps and segments. */
 #include "blocks.h"
 #include "timing_problem.h"

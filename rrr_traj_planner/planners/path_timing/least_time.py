@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-The fastest motion along a given path: its progress is a chain of ramps.
+The fastest motion along a given path: its progress is a sequence of ramps.
 
 One coordinate, the length behind the tip, takes the place of the joints in the method of
 `time_optimal`: pieces of the path are its segments, and what the joints may do bounds it.

@@ -60,7 +60,7 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
     task : CartesianTask
         What is asked.
     family : callable
-        `line_arc` or `line_polynomial` of `core.path_design`.
+        `line_arc` or `line_polynomial` of `core.path.design`.
 
     Returns
     -------

@@ -67,7 +67,7 @@ class PathTable:
         Cubic ones, highest first, of all columns of `Demand` by the part of its interval.
     overshoot : ndarray, shape (N, 2, 3)
         At each piece's end, what a controller's quintic adds to ddq and to c where they step
-        (`core.sampling.STEP_OVERSHOOT`).
+        (`core.trajectory.sampling.STEP_OVERSHOOT`).
 
     """
 

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-Motions whose acceleration is a chain of ramps between node values.
+Motions whose acceleration is a sequence of ramps between node values.
 
 Each segment between via points has n ramps of equal length. Node accelerations are the unknowns:
 the acceleration keeps its limits everywhere if it does at the nodes, jerk is continuous, zero at
@@ -32,7 +32,7 @@ from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTr
 
 
 class Variables(NamedTuple):
-    """Unknowns of a chain of N segments of n ramps, of J coordinates (the joints: J = 3)."""
+    """Unknowns of N segments of n ramps, of J coordinates (the joints: J = 3)."""
 
     inner: Array     # node accelerations within the segments [rad/s^2], shape (N, n - 1, J)
     v: Array         # velocities at the via points [rad/s], (N - 1, J)

@@ -23,7 +23,7 @@ most 1 % of time as long as lift-off only speeds up and set-down only slows down
 Without that, a "set-down" that first goes on speeding up would save up to 9 %.
 
 There are two numbers left, p and the bulge b = p k1 of the lift-off's acceleration, 0 <= b <= m
-with m = 6 / (1 - p). By hand, from `law_434`, peaks are
+with m = 6 / (1 - p). By hand, from `lin_434`, peaks are
 
     velocity      3 / (2 (1 - p)) - b / 12                           half-way
     acceleration  (m p + b (1 - p))^2 / (4 b p), or m - b            in lift-off, or at its end
@@ -70,13 +70,13 @@ class Loads(NamedTuple):
     jerk: Array          # [s^3]
 
 
-def loads_of(chain: ViaProblem) -> Loads:
+def loads_of(problem: ViaProblem) -> Loads:
     """
     Return what the limits ask of each segment.
 
     Parameters
     ----------
-    chain : ViaProblem
+    problem : ViaProblem
         Displacements and limits; the function's are those that the law has been made with.
 
     Returns
@@ -85,8 +85,8 @@ def loads_of(chain: ViaProblem) -> Loads:
         0 where nothing moves.
 
     """
-    ways, law, function = np.abs(chain.displacements), chain.law, chain.function
-    return Loads((ways / chain.max_velocity).max(axis=1),
+    ways, law, function = np.abs(problem.displacements), problem.law, problem.function
+    return Loads((ways / problem.max_velocity).max(axis=1),
                  (ways * law.slope / function.peak_acceleration).max(axis=1),
                  (ways * law.root ** 2 / function.peak_jerk).max(axis=1))
 

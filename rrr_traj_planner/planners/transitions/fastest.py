@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-The fastest motion through a chain of segments.
+The fastest motion through consecutive segments.
 
 Durations and via velocities are optimised together under the velocity, acceleration and jerk
 limits; where the torque of the motion is too much, the segments that ask for it are given more
@@ -43,7 +43,7 @@ BACKWARD = 1.0, 0.5        # powers, each tried, of what it asks of segments tha
 OVERSHOOT_ROUNDS = 8       # of lowering via velocities that overshoot a joint's range
 
 
-def fastest(task: JointTask, chain: ViaProblem, floor: Array | None) -> TimedMotion:
+def fastest(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedMotion:
     """
     Return the motion of least total time, slowed where torque asks for it.
 
@@ -51,7 +51,7 @@ def fastest(task: JointTask, chain: ViaProblem, floor: Array | None) -> TimedMot
     ----------
     task : JointTask
         The arm and its limits.
-    chain : ViaProblem
+    problem : ViaProblem
         The via points.
     floor : ndarray, shape (n,), optional
         Durations [s] that no segment may fall below.
@@ -67,15 +67,15 @@ def fastest(task: JointTask, chain: ViaProblem, floor: Array | None) -> TimedMot
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    chain, motion, stretch = _holdable_motion(task, chain, floor)
+    problem, motion, stretch = _holdable_motion(task, problem, floor)
     candidates = [(motion, stretch)]
     for backward in BACKWARD:
-        candidates += _slowed(task, chain, floor, motion, stretch, backward)
+        candidates += _slowed(task, problem, floor, motion, stretch, backward)
     totals = [m.durations.sum() * max(1.0, s.max()) for m, s in candidates]
     return stretched_for_torque(task, candidates[int(np.argmin(totals))][0])
 
 
-def fastest_with_stops(task: JointTask, chain: ViaProblem, floor: Array) -> TimedMotion:
+def fastest_with_stops(task: JointTask, problem: ViaProblem, floor: Array) -> TimedMotion:
     """
     Return the motion of least total time with a stop at every via point.
 
@@ -83,7 +83,7 @@ def fastest_with_stops(task: JointTask, chain: ViaProblem, floor: Array) -> Time
     ----------
     task : JointTask
         The arm and its limits.
-    chain : ViaProblem
+    problem : ViaProblem
         The via points.
     floor : ndarray, shape (n,)
         Durations [s] that no segment may fall below.
@@ -99,11 +99,11 @@ def fastest_with_stops(task: JointTask, chain: ViaProblem, floor: Array) -> Time
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    stops = at_rest(chain)
+    stops = at_rest(problem)
     return stretched_for_torque(task, _least_time_motion(task, stops, floor))
 
 
-def _slowed(task: JointTask, chain: ViaProblem, floor: Array | None, motion: TimedMotion,
+def _slowed(task: JointTask, problem: ViaProblem, floor: Array | None, motion: TimedMotion,
             stretch: Array, backward: float) -> Iterator[tuple[TimedMotion, Array]]:
     """
     Give motions, and their stretch, whose segments last as long as torque asks of the one before.
@@ -118,12 +118,12 @@ def _slowed(task: JointTask, chain: ViaProblem, floor: Array | None, motion: Tim
         change = np.where(stretch > 1.0, stretch, stretch ** backward)
         slow = np.where(lacking, motion.durations * change, 0.0)
         slow = slow if floor is None else np.maximum(slow, floor)
-        motion = _least_time_motion(task, chain, slow)
+        motion = _least_time_motion(task, problem, slow)
         stretch = segment_stretch(task, motion)
         yield motion, stretch
 
 
-def _holdable_motion(task: JointTask, chain: ViaProblem,
+def _holdable_motion(task: JointTask, problem: ViaProblem,
                      floor: Array | None) -> tuple[ViaProblem, TimedMotion, Array]:
     """
     Return the motion of least time whose path can be held against gravity, and torque's stretch.
@@ -133,26 +133,26 @@ def _holdable_motion(task: JointTask, chain: ViaProblem,
     """
     for _ in range(STRAIGHTENING_ROUNDS):
         task.should_stop()
-        motion = _least_time_motion(task, chain, floor)
+        motion = _least_time_motion(task, problem, floor)
         stretch = segment_stretch(task, motion)
         blocked = np.isinf(stretch)
         if not blocked.any():
-            return chain, motion, stretch
-        chain = slower_at(chain, np.tile(blocked[:, np.newaxis], 3))
-    motion = _least_time_motion(task, at_rest(chain), floor)
-    return at_rest(chain), motion, segment_stretch(task, motion)
+            return problem, motion, stretch
+        problem = slower_at(problem, np.tile(blocked[:, np.newaxis], 3))
+    motion = _least_time_motion(task, at_rest(problem), floor)
+    return at_rest(problem), motion, segment_stretch(task, motion)
 
 
-def _least_time_motion(task: JointTask, chain: ViaProblem, floor: Array | None) -> TimedMotion:
+def _least_time_motion(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedMotion:
     """Return the motion of least total time within the kinematic limits."""
     for round_ in range(OVERSHOOT_ROUNDS + 1):
         task.should_stop()
         if round_ == OVERSHOOT_ROUNDS:
-            chain = at_rest(chain)
-        motion, overshoot = (quickest_motion(task, chain) if floor is None
-                             else motion_with_floor(task, chain, floor))
+            problem = at_rest(problem)
+        motion, overshoot = (quickest_motion(task, problem) if floor is None
+                             else motion_with_floor(task, problem, floor))
         if motion is not None:
             return motion
-        chain = slower_at(chain, overshoot)
+        problem = slower_at(problem, overshoot)
     raise ConvergenceError(
-        f'{chain.function.name}: even stops at the via points overshoot a range')
+        f'{problem.function.name}: even stops at the via points overshoot a range')

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A motion through a chain of segments of given durations, and what slows it down."""
+"""A motion through consecutive segments of given durations, and what slows it down."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class TimedMotion(NamedTuple):
     durations: Array
 
 
-def timed_motion(task: JointTask, chain: ViaProblem, durations: Array,
+def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
                  gently: bool = True) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return a motion of given durations, and which segments overshoot a joint's range.
@@ -55,7 +55,7 @@ def timed_motion(task: JointTask, chain: ViaProblem, durations: Array,
     ----------
     task : JointTask
         The arm and its limits.
-    chain : ViaProblem
+    problem : ViaProblem
         The via points.
     durations : ndarray, shape (n,)
         [s].
@@ -68,29 +68,29 @@ def timed_motion(task: JointTask, chain: ViaProblem, durations: Array,
         None where it overshoots, or the kinematic limits leave no such motion.
 
     """
-    if rests_everywhere(chain):
-        factor = float((chain.rest_to_rest_times() / durations).max())
-        v, T = np.zeros_like(chain.highest), durations * factor
+    if rests_everywhere(problem):
+        factor = float((problem.rest_to_rest_times() / durations).max())
+        v, T = np.zeros_like(problem.highest), durations * factor
     else:
-        factor, solution = least_stretch(chain, durations)
+        factor, solution = least_stretch(problem, durations)
         v, T = solution.velocities, solution.durations
     if factor > 1.0 + STRETCH_TOLERANCE:
-        return None, np.zeros_like(chain.displacements, dtype=bool)
+        return None, np.zeros_like(problem.displacements, dtype=bool)
     if factor <= 1.0 and gently:
         v, T, factor = v * factor, durations, 1.0
-    motion, overshoot = _moved(task, chain, v, T, durations)
+    motion, overshoot = _moved(task, problem, v, T, durations)
     if motion is not None and factor != 1.0:
         motion = motion._replace(trajectory=motion.trajectory.stretched(1.0 / factor))
     return motion, overshoot
 
 
-def quickest_motion(task: JointTask, chain: ViaProblem) -> tuple[TimedMotion | None, BoolArray]:
+def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return the motion of least total time, and which segments overshoot a joint's range.
 
     Parameters
     ----------
-    task, chain
+    task, problem
         As in `timed_motion`.
 
     Returns
@@ -99,21 +99,21 @@ def quickest_motion(task: JointTask, chain: ViaProblem) -> tuple[TimedMotion | N
         None where it overshoots. Its note says where planning was stopped before it converged.
 
     """
-    stops = chain.rest_to_rest_times()
-    v, T, gap = np.zeros_like(chain.highest), stops, 0.0
-    if not rests_everywhere(chain):
-        found = least_time(chain, should_stop=task.should_stop)
+    stops = problem.rest_to_rest_times()
+    v, T, gap = np.zeros_like(problem.highest), stops, 0.0
+    if not rests_everywhere(problem):
+        found = least_time(problem, should_stop=task.should_stop)
         gap = found.gap - float(max(found.durations.sum() - stops.sum(), 0.0))
         if found.durations.sum() <= stops.sum():  # it was not stopped early
             v, T = found.velocities, found.durations
     slower = 1.0 + DURATION_ROOM
-    motion, overshoot = _moved(task, chain, v / slower, T * slower, T * slower)
+    motion, overshoot = _moved(task, problem, v / slower, T * slower, T * slower)
     if motion is not None:
         motion.trajectory.note = unconverged_note(gap, motion.trajectory.duration)
     return motion, overshoot
 
 
-def motion_with_floor(task: JointTask, chain: ViaProblem,
+def motion_with_floor(task: JointTask, problem: ViaProblem,
                       floor: Array) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return the motion of least total time whose segments last long enough, and what overshoots.
@@ -123,7 +123,7 @@ def motion_with_floor(task: JointTask, chain: ViaProblem,
 
     Parameters
     ----------
-    task, chain
+    task, problem
         As in `timed_motion`.
     floor : ndarray, shape (n,)
         Durations [s] that no segment may fall below.
@@ -134,9 +134,9 @@ def motion_with_floor(task: JointTask, chain: ViaProblem,
         As of `timed_motion`.
 
     """
-    durations = (np.maximum(chain.rest_to_rest_times(), floor) if rests_everywhere(chain)
-                 else least_time(chain, floor, task.should_stop).durations)
-    return timed_motion(task, chain, durations * (1.0 + DURATION_ROOM))
+    durations = (np.maximum(problem.rest_to_rest_times(), floor) if rests_everywhere(problem)
+                 else least_time(problem, floor, task.should_stop).durations)
+    return timed_motion(task, problem, durations * (1.0 + DURATION_ROOM))
 
 
 def segment_stretch(task: JointTask, motion: TimedMotion) -> Array:
@@ -196,22 +196,22 @@ def stretched_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotion:
     return TimedMotion(motion.trajectory.stretched(factor), motion.durations * factor)
 
 
-def _moved(task: JointTask, chain: ViaProblem, v: Array, T: Array,
+def _moved(task: JointTask, problem: ViaProblem, v: Array, T: Array,
            durations: Array) -> tuple[TimedMotion | None, BoolArray]:
     """Return the motion of given velocities and durations; none where it overshoots a range."""
     rest = np.zeros((1, 3))
     v0, v1 = np.concatenate((rest, v)), np.concatenate((v, rest))
     parts = segment_motion.gentle_parts(
-        chain.law, chain.max_velocity, v0, v1, T[:, np.newaxis], chain.displacements)
-    overshoot = _overshoot(task, chain, v0, v1, parts)
+        problem.law, problem.max_velocity, v0, v1, T[:, np.newaxis], problem.displacements)
+    overshoot = _overshoot(task, problem, v0, v1, parts)
     if overshoot.any():
         return None, overshoot
     trajectory = segment_motion.trajectory(
-        task.points, v0, v1, T[:, np.newaxis], parts, chain.function)
+        task.points, v0, v1, T[:, np.newaxis], parts, problem.function)
     return TimedMotion(trajectory, durations), overshoot
 
 
-def _overshoot(task: JointTask, chain: ViaProblem, v0: Array, v1: Array,
+def _overshoot(task: JointTask, problem: ViaProblem, v0: Array, v1: Array,
                parts: segment_motion.Parts) -> BoolArray:
     """
     Return in which segments which joints leave their range, shape (n, 3).
@@ -230,7 +230,7 @@ def _overshoot(task: JointTask, chain: ViaProblem, v0: Array, v1: Array,
         if doubtful.any():  # a last transition is a first one, backwards
             row, joint = np.nonzero(doubtful)
             at = row, joint
-            ranges = JointProfile(chain.function.transition(
+            ranges = JointProfile(problem.function.transition(
                 duration[at], point[at], way * velocity[at], way * cruise[at])).piece_ranges
             out[at] |= (ranges[0] < least[joint] - POSITION_TOLERANCE) | (
                 ranges[1] > most[joint] + POSITION_TOLERANCE)

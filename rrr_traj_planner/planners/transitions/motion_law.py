@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Limits as the chain of segments sees them: transition law, velocities, room at the ends."""
+"""The via-point problem of a task: transition law, velocity bounds, distance to the ranges."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ SAMPLES_PER_TRANSITION = 5.0
 
 def via_problem_of(task: JointTask, function: TransitionFunction = CYCLOID) -> ViaProblem:
     """
-    Return the optimisation problem of a task; via velocities bounded by the room to the limits.
+    Return the optimisation problem of a task; the joints' ranges bound the via velocities.
 
     Parameters
     ----------

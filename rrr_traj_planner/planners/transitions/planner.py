@@ -64,9 +64,9 @@ def planner_with(function: TransitionFunction) -> JointPlanner:
             If gravity alone exceeds an effort limit between the via points.
 
         """
-        chain = via_problem_of(task, function)
+        problem = via_problem_of(task, function)
         if task.durations is None:
-            return fastest(task, chain, None).trajectory
-        return prescribed(task, chain, task.durations).trajectory
+            return fastest(task, problem, None).trajectory
+        return prescribed(task, problem, task.durations).trajectory
 
     return plan

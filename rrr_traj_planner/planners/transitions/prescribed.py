@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A motion through a chain of segments whose durations are prescribed."""
+"""A motion through consecutive segments whose durations are prescribed."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at
 DURATION_TOLERANCE = 1e-9  # s, to which prescribed durations are kept
 
 
-def prescribed(task: JointTask, chain: ViaProblem, durations: Array) -> TimedMotion:
+def prescribed(task: JointTask, problem: ViaProblem, durations: Array) -> TimedMotion:
     """
     Return a motion of given durations.
 
@@ -48,7 +48,7 @@ def prescribed(task: JointTask, chain: ViaProblem, durations: Array) -> TimedMot
     ----------
     task : JointTask
         The arm and its limits.
-    chain : ViaProblem
+    problem : ViaProblem
         The via points.
     durations : ndarray, shape (n,)
         [s].
@@ -66,13 +66,13 @@ def prescribed(task: JointTask, chain: ViaProblem, durations: Array) -> TimedMot
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    motion = _within_limits(task, chain, durations) or _slowed_fastest(task, chain, durations)
+    motion = _within_limits(task, problem, durations) or _slowed_fastest(task, problem, durations)
     if motion is None:
-        raise _too_short(task, chain, durations)
+        raise _too_short(task, problem, durations)
     return motion
 
 
-def _within_limits(task: JointTask, chain: ViaProblem, durations: Array) -> TimedMotion | None:
+def _within_limits(task: JointTask, problem: ViaProblem, durations: Array) -> TimedMotion | None:
     """
     Return a motion of given durations within all limits; None if none is found.
 
@@ -82,24 +82,24 @@ def _within_limits(task: JointTask, chain: ViaProblem, durations: Array) -> Time
     for round_ in range(STRAIGHTENING_ROUNDS + 1):
         task.should_stop()
         if round_ == STRAIGHTENING_ROUNDS:
-            chain = at_rest(chain)
+            problem = at_rest(problem)
         for gently in (True, False):
-            motion = _with_durations(task, chain, durations, gently)
+            motion = _with_durations(task, problem, durations, gently)
             if motion is None:
                 return None
             stretch = segment_stretch(task, motion)
             if torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
                 return motion
         lacking = stretch > 1.0
-        chain = slower_at(chain, np.tile(lacking[:, np.newaxis], 3))
+        problem = slower_at(problem, np.tile(lacking[:, np.newaxis], 3))
     return None
 
 
-def _slowed_fastest(task: JointTask, chain: ViaProblem, durations: Array) -> TimedMotion | None:
+def _slowed_fastest(task: JointTask, problem: ViaProblem, durations: Array) -> TimedMotion | None:
     """Return the fastest motion, slowed, if that gives the durations; else None."""
-    if (chain.displacements == 0.0).all(axis=1).any():
+    if (problem.displacements == 0.0).all(axis=1).any():
         return None  # the fastest motion does not stay anywhere
-    quickest = fastest(task, chain, None)
+    quickest = fastest(task, problem, None)
     slower = float(np.mean(durations / quickest.durations))
     if slower < 1.0 - STRETCH_TOLERANCE or (
             np.abs(durations - slower * quickest.durations).max() > DURATION_TOLERANCE):
@@ -107,23 +107,23 @@ def _slowed_fastest(task: JointTask, chain: ViaProblem, durations: Array) -> Tim
     return TimedMotion(quickest.trajectory.stretched(slower), durations)
 
 
-def _with_durations(task: JointTask, chain: ViaProblem, durations: Array,
+def _with_durations(task: JointTask, problem: ViaProblem, durations: Array,
                     gently: bool) -> TimedMotion | None:
     """Return a motion of given durations within the kinematic limits; None if there is none."""
     for round_ in range(OVERSHOOT_ROUNDS + 1):
         task.should_stop()
         if round_ == OVERSHOOT_ROUNDS:
-            chain = at_rest(chain)
-        motion, overshoot = timed_motion(task, chain, durations, gently)
+            problem = at_rest(problem)
+        motion, overshoot = timed_motion(task, problem, durations, gently)
         if motion is not None or not overshoot.any():
             return motion
-        chain = slower_at(chain, overshoot)
+        problem = slower_at(problem, overshoot)
     return None
 
 
-def _too_short(task: JointTask, chain: ViaProblem, durations: Array) -> TimingError:
+def _too_short(task: JointTask, problem: ViaProblem, durations: Array) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
-    feasible = _least_feasible(task, chain, durations)
+    feasible = _least_feasible(task, problem, durations)
     asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
     short = np.flatnonzero(durations * (1.0 + 2.0 * DURATION_ROOM) < feasible - 2e-6).tolist()
     return TimingError(
@@ -132,13 +132,13 @@ def _too_short(task: JointTask, chain: ViaProblem, durations: Array) -> TimingEr
         f'{offered} s', tuple(offered))
 
 
-def _least_feasible(task: JointTask, chain: ViaProblem, durations: Array) -> Array:
+def _least_feasible(task: JointTask, problem: ViaProblem, durations: Array) -> Array:
     """Return feasible durations in whole microseconds, none shorter than asked for."""
-    for candidate in (fastest(task, chain, durations), fastest_with_stops(
-            task, chain, durations)):
+    for candidate in (fastest(task, problem, durations), fastest_with_stops(
+            task, problem, durations)):
         for room in (0.0, 1e-6, 1e-5, 1e-4, 1e-3):
             feasible = np.ceil(candidate.durations * (1.0 + room) * 1e6) / 1e6
-            if _within_limits(task, chain, feasible) is not None:
+            if _within_limits(task, problem, feasible) is not None:
                 return np.asarray(feasible)
     raise ConvergenceError(
         f'no feasible durations found for segment_durations {durations.tolist()} s')

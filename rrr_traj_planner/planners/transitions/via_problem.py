@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The via points of a chain of segments, and what bounds the motion through them."""
+"""The via points of consecutive segments, and what bounds the motion through them."""
 
 from __future__ import annotations
 
@@ -68,13 +68,13 @@ class ViaProblem(ReadOnlyArrays):
         return np.asarray(total.max(axis=1))
 
 
-def slower_at(chain: ViaProblem, segments: BoolArray) -> ViaProblem:
+def slower_at(problem: ViaProblem, segments: BoolArray) -> ViaProblem:
     """
-    Return the chain with lower velocities at the ends of some segments.
+    Return the problem with lower velocities at the ends of some segments.
 
     Parameters
     ----------
-    chain : ViaProblem
+    problem : ViaProblem
         The via points.
     segments : ndarray of bool, shape (n, 3)
         Which segments of which joints.
@@ -87,17 +87,17 @@ def slower_at(chain: ViaProblem, segments: BoolArray) -> ViaProblem:
     """
     at_ends = segments[:-1] | segments[1:]
     factor = np.where(at_ends, OVERSHOOT_REDUCTION, 1.0)
-    return replace(chain, lowest=np.minimum(chain.lowest * factor, -LEAST_VELOCITY),
-                   highest=np.maximum(chain.highest * factor, LEAST_VELOCITY))
+    return replace(problem, lowest=np.minimum(problem.lowest * factor, -LEAST_VELOCITY),
+                   highest=np.maximum(problem.highest * factor, LEAST_VELOCITY))
 
 
-def at_rest(chain: ViaProblem) -> ViaProblem:
+def at_rest(problem: ViaProblem) -> ViaProblem:
     """
-    Return the chain with a stop at every via point: its motions never overshoot.
+    Return the problem with a stop at every via point: its motions never overshoot.
 
     Parameters
     ----------
-    chain : ViaProblem
+    problem : ViaProblem
         The via points.
 
     Returns
@@ -106,11 +106,11 @@ def at_rest(chain: ViaProblem) -> ViaProblem:
         Via velocities bounded to next to nothing; see `rests_everywhere`.
 
     """
-    still = np.full_like(chain.highest, LEAST_VELOCITY)
-    return replace(chain, lowest=-still, highest=still)
+    still = np.full_like(problem.highest, LEAST_VELOCITY)
+    return replace(problem, lowest=-still, highest=still)
 
 
-def rests_everywhere(chain: ViaProblem) -> bool:
+def rests_everywhere(problem: ViaProblem) -> bool:
     """
     Return whether every via velocity is to be zero: its times are then known in closed form.
 
@@ -119,7 +119,7 @@ def rests_everywhere(chain: ViaProblem) -> bool:
 
     Parameters
     ----------
-    chain : ViaProblem
+    problem : ViaProblem
         The via points.
 
     Returns
@@ -128,4 +128,4 @@ def rests_everywhere(chain: ViaProblem) -> bool:
         Also where there are no via points between the first and the last.
 
     """
-    return bool((np.maximum(-chain.lowest, chain.highest) <= LEAST_VELOCITY).all())
+    return bool((np.maximum(-problem.lowest, problem.highest) <= LEAST_VELOCITY).all())

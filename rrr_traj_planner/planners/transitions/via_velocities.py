@@ -35,14 +35,14 @@ from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 START_ROOM = 1.3  # the start's durations over the least ones from rest to rest
 
 
-def least_time(chain: ViaProblem, floor: Array | None = None,
+def least_time(problem: ViaProblem, floor: Array | None = None,
                should_stop: Callable[[], bool] = never) -> Solution:
     """
     Return the via velocities and durations of least total time.
 
     Parameters
     ----------
-    chain : ViaProblem
+    problem : ViaProblem
         The via points; no displacement zero in all joints.
     floor : ndarray, shape (n,), optional
         Durations [s] that no segment may fall below.
@@ -56,20 +56,20 @@ def least_time(chain: ViaProblem, floor: Array | None = None,
         total time.
 
     """
-    n = len(chain.displacements)
-    T = chain.rest_to_rest_times()
+    n = len(problem.displacements)
+    T = problem.rest_to_rest_times()
     if floor is not None:
         T = np.maximum(T, floor)
-    return minimise(ViaBarrier(chain, np.zeros((n - 1, 3)), START_ROOM * T, floor), should_stop)
+    return minimise(ViaBarrier(problem, np.zeros((n - 1, 3)), START_ROOM * T, floor), should_stop)
 
 
-def least_stretch(chain: ViaProblem, durations: Array) -> tuple[float, Solution]:
+def least_stretch(problem: ViaProblem, durations: Array) -> tuple[float, Solution]:
     """
     Return by how much prescribed durations must be stretched to be feasible.
 
     Parameters
     ----------
-    chain : ViaProblem
+    problem : ViaProblem
         The via points.
     durations : ndarray, shape (n,)
         Prescribed durations [s], positive.
@@ -80,8 +80,8 @@ def least_stretch(chain: ViaProblem, durations: Array) -> tuple[float, Solution]
         The least common factor, below 1 where there is time to spare, and the stretched motion.
 
     """
-    n = len(chain.displacements)
-    factor = START_ROOM * max(float((chain.rest_to_rest_times() / durations).max()), 1e-6)
-    solution = minimise(ViaBarrier(chain, np.zeros((n - 1, 3)), factor * durations,
+    n = len(problem.displacements)
+    factor = START_ROOM * max(float((problem.rest_to_rest_times() / durations).max()), 1e-6)
+    solution = minimise(ViaBarrier(problem, np.zeros((n - 1, 3)), factor * durations,
                                    proportions=durations), never)
     return float(solution.durations[0] / durations[0]), solution
