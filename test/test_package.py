@@ -50,7 +50,8 @@ def imported(folder):
                 names.add(node.module.split('.')[0])
             elif isinstance(node, ast.Call) and ast.unparse(node.func) == 'pytest.importorskip':
                 names.add(ast.literal_eval(node.args[0]).split('.')[0])
-    return names - set(sys.stdlib_module_names) - {PACKAGE, 'helpers'} - {file.stem for file in files}
+    own = {PACKAGE, 'helpers'} | {file.stem for file in files}
+    return names - set(sys.stdlib_module_names) - own
 
 
 def keys(*tags):
