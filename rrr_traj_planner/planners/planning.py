@@ -26,6 +26,7 @@ from rrr_traj_planner.core.cancellation import step
 from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError, RrrPlannerError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
 from rrr_traj_planner.core.motion_laws import cycloid
 from rrr_traj_planner.core.path.axis_planes import passes_axis
 from rrr_traj_planner.core.scalars import kind_of
@@ -113,9 +114,10 @@ def _planned_joints(method: Registered, model: RobotModel, limits: JointLimits,
             f'segment_durations[{int(np.isnan(durations).argmax())}] is nan: planner '
             f'{request.planner_id} takes every duration or none')
     return first_possible(
-        joint_postures(model, limits, request.via_points, start, request.elbow),
+        joint_postures(model, limits, request.via_points, start, request.elbow,
+                       method.passing),
         lambda posture: _through(method, model, limits, request, _joint_points(
-            model, limits, request, start, posture)))
+            model, limits, request, start, posture, method.passing)))
 
 
 def _through(method: Registered, model: RobotModel, limits: JointLimits,
@@ -195,9 +197,9 @@ def _as_counted(error: RrrPlannerError, same: BoolArray, started: bool) -> RrrPl
 
 
 def _joint_points(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-                  start: Array | None, posture: Posture) -> Array:
+                  start: Array | None, posture: Posture, passing: Passing = THROUGH) -> Array:
     """Return joint positions of the start, if there is one, and of the via points."""
-    q = joint_via_points(model, limits, request.via_points, start, posture)
+    q = joint_via_points(model, limits, request.via_points, start, posture, passing)
     return q if start is None else np.vstack((start, q))
 
 

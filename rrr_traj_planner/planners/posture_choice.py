@@ -42,7 +42,7 @@ from rrr_traj_planner.core.kinematics.postures import (
     Shoulder,
     SHOULDERS,
 )
-from rrr_traj_planner.core.kinematics.travel_time import travel_time
+from rrr_traj_planner.core.kinematics.travel_time import Passing, travel_time
 from rrr_traj_planner.core.path.axis_planes import passes_axis
 
 # A start this close to where postures meet has them all: noise must not choose between them.
@@ -52,7 +52,7 @@ Answer = TypeVar('Answer')
 
 
 def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start: Array | None,
-                   elbow: Elbow | None) -> list[Posture]:
+                   elbow: Elbow | None, passing: Passing) -> list[Posture]:
     """
     Return the postures in which via points are tried by a motion in joint space.
 
@@ -68,6 +68,8 @@ def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start:
         Where the motion begins [rad].
     elbow : {'up', 'down'}, optional
         What is asked for.
+    passing : Passing
+        How the motion passes via points.
 
     Returns
     -------
@@ -80,7 +82,7 @@ def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start:
         return [Posture(e) for e in ELBOWS if elbow in (None, e)]
     own = postures_of(model, start, MEETING)
     if len(own) > 1:
-        own.sort(key=lambda p: _time(model, limits, points, start, p))
+        own.sort(key=lambda p: _time(model, limits, points, start, p, passing))
     shoulders: tuple[Shoulder, Shoulder] = own[0].shoulder, 'front'
     others = [Posture(e, s) for s in shoulders for e in ELBOWS]
     return [p for p in dict.fromkeys((*own, *others)) if elbow in (None, p.elbow)]
@@ -158,9 +160,9 @@ def first_possible(postures: Sequence[Posture], attempt: Callable[[Posture], Ans
 
 
 def _time(model: RobotModel, limits: JointLimits, points: Array, start: Array,
-          posture: Posture) -> float:
+          posture: Posture, passing: Passing) -> float:
     """Return the estimated time through via points, infinite where a joint leaves its range."""
-    q = joint_sequence(model, limits, points, posture, start)
+    q = joint_sequence(model, limits, points, posture, start, passing)
     if out_of_range(q, limits).any():
         return np.inf
-    return travel_time(limits, np.vstack((start, q)))
+    return travel_time(limits, np.vstack((start, q)), passing)

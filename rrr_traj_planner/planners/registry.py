@@ -23,6 +23,7 @@ from pkgutil import iter_modules
 from typing import NamedTuple
 
 from rrr_traj_planner.core.errors import InvalidInputError, quoted
+from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 import rrr_traj_planner.planners.methods
 from rrr_traj_planner.planners.request import CartesianTask, JointTask
@@ -38,13 +39,15 @@ class Registered(NamedTuple):
     some_durations: bool = False  # whether durations may be prescribed for some segments only
     plan_path: CartesianPlanner | None = None
     misses_via_points: bool = False  # whether its way is to pass them by at a distance
+    passing: Passing = THROUGH     # how it passes via points: whole turns are chosen by that
 
 
 _planners: dict[str, Registered] = {}
 
 
 def register(planner_id: str, some_durations: bool = False,
-             misses_via_points: bool = False) -> Callable[[JointPlanner], JointPlanner]:
+             misses_via_points: bool = False,
+             passing: Passing = THROUGH) -> Callable[[JointPlanner], JointPlanner]:
     """
     Return a decorator that makes a function the planner of an id.
 
@@ -57,6 +60,8 @@ def register(planner_id: str, some_durations: bool = False,
     misses_via_points : bool
         Whether it passes via points between the first and the last at a distance, by construction;
         the plan's note then says at which.
+    passing : Passing
+        How it passes via points, for the estimate of time by which whole turns are chosen.
 
     Returns
     -------
@@ -66,7 +71,7 @@ def register(planner_id: str, some_durations: bool = False,
     """
     def remember(planner: JointPlanner) -> JointPlanner:
         _planners[planner_id] = Registered(
-            planner, some_durations, misses_via_points=misses_via_points)
+            planner, some_durations, misses_via_points=misses_via_points, passing=passing)
         return planner
 
     return remember

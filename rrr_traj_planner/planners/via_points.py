@@ -29,12 +29,14 @@ from rrr_traj_planner.core.kinematics.joint_ranges import (
 )
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
 
 HOLDING_TOLERANCE = 1e-9  # relative
 
 
 def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
-                     start: Array | None, posture: Posture) -> Array:
+                     start: Array | None, posture: Posture,
+                     passing: Passing = THROUGH) -> Array:
     """
     Return joint positions of via points, all in one posture.
 
@@ -50,6 +52,8 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
         Joint positions [rad] before the first via point.
     posture : Posture
         The posture.
+    passing : Passing
+        How the motion passes via points: what their whole turns are chosen by.
 
     Returns
     -------
@@ -66,7 +70,7 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
         If the motors cannot hold the arm at a point.
 
     """
-    q = joint_sequence(model, limits, points, posture, start)
+    q = joint_sequence(model, limits, points, posture, start, passing)
     for i, j in np.argwhere(out_of_range(q, limits)).tolist():
         raise range_error(model, limits, f'via point {i}', j, float(q[i, j]), posture, i)
     failure = holding_failure(model, limits, q)

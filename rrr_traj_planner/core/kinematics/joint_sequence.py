@@ -32,11 +32,11 @@ from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, TURN, whole_turns
 from rrr_traj_planner.core.kinematics.least_time_turns import least_time_turns, TRAVEL
 from rrr_traj_planner.core.kinematics.postures import EDGE_TOLERANCE, Posture
-from rrr_traj_planner.core.kinematics.travel_time import MEAN_ACCELERATION, way_times
+from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH, way_times
 
 
 def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, posture: Posture,
-                   start: Array | None = None) -> Array:
+                   start: Array | None = None, passing: Passing = THROUGH) -> Array:
     """
     Return joint positions at consecutive via points, all in one posture.
 
@@ -52,6 +52,8 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
         The posture.
     start : ndarray, shape (3,), optional
         Joint positions before the first point [rad].
+    passing : Passing
+        How the motion passes the points, for the estimate of time.
 
     Returns
     -------
@@ -75,12 +77,13 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
         q[:, 0] = q[np.maximum.accumulate(np.where(free, free.argmin(), np.arange(len(q)))), 0]
     q[1:] -= TURN * np.cumsum(np.round(np.diff(q, axis=0) / TURN), axis=0)
     q += whole_turns(q, limits, start)
-    for j in np.flatnonzero(_to_be_chosen(limits, q))[::-1].tolist():
+    for j in np.flatnonzero(_to_be_chosen(limits, q, passing))[::-1].tolist():
         at = np.flatnonzero(~free) if j == 0 else np.arange(len(q))
         q[at, j] = least_time_turns(
-            limits, j, q[at, j], np.diff(_elapsed(limits, q, j)[at]), start is not None)
+            limits, j, q[at, j], np.diff(_elapsed(limits, q, j, passing)[at]), start is not None,
+            passing)
     if free.any() and not free.all():
-        elapsed = _elapsed(limits, q, 0)
+        elapsed = _elapsed(limits, q, 0, passing)
         q[free, 0] = np.clip(np.interp(elapsed[free], elapsed[~free], q[~free, 0]),
                              limits.min_position[0], limits.max_position[0])
     q = np.where(out_of_range(q, limits), q,
@@ -99,7 +102,7 @@ def _solutions(model: RobotModel, points: Array, posture: Posture) -> Array:
     return q
 
 
-def _to_be_chosen(limits: JointLimits, q: Array) -> BoolArray:
+def _to_be_chosen(limits: JointLimits, q: Array, passing: Passing) -> BoolArray:
     """
     Return for which joints the nearest turns are out of range or need not be the best, shape (3,).
 
@@ -108,15 +111,16 @@ def _to_be_chosen(limits: JointLimits, q: Array) -> BoolArray:
     """
     ways = np.diff(q, axis=0)
     with np.errstate(invalid='ignore'):
-        saved = 2.0 * limits.max_velocity ** 2 / (MEAN_ACCELERATION * limits.max_acceleration)
+        saved = 2.0 * limits.max_velocity ** 2 / (
+            passing.mean_acceleration * limits.max_acceleration)
     long = 2.0 * (np.pi - np.abs(ways)) < saved
     other = TURN * np.sign(ways)
     possible = (~out_of_range(q[:-1] + other, limits)) | (~out_of_range(q[1:] - other, limits))
     return np.asarray(out_of_range(q, limits).any(axis=0) | (long & possible).any(axis=0))
 
 
-def _elapsed(limits: JointLimits, q: Array, joint: int) -> Array:
+def _elapsed(limits: JointLimits, q: Array, joint: int, passing: Passing) -> Array:
     """Return the time at each point that the other joints' ways have taken by then, shape (n,)."""
     others = [j for j in range(3) if j != joint]
-    times = way_times(limits, q) + TRAVEL * np.abs(np.diff(q, axis=0))
+    times = way_times(limits, q, passing) + TRAVEL * np.abs(np.diff(q, axis=0))
     return np.concatenate(([0.0], np.cumsum(times[:, others].max(axis=1))))

@@ -20,7 +20,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.kinematics.joint_ranges import RANGE_TOLERANCE, TURN
-from rrr_traj_planner.core.kinematics.travel_time import way_time
+from rrr_traj_planner.core.kinematics.travel_time import motion_ends, Passing, way_time
 
 MOST_TURNS = 5  # of a point that are tried: the nearest ones, however wide the range is
 
@@ -30,12 +30,13 @@ TRAVEL, BEGINNING = 1e-6, 1e-9  # s/rad
 
 
 def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
-                     begun: bool) -> Array:
+                     begun: bool, passing: Passing) -> Array:
     """
     Return one joint's positions at points with the turns that keep its range and take least time.
 
     A shortest path by dynamic programming, linear in the number of points: for each two turns of
-    a point and the next, and whether the joint rests at the former, the best way there is kept.
+    a point and the next, and whether the motion begins or turns back at the former, the best way
+    there is kept.
 
     Parameters
     ----------
@@ -49,6 +50,8 @@ def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
         The least time from each point to the next, that other joints take [s].
     begun : bool
         Whether the first position is given with its turns.
+    passing : Passing
+        How the motion passes via points.
 
     Returns
     -------
@@ -62,8 +65,10 @@ def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
         return values[0, [np.argmin(cost[0] + BEGINNING * np.abs(values[0]))]]
     ways = values[1:, np.newaxis] - values[:-1, :, np.newaxis]  # from point, turn, to turn
     least = others[:, np.newaxis, np.newaxis]
-    times = np.stack([np.maximum(way_time(limits, joint, np.abs(ways), n), least)
-                      + TRAVEL * np.abs(ways) for n in range(3)], axis=1)
+    ends = motion_ends(len(ways))[:, np.newaxis, np.newaxis]
+    times = np.stack([np.maximum(least, way_time(
+        limits, joint, np.abs(ways), ends, np.maximum(n - ends, 0), passing))
+        + TRAVEL * np.abs(ways) for n in range(3)], axis=1)
     # Of ways to a turn (second axis) by a turn of the point before it (first axis), and of
     # whether the joint rests at the latter (third axis).
     best = np.full((*ways.shape[1:], 2), np.inf)

@@ -16,22 +16,45 @@
 
 from __future__ import annotations
 
+from typing import Literal, NamedTuple
+
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, IntArray
 
-# The mean acceleration of a change of velocity whose acceleration rises from zero and falls to
-# it again, over its peak: a full-period cycloid's, and any symmetric ramp's without a cruise.
-MEAN_ACCELERATION = 0.5
 
-
-def way_time(limits: JointLimits, joint: int | slice, ways: Array,
-             rests: Array | IntArray | int) -> Array:
+class Passing(NamedTuple):
     """
-    Return how long a joint takes for ways that it begins or ends at rest, or at full speed.
+    How a planner's motions pass via points, as far as an estimate of their time goes by it.
 
-    The velocity over time is a trapezium, or a triangle where the way is short; with no rest, a
-    rectangle.
+    Parameters
+    ----------
+    via : {'through', 'stop', 'blend'}
+        'through': a joint rests at a via point where it turns back there; 'stop': all joints rest
+        at every via point; 'blend': from each segment's constant velocity to the next one's in a
+        transition around the via point, which is missed.
+    mean_acceleration : float
+        Of a change of velocity, over its peak: 0.5 where acceleration rises from zero and falls
+        to it again as in a full-period cycloid, or in any symmetric ramp without a cruise.
+
+    """
+
+    via: Literal['through', 'stop', 'blend'] = 'through'
+    mean_acceleration: float = 0.5
+
+
+THROUGH = Passing()
+
+
+def way_time(limits: JointLimits, joint: int | slice, ways: Array, ends: Array | IntArray | int,
+             turns: Array | IntArray | int, passing: Passing) -> Array:
+    """
+    Return how long a joint takes for ways between via points.
+
+    Where it begins or ends at rest, velocity over time is a trapezium, or a triangle where the way
+    is short; with no rest, a rectangle. In a blend half of a transition lies within the way: with
+    a speed v and a mean acceleration a it takes v / a where the joint turns back, and v / (2 a)
+    where the motion begins or ends, of which the other half comes before or after.
 
     Parameters
     ----------
@@ -41,8 +64,12 @@ def way_time(limits: JointLimits, joint: int | slice, ways: Array,
         Which joint, or joints along the last axis.
     ways : ndarray
         Lengths [rad], not negative.
-    rests : ndarray or int
-        At how many of its two ends the joint rests.
+    ends : ndarray or int
+        How many of the two ends are ends of the motion.
+    turns : ndarray or int
+        At how many of the others the joint turns back.
+    passing : Passing
+        How the motion passes via points.
 
     Returns
     -------
@@ -51,8 +78,13 @@ def way_time(limits: JointLimits, joint: int | slice, ways: Array,
 
     """
     velocity = limits.max_velocity[joint]
-    acceleration = MEAN_ACCELERATION * limits.max_acceleration[joint]
+    acceleration = passing.mean_acceleration * limits.max_acceleration[joint]
     with np.errstate(invalid='ignore', divide='ignore', over='ignore'):
+        if passing.via == 'blend':
+            line = np.maximum(ways / velocity, np.sqrt(ways * (turns + 0.5 * ends) / acceleration))
+            speed = np.where(line > 0.0, ways / line, 0.0)
+            return np.asarray(line + 0.5 * ends * speed / acceleration)
+        rests = 2 if passing.via == 'stop' else ends + turns
         ramp = np.where(np.isinf(acceleration), 0.0, velocity / acceleration)
         cruises = 2.0 * ways >= rests * velocity * ramp
         return np.where(rests == 0, ways / velocity,
@@ -60,11 +92,9 @@ def way_time(limits: JointLimits, joint: int | slice, ways: Array,
                                  np.sqrt(2.0 * rests * ways / acceleration)))
 
 
-def way_times(limits: JointLimits, q: Array) -> Array:
+def way_times(limits: JointLimits, q: Array, passing: Passing) -> Array:
     """
     Return how long each joint takes from each point to the next, if it alone counts.
-
-    A joint rests at the ends of the motion and where it turns back.
 
     Parameters
     ----------
@@ -72,6 +102,8 @@ def way_times(limits: JointLimits, q: Array) -> Array:
         Velocities and accelerations.
     q : ndarray, shape (n, 3)
         Joint positions [rad].
+    passing : Passing
+        How the motion passes via points.
 
     Returns
     -------
@@ -80,12 +112,34 @@ def way_times(limits: JointLimits, q: Array) -> Array:
 
     """
     ways = np.diff(q, axis=0)
-    rests = np.ones(q.shape, dtype=int)
-    rests[1:-1] = np.sign(ways[:-1]) * np.sign(ways[1:]) <= 0.0
-    return way_time(limits, slice(None), np.abs(ways), rests[:-1] + rests[1:])
+    turns = np.zeros(q.shape, dtype=int)
+    turns[1:-1] = np.sign(ways[:-1]) * np.sign(ways[1:]) <= 0.0
+    return way_time(limits, slice(None), np.abs(ways), motion_ends(len(ways))[:, np.newaxis],
+                    turns[:-1] + turns[1:], passing)
 
 
-def travel_time(limits: JointLimits, q: Array) -> float:
+def motion_ends(segments: int) -> IntArray:
+    """
+    Return how many ends of the motion each of its segments has.
+
+    Parameters
+    ----------
+    segments : int
+        How many there are.
+
+    Returns
+    -------
+    ndarray of int, shape (segments,)
+        1 for the first and the last, 2 for the only one, 0 for others.
+
+    """
+    ends = np.zeros(segments, dtype=np.intp)
+    ends[:1] += 1
+    ends[-1:] += 1
+    return ends
+
+
+def travel_time(limits: JointLimits, q: Array, passing: Passing) -> float:
     """
     Return how long a motion through joint positions takes.
 
@@ -95,6 +149,8 @@ def travel_time(limits: JointLimits, q: Array) -> float:
         Velocities and accelerations.
     q : ndarray, shape (n, 3)
         Joint positions [rad].
+    passing : Passing
+        How it passes via points.
 
     Returns
     -------
@@ -102,4 +158,4 @@ def travel_time(limits: JointLimits, q: Array) -> float:
         In each segment the time of the joint that takes longest, in all [s].
 
     """
-    return float(way_times(limits, q).max(axis=1).sum())
+    return float(way_times(limits, q, passing).max(axis=1).sum())

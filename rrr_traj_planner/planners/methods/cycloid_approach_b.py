@@ -26,6 +26,7 @@ from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.travel_time import Passing
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
@@ -50,7 +51,7 @@ from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 NEWTON_STEPS = 60
 
 
-@register('cycloid_approach_b', misses_via_points=True)
+@register('cycloid_approach_b', misses_via_points=True, passing=Passing('blend'))
 def plan(task: JointTask) -> Trajectory:
     """
     Return the fastest motion of approach (b), or one of prescribed durations.

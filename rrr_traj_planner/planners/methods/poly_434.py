@@ -27,6 +27,7 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.travel_time import Passing
 from rrr_traj_planner.core.motion_laws.lin_434 import Law434
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
@@ -49,7 +50,8 @@ from rrr_traj_planner.planners.transitions.motion_law import torque_stretch, via
 from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
 
 
-@register('poly_434', some_durations=True)
+@register('poly_434', some_durations=True,
+          passing=Passing('stop', 1.0 / QUARTIC.peak_acceleration))
 def plan(task: JointTask) -> Trajectory:
     """
     Return the fastest 4-3-4 motion, or one of prescribed durations.

@@ -20,8 +20,10 @@ As with the cycloid, jerk is zero where a transition begins and ends.
 
 from __future__ import annotations
 
+from rrr_traj_planner.core.kinematics.travel_time import Passing
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.transitions.planner import planner_with
 
-plan = register('septic')(planner_with(SEPTIC))
+plan = register('septic', passing=Passing(mean_acceleration=1.0 / SEPTIC.peak_acceleration))(
+    planner_with(SEPTIC))

@@ -26,6 +26,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from rrr_traj_planner.core.kinematics.travel_time import Passing
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
@@ -43,8 +44,11 @@ MOST_RAMPS = 40      # where neither jerk nor sampling shapes them
 SHAPED = 0.1          # part of a segment above which a full swing of acceleration shapes ramps
 SAMPLES_PER_RAMP = 1.0
 
+MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps last a tenth of it or so
 
-@register('time_optimal', some_durations=True)
+
+@register('time_optimal', some_durations=True,
+          passing=Passing(mean_acceleration=MEAN_ACCELERATION))
 def plan(task: JointTask) -> Trajectory:
     """
     Return the fastest motion of the family, or the gentlest of prescribed durations.

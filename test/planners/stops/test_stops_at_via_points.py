@@ -85,3 +85,29 @@ def test_a_way_that_cannot_be_held_is_refused_by_segment(planner_id):
     with pytest.raises(LimitViolationError, match=(
             r'^segment 1: on its way joint_3 needs 58\.9 N m to hold, limit 50 N m$')):
         plan(ARM, weak, through(planner_id, q))
+
+
+@each_planner
+@pytest.mark.parametrize('seed', (9, 10, 14, 20))
+def test_a_wider_range_of_joint_1_makes_no_motion_slower(planner_id, seed):
+    # Every segment has a time of its own, from rest to rest: none but the best turns will do.
+    rng = np.random.default_rng([313, seed])
+    azimuth = np.cumsum(rng.uniform(-1.5, 3.0, 5)) if seed % 2 else rng.uniform(-np.pi, np.pi, 5)
+    q = np.column_stack((azimuth, rng.uniform(0.8, 1.4, 5), rng.uniform(-0.5, 0.5, 5)))
+    none, durations = [np.inf] * 3, []
+    for low, high in ((-np.pi, np.pi), (-1.25 * np.pi, 1.1 * np.pi), (-1.5 * np.pi, 2.0 * np.pi)):
+        limits = JointLimits((low, -4.0, -4.0), (high, 4.0, 4.0), max_jerk=none, max_effort=none)
+        durations.append(plan(ARM, limits, through(planner_id, q)).trajectory.duration)
+    assert (np.diff(durations) <= 1e-5 * np.array(durations[:2])).all()
+
+
+@pytest.mark.parametrize('planner_id', [*ROOTS, 'cycloid_approach_b', 'time_optimal'])
+def test_turns_are_chosen_for_how_the_planner_passes_via_points(planner_id):
+    # In the wider range joint 1 can go on by 5.2 rad instead of back and forth, which saves those
+    # nothing that stop at the point between anyway.
+    request = PlanningRequest([(0.20252085, 0.84631354, 0.80479441),
+                               (0.33101498, -0.79621133, 0.80213610),
+                               (0.51592836, 0.09880974, 1.10039866)], planner_id=planner_id)
+    narrow, wide = (plan(ARM, JointLimits((low, 0.0, -np.pi), (high, np.pi, 6.0)), request)
+                    for low, high in ((-1.5, 2.0), (-2.0 * np.pi, 2.0 * np.pi)))
+    assert wide.trajectory.duration <= narrow.trajectory.duration * (1.0 + 1e-9)
