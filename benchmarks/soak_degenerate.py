@@ -43,10 +43,11 @@ ROOM = 1e-6              # relative, the promise of every planner
 POINTS_ROOM = 1e-3       # relative, of the quintics through the points
 ANGLE_ROOM = 1e-9        # rad
 PLACE_ROOM = 1e-8        # m, and rad/s of what rests
-OVERSHOOT = 1e-4         # rad that a quintic may leave a range by
+OVERSHOOT = 1e-6         # rad that a quintic may leave a range by
 NANOSECOND = 1e-9        # s
 NO_TORQUE = 1e-6         # N m
-LEAST_GAP = 0.1          # of the period, between points
+LEAST_GAP = 0.1          # of the period, between points, but where a joint is
+NEAR_END = 0.01          # rad from the end of its range
 
 
 def violations(task: Task, found: Plan) -> list[str]:
@@ -62,8 +63,11 @@ def violations(task: Task, found: Plan) -> list[str]:
     effort = np.abs(inverse_dynamics(task.model, *followed[:3])).max(axis=0)
     if not (effort <= found.effort * (1.0 + POINTS_ROOM) + NO_TORQUE).all():
         broken.append(f'torque at the points: {effort}, told {found.effort}')
-    gap = np.diff(found.points.times)[np.abs(
-        found.points.times[:, np.newaxis] - found.via_times).min(axis=1)[1:] > 2.0 * NANOSECOND]
+    q = found.points.positions
+    inside = np.minimum(q - limits.min_position, limits.max_position - q).min(axis=1)
+    free = np.abs(found.points.times[:, np.newaxis] - found.via_times).min(axis=1) > (
+        2.0 * NANOSECOND)
+    gap = np.diff(found.points.times)[free[1:] & (inside[1:] > NEAR_END)]
     if task.request.segment_durations is None and gap.min(initial=np.inf) < (
             LEAST_GAP * task.request.sample_period - 3.0 * NANOSECOND):
         broken.append(f'points {gap.min():.3g} s apart')

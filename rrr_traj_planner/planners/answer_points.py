@@ -17,7 +17,9 @@ The points of an answer: close enough for a controller's quintics through them t
 
 Where those of the asked period do not, further points are put between, not closer than a tenth of
 it; where that is not enough, the motion is slowed. Where it cannot be slowed, since its durations
-are given or since it hurries past a pose that the motors cannot hold, points are closer still.
+are given or since it hurries past a pose that the motors cannot hold, points are closer still. So
+they are where a joint would leave its range, as where it turns back or comes to rest at the end of
+it: the quintics swing beyond the motion there by the cube of the time between points.
 Further points also bring down jerk; no motion is slowed for that, but what is left of it is told.
 """
 
@@ -46,7 +48,7 @@ from rrr_traj_planner.planners.request import PlanningRequest
 
 ROUNDS = 40              # of slowing
 MOST_STRETCH = 1.5       # in one of them
-CLOSEST = 1e-4           # s between points of a motion that cannot be slowed
+CLOSEST = 1e-4           # s between points of a motion that cannot be slowed, or leaves a range
 
 # Beyond these a plan's note tells of it:
 TOLD_JERK = 1.1       # the quintics' jerk, of its limit
@@ -82,7 +84,8 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
     Returns
     -------
     AnswerPoints
-        Velocity, acceleration and torque of the quintics are within their limits to 0.1 %.
+        Velocity, acceleration and torque of the quintics are within their limits to 0.1 %,
+        positions within their ranges to 1e-6 rad.
 
     Raises
     ------
@@ -98,7 +101,7 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
     closest = min(gap, CLOSEST)
     for _ in range(ROUNDS):
         spline, excess = _best_refined(model, limits, request, trajectory, gap)
-        factor = float(excess.stretch.max(initial=1.0))
+        factor = excess.slowing
         if factor <= 1.0:
             return AnswerPoints(trajectory, spline.points, excess.effort, stretch, _note(
                 model, limits, request.sample_period, excess.jerk.max(axis=0), stretch))
@@ -130,9 +133,9 @@ def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningReque
     motions have steps leave room for that (`PathTable.overshoot`).
     """
     found = _refined(model, limits, request, trajectory, gap, False)
-    if len(trajectory.step_times) and (found[1].stretch > 1.0).any():
+    if len(trajectory.step_times) and found[1].slowing > 1.0:
         other = _refined(model, limits, request, trajectory, gap, True)
-        found = min(found, other, key=lambda f: float(f[1].stretch.max()))
+        found = min(found, other, key=lambda f: f[1].slowing)
     return found
 
 
@@ -157,17 +160,20 @@ def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, step
     """Return times at which intervals that exceed limits may be cut, none nearer than a gap."""
     begin, width = times.stamps[:-1] * NANOSECOND, np.diff(times.stamps) * NANOSECOND
     cut = begin + 0.5 * width
+    outside = excess.outside > 0.0
     jerky = np.asarray((excess.jerk > TOLD_JERK * limits.max_jerk).any(axis=1))
     if len(steps):
         index = np.searchsorted(begin, steps, side='right') - 1
         share = (steps - begin[index]) / width[index]
-        after = (excess.place[index] > share) | overshoot_before
+        after = np.where(outside[index], share < 0.5,  # what is left is shorter in any case
+                         (excess.place[index] > share) | overshoot_before)
         # Never at the step: so that it is STEP_SHARE from the end on the side that is short.
         beside = STEP_SHARE / (1.0 - STEP_SHARE) * width[index]
         cut[index] = np.where(after, steps + beside * share, steps - beside * (1.0 - share))
         jerky[index] = False  # in less time the step would be steeper
-    far = np.minimum(cut - begin, begin + width - cut) >= gap - NANOSECOND
-    return cut[far & (jerky | (excess.stretch > 1.0) | (excess.outside > 0.0))]
+    least = np.where(outside, min(gap, CLOSEST), gap) - NANOSECOND
+    far = np.minimum(cut - begin, begin + width - cut) >= least
+    return cut[far & (jerky | (excess.stretch > 1.0) | outside)]
 
 
 def _note(model: RobotModel, limits: JointLimits, period: float, jerk: Array,

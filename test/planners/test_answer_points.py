@@ -24,8 +24,9 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.registry import planner_ids
+from rrr_traj_planner.planners.registry import planner, planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
 
 ARM, LIMITS = RobotModel(), JointLimits()
@@ -33,16 +34,19 @@ TORQUE = replace(LIMITS, max_acceleration=np.full(3, np.inf), max_jerk=np.full(3
 TABLE_6_1 = [POINTS[f'6.1 point {k}'][0] for k in (1, 2, 3)]
 CORNER = [(1.2308, 0.0, 1.3749), (0.2161, 1.1514, 0.8252), (1.1438, 0.0, 0.9368)]
 COARSE = [0.1, 0.5, 1.0]
+TOUCHING = [5, 9, 12, 14, 37]
 WITHOUT_ACCELERATION_LIMITS = ['line_arc', 'line_polynomial', 'time_optimal']
 ROOM = 1.0 + 1e-3  # what the quintics may be beyond a limit
+OVERSHOOT = 1e-6   # rad, beyond the end of a range
+STRONG = np.full(3, 400.0)  # N m, enough to hold the arm anywhere
 NANOSECOND = 1e-9
 PER_INTERVAL = 12
 
 
-def controller_motion(points):
+def controller_motion(points, per_interval=PER_INTERVAL):
     """Return q, qd, qdd that joint_trajectory_controller follows, from the six conditions."""
     h = np.diff(points.times)
-    x = np.linspace(0.0, 1.0, PER_INTERVAL)
+    x = np.linspace(0.0, 1.0, per_interval)
 
     def rows(at, derivative):
         k = np.arange(6)
@@ -170,3 +174,50 @@ def test_no_interval_begins_or_ends_at_a_step_of_acceleration():
         assert (share > 0.15).all() and (share < 0.85).all()
         assert (np.diff(times)[index] > 0.3 * period).all()
         assert np.diff(times).max() <= 1.1 * period
+
+
+def outside(points, limits):
+    """Return how far a controller leaves the ranges between points [rad]."""
+    q = controller_motion(points, 200)[0]
+    return np.maximum(limits.min_position - q, q - limits.max_position).max()
+
+
+def in_ranges_that_the_motion_touches(seed, planner_id, period):
+    """Return ranges that end where the joints of a motion turn back, and the two motions."""
+    rng = np.random.default_rng(seed)
+    q = rng.uniform([0.2, 0.7, -0.3], [1.5, 1.6, 0.7], (int(rng.integers(3, 6)), 3))
+    wide = JointLimits(
+        min_position=[-3.0, -1.0, -3.0], max_position=[3.0, 4.0, 3.0], max_effort=STRONG,
+        max_velocity=rng.choice([0.3, 1.0, 3.0], 3), max_jerk=rng.choice([2.0, 10.0, 100.0], 3),
+        max_acceleration=rng.choice([0.3, 1.0, 5.0], 3))
+    request = asked(forward_kinematics(ARM, q), planner_id=planner_id, elbow='up',
+                    sample_period=period, max_deviation=0.02)
+    free = plan(ARM, wide, request)
+    limits = replace(wide, min_position=free.peaks.min_position - 1e-9,
+                     max_position=free.peaks.max_position + 1e-9)
+    return limits, free, plan(ARM, limits, request)
+
+
+@pytest.mark.parametrize('seed', TOUCHING)
+@pytest.mark.parametrize('planner_id', [
+    p for p in planner_ids() if not planner(p).misses_via_points or p == 'cycloid_approach_a'])
+def test_a_controller_stays_in_ranges_that_the_motion_touches(planner_id, seed):
+    limits, free, touching = in_ranges_that_the_motion_touches(seed, planner_id, 2.0)
+    assert outside(touching.points, limits) <= OVERSHOOT
+    if planner_id.startswith('line'):  # the path is the same: closer points do, all but alone
+        assert touching.trajectory.duration <= 1.1 * free.trajectory.duration
+
+
+@pytest.mark.parametrize('end', ['min_position', 'max_position'])
+@pytest.mark.parametrize('planner_id', [
+    'cycloid', 'cycloid_approach_b', 'cycloid_approach_c', 'poly_414', 'poly_434'])
+def test_a_controller_stays_in_ranges_at_whose_ends_joints_come_to_rest(planner_id, end):
+    limits = JointLimits(min_position=[0.2, 0.7, -0.4], max_position=[1.5, 1.7, 0.8],
+                         max_effort=STRONG, max_velocity=np.full(3, 0.3))
+    at, sign = getattr(limits, end), 1.0 if end == 'min_position' else -1.0
+    ways = np.array([[0.5, 0.4, 0.3], [0.0, 0.2, 0.0], [0.0, 0.0, 0.4], [0.3, 0.0, 0.2]])
+    tips = forward_kinematics(ARM, at + sign * ways)
+    for period in (0.3, 1.0, 2.0):
+        answer = plan(ARM, limits, asked(
+            tips, planner_id=planner_id, elbow='up', sample_period=period))
+        assert outside(answer.points, limits) <= OVERSHOOT

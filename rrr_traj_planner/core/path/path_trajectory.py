@@ -39,7 +39,12 @@ from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory.torque import maximum_over_time
-from rrr_traj_planner.core.trajectory.trajectory import Peaks, times_within, Trajectory
+from rrr_traj_planner.core.trajectory.trajectory import (
+    ending_exactly,
+    Peaks,
+    times_within,
+    Trajectory,
+)
 
 STEPS_PER_PIECE = 24   # of the path, at which whole turns of the joints are remembered
 STEPS_PER_KNOT = 6     # of the time between knots, at which extremes are looked for
@@ -137,9 +142,10 @@ class PathTrajectory(Trajectory):
     def __init__(self, arm_path: ArmPath, progress: JointProfile, via_times: Array,
                  join_times: Array, note: str = '') -> None:
         self.arm_path, self.progress, self.note = arm_path, progress, note
-        self.via_times, self.join_times = via_times, _at_knots(progress, join_times)
-        make_read_only((self.via_times, self.join_times))
         self.duration = progress.duration
+        self.via_times = ending_exactly(via_times, self.duration)
+        self.join_times = _at_knots(progress, join_times)
+        make_read_only((self.via_times, self.join_times))
 
     def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:
         """Return position, velocity, acceleration and jerk; see `Trajectory`."""

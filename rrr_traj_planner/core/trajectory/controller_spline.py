@@ -33,9 +33,9 @@ from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.core.trajectory.torque import squared_stretch
 
-# Limits are kept to this part, 0.1 % less what the finest look may miss.
+# Limits are kept to this part, 0.1 %, less what the finest look may miss.
 SPLINE_TOLERANCE = 8e-4
-RANGE_TOLERANCE = 1e-6  # rad beyond the end of a range
+RANGE_TOLERANCE = 8e-7   # rad beyond the end of a range, of 1e-6, likewise
 
 # Every interval is looked at in so many steps. Between them a smooth quantity rises by an eighth
 # of its second difference; where twice that could be too much, the steps are finer.
@@ -51,6 +51,17 @@ class SplineExcess(NamedTuple):
     place: Array    # where it exceeds most, as a share of the interval, (n - 1,)
     effort: Array   # largest torque of all [N m], (3,)
     jerk: Array     # largest jerk of each interval [rad/s^3], exactly, (n - 1, 3)
+
+    @property
+    def slowing(self) -> float:
+        """
+        Return by what factor the motion as a whole would have to be slowed, at least 1.
+
+        Where jerk steps, quintics through points h apart differ from the motion by O(h^3): the
+        same points of a slower motion leave a range by the cube of the factor less.
+        """
+        outside = float(self.outside.max(initial=0.0))
+        return max(float(self.stretch.max(initial=1.0)), float(np.cbrt(outside / RANGE_TOLERANCE)))
 
 
 def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
@@ -120,9 +131,18 @@ def _looked_at(model: RobotModel, limits: JointLimits, spline: Interpolant,
     peaks = ratios + _between(ratios)
     factors = np.where(ratios > 1.0 + SPLINE_TOLERANCE, factors, np.where(
         peaks > 1.0 + SPLINE_TOLERANCE, np.sqrt(peaks), 1.0)).max(axis=(0, 3))
+    q = _turning(q, qd, qdd, np.diff(spline.points.times)[index] / FINE_STEPS)
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max(axis=(0, 2))
     return (factors.max(axis=0), np.where(outside > RANGE_TOLERANCE, outside, 0.0),
             shares[factors.argmax(axis=0)], np.abs(tau).max(axis=(0, 1)))
+
+
+def _turning(q: Array, qd: Array, qdd: Array, step: Array) -> Array:
+    """Return positions, where a joint turns back within half a step those at the turn."""
+    with np.errstate(divide='ignore', invalid='ignore'):
+        dt = -qd / qdd
+    dt[~(np.abs(dt) <= 0.5 * step[:, np.newaxis])] = 0.0
+    return np.asarray(q + dt * (qd + 0.5 * qdd * dt))
 
 
 def _between(values: Array) -> Array:

@@ -27,7 +27,7 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory.pieces import Pieces
-from rrr_traj_planner.core.trajectory.trajectory import Peaks, Trajectory
+from rrr_traj_planner.core.trajectory.trajectory import ending_exactly, Peaks, Trajectory
 
 # Newton steps towards a zero of velocity, halvings of its bracket where they leave it. An error e
 # of the place in [0, 1] changes the position there by the order of e squared.
@@ -203,8 +203,9 @@ class PiecewiseTrajectory(Trajectory):
     def __init__(self, profiles: Sequence[JointProfile], via_times: ArrayLike,
                  note: str = '') -> None:
         self.profiles, self.note = tuple(profiles), note
-        self.via_times = finite_array('via_times', via_times, (-1,))
         self.duration = self.profiles[0].duration
+        self.via_times = ending_exactly(
+            finite_array('via_times', via_times, (-1,)), self.duration)
         lengths = np.array([p.duration for p in self.profiles])
         if np.ptp(lengths) > 1e-9 * max(1.0, self.duration):
             raise InvalidInputError(f'joints move for {lengths} s, must be in step')

@@ -24,6 +24,8 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
+ROUNDING = 1e-12  # of a motion's duration, by which sums of its parts may differ from it
+
 
 @dataclass(frozen=True, eq=False)
 class Peaks(ReadOnlyArrays):
@@ -45,7 +47,7 @@ class Trajectory(ReadOnlyArrays, ABC):
     duration : float
         [s].
     via_times : ndarray
-        When each via point is passed [s], never decreasing.
+        When each via point is passed [s], never decreasing; at the end the duration exactly.
     note : str
         What there is to be said of how the motion was made; mostly empty.
 
@@ -102,6 +104,28 @@ class Trajectory(ReadOnlyArrays, ABC):
             With velocities divided by the factor, accelerations by its square.
 
         """
+
+
+def ending_exactly(times: Array, duration: float) -> Array:
+    """
+    Return times of which those at the end of a motion are its duration exactly.
+
+    Parameters
+    ----------
+    times : ndarray, shape (n,)
+        [s].
+    duration : float
+        Of the motion [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Read-only; rounding is more than a nanosecond in a motion of a week.
+
+    """
+    found = np.where(np.abs(times - duration) <= ROUNDING * duration, duration, times)
+    found.setflags(write=False)
+    return found
 
 
 def times_within(trajectory: Trajectory, per_interval: int, spacing: float = np.inf,

@@ -26,6 +26,7 @@ from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
 from rrr_traj_planner.core.path.design import line_arc, line_polynomial
 from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
+from rrr_traj_planner.core.trajectory.sampling import sample
 
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))
 SEEDS = range(16)
@@ -185,3 +186,13 @@ def test_note_is_all_that_noting_changes():
     for ours, theirs in zip(noted(t), motion(t)):
         assert ours.tolist() == theirs.tolist()
     assert noted.stretched(2.0).note == 'as asked'
+
+
+@pytest.mark.parametrize('seed', SEEDS[::4])
+def test_the_last_via_point_is_passed_at_the_end_exactly_however_long_the_motion(seed):
+    # In 10^6 s, sums of pieces round by a nanosecond or so, by which two stamps would differ.
+    for factor in np.random.default_rng(seed).uniform(1e5, 1e7, 20):
+        slower = random_motion(seed).stretched(factor)
+        assert slower.via_times[-1] == slower.duration
+        points = sample(slower, slower.duration / 7.0)
+        assert np.diff(points.times).min() > 1e-3 * slower.duration / 7.0

@@ -21,7 +21,10 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.trajectory.controller_spline import spline_excess
+from rrr_traj_planner.core.trajectory.controller_spline import (
+    RANGE_TOLERANCE,
+    spline_excess,
+)
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
 
 ARM = RobotModel()
@@ -106,6 +109,37 @@ def test_what_leaves_a_range_is_told():
                           Interpolant(TrajectoryPoints([0.0, 0.5], zero, v, zero)))
     assert found.outside == pytest.approx([beyond], rel=1e-2)
     assert found.stretch.tolist() == [1.0]  # no slower motion would stay within
+
+
+@pytest.mark.parametrize('side', [1.0, -1.0])
+def test_how_far_a_joint_turns_back_outside_its_range_is_told_to_a_nanorad(side):
+    # A parabola of 5 rad/s^2 is its own quintic; its top may be between all samples.
+    a, T = -5.0 * side, 2.0
+    for top in np.random.default_rng(5).uniform(0.3, 1.7, 20):
+        t = np.array([0.0, T]) - top
+        states = [np.outer(x, [0.0, 1.0, 0.0]) for x in (0.5 * a * t * t, a * t, [a, a])]
+        beyond = 3e-6
+        limits = replace(WIDE, max_position=[1.0, -beyond if side > 0.0 else 99.0, 1.0],
+                         min_position=[-1.0, beyond if side < 0.0 else -99.0, -1.0])
+        found = spline_excess(ARM, limits, Interpolant(TrajectoryPoints([0.0, T], *states)))
+        assert found.outside == pytest.approx([beyond], abs=1e-9)
+        assert found.stretch.tolist() == [1.0]
+
+
+def test_a_range_is_left_by_the_cube_of_the_time_between_points():
+    # From rest at 0 a jerk j, then -j: at half the way the quintic through both ends differs.
+    def excess(T):
+        j, h = 10.0, 0.5 * T
+        end = [j * h ** 3, j * h ** 2, 0.0]
+        states = [np.array([[0.0] * 3, [x, 0.0, 0.0]]) for x in end]
+        q = Interpolant(TrajectoryPoints([0.0, T], *states))(h)[0][0]
+        return abs(q - j * h ** 3 / 6.0)
+
+    assert excess(0.2) == pytest.approx(8.0 * excess(0.1), rel=1e-9)
+    none = spline_excess(ARM, WIDE, there())
+    outside = 64.0 * RANGE_TOLERANCE * np.array([0.0, 1.0, 0.5])
+    assert none._replace(outside=outside).slowing == pytest.approx(4.0, rel=1e-12)
+    assert none.slowing == 1.0
 
 
 def test_peak_jerk_is_exact():
