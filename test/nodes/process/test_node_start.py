@@ -96,7 +96,7 @@ def test_arm_of_other_names_starts_with_its_own_limits(tmp_path):
     file.write_text(yaml.safe_dump({'/**': {'ros__parameters': {
         **own_limits('turn', 'lift', 'bend'), 'joint_limits.lift.max_effort': 123.0}}}))
     with Script(script('simulated_arm'), *arguments(file)) as arm:
-        line, = arm.read_errors_until('ready')
+        *_, line = arm.read_errors_until('ready')
     assert '; lift 0 to 3.142 rad, 1 rad/s, 1 rad/s^2, 10 rad/s^3, 123 N m; bend ' in line
 
 
