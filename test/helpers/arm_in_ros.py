@@ -32,6 +32,7 @@ NAMES = ['joint_1', 'joint_2', 'joint_3']
 START = np.array(rows_of(ARM, NAMES)['initial_positions'].default)
 GOAL = START + (0.05, -0.04, 0.06)
 SECOND = 10 ** 9
+ALL = 1000  # messages that a listener keeps: of a burst on a busy machine none is lost
 
 
 class Arm:
@@ -41,8 +42,8 @@ class Arm:
         self.ros = ros
         self.node = SimulatedArm(context=ros.context, parameter_overrides=[
             Parameter(name, value=value) for name, value in overrides.items()])
-        self.actual = ros.listen(JointState, 'joint_states')
-        self.desired = ros.listen(JointState, 'desired_joint_states')
+        self.actual = ros.listen(JointState, 'joint_states', ALL)
+        self.desired = ros.listen(JointState, 'desired_joint_states', ALL)
         ros.add(self.node)
         self._publisher = ros.publisher(JointTrajectory, 'joint_trajectory')
 

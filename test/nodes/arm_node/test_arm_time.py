@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from builtin_interfaces.msg import Time
-from helpers.arm_in_ros import Arm, at, GOAL, rest_to_rest, SECOND, stamp
+from helpers.arm_in_ros import ALL, Arm, at, GOAL, rest_to_rest, SECOND, stamp
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Log
@@ -37,7 +37,7 @@ def pause(ros, data):
 
 def test_arm_is_the_clock_at_its_factor(ros):
     arm = Arm(ros, publish_clock=True, real_time_factor=4.0)
-    clock = ros.listen(Clock, '/clock')
+    clock = ros.listen(Clock, '/clock', ALL)
     first, begun = clock_time(clock.wait_for()), ros.node.get_clock().now().nanoseconds
     last = clock_time(clock.wait_for(lambda m: clock_time(m) >= first + 4 * SECOND))
     wall = ros.node.get_clock().now().nanoseconds - begun
@@ -47,7 +47,7 @@ def test_arm_is_the_clock_at_its_factor(ros):
         between = np.diff(times)
         assert (between > 0).all()
         assert (between % (5 * STEP) == 0).all()
-        assert between.min() == 5 * STEP  # older ones of a burst are lost, beyond ten
+        assert np.median(between) == 5 * STEP  # some may be lost while both sides meet
 
 
 def test_arm_runs_as_fast_as_it_can_and_answers_meanwhile(ros):
@@ -79,7 +79,7 @@ def test_any_rate_keeps_an_outside_clock_s_time(ros, rate, spread):
     ros.node.create_timer(0.005, advance)
     arm.actual.wait_for(lambda m: stamp(m) > 103 * SECOND - SECOND // 10)
     gaps = np.diff([stamp(m) for m in arm.actual.messages[1:]])
-    whole = gaps[gaps < 1.5 * SECOND / rate]  # else states between were lost, of a burst
+    whole = gaps[gaps < 1.5 * SECOND / rate]  # an arm that is late tells only of the last states
     assert whole.size
     assert np.abs(whole - SECOND / rate).max() <= spread + 1
 
@@ -89,16 +89,17 @@ def test_seldom_published_states_are_on_time(ros):
     first = stamp(arm.actual.wait_for())
     arm.actual.wait_for(lambda m: stamp(m) >= first + SECOND // 2)
     gaps = np.diff([stamp(m) for m in arm.actual.messages])
-    assert gaps.tolist() == [SECOND // 5] * 3
+    assert gaps.size >= 3
+    assert (gaps == SECOND // 5).all()
 
 
 def test_clock_is_published_often_however_seldom_states_are(ros):
-    clock = ros.listen(Clock, '/clock')
+    clock = ros.listen(Clock, '/clock', ALL)
     Arm(ros, publish_clock=True, publish_rate=1.0, real_time_factor=4.0)
     clock.wait_for(lambda m: clock_time(m) >= SECOND)
     gaps = np.diff([clock_time(m) for m in clock.messages])
     assert (gaps % (SECOND // 100) == 0).all()
-    assert gaps.min() == SECOND // 100  # the older ones of a burst are lost
+    assert np.median(gaps) == SECOND // 100
 
 
 def test_rate_that_no_step_can_keep_is_told(ros):
