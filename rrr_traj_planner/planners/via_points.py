@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 import numpy as np
+from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
@@ -103,7 +104,8 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
     Raises
     ------
     StartStateError
-        If a joint is out of its range or cannot be held there.
+        If a joint is out of its range or cannot be held there; it asks whether positions are in
+        degrees, where those explain one.
 
     """
     low, high = limits.min_position, limits.max_position
@@ -112,8 +114,9 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
         at, lowest, highest, *_ = told_apart(
             start[j], low[j], high[j], low[j] - room, high[j] + room)
         allowed = f', start_state_tolerance {room:g} rad' if room > RANGE_TOLERANCE else ''
+        hint = HINT if any(map(explained_by_degrees, start, low, high)) else ''
         raise StartStateError(f'start state: {model.joint_names[j]} is at {at} rad, limits '
-                              f'{lowest} to {highest} rad{allowed}')
+                              f'{lowest} to {highest} rad{allowed}{hint}')
     start = np.clip(start, low, high)
     failure = holding_failure(model, limits, start[np.newaxis])
     if failure is not None:

@@ -15,6 +15,7 @@
 """Motions that begin where the arm is: its posture, its turns, and noise at the ends of ranges."""
 
 from dataclasses import replace
+import re
 
 import numpy as np
 import pytest
@@ -183,3 +184,17 @@ def test_a_start_outside_its_range_by_no_more_than_the_tolerance_is_on_its_end()
     with pytest.raises(StartStateError, match=(
             r'^start state: joint_1 is at 1\.570797 rad, limits 0 to 1\.570796 rad$')):
         planned(LIMITS, goal, start=[np.pi / 2 + 1e-6, 1.5, 0.0])
+
+
+@pytest.mark.parametrize(('start', 'told'), [
+    ((34.0, 57.0, 17.0), 'joint_1 is at 34 rad, limits 0 to 1.5708 rad (in degrees?)'),
+    ((1.0, 90.0, 0.0), 'joint_2 is at 90 rad, limits 0 to 3.14159 rad (in degrees?)'),
+    ((0.5, 1.0, -170.0), 'joint_3 is at -170 rad, limits -3.14159 to 6.28319 rad (in degrees?)'),
+    ((2.0, 57.0, 1.0), 'joint_1 is at 2 rad, limits 0 to 1.5708 rad (in degrees?)'),
+    ((-34.0, 1.0, 0.2), 'joint_1 is at -34 rad, limits 0 to 1.5708 rad'),   # nor as degrees
+    ((1.0, 6.0, 0.2), 'joint_2 is at 6 rad, limits 0 to 3.14159 rad'),      # a turn too far
+    ((1.0, 1.0, 400.0), 'joint_3 is at 400 rad, limits -3.14159 to 6.28319 rad')])
+def test_a_start_that_degrees_explain_is_asked_about(start, told):
+    for planner_id in ('cycloid', 'line_arc'):
+        with pytest.raises(StartStateError, match=f'^start state: {re.escape(told)}$'):
+            planned(LIMITS, [tip(0.5, 1.4, 0.1)], planner_id=planner_id, start=start)

@@ -29,6 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion, through
@@ -38,10 +39,6 @@ from rrr_traj_planner.core.trajectory.trajectory_points import led_in, MotionPoi
 # more than this part of it, is not worth a word: positions are rounded to four digits, and the
 # quintics through samples of a motion at its limit exceed it by up to 0.1 %.
 POSITION_TOLERANCE, LIMIT_TOLERANCE = 1e-4, 2e-3
-
-# Numbers that miss their bounds by less than this many times the width between them are not taken
-# for degrees.
-NEAR = 1.0
 
 # Extremes are found to this part of the bound that they exceed.
 ACCURACY = 1e-6
@@ -80,7 +77,7 @@ class Excess(NamedTuple):
                  if self.quantity == 'position' else
                  f'reaches {abs(self.value):.6g} {unit}, limit {self.high:.6g} {unit}')
         return (f'{joint_names[self.joint]} {bound}'
-                + (' (in degrees?)' if self.in_degrees else ''))
+                + (HINT if self.in_degrees else ''))
 
 
 def excesses(points: MotionPoints, limits: JointLimits, time: float = np.inf,
@@ -124,7 +121,7 @@ def excesses(points: MotionPoints, limits: JointLimits, time: float = np.inf,
             value = _furthest(form[:, j], *_with_room(quantity, *bounds))
             if value is not None and not any(e.joint == j and e.in_degrees for e in found):
                 found.append(Excess(j, quantity, value, *bounds,
-                                    _explained_by_degrees(numbers[:, j], *bounds)))
+                                    explained_by_degrees(numbers[:, j], *bounds)))
     return found
 
 
@@ -172,10 +169,3 @@ def _halved(form: Array) -> Array:
         left.append(form[:, 0])
         right.append(form[:, -1])
     return np.concatenate((np.stack(left, axis=1), np.stack(right[::-1], axis=1)))
-
-
-def _explained_by_degrees(sent: Array, low: float, high: float) -> bool:
-    """Return whether numbers are far from bounds as they are, and all within them as degrees."""
-    far, as_degrees = NEAR * (high - low), np.radians(sent)
-    return bool(((sent < low - far) | (sent > high + far)).any()
-                and ((as_degrees >= low) & (as_degrees <= high)).all())

@@ -22,6 +22,7 @@ from math import inf
 from typing import Any
 
 import numpy as np
+from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.urdf import FrameNames
@@ -222,7 +223,8 @@ def _initial_positions(values: Values, limits: JointLimits) -> Array:
     for i, (x, low, high) in enumerate(zip(q, limits.min_position, limits.max_position)):
         if not low <= x <= high:
             at, least, most = told_apart(x, low, high)
+            hint = HINT if explained_by_degrees(x, low, high) else ''
             raise InvalidInputError(
                 f'initial_positions[{i}] is {at} rad, must be in [{least}, {most}] rad, the '
-                f"limits of {values['joint_names'][i]}")
+                f"limits of {values['joint_names'][i]}{hint}")
     return q

@@ -155,6 +155,9 @@ def test_wrong_values_are_named_with_their_range(name, value, text):
     ({'joint_limits.joint_2.min_position': 4.0},
      'joint_limits.joint_2.min_position is 4 rad, must be below '
      'joint_limits.joint_2.max_position, 3.14159 rad'),
+    ({'initial_positions': [34.0, 57.0, 17.0]},
+     'initial_positions[0] is 34 rad, must be in [0, 1.5708] rad, the limits of joint_1 '
+     '(in degrees?)'),
     ({'initial_positions': [0.5, 4.0, 0.0]},
      'initial_positions[1] is 4 rad, must be in [0, 3.14159] rad, the limits of joint_2'),
     ({'controller.natural_frequency': 200.0, 'controller.damping_ratio': 5.0},
