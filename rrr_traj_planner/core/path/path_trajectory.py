@@ -172,11 +172,13 @@ class PathTrajectory(Trajectory):
         """Return the ends of the pieces of progress; see `Trajectory`."""
         return self.progress.knots
 
-    @property
+    @cached_property
     def step_times(self) -> Array:
         """When joins are passed at which curvature steps [s]; see `Trajectory`."""
         stepping = self.acceleration_steps().max(axis=1, initial=0.0) > LEAST_STEP
-        return np.asarray(self.join_times[stepping])
+        found = np.asarray(self.join_times[stepping])
+        make_read_only((found,))
+        return found
 
     def peaks(self) -> Peaks:
         """Return the extremes over the continuous motion, both sides of what steps included."""
