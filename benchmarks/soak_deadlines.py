@@ -40,7 +40,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / 'test'))
 from helpers.plan_requests import plan_request  # noqa: E402, I100
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig  # noqa: E402
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of  # noqa: E402
-from rrr_traj_planner.nodes.planner_node.node import _answer, turns  # noqa: E402
+from rrr_traj_planner.nodes.planner_node import scheduler  # noqa: E402
+from rrr_traj_planner.nodes.planner_node.node import _answer  # noqa: E402
 from rrr_traj_planner.planners.registry import planner_ids  # noqa: E402
 from rrr_traj_planner_interfaces.srv import PlanTrajectory  # noqa: E402
 
@@ -120,11 +121,11 @@ def ask(planner: str, shape: str, n: int, limit: float, clock) -> tuple[float, s
     pid = os.fork()
     if not pid:
         faulthandler.dump_traceback_later(PATIENCE * (limit + GIVE_UP), exit=True)
-        turns.perf_counter = clock
+        scheduler.perf_counter = clock
         request = plan_request(SHAPES[shape](n), planner_id=planner)
         started, cpu = clock(), process_time()
-        with turns.Turns().turn() as turn:
-            response = _answer(request, config(limit), lambda: False, turn).response
+        with scheduler.Scheduler().job() as job:
+            response = _answer(request, config(limit), lambda: False, job).response
         seconds, cpu = clock() - started, process_time() - cpu
         end = response.via_times[-1] if response.via_times else 0.0
         os.write(write, f'{seconds} {CODES[response.error_code]}, {cpu:.2f} s of processor, '

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node `trajectory_planner`: plans on request, short requests before long ones."""
+"""The node `trajectory_planner`: serves plan requests, short ones before long ones."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ from rrr_traj_planner.nodes.output.marker_messages import no_plan_markers, plan_
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.table import PLANNER
-from rrr_traj_planner.nodes.planner_node.background import Background
 from rrr_traj_planner.nodes.planner_node.planning_answer import failure, refusal, success, tip_path
 from rrr_traj_planner.nodes.planner_node.planning_request import planning_request
 from rrr_traj_planner.nodes.planner_node.request_statistics import RequestStatistics
-from rrr_traj_planner.nodes.planner_node.turns import Turn
+from rrr_traj_planner.nodes.planner_node.scheduler import Job
+from rrr_traj_planner.nodes.planner_node.worker_pool import WorkerPool
 from rrr_traj_planner.nodes.process.node_start import NodeStart
 from rrr_traj_planner.nodes.process.service_node import ServiceNode
 from rrr_traj_planner.planners.deadline import Deadline
@@ -53,34 +53,34 @@ from visualization_msgs.msg import MarkerArray
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
-# So many requests may wait; of more the oldest are lost, and their clients wait in vain.
-WAITING = QoSProfile(depth=1000)
+# Queue of waiting requests; when it is full DDS drops the oldest, which then get no answer.
+REQUEST_QUEUE = QoSProfile(depth=1000)
 
-TIME_OF_POINT = 4e-4  # s, that planning takes at the least for each of many via points
+TIME_PER_VIA_POINT = 4e-4  # s, lower bound of the planning time where there are many via points
 
 
 class _Answer(NamedTuple):
-    """What a request comes to."""
+    """The response to a request, and what else came of it."""
 
     response: PlanTrajectory.Response
-    plan: Plan | None = None  # where there is one
+    plan: Plan | None = None  # of a success
     trace: str = ''           # of a bug, for the log
 
 
-class _Unseen(NamedTuple):
-    """A plan that has been answered, and is to be published."""
+class _Unpublished(NamedTuple):
+    """A plan that has been sent to its client and is still to be published on the topics."""
 
     trajectory: JointTrajectory
     plan: Plan
     config: PlannerConfig
-    stamp: Time  # when it was asked
+    stamp: Time  # of the request
 
 
 class TrajectoryPlanner(ServiceNode):
     """
-    Serves `plan_trajectory`; threads plan in turns, so that the node answers all else meanwhile.
+    Serves `plan_trajectory`; plans in worker threads, so that its other services stay responsive.
 
-    A plan is answered first and published then.
+    A plan is sent to its client first and published on the topics afterwards.
 
     Parameters
     ----------
@@ -105,15 +105,15 @@ class TrajectoryPlanner(ServiceNode):
         self._markers = self.create_publisher(MarkerArray, 'markers', LATCHED)
         self._markers.publish(no_plan_markers(self._parameters_declared.config.base_frame))
         self._statistics = RequestStatistics()
-        self._begun: list[float] = []  # when what is planned was taken up
+        self._in_progress: list[float] = []  # start times of the requests being planned
         self._diagnostics = self.create_publisher(DiagnosticArray, 'diagnostics', 10)
-        self._threads = Background(self, 'planning')
-        self.create_service(PlanTrajectory, 'plan_trajectory', self._plan, qos_profile=WAITING,
-                            callback_group=ReentrantCallbackGroup())
-        self._unseen: deque[_Unseen] = deque()
+        self._pool = WorkerPool(self, 'planning')
+        self.create_service(PlanTrajectory, 'plan_trajectory', self._plan,
+                            qos_profile=REQUEST_QUEUE, callback_group=ReentrantCallbackGroup())
+        self._unpublished: deque[_Unpublished] = deque()
         self._answered = self.create_guard_condition(
-            self._show, callback_group=MutuallyExclusiveCallbackGroup())
-        self.create_timer(PERIOD, self._diagnose,  # whatever the clock does
+            self._publish_all, callback_group=MutuallyExclusiveCallbackGroup())
+        self.create_timer(PERIOD, self._diagnose,  # also while simulated time stands still
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._start = NodeStart(
             self, self._parameters_declared, self._parameters_declared.config.limits,
@@ -121,43 +121,44 @@ class TrajectoryPlanner(ServiceNode):
 
     async def _plan(self, request: PlanTrajectory.Request,
                     _: PlanTrajectory.Response) -> PlanTrajectory.Response:
-        """Answer a request; the executor goes on with other work until the plan is there."""
+        """Answer a request; the executor does other work while a thread plans."""
         config, stamp = self._parameters_declared.config, self.get_clock().now().to_msg()
-        begun = perf_counter()
-        self._begun.append(begun)
-        answer = await self._threads.call(
-            _answer, request, config, self._threads.is_ending,
-            expected=TIME_OF_POINT * len(request.via_points.poses))
-        self._begun.remove(begun)
+        start = perf_counter()
+        self._in_progress.append(start)
+        answer = await self._pool.call(
+            _answer, request, config, self._pool.is_ending,
+            expected=TIME_PER_VIA_POINT * len(request.via_points.poses))
+        self._in_progress.remove(start)
         name = quoted(request.planner_id or config.default_planner_id)[1:-1]
         self._statistics.add(answer.response, self.get_clock().now().to_msg())
         self._report(name, answer)
         if answer.plan is not None:
-            self._unseen.append(_Unseen(answer.response.trajectory, answer.plan, config, stamp))
+            self._unpublished.append(
+                _Unpublished(answer.response.trajectory, answer.plan, config, stamp))
             self._answered.trigger()
         return answer.response
 
-    async def _show(self) -> None:
-        """Publish the plans that have been answered, oldest first."""
+    async def _publish_all(self) -> None:
+        """Publish the plans that have been sent to their clients, oldest first."""
         with suppress(InvalidHandle):  # the node may be destroyed meanwhile
-            while self._unseen:
-                await self._publish(self._unseen.popleft())
+            while self._unpublished:
+                await self._publish(self._unpublished.popleft())
 
-    async def _publish(self, unseen: _Unseen) -> None:
-        """Publish a plan; a thread makes what is only looked at."""
-        trajectory, *plan_and_setting = unseen
+    async def _publish(self, unpublished: _Unpublished) -> None:
+        """Publish a plan's trajectory, then its path and markers, which a thread computes."""
+        trajectory, *arguments = unpublished
         self._trajectory.publish(trajectory)
         try:
-            path, markers = await self._threads.call(_drawing, *plan_and_setting)
-        except Exception:  # a bug, but the plan is good and has been answered
+            path, markers = await self._pool.call(_visualization, *arguments)
+        except Exception:  # a bug, but the client has its plan
             self.get_logger().error(f'a plan cannot be drawn:\n{traceback.format_exc()}')
             return
         self._path.publish(path)
         self._markers.publish(markers)
 
     def _diagnose(self) -> None:
-        """Publish what requests have come to."""
-        busy = perf_counter() - min(self._begun) if self._begun else 0.0
+        """Publish the statistics of all requests as diagnostics."""
+        busy = perf_counter() - min(self._in_progress) if self._in_progress else 0.0
         self._diagnostics.publish(self._statistics.message(
             self.get_name(), self.get_clock().now().to_msg(), busy))
 
@@ -179,22 +180,22 @@ class TrajectoryPlanner(ServiceNode):
     def destroy_node(self) -> None:
         """End the planning threads with the node."""
         self._start.end()
-        self._threads.end()
+        self._pool.end()
         super().destroy_node()
 
 
 def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
-            is_ending: Callable[[], bool], turn: Turn) -> _Answer:
-    """Plan; whatever goes wrong is an answer too."""
+            is_ending: Callable[[], bool], job: Job) -> _Answer:
+    """Plan a request; errors become responses too."""
     found, trace = None, ''
-    deadline = Deadline(config.planning_time_limit, turn.seconds, is_ending)
+    deadline = Deadline(config.planning_time_limit, job.checkpoint, is_ending)
     try:
         found = plan(config.model, config.limits, planning_request(request, config, deadline))
-        seconds = turn.used()
+        seconds = job.run_time()
         with step('the making of the message'):
             response = success(found, config, deadline)
     except Exception as error:
-        found, seconds = None, turn.used()
+        found, seconds = None, job.run_time()
         if isinstance(error, RrrPlannerError) and not isinstance(error, ConvergenceError):
             response = refusal(error)
         else:  # a bug: the caller is told, the log has the trace
@@ -203,8 +204,8 @@ def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
     return _Answer(response, found, trace)
 
 
-def _drawing(found: Plan, config: PlannerConfig, stamp: Time,
-             turn: Turn) -> tuple[Path, MarkerArray]:
+def _visualization(found: Plan, config: PlannerConfig, stamp: Time,
+                   job: Job) -> tuple[Path, MarkerArray]:
     """Return the tip's path and the markers of a plan."""
-    return (tip_path(found.points, config, stamp, lambda: turn.seconds() < 0.0),
+    return (tip_path(found.points, config, stamp, lambda: job.checkpoint() < 0.0),
             plan_markers(found.points, found.via_times, config.model, config.base_frame))

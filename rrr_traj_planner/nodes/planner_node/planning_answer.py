@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A plan, or why there is none, as PlanTrajectory's response and as messages to be seen."""
+"""Plans and errors as PlanTrajectory responses, plans as trajectory and path messages."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 SECOND = 1_000_000_000  # ns
-POINTS_AT_ONCE = 1000   # of a message, some 20 ms
+POINTS_PER_CHECK = 1000  # points filled between two calls of `should_stop`, some 20 ms
 
 _RESPONSE = PlanTrajectory.Response
 _CODES: tuple[tuple[type[RrrPlannerError], int], ...] = (
@@ -65,12 +65,12 @@ def success(plan: Plan, config: PlannerConfig,
     config : PlannerConfig
         The node's parameters.
     should_stop : callable
-        Asked now and then; what it raises ends the work.
+        Called at intervals; what it raises ends the work.
 
     Returns
     -------
     PlanTrajectory.Response
-        Complete but for the planning time.
+        Complete except for the planning time.
 
     """
     return PlanTrajectory.Response(
@@ -94,7 +94,7 @@ def refusal(error: RrrPlannerError) -> PlanTrajectory.Response:
     Returns
     -------
     PlanTrajectory.Response
-        Code, message and via point to blame; no trajectory.
+        Error code, message and index of the via point at fault; no trajectory.
 
     """
     return PlanTrajectory.Response(
@@ -114,7 +114,7 @@ def failure(error: Exception) -> PlanTrajectory.Response:
     Returns
     -------
     PlanTrajectory.Response
-        Code and message; no trajectory.
+        Error code and message; no trajectory.
 
     """
     return PlanTrajectory.Response(
@@ -130,16 +130,16 @@ def joint_trajectory(points: TrajectoryPoints, config: PlannerConfig,
     Parameters
     ----------
     points : TrajectoryPoints
-        With velocities and accelerations.
+        Points with velocities and accelerations.
     config : PlannerConfig
-        For the frame and the joints' names.
+        Gives the frame and the joint names.
     should_stop : callable
-        As of `success`.
+        As in `success`.
 
     Returns
     -------
     JointTrajectory
-        Stamp 0: to be started when it is received.
+        Stamp 0: it starts when it is received.
 
     """
     message = JointTrajectory(joint_names=list(config.model.joint_names))
@@ -148,7 +148,7 @@ def joint_trajectory(points: TrajectoryPoints, config: PlannerConfig,
     q, qd, qdd = (_flat(v) for v in (points.positions, points.velocities, points.accelerations))
     filled = []
     for i, stamp in enumerate(stamps):
-        if i % POINTS_AT_ONCE == 0:
+        if i % POINTS_PER_CHECK == 0:
             should_stop()
         point = JointTrajectoryPoint()
         row = slice(3 * i, 3 * i + 3)
@@ -169,23 +169,23 @@ def tip_path(points: TrajectoryPoints, config: PlannerConfig, stamp: Any,
     points : TrajectoryPoints
         The points.
     config : PlannerConfig
-        For the frame and the arm.
+        Gives the frame and the arm's model.
     stamp : builtin_interfaces.msg.Time
-        When it was planned.
+        Time of the request.
     should_stop : callable
-        As of `success`.
+        As in `success`.
 
     Returns
     -------
     Path
-        Poses of unit orientation.
+        Poses with identity orientation.
 
     """
     message = Path()
     message.header.frame_id, message.header.stamp = config.base_frame, stamp
     poses = []
     for i, (x, y, z) in enumerate(forward_kinematics(config.model, points.positions).tolist()):
-        if i % POINTS_AT_ONCE == 0:
+        if i % POINTS_PER_CHECK == 0:
             should_stop()
         pose = PoseStamped(header=message.header)
         position = pose.pose.position
@@ -196,5 +196,5 @@ def tip_path(points: TrajectoryPoints, config: PlannerConfig, stamp: Any,
 
 
 def _flat(rows: Array | None) -> array[float]:
-    """Return the numbers row by row: slices of it fill message fields fastest."""
+    """Return the rows in one array, whose slices fill message fields fastest."""
     return array('d', np.ascontiguousarray(rows).tobytes())

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""PlanTrajectory's request as the planners take it."""
+"""Conversion of PlanTrajectory's request message to the planners' `PlanningRequest`."""
 
 from __future__ import annotations
 
@@ -36,26 +36,26 @@ from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 
-# Other periods would ask for answers of no use to any controller [s].
-LEAST_SAMPLE_PERIOD, LARGEST_SAMPLE_PERIOD = 1e-4, 10.0
+# Range of sample_period [s]: no controller can use points closer together or further apart.
+MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD = 1e-4, 10.0
 
-# Zones of less cannot be told from corners; more is beyond any arm [m].
-LEAST_DEVIATION, LARGEST_DEVIATION = 1e-6, 100.0
+# Range of max_deviation [m]: smaller zones are as good as corners, larger ones exceed any arm.
+MIN_DEVIATION, MAX_DEVIATION = 1e-6, 100.0
 
-# What the service and its node call the arguments of `PlanningRequest`, where that differs.
+# Arguments of `PlanningRequest` that the service or the node's parameters call otherwise.
 FIELDS = {'start': 'start_state', 'velocity_scaling': 'max_velocity_scaling_factor',
           'acceleration_scaling': 'max_acceleration_scaling_factor',
           'half_transition': 'poly_414.t_acc'}
 
 
 class FrameError(RrrPlannerError):
-    """Via points in a frame that the node cannot transform."""
+    """Via points in another frame than the base frame: the node has no transforms."""
 
 
 def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
                      should_stop: ShouldStop = never) -> PlanningRequest:
     """
-    Return what a message asks, with the node's defaults in the empty fields.
+    Return a message as a planning request, with the node's defaults in the empty fields.
 
     Parameters
     ----------
@@ -69,12 +69,16 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
     Returns
     -------
     PlanningRequest
-        The request, checked for form.
+        The request; its fields are checked each by itself.
 
     Raises
     ------
-    FrameError, StartStateError, InvalidInputError
-        If the frame is another, the start state is incomplete, or a field is malformed.
+    FrameError
+        If the via points are not in the base frame.
+    StartStateError
+        If the start state is incomplete or moves.
+    InvalidInputError
+        If another field is malformed.
 
     """
     frame = message.via_points.header.frame_id
@@ -86,13 +90,13 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
         raise InvalidInputError(f'{count} via points given, at most {config.max_via_points} '
                                 'allowed (max_via_points)')
     period = message.sample_period
-    if period != 0.0 and not LEAST_SAMPLE_PERIOD <= period <= LARGEST_SAMPLE_PERIOD:
+    if period != 0.0 and not MIN_SAMPLE_PERIOD <= period <= MAX_SAMPLE_PERIOD:
         raise InvalidInputError('sample_period is {} s, must be 0 or in [{}, {}] s'.format(
-            *told_apart(period, LEAST_SAMPLE_PERIOD, LARGEST_SAMPLE_PERIOD)))
+            *told_apart(period, MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD)))
     deviation = message.max_deviation
-    if deviation != 0.0 and not LEAST_DEVIATION <= deviation <= LARGEST_DEVIATION:
+    if deviation != 0.0 and not MIN_DEVIATION <= deviation <= MAX_DEVIATION:
         raise InvalidInputError('max_deviation is {} m, must be 0 or in [{}, {}] m'.format(
-            *told_apart(deviation, LEAST_DEVIATION, LARGEST_DEVIATION)))
+            *told_apart(deviation, MIN_DEVIATION, MAX_DEVIATION)))
     if message.elbow not in ('', *ELBOWS):
         raise InvalidInputError(
             f"elbow is {quoted(message.elbow)}, must be 'up', 'down' or empty")
@@ -103,43 +107,43 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
             planner_id=message.planner_id or config.default_planner_id,
             segment_durations=np.array(message.segment_durations) if len(
                 message.segment_durations) else None,
-            velocity_scaling=_unless_zero(message.max_velocity_scaling_factor, 1.0),
-            acceleration_scaling=_unless_zero(message.max_acceleration_scaling_factor, 1.0),
-            sample_period=_unless_zero(period, config.sample_period),
+            velocity_scaling=_or_default(message.max_velocity_scaling_factor, 1.0),
+            acceleration_scaling=_or_default(message.max_acceleration_scaling_factor, 1.0),
+            sample_period=_or_default(period, config.sample_period),
             elbow=message.elbow or None,
-            max_deviation=_unless_zero(deviation, config.max_deviation),
-            max_tip_speed=_unless_zero(config.max_tip_speed, inf),
+            max_deviation=_or_default(deviation, config.max_deviation),
+            max_tip_speed=_or_default(config.max_tip_speed, inf),
             steady_zones=config.steady_zones, half_transition=config.half_transition,
             should_stop=should_stop, max_points=config.max_points,
             start_state_tolerance=config.start_state_tolerance)
 
 
-def _unless_zero(value: float, default: float) -> float:
+def _or_default(value: float, default: float) -> float:
     return default if value == 0.0 else value
 
 
 def _tip_positions(poses: Any) -> Array:
-    """Return positions; orientations are not used, but must be finite."""
+    """Return the positions of poses [m]; orientations are ignored, but must be finite."""
     orientations = [(p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w)
                     for p in poses]
     for i, orientation in enumerate(orientations):
         if not np.isfinite(orientation).all():
-            raise _blamed(InvalidInputError(
+            raise _at_via_point(InvalidInputError(
                 f'via point {i}: orientation is {orientation}, must be finite'), i)
     points = np.array([(p.position.x, p.position.y, p.position.z) for p in poses]).reshape(-1, 3)
     for i in np.flatnonzero(~np.isfinite(points).all(axis=1)).tolist():
-        raise _blamed(InvalidInputError(
+        raise _at_via_point(InvalidInputError(
             f'via point {i}: position is {tuple(points[i].tolist())} m, must be finite'), i)
     return points
 
 
-def _blamed(error: InvalidInputError, via_point: int) -> InvalidInputError:
+def _at_via_point(error: InvalidInputError, via_point: int) -> InvalidInputError:
     error.via_point = via_point
     return error
 
 
 def _start(state: JointState, config: PlannerConfig) -> Array | None:
-    """Return the start's joint positions in the arm's order, None where there is no start."""
+    """Return the start state's joint positions in the model's order, None if it is empty."""
     model, tolerance = config.model, config.start_state_tolerance
     names, position, velocity = list(state.name), list(state.position), list(state.velocity)
     if not (names or position or velocity):

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the planner node says of itself: requests, refusals by code, planning times, last error."""
+"""Diagnostics of the planner node: requests, errors by code, planning times, last error."""
 
 from __future__ import annotations
 
@@ -25,8 +25,7 @@ import numpy as np
 from rrr_traj_planner.nodes.output.diagnostics import diagnostics
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
-# Planning times are remembered of so many requests: percentiles are of these.
-WINDOW = 1000
+WINDOW = 1000  # latest requests whose planning times the percentiles are taken of
 PERCENTILES = (50, 90, 99)
 
 _RESPONSE = PlanTrajectory.Response
@@ -36,7 +35,7 @@ CODES = {getattr(_RESPONSE, name): name for name in (
 
 
 class LastError(NamedTuple):
-    """A refusal, and when it was given."""
+    """The code and message of an answer without a plan, and its time."""
 
     stamp: Time
     code: int
@@ -45,14 +44,14 @@ class LastError(NamedTuple):
 
 class RequestStatistics:
     """
-    Counts answers, in bounded memory.
+    Counts answers by error code and keeps the latest planning times.
 
     Attributes
     ----------
     answers : Counter
-        How many were given, by error code.
+        Number of answers by error code.
     last_error : LastError or None
-        The last one that was no success.
+        The last answer that was not a success.
 
     """
 
@@ -70,7 +69,7 @@ class RequestStatistics:
         response : PlanTrajectory.Response
             The answer.
         stamp : Time
-            When it was given.
+            Time of the answer.
 
         """
         self.answers[response.error_code] += 1
@@ -80,21 +79,21 @@ class RequestStatistics:
 
     def message(self, name: str, stamp: Time, busy: float) -> DiagnosticArray:
         """
-        Return all of it as diagnostics.
+        Return the statistics as a diagnostics message.
 
         Parameters
         ----------
         name : str
-            The node's.
+            The node's name.
         stamp : Time
-            Now.
+            Present time.
         busy : float
-            For how long a request has been planned [s]; 0: none is.
+            Time since the oldest request in progress was received [s]; 0: there is none.
 
         Returns
         -------
         DiagnosticArray
-            One status: ERROR once a bug was met, else OK; refusals are no fault of the node.
+            One status: ERROR after a bug, else OK; a refused request is not an error of the node.
 
         """
         requests, bugs = self.answers.total(), self.answers[_RESPONSE.FAILURE]

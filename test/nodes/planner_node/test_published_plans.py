@@ -196,17 +196,17 @@ def test_node_can_be_destroyed_while_a_path_is_made(ros, planner, drawing):
 
 
 def test_node_can_be_destroyed_between_its_publications(ros, planner, monkeypatch):
-    call = planner._threads.call
+    call = planner._pool.call
 
     def destroy_before_the_path(function, *arguments, **expected):
-        if function is not planner_node._drawing:
+        if function is not planner_node._visualization:
             return call(function, *arguments, **expected)
         planner.destroy_node()
         done = Future()
         done.set_result((Path(), MarkerArray()))
         return done
 
-    monkeypatch.setattr(planner._threads, 'call', destroy_before_the_path)
+    monkeypatch.setattr(planner._pool, 'call', destroy_before_the_path)
     topics = Topics(ros)
     response = answered(Client(ros).ask())
     assert topics.trajectory.wait_for() == response.trajectory

@@ -12,23 +12,23 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A node's threads: calls in order, what they return or raise, and how it ends."""
+"""The pool of worker threads: calls in order, their results and exceptions, and its end."""
 
 from threading import Event
 from time import perf_counter, sleep
 
 import pytest
-from rrr_traj_planner.nodes.planner_node import background
-from rrr_traj_planner.nodes.planner_node.background import Background
+from rrr_traj_planner.nodes.planner_node import worker_pool
+from rrr_traj_planner.nodes.planner_node.worker_pool import WorkerPool
 
 DEADLINE = 10.0  # s
 
 
 @pytest.fixture
 def threads(ros):
-    made = Background(ros.node, 'test')
-    yield made
-    made.end()
+    pool = WorkerPool(ros.node, 'test')
+    yield pool
+    pool.end()
 
 
 def until_done(*futures):
@@ -46,11 +46,11 @@ def until_done(*futures):
     return came
 
 
-def added(a, b, turn):
+def added(a, b, job):
     return a + b
 
 
-def failing(turn):
+def failing(job):
     raise ValueError('no number')
 
 
@@ -59,10 +59,10 @@ def test_calls_are_made_in_order_and_return_or_raise(threads):
     assert until_done(*calls) == [3, 'no number', 7]
 
 
-def test_end_waits_for_what_is_called(threads):
+def test_end_waits_for_the_running_call(threads):
     begun, ended = Event(), []
 
-    def slow(turn):
+    def slow(job):
         begun.set()
         sleep(0.2)
         ended.append(True)
@@ -73,14 +73,14 @@ def test_end_waits_for_what_is_called(threads):
     threads.end()
     assert ended
     assert threads.is_ending()
-    assert not future.done()  # nobody is there to be told
+    assert not future.done()  # the executor is gone
 
 
 def test_end_does_not_wait_for_ever(threads, monkeypatch):
-    monkeypatch.setattr(background, 'PATIENCE', 0.05)
+    monkeypatch.setattr(worker_pool, 'JOIN_TIMEOUT', 0.05)
     begun, release = Event(), Event()
 
-    def endless(turn):
+    def endless(job):
         begun.set()
         release.wait()
 

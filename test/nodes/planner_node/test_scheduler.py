@@ -12,38 +12,38 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Turns of threads: one works at a time, short work goes first, long work gets on all the same."""
+"""Scheduler of threads: one works at a time, short jobs first, long jobs finish all the same."""
 
 from threading import Event, Thread
 from time import perf_counter, thread_time
 
 import pytest
-from rrr_traj_planner.nodes.planner_node.turns import FIRST_LEVEL, Turns
+from rrr_traj_planner.nodes.planner_node.scheduler import FIRST_LEVEL, Scheduler
 
 DEADLINE = 20.0  # s
 
 
-def work(turn, seconds):
-    """Take a time of one's own."""
-    while turn.seconds() < seconds:
+def work(job, seconds):
+    """Run for a time."""
+    while job.checkpoint() < seconds:
         pass
 
 
 class Worker:
-    """A thread that works for so long; when it began and ended, and how long that was work."""
+    """A thread whose job runs for so long; when it began and ended, and its run time."""
 
-    def __init__(self, turns, seconds):
-        self._turns, self._seconds = turns, seconds
+    def __init__(self, scheduler, seconds):
+        self._scheduler, self._seconds = scheduler, seconds
         self.begun, self.ended = Event(), 0.0
         self._thread = Thread(target=self._run, daemon=True)
         self.asked = perf_counter()
         self._thread.start()
 
     def _run(self):
-        with self._turns.turn() as turn:
+        with self._scheduler.job() as job:
             self.begun.set()
-            work(turn, self._seconds)
-            self.used, self.processor = turn.used(), thread_time()
+            work(job, self._seconds)
+            self.run_time, self.processor = job.run_time(), thread_time()
             self.ended = perf_counter()
 
     def join(self):
@@ -52,46 +52,46 @@ class Worker:
         return self
 
 
-def started(turns, seconds):
-    """Return a worker that has had its first turn."""
-    worker = Worker(turns, seconds)
+def started(scheduler, seconds):
+    """Return a worker that is running or has run."""
+    worker = Worker(scheduler, seconds)
     assert worker.begun.wait(DEADLINE)
     return worker
 
 
 def test_short_work_goes_before_long_work_that_came_first():
-    turns = Turns()
-    long_ones = [started(turns, 0.6) for _ in range(3)]
-    short = Worker(turns, 0.01).join()
+    scheduler = Scheduler()
+    long_ones = [started(scheduler, 0.6) for _ in range(3)]
+    short = Worker(scheduler, 0.01).join()
     for worker in long_ones:
         worker.join()
     assert short.ended < min(w.ended for w in long_ones)
 
 
-def test_work_is_timed_without_the_turns_of_others():
-    turns = Turns()
-    first, second = started(turns, 0.3), started(turns, 0.3)
+def test_run_time_leaves_out_the_time_of_others():
+    scheduler = Scheduler()
+    first, second = started(scheduler, 0.3), started(scheduler, 0.3)
     for worker in (first, second):
         worker.join()
-        assert 0.3 <= worker.used < 0.45
+        assert 0.3 <= worker.run_time < 0.45
     assert max(first.ended, second.ended) - first.asked > 0.6
 
 
 def test_one_works_at_a_time_and_equals_in_the_order_of_their_coming():
-    turns, order = Turns(), []
+    scheduler, order = Scheduler(), []
 
     def append(k):
-        with turns.turn() as turn:
+        with scheduler.job() as job:
             order.append(k)
-            work(turn, 0.005)
+            work(job, 0.005)
             order.append(k)
 
-    with turns.turn():
+    with scheduler.job():
         threads = []
         for k in range(8):
             threads.append(Thread(target=append, args=(k,)))
             threads[-1].start()
-            while len(turns._waiting) <= k:
+            while len(scheduler._waiting) <= k:
                 pass
     for thread in threads:
         thread.join(DEADLINE)
@@ -99,14 +99,14 @@ def test_one_works_at_a_time_and_equals_in_the_order_of_their_coming():
 
 
 def test_long_work_gets_on_while_short_work_never_ends():
-    turns, ended = Turns(), Event()
+    scheduler, ended = Scheduler(), Event()
 
     def short_ones():
         while not ended.is_set():
-            with turns.turn() as turn:
-                work(turn, 0.02)
+            with scheduler.job() as job:
+                work(job, 0.02)
 
-    long_one = started(turns, 2.5 * FIRST_LEVEL)
+    long_one = started(scheduler, 2.5 * FIRST_LEVEL)
     threads = [Thread(target=short_ones) for _ in range(2)]
     for thread in threads:
         thread.start()
@@ -118,47 +118,47 @@ def test_long_work_gets_on_while_short_work_never_ends():
             thread.join(DEADLINE)
 
 
-def test_what_is_expected_to_take_long_lets_others_go_first_from_the_beginning():
-    turns, order = Turns(), []
+def test_job_that_is_expected_to_be_long_lets_short_ones_go_first_from_the_beginning():
+    scheduler, order = Scheduler(), []
 
     def append(name, expected):
-        with turns.turn(expected):
+        with scheduler.job(expected):
             order.append(name)
 
-    with turns.turn():
+    with scheduler.job():
         threads = [Thread(target=append, args=work) for work in (('long', 1.0), ('short', 0.01))]
         for k, thread in enumerate(threads):
             thread.start()
-            while len(turns._waiting) <= k:
+            while len(scheduler._waiting) <= k:
                 pass
     for thread in threads:
         thread.join(DEADLINE)
     assert order == ['short', 'long']
 
 
-def test_nobody_waits_once_turns_have_ended():
-    turns = Turns()
-    with turns.turn():
-        waiting = [Worker(turns, 0.0) for _ in range(3)]
-        turns.end()
+def test_no_job_waits_once_the_scheduler_has_ended():
+    scheduler = Scheduler()
+    with scheduler.job():
+        waiting = [Worker(scheduler, 0.0) for _ in range(3)]
+        scheduler.end()
         for worker in waiting:
             worker.join()
 
 
-def test_an_error_ends_its_turn():
-    turns = Turns()
-    with pytest.raises(ValueError, match='^no$'), turns.turn():
+def test_an_error_ends_its_job():
+    scheduler = Scheduler()
+    with pytest.raises(ValueError, match='^no$'), scheduler.job():
         raise ValueError('no')
-    with turns.turn():
+    with scheduler.job():
         pass
 
 
-def test_turns_are_taken_in_the_order_in_which_they_were_queued():
-    turns, order = Turns(), []
-    first, second = turns.queued(), turns.queued()
+def test_jobs_run_in_the_order_in_which_they_were_enqueued():
+    scheduler, order = Scheduler(), []
+    first, second = scheduler.enqueue(), scheduler.enqueue()
 
-    def work(turn, name):
-        with turns.taken(turn):
+    def work(job, name):
+        with scheduler.run(job):
             order.append(name)
 
     early = Thread(target=work, args=(second, 'second'))

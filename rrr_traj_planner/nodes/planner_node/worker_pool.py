@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Threads for what takes long, so that a node answers all else meanwhile."""
+"""Pool of worker threads for long calls, so that the node's executor stays responsive."""
 
 from __future__ import annotations
 
@@ -25,16 +25,15 @@ from typing import Any, NamedTuple
 
 from rclpy.node import Node
 from rclpy.task import Future
-from rrr_traj_planner.nodes.planner_node.turns import Turns
+from rrr_traj_planner.nodes.planner_node.scheduler import Scheduler
 
-# Threads are told to end, and waited for, so long; a function asks often enough.
-PATIENCE = 1.0  # s
+JOIN_TIMEOUT = 1.0  # s for all threads to end; running functions check `is_ending` far more often
 
-MOST_THREADS = 32  # more calls wait until one of so many has returned
+MAX_THREADS = 32  # further calls wait for a free thread
 
 
 class _Call(NamedTuple):
-    """What is to be called, and who is told."""
+    """A call, and the future of its result."""
 
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
@@ -42,25 +41,25 @@ class _Call(NamedTuple):
     done: Future
 
 
-class Background:
+class WorkerPool:
     """
-    Calls functions in threads that take turns; callbacks of the node await what they return.
+    Calls functions in threads, one at a time by a `Scheduler`; the node's callbacks await them.
 
     Parameters
     ----------
     node : Node
-        Its executor is woken when a function has returned.
+        The node whose executor sets the futures.
     name : str
-        The threads'.
+        Name of the threads.
 
     """
 
     def __init__(self, node: Node, name: str) -> None:
-        self._name, self._turns = name, Turns()
+        self._name, self._scheduler = name, Scheduler()
         self._calls: SimpleQueue[_Call | None] = SimpleQueue()
         self._returned: deque[tuple[Future, Any, Exception | None]] = deque()
-        self._wake = node.create_guard_condition(self._tell)
-        self._ending, self._ended, self._taking = Lock(), False, Lock()
+        self._wake = node.create_guard_condition(self._resolve)
+        self._end_lock, self._ended, self._queue_lock = Lock(), False, Lock()
         self._idle, self._threads = Semaphore(0), list[Thread]()
 
     def call(self, function: Callable[..., Any], *arguments: Any, expected: float = 0.0) -> Future:
@@ -70,73 +69,73 @@ class Background:
         Parameters
         ----------
         function : callable
-            What takes long; its last argument is its `Turn`, whose `seconds` it asks often.
+            The function; its last argument is its `Job`, whose `checkpoint` it calls often.
         *arguments
-            Those before.
+            Its other arguments.
         expected : float
-            How long it is thought to take at the least [s]; see `Turn`.
+            Lower bound on its run time [s]; see `Job`.
 
         Returns
         -------
         Future
-            What it returns or raises, once it has and unless the threads are ended before. Of
-            several it is told in the order in which they returned.
+            Result or exception; never set if the pool ends first. Futures are set in the order in
+            which their functions return.
 
         """
         done = Future()
         self._calls.put(_Call(function, arguments, expected, done))
-        if not self._idle.acquire(blocking=False) and len(self._threads) < MOST_THREADS:
+        if not self._idle.acquire(blocking=False) and len(self._threads) < MAX_THREADS:
             self._threads.append(Thread(target=self._run, name=self._name, daemon=True))
             self._threads[-1].start()
         return done
 
     def is_ending(self) -> bool:
-        """Return whether the threads are told to end: what they are at may be given up."""
+        """Return whether the pool is to end: running functions should stop."""
         return self._ended
 
     def end(self) -> None:
         """
-        End the threads; what they are at is waited for, but not for long.
+        End the threads; wait up to `JOIN_TIMEOUT` for running functions.
 
-        Compiled code that Python's end cuts short may abort the process.
+        Without the wait, interpreter shutdown during compiled code may abort the process.
         """
-        with self._ending:
+        with self._end_lock:
             self._ended = True
-        self._turns.end()
+        self._scheduler.end()
         for _ in self._threads:
             self._calls.put(None)
-        until = perf_counter() + PATIENCE
+        until = perf_counter() + JOIN_TIMEOUT
         for thread in self._threads:
             thread.join(max(0.0, until - perf_counter()))
 
     def _run(self) -> None:
         while True:
-            with self._taking:  # so that calls queue in the order in which they came
+            with self._queue_lock:  # jobs are enqueued in the order of the calls
                 call = self._calls.get()
                 if call is None:
                     return
-                queued = self._turns.queued(call.expected)
-            with self._turns.taken(queued) as turn:
+                queued = self._scheduler.enqueue(call.expected)
+            with self._scheduler.run(queued) as job:
                 if self._ended:
                     return
                 try:
-                    result, error = call.function(*call.arguments, turn), None
+                    result, error = call.function(*call.arguments, job), None
                 except Exception as raised:
                     result, error = None, raised
-                with self._ending:
+                with self._end_lock:
                     if self._ended:
                         return
                     self._returned.append((call.done, result, error))
                     self._wake.trigger()
             self._idle.release()
 
-    def _tell(self) -> None:
-        """Tell what one function has returned: an executor answers the last told first."""
+    def _resolve(self) -> None:
+        """Set one future per wake-up: an executor runs the callbacks of several in reverse."""
         done, result, error = self._returned.popleft()
         if error is None:
             done.set_result(result)
         else:
             done.set_exception(error)
-        with self._ending:
+        with self._end_lock:
             if self._returned and not self._ended:
                 self._wake.trigger()
