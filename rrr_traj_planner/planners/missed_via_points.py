@@ -22,9 +22,8 @@ import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
-
-HIT = 1e-9  # rad: a joint that is so near is there
 
 
 class Misses(NamedTuple):
@@ -76,7 +75,7 @@ def miss_note(found: Misses) -> str:
 
     """
     missed = [f'{i} by {tip:.3g} m ({joint:.3g} rad)' for i, (tip, joint) in enumerate(
-        zip(*found)) if joint > HIT]
+        zip(*found)) if joint > JOINT_ROUNDING]
     if not missed:
         return ''
     return f'via point{"s" * (len(missed) > 1)} missed by construction: {", ".join(missed)}'

@@ -29,6 +29,7 @@ from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
 from rrr_traj_planner.core.motion_laws import cycloid
 from rrr_traj_planner.core.path.axis_planes import passes_axis
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 from rrr_traj_planner.core.scalars import kind_of
 from rrr_traj_planner.core.trajectory.limit_check import violations
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
@@ -47,9 +48,9 @@ from rrr_traj_planner.planners.registry import CartesianPlanner, planner, Regist
 from rrr_traj_planner.planners.request import CartesianTask, JointTask, PlanningRequest
 from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 
-# Via points nearer than this in every joint are one point.
-SAME_POINT = 1e-9  # rad
-SAME_TIP = 1e-9    # m, of a path
+# Joint positions that give the same position of the tip, to its rounding, and differ by no more
+# are one point: at the edge of the workspace 1e-9 m are 7e-5 rad.
+SAME_POSTURE = 1e-4  # rad
 
 # A joint that moves no further from one point to the next stands still: with ways of 1e-310 rad
 # beside ways of 1 rad, numbers overflow.
@@ -98,7 +99,7 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
             answer = _planned_path(method.plan_path, model, limits, request, start)
         else:
             answer = _planned_joints(method, model, limits, request, start)
-    if start is not None and np.abs(answer.points.positions[0] - start).max() > SAME_POINT:
+    if start is not None and np.abs(answer.points.positions[0] - start).max() > JOINT_ROUNDING:
         raise ConvergenceError(
             f'planner {request.planner_id} began at {answer.points.positions[0].tolist()} rad, '
             f'not at the start state {start.tolist()} rad')
@@ -125,7 +126,7 @@ def _through(method: Registered, model: RobotModel, limits: JointLimits,
     """Return the plan through joint positions."""
     check_answer_size(limits, request, q)
     q = _without_noise(q)
-    same, durations = _repeated(q), request.segment_durations
+    same, durations = _repeated(model, q), request.segment_durations
     if durations is not None:  # where a stay is prescribed, a point counts twice
         same &= np.isnan(durations)
         durations = None if np.isnan(durations[~same]).all() else durations[~same]
@@ -169,7 +170,7 @@ def _path_in(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
     tips = request.via_points
     if start is not None:
         tips = np.vstack((forward_kinematics(model, start), tips))
-    same = np.linalg.norm(np.diff(tips, axis=0), axis=1) <= SAME_TIP
+    same = _same_tips(tips)
     distinct = tips[np.concatenate(([True], ~same))]
     if len(distinct) == 1 or not passes_axis(tips):  # else in two postures
         q = _joint_points(model, limits, request, start, posture)
@@ -218,9 +219,16 @@ def _without_noise(q: Array) -> Array:
     return q
 
 
-def _repeated(q: Array) -> BoolArray:
-    """Return which points are the one before, shape (n - 1,)."""
-    return np.asarray((np.abs(np.diff(q, axis=0)) <= SAME_POINT).all(axis=1))
+def _repeated(model: RobotModel, q: Array) -> BoolArray:
+    """Return which joint positions are the ones before, in the same posture, shape (n - 1,)."""
+    ways = np.abs(np.diff(q, axis=0)).max(axis=1)
+    same_tips = _same_tips(forward_kinematics(model, q)) & (ways <= SAME_POSTURE)
+    return np.asarray((ways <= JOINT_ROUNDING) | same_tips)
+
+
+def _same_tips(tips: Array) -> BoolArray:
+    """Return which positions of the tip are the ones before, shape (n - 1,)."""
+    return np.asarray(np.linalg.norm(np.diff(tips, axis=0), axis=1) <= TIP_ROUNDING)
 
 
 def _rest(model: RobotModel, limits: JointLimits, request: PlanningRequest, q: Array) -> Plan:

@@ -33,7 +33,6 @@ from rrr_traj_planner.core.errors import (
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import (
-    EDGE_TOLERANCE,
     Elbow,
     ELBOWS,
     Posture,
@@ -44,6 +43,7 @@ from rrr_traj_planner.core.kinematics.postures import (
 )
 from rrr_traj_planner.core.kinematics.travel_time import Passing, travel_time
 from rrr_traj_planner.core.path.axis_planes import passes_axis
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
 # A start this close to where postures meet has them all: noise must not choose between them.
 MEETING = 0.01  # rad
@@ -119,7 +119,7 @@ def path_postures(model: RobotModel, points: Array, start: Array | None,
     if start is None:
         shoulders = SHOULDERS if passes_axis(points) else SHOULDERS[:1]
         return [Posture(e, s) for s in shoulders for e in ELBOWS if elbow in (None, e)]
-    own = [p for p in postures_of(model, start, EDGE_TOLERANCE) if elbow in (None, p.elbow)]
+    own = [p for p in postures_of(model, start, JOINT_ROUNDING) if elbow in (None, p.elbow)]
     if not own:
         raise StartStateError(
             f'the start state is on elbow branch {posture_of(model, start).elbow} '

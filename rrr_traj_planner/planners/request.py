@@ -27,9 +27,9 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, number_array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import InvalidInputError, shown
-from rrr_traj_planner.core.kinematics.joint_ranges import RANGE_TOLERANCE
 from rrr_traj_planner.core.kinematics.postures import Elbow, ELBOWS, Posture
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.scalars import (
     not_negative,
     one_of,
@@ -113,7 +113,7 @@ class PlanningRequest(ReadOnlyArrays):
     half_transition: float = T_ACC
     should_stop: ShouldStop = never
     max_points: int = MOST_POINTS
-    start_state_tolerance: float = RANGE_TOLERANCE
+    start_state_tolerance: float = JOINT_ROUNDING
 
     def __post_init__(self) -> None:
         """Check every value and make the arrays read-only."""

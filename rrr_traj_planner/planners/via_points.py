@@ -26,11 +26,11 @@ from rrr_traj_planner.core.errors import LimitViolationError, StartStateError, t
 from rrr_traj_planner.core.kinematics.joint_ranges import (
     out_of_range,
     range_error,
-    RANGE_TOLERANCE,
 )
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
 HOLDING_TOLERANCE = 1e-9  # relative
 
@@ -81,7 +81,7 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
 
 
 def check_start(model: RobotModel, limits: JointLimits, start: Array,
-                tolerance: float = RANGE_TOLERANCE) -> Array:
+                tolerance: float = JOINT_ROUNDING) -> Array:
     """
     Return a start state, checked.
 
@@ -109,11 +109,11 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
 
     """
     low, high = limits.min_position, limits.max_position
-    room = max(tolerance, RANGE_TOLERANCE)
+    room = max(tolerance, JOINT_ROUNDING)
     for j in np.flatnonzero((start < low - room) | (start > high + room)).tolist():
         at, lowest, highest, *_ = told_apart(
             start[j], low[j], high[j], low[j] - room, high[j] + room)
-        allowed = f', start_state_tolerance {room:g} rad' if room > RANGE_TOLERANCE else ''
+        allowed = f', start_state_tolerance {room:g} rad' if room > JOINT_ROUNDING else ''
         hint = HINT if any(map(explained_by_degrees, start, low, high)) else ''
         raise StartStateError(f'start state: {model.joint_names[j]} is at {at} rad, limits '
                               f'{lowest} to {highest} rad{allowed}{hint}')

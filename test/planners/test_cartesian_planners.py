@@ -124,6 +124,16 @@ def test_joint_limit_between_points_is_refused_with_the_place(planner_id):
 
 
 @each_planner
+@pytest.mark.parametrize('y', [-0.52, -0.54, -0.56, -0.58, -0.6, -0.62])
+def test_a_range_that_is_left_between_points_by_a_hair_is_refused_too(planner_id, y):
+    # 2e-9 rad are more than rounding. The extreme is no sample of any grid.
+    nearest = inverse_kinematics(MODEL, (1.2, 0.0, 0.6), 'up')[2]
+    limits = replace(FREE, min_position=(-4.0, -4.0, nearest + 2e-9))
+    with pytest.raises(LimitViolationError, match='joint_3 would be at'):
+        planned(planner_id, [(1.2, y, 0.6), (1.2, 0.7, 0.6)], limits, elbow='up')
+
+
+@each_planner
 def test_segment_durations_are_refused(planner_id):
     with pytest.raises(InvalidInputError, match='takes no segment_durations: its time is the'):
         planned(planner_id, [(1.0, 0.0, 0.6), (1.0, 0.3, 0.6)], segment_durations=[2.0])

@@ -198,3 +198,17 @@ def test_a_start_that_degrees_explain_is_asked_about(start, told):
     for planner_id in ('cycloid', 'line_arc'):
         with pytest.raises(StartStateError, match=f'^start state: {re.escape(told)}$'):
             planned(LIMITS, [tip(0.5, 1.4, 0.1)], planner_id=planner_id, start=start)
+
+
+@pytest.mark.parametrize('planner_id', planner_ids())
+@pytest.mark.parametrize('start', [
+    (0.3, 1.2, 0.1),
+    (0.3, 2.0, np.arcsin(-0.9 * np.cos(2.0) / 0.7) - 2.0),  # the tip is on joint axis 1
+    (0.3, 1.2, np.pi / 2 - 1e-7)])                          # all but stretched
+def test_a_first_via_point_where_the_tip_is_takes_no_time(planner_id, start):
+    if start[2] > 1.5 and planner_id in CARTESIAN:
+        return  # from the edge of the workspace no path leads on
+    first, then = np.round(tip(*start), 9), (0.8 * np.cos(0.3), 0.8 * np.sin(0.3), 1.0)
+    answer = planned(turning(-1.0, 1.0), [first, then], start=start, planner_id=planner_id)
+    assert answer.via_times[0] == 0.0
+    assert answer.points.positions[0].tolist() == pytest.approx(list(start), abs=1e-9)

@@ -24,12 +24,12 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import told_apart, UnreachableError
 from rrr_traj_planner.core.kinematics.postures import (
-    EDGE_TOLERANCE,
     Elbow,
     ELBOWS,
     Shoulder,
     SHOULDERS,
 )
+from rrr_traj_planner.core.rounding import TIP_ROUNDING
 from rrr_traj_planner.core.scalars import one_of
 
 
@@ -75,7 +75,7 @@ def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'u
     r, h = hypot(x, y), z - model.d1
     back = shoulder == 'back'
     kept = 0.0 if previous is None else float(finite_array('previous', previous, (3,))[0])
-    if r <= EDGE_TOLERANCE:
+    if r <= TIP_ROUNDING:
         theta_1 = kept
     else:
         theta_1 = _wrapped(atan2(y, x) + (pi if back else 0.0))
@@ -126,7 +126,7 @@ def nearest_solution(model: RobotModel, position: ArrayLike, q: ArrayLike) -> Ar
 def _distance_in_reach(model: RobotModel, point: tuple[float, float, float], W: float) -> float:
     """Return W, moved onto the workspace's edge where rounding put it outside."""
     least, most = model.reach
-    if W > most + EDGE_TOLERANCE or W < least - EDGE_TOLERANCE:
+    if W > most + TIP_ROUNDING or W < least - TIP_ROUNDING:
         far = W > most
         distance, bound = told_apart(W, most if far else least)
         side = (f"beyond the arm's reach of {bound} m" if far

@@ -24,12 +24,9 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import JointRangeError, told_apart
 from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
 TURN = 2.0 * pi
-
-# A joint this close to an end of its range is at that end: a via point taught there must not be
-# refused for the rounding of its coordinates.
-RANGE_TOLERANCE = 1e-9  # rad
 
 
 def whole_turns(q: Array, limits: JointLimits, start: Array | None = None) -> Array:
@@ -56,8 +53,8 @@ def whole_turns(q: Array, limits: JointLimits, start: Array | None = None) -> Ar
     if start is not None:
         return np.asarray(TURN * np.round((start - q[0]) / TURN))
     lowest, highest = q.min(axis=0), q.max(axis=0)
-    least = np.ceil((limits.min_position - lowest - RANGE_TOLERANCE) / TURN)
-    most = np.floor((limits.max_position - highest + RANGE_TOLERANCE) / TURN)
+    least = np.ceil((limits.min_position - lowest - JOINT_ROUNDING) / TURN)
+    most = np.floor((limits.max_position - highest + JOINT_ROUNDING) / TURN)
     turns = np.clip(np.round(-q[0] / TURN), least, most)
     if (least > most).any():
         with np.errstate(invalid='ignore'):  # infinite ends
@@ -84,8 +81,8 @@ def out_of_range(q: Array, limits: JointLimits) -> BoolArray:
         True where a joint is out of its range.
 
     """
-    outside: BoolArray = ((q < limits.min_position - RANGE_TOLERANCE)
-                          | (q > limits.max_position + RANGE_TOLERANCE))
+    outside: BoolArray = ((q < limits.min_position - JOINT_ROUNDING)
+                          | (q > limits.max_position + JOINT_ROUNDING))
     return outside
 
 

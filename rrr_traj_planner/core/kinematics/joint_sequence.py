@@ -31,8 +31,9 @@ from rrr_traj_planner.core.errors import UnreachableError
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, TURN, whole_turns
 from rrr_traj_planner.core.kinematics.least_time_turns import least_time_turns, TRAVEL
-from rrr_traj_planner.core.kinematics.postures import EDGE_TOLERANCE, Posture
+from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH, way_times
+from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 
 def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, posture: Posture,
@@ -68,7 +69,7 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
 
     """
     q = _solutions(model, points, posture)
-    free = np.hypot(points[:, 0], points[:, 1]) <= EDGE_TOLERANCE
+    free = np.hypot(points[:, 0], points[:, 1]) <= TIP_ROUNDING
     if start is not None:
         q, free = np.vstack((start, q)), np.concatenate(([False], free))
     if free.all():

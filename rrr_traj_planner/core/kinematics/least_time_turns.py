@@ -19,8 +19,9 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.kinematics.joint_ranges import RANGE_TOLERANCE, TURN
+from rrr_traj_planner.core.kinematics.joint_ranges import TURN
 from rrr_traj_planner.core.kinematics.travel_time import motion_ends, Passing, way_time
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
 MOST_TURNS = 5  # of a point that are tried: the nearest ones, however wide the range is
 
@@ -103,8 +104,8 @@ def _step(best: Array, times: Array, rests: BoolArray, cost: Array) -> tuple[Arr
 def _options(limits: JointLimits, joint: int, q: Array, begun: bool) -> tuple[Array, BoolArray]:
     """Return positions with the turns that are tried at each point, and which are in range."""
     low, high = limits.min_position[joint], limits.max_position[joint]
-    first = np.ceil((low - q - RANGE_TOLERANCE) / TURN)
-    last = np.floor((high - q + RANGE_TOLERANCE) / TURN)
+    first = np.ceil((low - q - JOINT_ROUNDING) / TURN)
+    last = np.floor((high - q + JOINT_ROUNDING) / TURN)
     none = first > last
     first[none] = last[none] = np.round((0.5 * (low + high) - q[none]) / TURN)
     if begun:

@@ -22,15 +22,12 @@ import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.forward import radial_distance
+from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 Elbow = Literal['up', 'down']
 Shoulder = Literal['front', 'back']
 ELBOWS: tuple[Elbow, Elbow] = ('up', 'down')
 SHOULDERS: tuple[Shoulder, Shoulder] = ('front', 'back')
-
-# A point that misses the edge of the workspace or joint axis 1, where postures meet, by no more
-# than rounding of its coordinates is on it.
-EDGE_TOLERANCE = 1e-9  # m
 
 
 class Posture(NamedTuple):
@@ -100,7 +97,7 @@ def postures_of(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
     """
     bend, r = float(np.cos(q[2])), float(radial_distance(model, q))
     elbows = ELBOWS if bend >= 0.0 else ELBOWS[::-1]
-    shoulders = SHOULDERS if r >= -EDGE_TOLERANCE else SHOULDERS[::-1]
+    shoulders = SHOULDERS if r >= -TIP_ROUNDING else SHOULDERS[::-1]
     return [Posture(elbow, shoulder)
             for shoulder in shoulders[:2 if abs(r) <= tolerance * model.reach[1] else 1]
             for elbow in elbows[:2 if abs(bend) <= tolerance else 1]]

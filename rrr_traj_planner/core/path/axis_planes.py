@@ -21,8 +21,9 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.kinematics.along_path import PathPoints
-from rrr_traj_planner.core.kinematics.postures import EDGE_TOLERANCE, Posture
+from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
+from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 IN_PLANE = 1e-12  # of the path's extent, by which rounding may put a point off a plane
 
@@ -89,7 +90,7 @@ def axis_planes(path: CartesianPath, posture: Posture, theta_1: float) -> AxisPl
             np.pi if posture.shoulder == 'back' else 0.0)
         return AxisPlanes(azimuth, azimuth, before=np.inf)
     planes, on_axis = AxisPlanes(0.0, 0.0), np.hypot(
-        *path.points[[0, -1], :2].T) <= EDGE_TOLERANCE
+        *path.points[[0, -1], :2].T) <= TIP_ROUNDING
     if not on_axis.any():
         return planes
     before, after = path.zone_ends[0, 0], path.zone_ends[-1, 1]
@@ -117,7 +118,7 @@ def common_plane(points: Array) -> Array | None:
 
     """
     r = np.hypot(points[:, 0], points[:, 1])
-    off_axis = r > EDGE_TOLERANCE
+    off_axis = r > TIP_ROUNDING
     if not off_axis.any():
         return np.zeros(2)
     outward = np.asarray(points[r.argmax(), :2] / r.max())
@@ -143,7 +144,7 @@ def passes_axis(points: Array) -> bool:
 
     """
     outward = common_plane(points)
-    return outward is not None and bool((points[:, :2] @ outward < -EDGE_TOLERANCE).any())
+    return outward is not None and bool((points[:, :2] @ outward < -TIP_ROUNDING).any())
 
 
 def _azimuth(p: Array) -> float:

@@ -27,8 +27,8 @@ from rrr_traj_planner.core.path.fitting_radii import fit_radii
 from rrr_traj_planner.core.path.polynomial_zone import PolynomialZones
 from rrr_traj_planner.core.path.tangent_lines import frames, Tangents
 from rrr_traj_planner.core.path.three_point_arc import three_point_arc
+from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
-CLOSEST_POINTS = 1e-9  # m
 REVERSAL = 1e-6        # rad, by which a turn must stay below half a revolution
 
 
@@ -138,7 +138,7 @@ def check_points(points: ArrayLike) -> Array:
         raise InvalidInputError(f'a path needs at least 2 points, not {len(points)}')
     legs = np.diff(points, axis=0)
     lengths = np.linalg.norm(legs, axis=1)
-    for i in np.flatnonzero(lengths <= CLOSEST_POINTS):
+    for i in np.flatnonzero(lengths <= TIP_ROUNDING):
         raise InvalidInputError(
             f'via point {i + 1} repeats via point {i}: {lengths[i]:.3g} m apart', int(i) + 1)
     u = legs / lengths[:, np.newaxis]

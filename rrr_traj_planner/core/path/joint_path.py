@@ -24,11 +24,12 @@ from rrr_traj_planner.core.arrays import Array, finite_array, joint_values
 from rrr_traj_planner.core.errors import LimitViolationError, told_apart, UnreachableError
 from rrr_traj_planner.core.kinematics.along_path import JointPath, PathPoints, unlimited_joint_path
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error, whole_turns
-from rrr_traj_planner.core.kinematics.postures import EDGE_TOLERANCE, Posture
+from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 # A tip this near to joint axis 1 or to an edge of the workspace would need joints that turn at
 # once for the tip to move on.
-LEAST_CLEARANCE = EDGE_TOLERANCE  # m
+LEAST_CLEARANCE = TIP_ROUNDING  # m
 
 
 def joint_path(model: RobotModel, limits: JointLimits,

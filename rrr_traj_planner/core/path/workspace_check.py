@@ -31,17 +31,18 @@ from rrr_traj_planner.core.errors import (
     UnreachableError,
 )
 from rrr_traj_planner.core.kinematics.along_path import unlimited_joint_path
-from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error, whole_turns
+from rrr_traj_planner.core.kinematics.joint_ranges import range_error, whole_turns
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.path.joint_path import LEAST_CLEARANCE
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
 STEPS_PER_PIECE = 24
 # The tip may pass joint axis 1 no nearer than this: joint 1 would turn as good as at once.
 AXIS_CLEARANCE = 1e-6   # m
-FINEST = 1e-8           # m^2 or rad: no excursion larger than this is missed
-START_TOLERANCE = 1e-9  # rad, by which a path may begin beside the start state
+FINEST = 1e-8           # m^2: no excursion larger than this is missed
+FINEST_ANGLE = 0.01 * JOINT_ROUNDING  # the same of a joint: none that later checks would find
 ROUNDS = 40
 SHORTEST_STEP = 1e-9    # m
 # A second derivative between two samples is taken to be no more than this times theirs.
@@ -115,7 +116,7 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
         high = np.maximum(joints.q[:-1], joints.q[1:]) + room
         least, most = joints.q.min(axis=0), joints.q.max(axis=0)
         # Only where an extreme may be higher than the highest sample is a finer grid needed.
-        open_ = ((low < least - FINEST) | (high > most + FINEST)).any(axis=1)
+        open_ = ((low < least - FINEST_ANGLE) | (high > most + FINEST_ANGLE)).any(axis=1)
         open_ &= h[:, 0] > SHORTEST_STEP
         if not open_.any():
             break
@@ -160,7 +161,7 @@ def _free_angle(limits: JointLimits, start: Array | None) -> float:
 def _check_start(model: RobotModel, start: Array, q: Array) -> None:
     """Refuse a path that begins in other joint positions than those of the arm."""
     gap = np.abs(start - q)
-    if gap.max() > START_TOLERANCE:
+    if gap.max() > JOINT_ROUNDING:
         j = int(gap.argmax())
         at, wanted = told_apart(start[j], q[j])
         raise StartStateError(
@@ -260,9 +261,9 @@ def _check_axis(model: RobotModel, path: CartesianPath, planes: AxisPlanes) -> N
 def _check_ranges(model: RobotModel, limits: JointLimits, path: CartesianPath,
                   posture: Posture, s: Array, q: Array) -> None:
     """Refuse joint positions out of range, told of the worst."""
-    if not out_of_range(q, limits).any():
-        return
     excess = np.maximum(limits.min_position - q, q - limits.max_position)
+    if (excess <= JOINT_ROUNDING - FINEST_ANGLE).all():
+        return
     i, j = (int(k) for k in np.unravel_index(excess.argmax(), excess.shape))
     place, nearest = place_on_path(path, float(s[i]))
     raise range_error(model, limits, place, j, float(q[i, j]), posture, nearest)

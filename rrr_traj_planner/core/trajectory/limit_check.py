@@ -23,13 +23,11 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import told_apart
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.trajectory import Peaks
 
 # Relative room for rounding, the package's promise for every motion it returns.
 TOLERANCE = 1e-6
-
-# Room for rounding at the ends of a position range [rad].
-POSITION_TOLERANCE = 1e-9
 
 
 class Violation(NamedTuple):
@@ -91,9 +89,9 @@ def violations(limits: JointLimits, peaks: Peaks, effort: Array) -> list[Violati
     found += [Violation(int(j), 'position', float(peaks.min_position[j]),
                         float(limits.min_position[j]), 'rad')
               for j in np.flatnonzero(
-                  peaks.min_position < limits.min_position - POSITION_TOLERANCE)]
+                  peaks.min_position < limits.min_position - JOINT_ROUNDING)]
     found += [Violation(int(j), 'position', float(peaks.max_position[j]),
                         float(limits.max_position[j]), 'rad')
               for j in np.flatnonzero(
-                  peaks.max_position > limits.max_position + POSITION_TOLERANCE)]
+                  peaks.max_position > limits.max_position + JOINT_ROUNDING)]
     return found

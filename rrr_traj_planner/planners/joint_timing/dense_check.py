@@ -22,7 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.motion_laws.ramps import RampShape
-from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
@@ -105,7 +105,7 @@ class DenseCheck:
         most, least = (f(q[:, :-1], q[:, 1:]) for f in (np.maximum, np.minimum))
         beyond = np.stack(((most + bend - limits.max_position).max(axis=1),
                            (limits.min_position - least + bend).max(axis=1)))
-        return np.where(beyond > POSITION_TOLERANCE, beyond, 0.0)
+        return np.where(beyond > JOINT_ROUNDING, beyond, 0.0)
 
     def excess(self) -> tuple[Array, Array]:
         """

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import peak_torque
 from rrr_traj_planner.planners.request import JointTask
@@ -96,7 +96,7 @@ def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
         segment = np.searchsorted(starts, profile.knots[:-1], side='right')
         np.maximum.at(beyond[0, :, j], segment, most - limits.max_position[j])
         np.maximum.at(beyond[1, :, j], segment, limits.min_position[j] - least)
-    return np.where(beyond > POSITION_TOLERANCE, beyond, 0.0)
+    return np.where(beyond > JOINT_ROUNDING, beyond, 0.0)
 
 
 def stretch_of_rates(task: JointTask, trajectory: PiecewiseTrajectory) -> float:

@@ -26,7 +26,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.cancellation import ShouldStop
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
-from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused, within_torque
@@ -185,6 +185,6 @@ def _motion(task: JointTask, problem: ViaProblem, law: TransitionLaw,
         part[-1:] = last
     motion = trajectory(task.points, v[:-1], v[1:], T, parts)
     peaks, limits = motion.peaks(), task.limits
-    kept = (peaks.min_position >= limits.min_position - POSITION_TOLERANCE).all() and (
-        peaks.max_position <= limits.max_position + POSITION_TOLERANCE).all()
+    kept = (peaks.min_position >= limits.min_position - JOINT_ROUNDING).all() and (
+        peaks.max_position <= limits.max_position + JOINT_ROUNDING).all()
     return motion if kept else None

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import squared_stretch, torque_grid
 from rrr_traj_planner.planners.request import JointTask
@@ -232,6 +232,6 @@ def _overshoot(task: JointTask, problem: ViaProblem, v0: Array, v1: Array,
             at = row, joint
             ranges = JointProfile(problem.function.transition(
                 duration[at], point[at], way * velocity[at], way * cruise[at])).piece_ranges
-            out[at] |= (ranges[0] < least[joint] - POSITION_TOLERANCE) | (
-                ranges[1] > most[joint] + POSITION_TOLERANCE)
+            out[at] |= (ranges[0] < least[joint] - JOINT_ROUNDING) | (
+                ranges[1] > most[joint] + JOINT_ROUNDING)
     return out

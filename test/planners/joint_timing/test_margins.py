@@ -21,7 +21,7 @@ from helpers.ramp_cases import all_free, ARM, bounds, LIMITS, NONE, random_motio
 import numpy as np
 import pytest
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
-from rrr_traj_planner.core.trajectory.limit_check import POSITION_TOLERANCE
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.margins import LARGER, Margins, MOST_VELOCITY_MARGIN
@@ -198,7 +198,7 @@ def test_rounds_of_room_end_near_the_optimum_within_every_limit(kind, seed):
     slower = found.cost / found.motion.T.sum()
     assert slower <= 1.0 + NEAR
     exceeded = [x.max() for x in c.excess(stretched(found.motion, slower))]
-    assert max(exceeded[:2]) <= POSITION_TOLERANCE
+    assert max(exceeded[:2]) <= JOINT_ROUNDING
     assert max(exceeded[2:]) <= KEPT * max(
         limit.max() for limit in (c.task.limits.max_velocity, c.task.limits.max_effort)
         if np.isfinite(limit).all())
