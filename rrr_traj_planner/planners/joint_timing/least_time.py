@@ -26,7 +26,7 @@ from rrr_traj_planner.planners.joint_timing.tightening import tightened, WORTH_I
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, stretched
+from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled
 
 POOR = 1e-2              # relative gap of what is solved again
 RESTARTS = 8             # from the best that was found, where it is not the optimum
@@ -89,5 +89,5 @@ def _solved_from(problem: JointProblem, solved: Solved, slower: float) -> Solved
     and between two points that are close together.
     """
     factor = (1.0 + slower) * solved.cost / problem.durations.cost(solved.motion.T)
-    start = stretched(solved.motion, factor)
+    start = time_scaled(solved.motion, factor)
     return tightened(problem, lambda planned, constraints: start)

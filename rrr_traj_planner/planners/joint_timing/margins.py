@@ -42,7 +42,7 @@ class Margins(NamedTuple):
     velocities: Array  # (N, 2 n + 1, 3)
     efforts: Array     # (N, 2 n + 1, 3)
     spare: Array       # half of what gravity leaves on a slow motion, likewise
-    still: BoolArray   # via velocities that stay zero, (N - 1, 3)
+    at_rest: BoolArray   # via velocities that stay zero, (N - 1, 3)
 
     @classmethod
     def none(cls, grid: Grid, segments: int) -> Margins:
@@ -77,7 +77,7 @@ class Margins(NamedTuple):
         Returns
         -------
         Margins
-            Of the same still joints.
+            Of the same at_rest joints.
 
         """
         return self._replace(positions=part * self.positions, velocities=part * self.velocities,
@@ -134,13 +134,13 @@ class Margins(NamedTuple):
 
         """
         q = grid.states(task.points, slow).q
-        positions, still = self._positions(task, q, check.beyond_range)
+        positions, at_rest = self._positions(task, q, check.beyond_range)
         spare = task.limits.max_effort - np.abs(gravity_torque(task.model, q))
         velocity, effort = check.excess()
         return Margins(
             positions, np.minimum(self.velocities + LARGER * velocity,
                                   MOST_VELOCITY_MARGIN * task.limits.max_velocity),
-            self.efforts + LARGER * effort, 0.5 * np.maximum(spare, 0.0), still)
+            self.efforts + LARGER * effort, 0.5 * np.maximum(spare, 0.0), at_rest)
 
     def _positions(self, task: JointTask, q: Array, beyond: Array) -> tuple[Array, BoolArray]:
         """Keep joints further inside their range; at via points too near its end, at rest."""
@@ -151,4 +151,4 @@ class Margins(NamedTuple):
         ends = np.stack((task.points[:-1], task.points[1:]))
         room = np.stack((task.limits.max_position - ends, ends - task.limits.min_position))
         at_start, at_end = ((beyond > 0.0) & (room[:, k] <= 2.0 * most) for k in (0, 1))
-        return positions, self.still | (at_end[:, :-1] | at_start[:, 1:]).any(axis=0)
+        return positions, self.at_rest | (at_end[:, :-1] | at_start[:, 1:]).any(axis=0)

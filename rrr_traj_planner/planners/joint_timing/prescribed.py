@@ -30,7 +30,7 @@ from rrr_traj_planner.planners.joint_timing.tightening import tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, restored, slowed, Variables
+from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
 
 DURATION_TOLERANCE = 1e-7  # relative: a stretch of prescribed durations that counts as none
 LEAST_STRETCH = 0.2         # of prescribed durations: shorter than that need not be found out
@@ -88,7 +88,7 @@ def _kept(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
         if m is None:
             return None
         stretch = float((m.T / durations)[~free].max())
-        return slowed(m, np.where(free, m.T, stretch * tie))
+        return with_durations(m, np.where(free, m.T, stretch * tie))
 
     constraints = DurationConstraints(free, tie, weights, _no_stops(durations))
     return tightened(JointProblem(task, grid, constraints, LEAST_STRETCH * tie), begin)
@@ -118,7 +118,8 @@ def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved])
     T = np.where(np.isnan(durations), motion.T, durations)
     if (motion.T > T).any():
         raise _error(durations, np.maximum(T, motion.T))
-    return Solved(grid.trajectory(task.points, slowed(motion, T)), motion, float(T.sum()), np.inf)
+    return Solved(grid.trajectory(task.points, with_durations(motion, T)), motion,
+                  float(T.sum()), np.inf)
 
 
 def _gentlest(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> Solved | None:

@@ -112,8 +112,9 @@ class JointProblem(ReadOnlyArrays):
             See `interior_point.minimise`.
 
         """
-        return minimise(constraints.problem, start, self.durations._replace(still=margins.still),
-                        self.task.should_stop, least_barrier)
+        durations = self.durations._replace(fixed_velocities=margins.at_rest)
+        return minimise(constraints.problem, start, durations, self.task.should_stop,
+                        least_barrier)
 
     def fitting(self, outcome: Outcome, motion: Variables) -> Solved | None:
         """
@@ -133,7 +134,7 @@ class JointProblem(ReadOnlyArrays):
 
         """
         durations = self.durations
-        may_stretch = bool((durations.free | (durations.tie > 0.0)).all())
+        may_stretch = bool((durations.free | (durations.proportions > 0.0)).all())
         trajectory = fitted(self.task, self.grid.trajectory(self.task.points, motion),
                             may_stretch)
         if trajectory is None:

@@ -27,7 +27,7 @@ from rrr_traj_planner.planners.joint_timing.feasible_path import (
     HOLDING_ROOM,
 )
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.solver.ramps import Grid, restored, slowed, Variables
+from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
 from rrr_traj_planner.planners.via_points import torque_texts
 
 LEAST_RAMPS = 4         # of a motion from rest to rest
@@ -63,7 +63,7 @@ def rest_to_rest(task: JointTask, constraints: JointConstraints) -> Variables | 
         return None
     rest = np.zeros((len(nodes) - 1, 3))
     m = Variables(nodes[:, 1:-1], rest, rest, np.ones(len(nodes)))
-    return restored(grid, task.points, slowed(m, T))
+    return restored(grid, task.points, with_durations(m, T))
 
 
 def _fastest_ways(task: JointTask, constraints: JointConstraints) -> tuple[Array, Array]:

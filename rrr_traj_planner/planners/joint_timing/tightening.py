@@ -56,7 +56,7 @@ def tightened(problem: JointProblem, begin: Begin) -> Solved | None:
 
     """
     task, grid, durations = problem.task, problem.grid, problem.durations
-    margins = Margins.none(grid, len(durations.free))._replace(still=durations.still)
+    margins = Margins.none(grid, len(durations.free))._replace(at_rest=durations.fixed_velocities)
     centres: list[Centre] = []
     slow: Variables | None = None
     approaches, beginnings = 0, BEGINNINGS

@@ -12,16 +12,17 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* Symmetric bands, and blocks of three whose curvature is made convex. */
+/* Symmetric bands, solved by Cholesky's method, and 3 x 3 blocks that are made positive definite:
+ * eigenvalues by Jacobi's method (Golub & Van Loan, Matrix Computations, 4.3.5 and 8.5). */
 #include "blocks.h"
 
 #include <math.h>
 #include <stddef.h>
 
-/* Of a block scaled to a unit diagonal: pivots that need no more, the least eigenvalue that is given
- * to it, and what counts as zero beside its diagonal. */
+/* For a block scaled to a unit diagonal, without unit: pivots above which it is positive definite
+ * as it stands, the least eigenvalue that it is given, and entries that count as zero. */
 static const double CLEARLY_CONVEX = 1e-10, LEAST_EIGENVALUE = 1e-12, NOTHING = 1e-17;
-enum { SWEEPS = 30 };
+enum { SWEEPS = 30 };  /* at most: convergence is quadratic, some five are needed */
 
 static int is_clearly_convex(double a[3][3])
 {
@@ -31,8 +32,8 @@ static int is_clearly_convex(double a[3][3])
     return a[0][0] > CLEARLY_CONVEX && d1 > CLEARLY_CONVEX && d2 > CLEARLY_CONVEX;
 }
 
-/* Jacobi's rotations: the diagonal of a becomes its eigenvalues, v its eigenvectors' columns. */
-static void diagonalised(double a[3][3], double v[3][3])
+/* Cyclic Jacobi: the diagonal of a becomes its eigenvalues, the columns of v its eigenvectors. */
+static void diagonalise(double a[3][3], double v[3][3])
 {
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
@@ -64,7 +65,7 @@ static void diagonalised(double a[3][3], double v[3][3])
     }
 }
 
-void made_convex(double block[3][3])
+void make_convex(double block[3][3])
 {
     double scale[3], a[3][3], v[3][3];
     for (int i = 0; i < 3; ++i)
@@ -74,7 +75,7 @@ void made_convex(double block[3][3])
             a[i][k] = block[i][k] * scale[i] * scale[k];
     if (is_clearly_convex(a))
         return;
-    diagonalised(a, v);
+    diagonalise(a, v);
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k <= i; ++k) {
             double sum = 0.0;
@@ -84,7 +85,7 @@ void made_convex(double block[3][3])
         }
 }
 
-int band_solved(double *band, double *right, int m, int w, int sides)
+int solve_band(double *band, double *right, int m, int w, int sides)
 {
     for (int c = 0; c < m; ++c) {
         double *column = band + (size_t)c * w, *own = right + (size_t)c * sides;

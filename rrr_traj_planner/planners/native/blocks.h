@@ -16,11 +16,13 @@
 #ifndef RRR_TRAJ_PLANNER_BLOCKS_H
 #define RRR_TRAJ_PLANNER_BLOCKS_H
 
-/* Give a symmetric block the magnitudes of the eigenvalues that it has when its diagonal is scaled to
- * 1, none of them next to zero. */
-void made_convex(double block[3][3]);
-/* Solve a symmetric band of m unknowns, w entries from the diagonal down, for right sides (m,
- * sides); both are overwritten. Not 0 where it is not positive definite. */
-int band_solved(double *band, double *right, int m, int w, int sides);
+/* Make a symmetric block positive definite: scaled to a unit diagonal, its eigenvalues are
+ * replaced by their magnitudes, bounded away from zero (Nocedal & Wright, Numerical Optimization,
+ * 3.4). */
+void make_convex(double block[3][3]);
+/* Solve a symmetric banded system of m unknowns, stored as w entries from the diagonal down, for
+ * right-hand sides (m, sides); both are overwritten. Returns 0, or 1 where the matrix is not
+ * positive definite. */
+int solve_band(double *band, double *right, int m, int w, int sides);
 
 #endif

@@ -12,14 +12,15 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The constraints: slacks, derivatives, and the problem near an iterate. */
+/* The constraints: their slacks and derivatives, and the barrier problem linearised at an iterate.
+ */
 #include "timing_problem.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { FLOOR_WEIGHT = 3 };  /* a floor counts as often as there are coordinates */
-static const double FAR = 1e6;      /* the other bound of a duration */
+enum { FLOOR_WEIGHT = 3 };      /* multiplicity of a least duration's logarithm: one per joint */
+static const double FAR = 1e6;  /* s, upper bound of a duration: never active */
 
 static double *floors(const Problem *p, double *slack)
 {
@@ -35,7 +36,8 @@ static void general_at(const Problem *p, int k, int i, const double *z, double *
         path_at(p, k, i, z, x, gradient, weights, second);
 }
 
-/* Slacks at a motion's states, with a part of the shifts; x are the general constraints' values. */
+/* Slacks at the states z of a motion, the given part of the shifts included; x receives the values
+ * of the general constraints. */
 void slacks_at(const Problem *p, const double *T, const double *z, double part, double *x,
                double *slack)
 {
@@ -60,23 +62,23 @@ void slacks_at(const Problem *p, const double *T, const double *z, double part, 
             to[0] = upper[i] - xk[i];
             to[1] = xk[i] - lower[i];
         }
-        double *spare = floors(p, slack) + 2 * k;
-        spare[1] = p->floor ? T[k] - p->floor[k] : 1.0;
-        spare[0] = p->floor ? FAR - spare[1] : 1.0;
+        double *floor_slack = floors(p, slack) + 2 * k;
+        floor_slack[1] = p->floor ? T[k] - p->floor[k] : 1.0;
+        floor_slack[0] = p->floor ? FAR - floor_slack[1] : 1.0;
     }
     const size_t all = slacks_size(p);
     for (size_t i = 0; i < all && p->shifted; ++i)
         slack[i] += part * p->shift[i];
 }
 
-/* The number of constraints. */
-EXPORTED double timing_count(const Problem *p)
+/* The number of constraints, by multiplicity. */
+EXPORTED double timing_constraint_count(const Problem *p)
 {
     return 2.0 * p->N * (constraints_of(p) + (p->floor ? FLOOR_WEIGHT : 0));
 }
 
-/* The sum of logarithms of slacks. */
-EXPORTED double timing_log(const Problem *p, const double *slack)
+/* The sum of the slacks' logarithms; most of them are taken of products, which is faster. */
+EXPORTED double timing_log_sum(const Problem *p, const double *slack)
 {
     const size_t all = 2 * (size_t)p->N * constraints_of(p);
     double sum = 0.0, product = 1.0;
@@ -92,20 +94,20 @@ EXPORTED double timing_log(const Problem *p, const double *slack)
     for (; i < all; ++i)
         sum += log(slack[i]);
     sum += log(product);
-    const double *spare = slack + all;
+    const double *floor_slack = slack + all;
     for (int k = 0; p->floor && k < 2 * p->N; ++k)
-        sum += FLOOR_WEIGHT * log(spare[k]);
+        sum += FLOOR_WEIGHT * log(floor_slack[k]);
     return sum;
 }
 
-/* The gradient, by states and durations, of the constrained quantities' sum, weighted by the differences
- * of what pulls at their upper and lower bounds. */
-void pulled(const Problem *p, const double *pull, double *r, double *r_T)
+/* The gradient, by states and durations, of the weighted sum of all constrained quantities; the
+ * weight of each is that of its upper bound less that of its lower bound. */
+void weighted_gradient(const Problem *p, const double *weights, double *r, double *r_T)
 {
     const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
     memset(r, 0, (size_t)p->N * P * Z * sizeof(double));
     for (int k = 0; k < p->N; ++k) {
-        const double *from = pull + 2 * (size_t)k * constraints_of(p);
+        const double *from = weights + 2 * (size_t)k * constraints_of(p);
         double *rk = r + (size_t)k * P * Z;
         for (int c = 0; c < p->bounds; ++c, from += 2)
             rk[p->bound_at[c]] += from[0] - from[1];
@@ -116,15 +118,15 @@ void pulled(const Problem *p, const double *pull, double *r, double *r_T)
             for (int a = 0; a < Z; ++a)
                 to[a] += f * g[a];
         }
-        const double *spare = pull + 2 * (size_t)p->N * constraints_of(p) + 2 * k;
-        r_T[k] = p->floor ? FLOOR_WEIGHT * (spare[0] - spare[1]) : 0.0;
+        const double *floor_slack = weights + 2 * (size_t)p->N * constraints_of(p) + 2 * k;
+        r_T[k] = p->floor ? FLOOR_WEIGHT * (floor_slack[0] - floor_slack[1]) : 0.0;
     }
 }
 
-/* Enter a constraint of gradient g, zero but for columns from first to end: r += f g, and the lower
- * half of Q += weight g g'. */
-static inline void entered(const double *g, int first, int end, int Z, double f, double weight,
-                           double *r, double *Q)
+/* Add the barrier terms of a constraint with gradient g, zero outside columns first to end - 1:
+ * r += f g, and to the lower triangle Q += weight g g'. */
+static inline void add_constraint(const double *g, int first, int end, int Z, double f,
+                                  double weight, double *r, double *Q)
 {
     for (int a = first; a < end; ++a) {
         const double scaled = weight * g[a];
@@ -135,24 +137,24 @@ static inline void entered(const double *g, int first, int end, int Z, double f,
 }
 
 /* The same for general constraint e. */
-static inline void general_entered(const Problem *p, int e, const double *g, double f,
-                                   double weight, double *r, double *Q)
+static inline void add_general_constraint(const Problem *p, int e, const double *g, double f,
+                                          double weight, double *r, double *Q)
 {
     if (p->kind == TORQUE)
-        entered(g, 1, 9, 12, f, weight, r, Q);  /* of two positions, velocities, accelerations */
+        add_constraint(g, 1, 9, 12, f, weight, r, Q);  /* q2, q3, velocities, accelerations */
     else if (e < 3)
-        entered(g, 0, 2, 4, f, weight, r, Q);
+        add_constraint(g, 0, 2, 4, f, weight, r, Q);
     else if (e < 6 || e >= 9)
-        entered(g, 0, 3, 4, f, weight, r, Q);
+        add_constraint(g, 0, 3, 4, f, weight, r, Q);
     else
-        entered(g, 0, 4, 4, f, weight, r, Q);
+        add_constraint(g, 0, 4, 4, f, weight, r, Q);
 }
 
-/* Slacks on both sides of a value and their inverses; f and weight: the barrier's first derivative by
- * the value, where shifts go with the step, and its primal-dual second one. */
-static inline void sides(double lower, double upper, double value, const double *dual,
-                         const double *shift, double barrier, double *slack, double *inverse,
-                         double *f, double *weight)
+/* Slacks of a two-sided bound and their inverses; f: the barrier's first derivative by the value,
+ * with shifts reduced along the step; weight: its primal-dual second derivative. */
+static inline void barrier_derivatives(double lower, double upper, double value,
+                                       const double *dual, const double *shift, double barrier,
+                                       double *slack, double *inverse, double *f, double *weight)
 {
     slack[0] = upper - value + shift[0], slack[1] = value - lower + shift[1];
     inverse[0] = 1.0 / slack[0], inverse[1] = 1.0 / slack[1];
@@ -161,8 +163,8 @@ static inline void sides(double lower, double upper, double value, const double 
     *weight = dual[0] * inverse[0] + dual[1] * inverse[1];
 }
 
-/* The general constraints of a segment, whose slacks begin at an offset; see timing_linearise. */
-static void general_linearised(const Problem *p, int k, size_t offset, double barrier)
+/* timing_linearise for the general constraints of a segment, whose slacks begin at an offset. */
+static void linearise_general(const Problem *p, int k, size_t offset, double barrier)
 {
     const double *dual = p->dual;
     const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
@@ -183,9 +185,9 @@ static void general_linearised(const Problem *p, int k, size_t offset, double ba
             for (; first < at; ++first, c += 2) {
                 const int e = *first - i * E;
                 double f, weight;
-                sides(lower[*first], upper[*first], x[e], dual + c, p->shift + c, barrier,
-                      p->slack + c, p->inverse + c, &f, &weight);
-                general_entered(p, e, g + (size_t)e * Z, f, weight, r, Q);
+                barrier_derivatives(lower[*first], upper[*first], x[e], dual + c, p->shift + c,
+                                    barrier, p->slack + c, p->inverse + c, &f, &weight);
+                add_general_constraint(p, e, g + (size_t)e * Z, f, weight, r, Q);
             }
         }
         for (int a = 0; a < Z; ++a)
@@ -196,9 +198,10 @@ static void general_linearised(const Problem *p, int k, size_t offset, double ba
     }
 }
 
-/* The problem at the iterate: slacks, the general constraints' Jacobian, gradient and Hessian of the
- * barrier by states, primal-dual (Nocedal & Wright, Numerical Optimization, 19.3): without the
- * constraints' own curvature, and with it, weighted by their multipliers. */
+/* Linearise the problem at the iterate: slacks, the Jacobian of the general constraints, and
+ * gradient and primal-dual Hessian of the barrier by states (Nocedal & Wright, Numerical
+ * Optimization, 19.3). The Hessian is computed twice: without the constraints' second derivatives,
+ * and with them, weighted by the multipliers. */
 EXPORTED void timing_linearise(const Problem *p, double barrier)
 {
     const Variables m = variables_at(p, p->variables);
@@ -217,19 +220,19 @@ EXPORTED void timing_linearise(const Problem *p, double barrier)
             const int i = p->bound_at[c];
             const size_t at = first + 2 * c;
             double f, weight;
-            sides(lower[i], upper[i], z[i], dual + at, p->shift + at, barrier, p->slack + at,
-                  p->inverse + at, &f, &weight);
+            barrier_derivatives(lower[i], upper[i], z[i], dual + at, p->shift + at, barrier,
+                                p->slack + at, p->inverse + at, &f, &weight);
             r[i] += f;
             Q[whole ? i * Z + i % Z : i] += weight;
         }
         if (whole)
-            general_linearised(p, k, first + 2 * (size_t)p->bounds, barrier);
+            linearise_general(p, k, first + 2 * (size_t)p->bounds, barrier);
         p->gradient_T[k] = p->hessian_T[k] = 0.0;
         const size_t at = 2 * ((size_t)p->N * constraints_of(p) + k);
-        double *spare = p->slack + at, *inverse = p->inverse + at;
-        spare[1] = p->floor ? m.T[k] - p->floor[k] : 1.0;
-        spare[0] = p->floor ? FAR - spare[1] : 1.0;
-        inverse[0] = 1.0 / spare[0], inverse[1] = 1.0 / spare[1];
+        double *floor_slack = p->slack + at, *inverse = p->inverse + at;
+        floor_slack[1] = p->floor ? m.T[k] - p->floor[k] : 1.0;
+        floor_slack[0] = p->floor ? FAR - floor_slack[1] : 1.0;
+        inverse[0] = 1.0 / floor_slack[0], inverse[1] = 1.0 / floor_slack[1];
         if (p->floor) {
             p->gradient_T[k] = FLOOR_WEIGHT * barrier * (inverse[0] - inverse[1]);
             p->hessian_T[k] = FLOOR_WEIGHT * (dual[at] * inverse[0] + dual[at + 1] * inverse[1]);
@@ -237,7 +240,8 @@ EXPORTED void timing_linearise(const Problem *p, double barrier)
     }
 }
 
-/* How slacks change with a step's size, on which durations change by dT and states by dz. */
+/* Directional derivatives of the slacks along a step that changes durations by dT and states by
+ * dz. */
 void slack_rates(const Problem *p, const double *dT, const double *dz, double *rate)
 {
     const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
@@ -258,9 +262,9 @@ void slack_rates(const Problem *p, const double *dT, const double *dz, double *r
             to[0] = -sum;
             to[1] = sum;
         }
-        double *spare = floors(p, rate) + 2 * k;
-        spare[1] = p->floor ? dT[k] : 0.0;
-        spare[0] = -spare[1];
+        double *floor_slack = floors(p, rate) + 2 * k;
+        floor_slack[1] = p->floor ? dT[k] : 0.0;
+        floor_slack[0] = -floor_slack[1];
     }
     const size_t all = slacks_size(p);
     for (size_t i = 0; i < all && p->shifted; ++i)

@@ -12,7 +12,7 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* What Python calls. */
+/* Marks the functions that Python calls. */
 #ifndef RRR_TRAJ_PLANNER_EXPORT_H
 #define RRR_TRAJ_PLANNER_EXPORT_H
 

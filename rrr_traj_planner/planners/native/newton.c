@@ -12,8 +12,10 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* One Newton step on a sequence of ramps: segments condensed to their borders, durations eliminated,
- * what is left solved as a band . The cost is linear in ramps and segments. */
+/* One Newton step on a sequence of ramps. Each segment is condensed to the states at its ends and
+ * its duration (Schur complement), free durations are eliminated, and the velocities and
+ * accelerations at the via points follow from a banded system. The cost is linear in ramps and
+ * segments. */
 #include "blocks.h"
 #include "timing_problem.h"
 
@@ -31,19 +33,20 @@
 #undef J
 #undef FRONT
 
-static const double STIFF = 1e60;  /* on the diagonal of what stays */
-/* Parts of the diagonal that are added until the band is positive definite. */
-static const double STIFFENING[] = {0.0, 1e-9, 1e-6, 1e-3, 1.0};
+static const double FIXED_PIVOT = 1e60;  /* diagonal entry of a velocity that does not change */
+/* Multiples of the diagonal added in turn until the band is positive definite (inertia correction:
+ * Waechter & Biegler 2006, 3.1). */
+static const double REGULARISATION[] = {0.0, 1e-9, 1e-6, 1e-3, 1.0};
 
-/* Coordinates are independent of each other, but for time, where boxes alone limit them. */
-static int apart(const Problem *p)
+/* With bounds alone the coordinates are coupled through the durations only. */
+static int is_decoupled(const Problem *p)
 {
     return p->J == 1 || p->kind == BOUNDS_ALONE;
 }
 
 static size_t rows_size(const Problem *p)
 {
-    return apart(p) ? p->J * one_rows_size(p->n) : three_rows_size(p->n);
+    return is_decoupled(p) ? p->J * one_rows_size(p->n) : three_rows_size(p->n);
 }
 
 static size_t band_size(const Problem *p)
@@ -51,7 +54,7 @@ static size_t band_size(const Problem *p)
     return (size_t)p->N * 2 * p->J * (4 * p->J + 3);
 }
 
-/* How many numbers of scratch the solution takes. */
+/* The size of the scratch memory of newton_step, in doubles. */
 EXPORTED int64_t timing_newton_size(const Problem *p)
 {
     const size_t B = 4 * p->J, P = 2 * p->n + 1;
@@ -59,9 +62,9 @@ EXPORTED int64_t timing_newton_size(const Problem *p)
         + P * (4 + 16 + 4 + 4) + (size_t)p->n + (p->N + 1) * 2 * p->J;
 }
 
-/* Take one coordinate's part of states, first and second derivatives. */
-static void picked(const Problem *p, int j, const double *z, const double *Q, const double *r,
-                   double *own_z, double *own_Q, double *own_r)
+/* Copy one coordinate's states and its first and second derivatives. */
+static void extract_coordinate(const Problem *p, int j, const double *z, const double *Q,
+                               const double *r, double *own_z, double *own_Q, double *own_r)
 {
     const int J = p->J, Z = 4 * J;
     for (int i = 0; i < 2 * p->n + 1; ++i)
@@ -75,61 +78,63 @@ static void picked(const Problem *p, int j, const double *z, const double *Q, co
         }
 }
 
-/* Steps at the via points (N + 1, 2 J), and of the common unknown of tied durations. */
-static double coupled(const Problem *p, const double *S, const double *r, double tie_tie,
-                      double tie_r, double *at_vias, double *memory)
+/* Solve for the steps of velocities and accelerations at the via points (N + 1, 2 J); returns the
+ * step of the factor common to the durations of fixed proportions. */
+static double solve_via_points(const Problem *p, const double *S, const double *r,
+                               double common_hessian, double common_gradient, double *via_step,
+                               double *memory)
 {
-    const int N = p->N, H = 2 * p->J, B = 2 * H, W = B + 1, m = (N - 1) * H, w = 2 * H;
+    const int N = p->N, half = 2 * p->J, B = 2 * half, W = B + 1, m = (N - 1) * half, w = 2 * half;
     double *band = memory, *right = band + (size_t)m * w;
     double *solved = right + 2 * m;  /* band and right again: to solve in */
-    memset(at_vias, 0, (size_t)(N + 1) * H * sizeof(double));
+    memset(via_step, 0, (size_t)(N + 1) * half * sizeof(double));
     if (m == 0)
-        return tie_tie != 0.0 ? -tie_r / tie_tie : 0.0;
+        return common_hessian != 0.0 ? -common_gradient / common_hessian : 0.0;
     memset(band, 0, (size_t)m * w * sizeof(double));
     for (int k = 0; k < N - 1; ++k) {
         const double *one = S + (size_t)k * W * W, *next = one + (size_t)W * W;
-        for (int i = 0; i < H; ++i) {
-            double *column = band + ((size_t)k * H + i) * w;
-            for (int c = i; c < H; ++c)
-                column[c - i] = one[(H + c) * W + H + i] + next[c * W + i];
+        for (int i = 0; i < half; ++i) {
+            double *column = band + ((size_t)k * half + i) * w;
+            for (int c = i; c < half; ++c)
+                column[c - i] = one[(half + c) * W + half + i] + next[c * W + i];
             if (k < N - 2)
-                for (int c = 0; c < H; ++c)
-                    column[H + c - i] = next[(H + c) * W + i];
-            right[2 * (k * H + i)] = r[(size_t)k * W + H + i] + r[(size_t)(k + 1) * W + i];
-            right[2 * (k * H + i) + 1] = p->tie[k] * one[(H + i) * W + B]
-                + p->tie[k + 1] * next[i * W + B];
-            if (i < p->J && p->still[k * p->J + i])
-                column[0] = STIFF;
+                for (int c = 0; c < half; ++c)
+                    column[half + c - i] = next[(half + c) * W + i];
+            right[2 * (k * half + i)] = r[(size_t)k * W + half + i] + r[(size_t)(k + 1) * W + i];
+            right[2 * (k * half + i) + 1] = p->proportions[k] * one[(half + i) * W + B]
+                + p->proportions[k + 1] * next[i * W + B];
+            if (i < p->J && p->fixed_velocity[k * p->J + i])
+                column[0] = FIXED_PIVOT;
         }
     }
     const size_t all = (size_t)m * (w + 2);
-    for (size_t trial = 0; trial <= sizeof STIFFENING / sizeof *STIFFENING; ++trial) {
+    for (size_t trial = 0; trial <= sizeof REGULARISATION / sizeof *REGULARISATION; ++trial) {
         memcpy(solved, band, all * sizeof(double));
-        if (trial == sizeof STIFFENING / sizeof *STIFFENING) {
+        if (trial == sizeof REGULARISATION / sizeof *REGULARISATION) {
             for (int c = 0; c < m; ++c)
                 for (int s = 0; s < 2; ++s)
                     solved[(size_t)m * w + 2 * c + s] /= fabs(band[(size_t)c * w]);
             break;
         }
         for (int c = 0; c < m; ++c)
-            solved[(size_t)c * w] += STIFFENING[trial] * fabs(band[(size_t)c * w]);
-        if (!band_solved(solved, solved + (size_t)m * w, m, w, 2))
+            solved[(size_t)c * w] += REGULARISATION[trial] * fabs(band[(size_t)c * w]);
+        if (!solve_band(solved, solved + (size_t)m * w, m, w, 2))
             break;
     }
     const double *x = solved + (size_t)m * w;
-    double by_r = 0.0, by_tie = 0.0, common = 0.0;
+    double by_r = 0.0, by_common = 0.0, common = 0.0;
     for (int c = 0; c < m; ++c) {
         by_r += right[2 * c + 1] * x[2 * c];
-        by_tie += right[2 * c + 1] * x[2 * c + 1];
+        by_common += right[2 * c + 1] * x[2 * c + 1];
     }
-    if (tie_tie != 0.0)
-        common = -(tie_r - by_r) / (tie_tie - by_tie);
+    if (common_hessian != 0.0)
+        common = -(common_gradient - by_r) / (common_hessian - by_common);
     for (int c = 0; c < m; ++c)
-        at_vias[H + c] = -(x[2 * c] + x[2 * c + 1] * common);
+        via_step[half + c] = -(x[2 * c] + x[2 * c + 1] * common);
     return common;
 }
 
-int newton_solved(const Problem *p, const double *Q, const double *r, const double *r_T,
+int newton_step(const Problem *p, const double *Q, const double *r, const double *r_T,
                   double *direction, double *dz, double *gain)
 {
     const Variables m = variables_at(p, p->variables), step = variables_at(p, direction);
@@ -139,15 +144,15 @@ int newton_solved(const Problem *p, const double *Q, const double *r, const doub
     double *S = memory, *right = S + (size_t)N * W * W;
     double *rows = right + (size_t)N * W;
     double *own_z = rows + N * rows_size(p), *own_Q = own_z + 4 * P, *own_r = own_Q + 16 * P;
-    double *own_dz = own_r + 4 * P, *own_inner = own_dz + 4 * P, *at_vias = own_inner + n;
-    double *band = at_vias + (size_t)(N + 1) * 2 * J;
+    double *own_dz = own_r + 4 * P, *own_inner = own_dz + 4 * P, *via_step = own_inner + n;
+    double *band = via_step + (size_t)(N + 1) * 2 * J;
     for (int k = 0; k < N; ++k) {
         double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
         const double *zk = z + (size_t)k * P * Z, *Qk = Q + k * hessian_size(p);
-        const double *pull = r + (size_t)k * P * Z;
-        double *kept = rows + k * rows_size(p);
-        if (!apart(p)) {
-            if (three_condensed(p, m.T[k], zk, Qk, pull, Sk, rk, (three_Rows *)kept))
+        const double *gradient = r + (size_t)k * P * Z;
+        double *condensed_rows = rows + k * rows_size(p);
+        if (!is_decoupled(p)) {
+            if (three_condense(p, m.T[k], zk, Qk, gradient, Sk, rk, (three_Rows *)condensed_rows))
                 return 1;
         } else {
             memset(Sk, 0, (size_t)W * W * sizeof(double));
@@ -155,9 +160,9 @@ int newton_solved(const Problem *p, const double *Q, const double *r, const doub
             for (int j = 0; j < J; ++j) {
                 double one[25], one_r[5];
                 const int at[5] = {j, J + j, 2 * J + j, 3 * J + j, B};
-                picked(p, j, zk, Qk, pull, own_z, own_Q, own_r);
-                if (one_condensed(p, m.T[k], own_z, own_Q, own_r, one, one_r,
-                                  (one_Rows *)(kept + j * one_rows_size(n))))
+                extract_coordinate(p, j, zk, Qk, gradient, own_z, own_Q, own_r);
+                if (one_condense(p, m.T[k], own_z, own_Q, own_r, one, one_r,
+                                  (one_Rows *)(condensed_rows + j * one_rows_size(n))))
                     return 1;
                 for (int a = 0; a < 5; ++a) {
                     rk[at[a]] += one_r[a];
@@ -169,11 +174,11 @@ int newton_solved(const Problem *p, const double *Q, const double *r, const doub
         Sk[B * W + B] += Q_T[k];
         rk[B] += r_T[k] + p->weights[k];
     }
-    double tie_tie = 0.0, tie_r = 0.0;
+    double common_hessian = 0.0, common_gradient = 0.0;
     for (int k = 0; k < N; ++k) {  /* free durations are eliminated */
         double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
-        tie_tie += p->tie[k] * p->tie[k] * Sk[B * W + B];
-        tie_r += p->tie[k] * rk[B];
+        common_hessian += p->proportions[k] * p->proportions[k] * Sk[B * W + B];
+        common_gradient += p->proportions[k] * rk[B];
         if (!p->free[k] || Sk[B * W + B] == 0.0)
             continue;
         for (int i = 0; i < B; ++i) {
@@ -183,12 +188,13 @@ int newton_solved(const Problem *p, const double *Q, const double *r, const doub
             rk[i] -= factor * rk[B];
         }
     }
-    const double common = coupled(p, S, right, tie_tie, tie_r, at_vias, band);
+    const double common = solve_via_points(p, S, right, common_hessian, common_gradient, via_step,
+                                           band);
     *gain = 0.0;
     for (int k = 0; k < N; ++k) {
         const double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
-        const double *border = at_vias + (size_t)k * 2 * J;  /* v0, a0, v1, a1: side by side */
-        double dT = p->tie[k] * common;
+        const double *border = via_step + (size_t)k * 2 * J;  /* v0, a0, v1, a1 in a row */
+        double dT = p->proportions[k] * common;
         if (p->free[k]) {
             dT = 0.0;
             if (Sk[B * W + B] != 0.0) {
@@ -201,9 +207,9 @@ int newton_solved(const Problem *p, const double *Q, const double *r, const doub
         step.T[k] = dT;
         const double *zk = z + (size_t)k * P * Z;
         double *to = dz + (size_t)k * P * Z, *inner = step.inner + (size_t)k * (n - 1) * J;
-        const double *kept = rows + k * rows_size(p);
-        if (!apart(p))
-            three_expanded(p, m.T[k], zk, border, dT, (const three_Rows *)kept, inner, to);
+        const double *condensed_rows = rows + k * rows_size(p);
+        if (!is_decoupled(p))
+            three_expand(p, m.T[k], zk, border, dT, (const three_Rows *)condensed_rows, inner, to);
         else
             for (int j = 0; j < J; ++j) {
                 const double own[4] = {border[j], border[J + j], border[2 * J + j],
@@ -211,23 +217,24 @@ int newton_solved(const Problem *p, const double *Q, const double *r, const doub
                 for (int i = 0; i < P; ++i)
                     for (int a = 0; a < 4; ++a)
                         own_z[4 * i + a] = zk[i * Z + a * J + j];
-                one_expanded(p, m.T[k], own_z, own, dT,
-                             (const one_Rows *)(kept + j * one_rows_size(n)), own_inner, own_dz);
+                one_expand(p, m.T[k], own_z, own, dT,
+                             (const one_Rows *)(condensed_rows + j * one_rows_size(n)), own_inner,
+                             own_dz);
                 for (int i = 0; i < n - 1; ++i)
                     inner[i * J + j] = own_inner[i];
                 for (int i = 0; i < P; ++i)
                     for (int a = 0; a < 4; ++a)
                         to[i * Z + a * J + j] = own_dz[4 * i + a];
             }
-        const double *pull = r + (size_t)k * P * Z;
+        const double *gradient = r + (size_t)k * P * Z;
         for (int i = 0; i < P * Z; ++i)
-            *gain -= pull[i] * to[i];
+            *gain -= gradient[i] * to[i];
         *gain -= (r_T[k] + p->weights[k]) * dT;
     }
     for (int k = 0; k < N - 1; ++k)
         for (int j = 0; j < J; ++j) {
-            step.v[k * J + j] = at_vias[(size_t)(k + 1) * 2 * J + j];
-            step.a[k * J + j] = at_vias[(size_t)(k + 1) * 2 * J + J + j];
+            step.v[k * J + j] = via_step[(size_t)(k + 1) * 2 * J + j];
+            step.a[k * J + j] = via_step[(size_t)(k + 1) * 2 * J + J + j];
         }
     return 0;
 }

@@ -12,31 +12,31 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* What joints and motors do along a path, by place, speed, acceleration and jerk along it
- * (path_constraints.py). */
+/* Joint velocity, acceleration, jerk and torque as functions of position, speed, acceleration and
+ * jerk along a path (path_timing/constraints.py), with first and second derivatives. */
 #include "timing_problem.h"
 #include "path_table.h"
 
-/* Columns of the table at a place of a segment, and derivatives up to an order. */
-static void demanded(const Problem *p, int segment, int point, double s, int order,
+/* Columns of the table at position s of a segment, and their derivatives by s up to an order. */
+static void table_at(const Problem *p, int segment, int point, double s, int order,
                      double found[3][KINDS][3])
 {
     const double begin = p->points[segment], length = p->points[segment + 1] - begin;
     double x;
-    size_t apart;
+    size_t stride;
     const double *c3 = path_interval(p->table + (size_t)segment * 4 * p->intervals * COLUMNS,
-                                     p->intervals, (s - begin) / length, &apart, &x);
-    const double *c2 = c3 + apart, *c1 = c2 + apart;
+                                     p->intervals, (s - begin) / length, &stride, &x);
+    const double *c2 = c3 + stride, *c1 = c2 + stride;
     const double per = 1.0 / length;
     double *first = &found[1][0][0], *second = &found[2][0][0];
-    path_columns(c3, apart, x, &found[0][0][0]);
+    path_columns(c3, stride, x, &found[0][0][0]);
     if (order > 0)
         for (int k = 0; k < COLUMNS; ++k)
             first[k] = ((3.0 * c3[k] * x + 2.0 * c2[k]) * x + c1[k]) * per;
     if (order > 1)
         for (int k = 0; k < COLUMNS; ++k)
             second[k] = (6.0 * c3[k] * x + 2.0 * c2[k]) * per * per;
-    if (point == p->n) {  /* where a controller's quintic overshoots */
+    if (point == p->n) {  /* margin for the overshoot of a controller's quintic */
         const double *more = p->overshoot + 6 * (size_t)segment;
         for (int j = 0; j < 3; ++j)
             found[0][DDQ][j] += more[j], found[0][C][j] += more[3 + j];
@@ -48,11 +48,11 @@ void path_at(const Problem *p, int segment, int point, const double *z, double *
 {
     double found[3][KINDS][3];
     const double v = z[1], a = z[2], jerk = z[3];
-    demanded(p, segment, point, z[0], second ? 2 : gradient ? 1 : 0, found);
+    table_at(p, segment, point, z[0], second ? 2 : gradient ? 1 : 0, found);
     const double (*d)[3] = (const double (*)[3])found[0], (*s)[3] = (const double (*)[3])found[1],
         (*ss)[3] = (const double (*)[3])found[2];
     if (x)
-        path_limited(d, v, a, jerk, x);
+        limited_quantities(d, v, a, jerk, x);
     for (int j = 0; gradient && j < 3; ++j) {
         double *g = gradient + 4 * j;
         g[0] = s[DQ][j] * v, g[1] = d[DQ][j], g[2] = 0.0, g[3] = 0.0;

@@ -12,7 +12,8 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* A path's table (path_table.py). */
+/* A path's table (path_timing/table.py): along s, dq/ds and further derivatives, and the dynamics
+ * along the path, torque = M sdd + C sd^2 + G (Bobrow, Dubowsky & Gibson 1985). */
 #ifndef RRR_TRAJ_PLANNER_PATH_TABLE_H
 #define RRR_TRAJ_PLANNER_PATH_TABLE_H
 
@@ -21,29 +22,29 @@
 enum { DQ, DDQ, DDDQ, M, C, G, KINDS };  /* columns of the table, of three joints each */
 enum { COLUMNS = 3 * KINDS };
 
-/* Cubic coefficients, highest first, of all columns at a part u of a segment, rows of COLUMNS that
- * are so far apart; and how far u is into its interval. */
+/* The cubic coefficients, highest first, of all columns at a part u of a segment: rows of COLUMNS,
+ * stride doubles from each other; x receives the distance of u from the start of its interval. */
 static inline const double *path_interval(const double *rows, int intervals, double u,
-                                          size_t *apart, double *x)
+                                          size_t *stride, double *x)
 {
     const double scaled = u * intervals;
     /* compared before it becomes an integer: a step that is far too long leads anywhere */
     const int i = !(scaled > 0.0) ? 0 : scaled < intervals - 1 ? (int)scaled : intervals - 1;
-    *apart = (size_t)intervals * COLUMNS;
+    *stride = (size_t)intervals * COLUMNS;
     *x = (scaled - i) / intervals;
     return rows + (size_t)i * COLUMNS;
 }
 
-/* The columns there. */
-static inline void path_columns(const double *c3, size_t apart, double x, double *value)
+/* The values of all columns there. */
+static inline void path_columns(const double *c3, size_t stride, double x, double *value)
 {
-    const double *c2 = c3 + apart, *c1 = c2 + apart, *c0 = c1 + apart;
+    const double *c2 = c3 + stride, *c1 = c2 + stride, *c0 = c1 + stride;
     for (int k = 0; k < COLUMNS; ++k)
         value[k] = ((c3[k] * x + c2[k]) * x + c1[k]) * x + c0[k];
 }
 
-/* What joints and motors do (12): velocity, acceleration, jerk and torque of three joints each. */
-static inline void path_limited(const double d[KINDS][3], double v, double a, double jerk,
+/* The limited quantities (12): velocity, acceleration, jerk and torque of three joints each. */
+static inline void limited_quantities(const double d[KINDS][3], double v, double a, double jerk,
                                 double *x)
 {
     for (int j = 0; j < 3; ++j) {

@@ -12,7 +12,7 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* Chains of ramps: states of a motion, and steps that meet the via points again. */
+/* Sequences of ramps: states of a motion, and steps after which it meets the via points again. */
 #include "timing_problem.h"
 
 static double node(const Problem *p, Variables m, int k, int i, int j)
@@ -39,11 +39,11 @@ void motion_states(const Problem *p, Variables m, double *z)
                     break;
                 const double rise = node(p, m, k, i + 1, j) - a;
                 at += (size_t)(n + 1) * 4 * J;
-                at[0] = q + h * (0.5 * v + h * (0.125 * a + p->ramp.way * rise));
-                at[J] = v + h * (0.5 * a + p->ramp.speed * rise);
+                at[0] = q + h * (0.5 * v + h * (0.125 * a + p->ramp.mid_q * rise));
+                at[J] = v + h * (0.5 * a + p->ramp.mid_qd * rise);
                 at[2 * J] = a + 0.5 * rise;
-                at[3 * J] = p->ramp.peak * rise / h;
-                q += h * (v + h * (0.5 * a + p->ramp.whole * rise));
+                at[3 * J] = p->ramp.peak_jerk * rise / h;
+                q += h * (v + h * (0.5 * a + p->ramp.end_q * rise));
                 v += h * (a + 0.5 * rise);
             }
         }
@@ -59,24 +59,25 @@ static void restore(const Problem *p, Variables m)
         for (int j = 0; j < J; ++j) {
             const double v0 = k == 0 ? 0.0 : m.v[(k - 1) * J + j];
             const double v1 = k == p->N - 1 ? 0.0 : m.v[k * J + j];
-            double speed = 0.0, way = 0.0;  /* gained, over h and h^2 */
+            double dv = 0.0, dq = 0.0;  /* changes of v / h and of q / h^2; then residuals */
             for (int i = 0; i < n; ++i) {
                 const double a = node(p, m, k, i, j), rise = node(p, m, k, i + 1, j) - a;
-                way += speed + 0.5 * a + p->ramp.whole * rise;
-                speed += a + 0.5 * rise;
+                dq += dv + 0.5 * a + p->ramp.end_q * rise;
+                dv += a + 0.5 * rise;
             }
-            speed = (v1 - v0) / h - speed;
-            way = (p->points[(k + 1) * J + j] - p->points[k * J + j] - m.T[k] * v0) / (h * h)
-                - way;
+            dv = (v1 - v0) / h - dv;
+            dq = (p->points[(k + 1) * J + j] - p->points[k * J + j] - m.T[k] * v0) / (h * h)
+                - dq;
             for (int i = 0; i < n - 1; ++i)
                 m.inner[((size_t)k * (n - 1) + i) * J + j] +=
-                    p->restore[2 * i] * speed + p->restore[2 * i + 1] * way;
+                    p->restore[2 * i] * dv + p->restore[2 * i + 1] * dq;
         }
     }
 }
 
-/* Follow a step; 0 where a duration would not be positive. */
-int motion_stepped(const Problem *p, Variables m, Variables step, double size, Variables moved)
+/* Take a step of the variables in normalised time: velocities times T and accelerations times T^2
+ * change linearly with its size. Returns 0 where a duration would not be positive. */
+int step_motion(const Problem *p, Variables m, Variables step, double size, Variables moved)
 {
     const int J = p->J, n = p->n;
     for (int k = 0; k < p->N; ++k) {
@@ -91,7 +92,7 @@ int motion_stepped(const Problem *p, Variables m, Variables step, double size, V
                 / (slower * slower);
     }
     for (int k = 0; k < p->N - 1; ++k) {
-        /* of the segments that a via point is between, above all the shorter: less play */
+        /* time scale at a via point: mean of both segments', the shorter one's counting more */
         const double before = m.T[k] * m.T[k] * m.T[k];
         const double after = m.T[k + 1] * m.T[k + 1] * m.T[k + 1];
         const double beside = (step.T[k] / m.T[k] * after + step.T[k + 1] / m.T[k + 1] * before)

@@ -12,14 +12,14 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The family of motions: accelerations that rise from node to node in ramps of one shape. */
+/* The family of motions: accelerations that change from node to node in ramps of one shape. */
 #ifndef RRR_TRAJ_PLANNER_RAMPS_H
 #define RRR_TRAJ_PLANNER_RAMPS_H
 
-/* Of a unit ramp, see core/motion_laws/ramps.py: what its rise adds to the way at its end and half-way, to the
- * speed half-way, and its peak of jerk. */
+/* A ramp of unit duration and unit rise of acceleration (core/motion_laws/ramps.py): the
+ * displacement at its end and half-way, the velocity half-way, and the peak of jerk. */
 typedef struct {
-    double whole, way, speed, peak;
+    double end_q, mid_q, mid_qd, peak_jerk;
 } Ramp;
 
 #endif

@@ -12,7 +12,8 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* Transition, cruise, transition: how far one joint comes in a segment (segment.py). */
+/* The largest displacement of one joint in a segment of transition, cruise and transition
+ * (transitions/reach.py, transitions/transition_law.py). */
 #include "reach.h"
 
 #include "export.h"
@@ -38,14 +39,14 @@ double change_rate(const Law *law, double T)
         : 1.0 / law->slope;
 }
 
-/* How far the cruise is above the faster end: y >= 0 with t(y) + t(y + gap) = T. */
+/* By how much the cruise is above the faster end velocity: y >= 0 with t(y) + t(y + gap) = T. */
 static double rise(const Law *law, double gap, double T)
 {
     const double slope = law->slope, root = law->root;
     const double by_acceleration = 0.5 * (T / slope - gap);
     if (!(root > 0.0))
         return fmax(by_acceleration, 0.0);
-    const double change = (root / slope) * (root / slope);  /* below it, jerk rules */
+    const double change = (root / slope) * (root / slope);  /* below it the jerk limit is active */
     if (by_acceleration >= change)
         return by_acceleration;
     const double over = fmax((T / root) * (T / root) - gap, 0.0) * root / (2.0 * T);
@@ -62,7 +63,8 @@ static double least_time(const Law *law, double u)
     return fmax(law->slope * u, law->root * sqrt(u));
 }
 
-/* Displacement with shortest transitions to and from a cruise that is not below either end. */
+/* The displacement with shortest transitions to and from a cruise not below either end velocity.
+ */
 static double displacement(const Law *law, double cruise, double v0, double v1, double T)
 {
     const double u0 = cruise - v0, u1 = cruise - v1;
@@ -79,18 +81,23 @@ double reach(const Law *law, double v0, double v1, double T)
     return displacement(law, fastest_cruise(law, v0, v1, T), v0, v1, T);
 }
 
+/* A transition by u: its duration t(u), i = 1 / t'(u), m = (t + u / i) / (2 t), k = i di/du; see
+ * `derivatives` in transitions/reach.py. */
 typedef struct {
-    double t, m, i, k;  /* of a transition by u: its duration t, m and i of transition_law.py; k is how i changes with u, times i */
+    double t, m, i, k;
 } Transition;
 
 static Transition transition(const Law *law, double u)
 {
     const double by_acceleration = law->slope * u, by_jerk = law->root * sqrt(u);
-    const Transition jerky = {by_jerk, 0.75, 2.0 * u / by_jerk, 2.0 / (law->root * law->root)};
-    const Transition hard = {by_acceleration, 1.0, 1.0 / law->slope, 0.0};
-    return by_jerk > by_acceleration ? jerky : hard;
+    const Transition jerk_limited = {by_jerk, 0.75, 2.0 * u / by_jerk,
+                                     2.0 / (law->root * law->root)};
+    const Transition acceleration_limited = {by_acceleration, 1.0, 1.0 / law->slope, 0.0};
+    return by_jerk > by_acceleration ? jerk_limited : acceleration_limited;
 }
 
+/* The cruise c follows from t(c - v0) + t(c - v1) = T, or is the velocity limit; its derivatives
+ * by v0, v1 and T, and the displacement's by c, give the others by the chain rule. */
 ReachDerivatives reach_derivatives(const Law *law, double v0, double v1, double T)
 {
     const double free = fmax(v0, v1) + rise(law, fabs(v1 - v0), T);
@@ -100,25 +107,25 @@ ReachDerivatives reach_derivatives(const Law *law, double v0, double v1, double 
     const Transition a = transition(law, u0), b = transition(law, u1);
     const double q = capped ? 0.0 : 1.0 / (a.i + b.i), q3 = q * q * q;
     const double own0 = capped ? a.m / a.i : a.m * q, own1 = capped ? b.m / b.i : b.m * q;
-    const double share = b.i * q, rest = a.i * q, by_T = share * a.i;
-    const double left = capped ? 0.0 : T - a.m * a.t - b.m * b.t;
-    const double skew = left * q3 * (a.i * b.k + b.i * a.k);
-    const double skew_T = left * q3 * (a.i * a.i * b.k - b.i * b.i * a.k);
-    const double more = (a.m - b.m) * q, with_T = 1.0 - a.m * share - b.m * rest;
-    const double one_two = a.m * q - more * share - skew;
-    const double one_T = (a.m + with_T) * share + skew_T;
-    const double two_T = (b.m + with_T) * rest - skew_T;
+    const double c_v0 = b.i * q, c_v1 = a.i * q, c_T = c_v0 * a.i;
+    const double by_cruise = capped ? 0.0 : T - a.m * a.t - b.m * b.t;
+    const double skew = by_cruise * q3 * (a.i * b.k + b.i * a.k);
+    const double skew_T = by_cruise * q3 * (a.i * a.i * b.k - b.i * b.i * a.k);
+    const double more = (a.m - b.m) * q, with_T = 1.0 - a.m * c_v0 - b.m * c_v1;
+    const double one_two = a.m * q - more * c_v0 - skew;
+    const double one_T = (a.m + with_T) * c_v0 + skew_T;
+    const double two_T = (b.m + with_T) * c_v1 - skew_T;
     const ReachDerivatives found = {
         cruise * T - 0.5 * (u0 * a.t + u1 * b.t),
-        {a.m * a.t + left * share, b.m * b.t + left * rest, cruise + left * by_T},
-        {{-own0 + more * share + skew, one_two, one_T},
-         {one_two, -own1 - more * rest + skew, two_T},
-         {one_T, two_T, by_T * (1.0 + with_T)
-              + left * q3 * (b.i * b.i * b.i * a.k + a.i * a.i * a.i * b.k)}}};
+        {a.m * a.t + by_cruise * c_v0, b.m * b.t + by_cruise * c_v1, cruise + by_cruise * c_T},
+        {{-own0 + more * c_v0 + skew, one_two, one_T},
+         {one_two, -own1 - more * c_v1 + skew, two_T},
+         {one_T, two_T, c_T * (1.0 + with_T)
+              + by_cruise * q3 * (b.i * b.i * b.i * a.k + a.i * a.i * a.i * b.k)}}};
     return found;
 }
 
-/* See transition_law.py: of count cases with three joints each. */
+/* `_evaluated` of transitions/reach.py, for count cases of three joints each. */
 EXPORTED void reach_at(int32_t count, const double *slope, const double *root,
                        const double *max_velocity, const double *v0, const double *v1,
                        const double *T, double *cruise, double *distance,
@@ -136,8 +143,9 @@ EXPORTED void reach_at(int32_t count, const double *slope, const double *root,
     }
 }
 
-/* The lowest cruises, from lowest up to given ones, that cover displacements D in durations T (count)
- * with shortest transitions; cruise has the given ones at first. */
+/* The least cruise velocities between lowest and cruise with which shortest transitions cover the
+ * displacements D in durations T (count), by bisection; they replace the upper bounds in cruise.
+ */
 EXPORTED void cruise_covering(int32_t count, int32_t bisections, const double *slope,
                               const double *root, const double *lowest, const double *v0,
                               const double *v1, const double *T, const double *D, double *cruise)

@@ -12,7 +12,7 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The largest displacement of a segment and its derivatives; see segment.py. */
+/* The largest displacement of a segment and its derivatives; see transitions/reach.py. */
 #ifndef RRR_TRAJ_PLANNER_REACH_H
 #define RRR_TRAJ_PLANNER_REACH_H
 

@@ -12,7 +12,8 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* What the interior-point method does with steps and multipliers (solver/interior_point.py). */
+/* Trial steps, second-order corrections and multipliers of the interior-point method
+ * (solver/interior_point.py, solver/line_search.py). */
 #include "timing_problem.h"
 
 #include <math.h>
@@ -28,7 +29,7 @@ EXPORTED double timing_cost(const Problem *p, double *variables)
     return sum;
 }
 
-/* Slacks at given variables, with the shifts; gives the least. */
+/* Slacks at given variables, shifts included; returns the least of them. */
 EXPORTED double timing_slacks(const Problem *p, double *variables, double *slack)
 {
     const Variables m = variables_at(p, variables);
@@ -42,7 +43,7 @@ EXPORTED double timing_slacks(const Problem *p, double *variables, double *slack
     return least;
 }
 
-/* Multipliers of the barrier's minimum: barrier / slack. */
+/* Set every multiplier to its value on the central path: barrier / slack. */
 EXPORTED void timing_central_duals(const Problem *p, double barrier)
 {
     const size_t all = slacks_size(p);
@@ -50,7 +51,7 @@ EXPORTED void timing_central_duals(const Problem *p, double barrier)
         p->dual[i] = barrier / p->slack[i];
 }
 
-/* The largest part of a slack by which it falls on the whole step, to first order. */
+/* The largest relative decrease of a slack over the whole step, to first order. */
 static double steepest(const Problem *p, const double *rate)
 {
     const size_t all = slacks_size(p);
@@ -63,11 +64,11 @@ static double steepest(const Problem *p, const double *rate)
     return worst;
 }
 
-/* The Newton step of the linearised problem, with the constraints' own curvature where exact is not 0;
- * whether there is one. */
+/* The Newton step of the linearised problem, with the constraints' second derivatives if exact is
+ * not 0. Returns 0 where there is none. */
 EXPORTED int32_t timing_newton(const Problem *p, int32_t exact, Step *s)
 {
-    if (newton_solved(p, exact ? p->exact : p->hessian, p->gradient, p->gradient_T, s->direction,
+    if (newton_step(p, exact ? p->exact : p->hessian, p->gradient, p->gradient_T, s->direction,
                       p->step_states, &s->gain) || !isfinite(s->gain))
         return 0;
     slack_rates(p, variables_at(p, s->direction).T, p->step_states, s->rate);
@@ -75,29 +76,32 @@ EXPORTED int32_t timing_newton(const Problem *p, int32_t exact, Step *s)
     return 1;
 }
 
-/* The size at which a parabola, through a slack, its rate and its value after a trial, leaves the
- * given part of it: the least of all slacks that kept less; NaN where one is not finite. */
-static double parabola(const Problem *p, const Step *s, double size, double kept)
+/* The step size at which a slack, modelled by the parabola through its value, its derivative and
+ * its value after a trial, is reduced to the given part of itself: the least over all slacks that
+ * were reduced further; NaN where one is not finite. */
+static double parabola(const Problem *p, const Step *s, double size, double retained)
 {
     const size_t all = slacks_size(p);
     double least = INFINITY;
     for (size_t i = 0; i < all; ++i) {
         const double slack = p->slack[i], moved = s->slack[i], rate = s->rate[i];
-        const double fall = (1.0 - kept) * slack;
+        const double fall = (1.0 - retained) * slack;
         if (moved >= slack - fall)
             continue;
         if (!isfinite(moved))
             return NAN;
-        const double bend = (moved - slack - size * rate) / (size * size);
-        const double root = sqrt(rate * rate - 4.0 * bend * fall);
+        const double curvature = (moved - slack - size * rate) / (size * size);
+        const double root = sqrt(rate * rate - 4.0 * curvature * fall);
         least = fmin(least, 2.0 * fall / (root - rate));
     }
     return least;
 }
 
-/* Follow a part of a step; whether every slack keeps the given part of itself. Where one does not, a
- * shorter size at which parabolas say that a wanted part is kept; 0 where they say nothing. */
-EXPORTED int32_t timing_trial(const Problem *p, Step *s, double size, double kept, double wanted)
+/* Try a step of the given size. Returns 1 if every slack retains the given part of itself; else 0,
+ * and `shorter` is the size at which parabolas predict that the target part is retained, 0 if none
+ * does. */
+EXPORTED int32_t timing_trial(const Problem *p, Step *s, double size, double retained,
+                              double target)
 {
     const size_t all = slacks_size(p), unknowns = variables_size(p);
     const Variables moved = variables_at(p, s->variables);
@@ -108,40 +112,40 @@ EXPORTED int32_t timing_trial(const Problem *p, Step *s, double size, double kep
         for (size_t i = 0; i < unknowns; ++i)
             direction[i] = s->direction[i] + size * s->correction[i];
     }
-    if (!motion_stepped(p, variables_at(p, p->variables), variables_at(p, direction), size, moved))
+    if (!step_motion(p, variables_at(p, p->variables), variables_at(p, direction), size, moved))
         return 0;
     motion_states(p, moved, p->trial_states);
     slacks_at(p, moved.T, p->trial_states, 1.0 - size, p->trial_values, s->slack);
     for (size_t i = 0; i < all; ++i)
-        if (!(s->slack[i] >= kept * p->slack[i])) {
-            const double root = parabola(p, s, size, wanted);
+        if (!(s->slack[i] >= retained * p->slack[i])) {
+            const double root = parabola(p, s, size, target);
             s->shorter = root > 0.0 ? root : 0.0;
             return 0;
         }
     s->cost = timing_cost(p, s->variables);
-    s->log = p->shifted ? 0.0 : timing_log(p, s->slack);
+    s->log = p->shifted ? 0.0 : timing_log_sum(p, s->slack);
     return 1;
 }
 
-/* The second-order correction of a step, from how slacks at a trial of the given size differ from
- * their rates; the corrected step is the same but for it. Whether there is one. */
+/* The second-order correction of a step, from the differences of the slacks after a trial of the
+ * given size and their linear prediction. Returns 0 where there is none. */
 EXPORTED int32_t timing_correct(const Problem *p, const Step *s, double size, Step *corrected)
 {
     const size_t all = slacks_size(p);
     const Variables moved = variables_at(p, p->trial_variables);
-    double *pull = p->trial_slack, gain;
-    if (!motion_stepped(p, variables_at(p, p->variables), variables_at(p, s->direction), size,
+    double *weights = p->trial_slack, gain;
+    if (!step_motion(p, variables_at(p, p->variables), variables_at(p, s->direction), size,
                         moved))
         return 0;
     motion_states(p, moved, p->trial_states);
-    slacks_at(p, moved.T, p->trial_states, 1.0 - size, p->trial_values, pull);
+    slacks_at(p, moved.T, p->trial_states, 1.0 - size, p->trial_values, weights);
     for (size_t i = 0; i < all; ++i)
-        pull[i] = -p->dual[i] * p->inverse[i] * (pull[i] - p->slack[i] - size * s->rate[i])
+        weights[i] = -p->dual[i] * p->inverse[i] * (weights[i] - p->slack[i] - size * s->rate[i])
             / (size * size);
-    pulled(p, pull, p->trial_gradient, p->trial_gradient_T);
+    weighted_gradient(p, weights, p->trial_gradient, p->trial_gradient_T);
     for (int k = 0; k < p->N; ++k)
         p->trial_gradient_T[k] -= p->weights[k];  /* the solution adds them */
-    if (newton_solved(p, p->hessian, p->trial_gradient, p->trial_gradient_T, corrected->correction,
+    if (newton_step(p, p->hessian, p->trial_gradient, p->trial_gradient_T, corrected->correction,
                       p->step_states, &gain))
         return 0;
     memcpy(corrected->direction, s->direction, variables_size(p) * sizeof(double));
@@ -150,9 +154,9 @@ EXPORTED int32_t timing_correct(const Problem *p, const Step *s, double size, St
     return 1;
 }
 
-/* Go where the last trial led, if move is not 0. Multipliers follow on a Newton step of their own
- * towards barrier / slack, so much shorter that each keeps a part of itself, and are then at most so
- * many times as large or as small as barrier / slack. */
+/* Accept the last trial, if move is not 0, and update the multipliers: a Newton step of their own
+ * towards barrier / slack, shortened by the fraction to the boundary, then each is confined to
+ * [1 / corridor, corridor] * barrier / slack (Waechter & Biegler 2006, eq. 16). */
 EXPORTED void timing_accept(const Problem *p, const Step *s, int32_t move, double barrier,
                             double to_boundary, double corridor)
 {
@@ -175,9 +179,9 @@ EXPORTED void timing_accept(const Problem *p, const Step *s, int32_t move, doubl
         memcpy(p->variables, s->variables, variables_size(p) * sizeof(double));
 }
 
-/* Take the part of all shifts away that the last trial took of its step, and what is then a small part
- * of its slack. */
-EXPORTED void timing_close(Problem *p, const Step *s, double size, double small)
+/* Reduce all shifts by the size of the last step, and remove those that are then a small part of
+ * their slack. */
+EXPORTED void timing_reduce_shifts(Problem *p, const Step *s, double size, double small)
 {
     double *slack = s->slack;
     const size_t all = slacks_size(p);

@@ -12,13 +12,14 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The least-time problem over segments between via points, with limits on a motion's states; Python
- * holds all arrays and decides on every step: solver/timing_problem.py, solver/interior_point.py.
- * Arrays are dense and row-major.
+/* The least-time problem over segments between via points, with limits on a motion's states.
+ * Python owns all arrays and controls the iteration: solver/timing_problem.py,
+ * solver/interior_point.py. Arrays are dense and row-major.
  *
  * At each of the P = 2 n + 1 points of a segment, first the n + 1 nodes, then the middles between
  * them, the state z has position, velocity, acceleration and jerk of all J coordinates: Z = 4 J
- * values, by kind, then by coordinate. Jerk counts in the middles only: at the nodes it is zero. */
+ * values, by kind, then by coordinate. Jerk is limited at the middles, where it peaks; at the
+ * nodes it is zero. */
 #ifndef RRR_TRAJ_PLANNER_TIMING_PROBLEM_H
 #define RRR_TRAJ_PLANNER_TIMING_PROBLEM_H
 
@@ -29,28 +30,29 @@
 #include <stdint.h>
 
 enum { MOST_JOINTS = 3, MOST_GENERAL = 12 };
-enum { BOUNDS_ALONE, TORQUE, PATH };  /* what the general constraints are */
+enum { BOUNDS_ALONE, TORQUE, PATH };  /* kinds of general constraints */
 
-/* Constraints of a segment are bounds on states, then general ones, each two-sided: slacks of them,
- * and multipliers and so on, are (N, bounds + general, 2), above and below, then (N, 2) of floors. */
+/* Constraints of a segment are bounds on states, then general ones, each two-sided: slacks,
+ * multipliers and shifts are (N, bounds + general, 2), upper and lower, then (N, 2) for least
+ * durations. */
 typedef struct {
     int32_t J, N, n;        /* coordinates, segments, ramps in a segment */
-    int32_t kind, E;        /* of the general constraints, and how many there can be at a point */
-    int32_t bounds, general;  /* constraints of a segment */
+    int32_t kind, E;        /* of the general constraints, and their greatest number at a point */
+    int32_t bounds, general;  /* numbers of constraints of a segment */
     int32_t intervals;      /* of a path's table, in a segment */
     Ramp ramp;
     const double *points;   /* (N + 1, J) */
     const double *restore;  /* (n - 1, 2) */
     const double *lower, *upper;                  /* (N, P, Z) */
     const double *general_lower, *general_upper;  /* (N, P, E) */
-    const int32_t *bound_at, *general_at;  /* which there are: offsets into (P, Z) and (P, E) */
+    const int32_t *bound_at, *general_at;  /* the limited ones: offsets into (P, Z) and (P, E) */
     const uint8_t *has_general;            /* (P) */
     const double *floor;    /* (N), least durations, or NULL */
-    /* Durations: free; or multiples of a common unknown, or fixed (multiples of 0) */
+    /* A duration is free, or the multiple of a common factor, or fixed (proportion 0) */
     const uint8_t *free;    /* (N) */
-    const double *tie;      /* (N) */
+    const double *proportions;      /* (N) */
     const double *weights;  /* (N), of the durations in the objective */
-    const uint8_t *still;   /* (N - 1, J), whose velocity at a via point stays as it is */
+    const uint8_t *fixed_velocity;  /* (N - 1, J), whether a via velocity does not change */
     const double *arm;      /* coefficients of the equations of motion, where kind is TORQUE */
     const double *table;    /* (N, 4, intervals, COLUMNS), cubic coefficients, where it is PATH */
     const double *overshoot;  /* (N, 2, 3), added to ddq and to c at the segments' ends */
@@ -60,32 +62,32 @@ typedef struct {
     double *values;         /* (N, P, E), of the general constraints */
     double *jacobian;       /* (N, P, E, Z) */
     double *slack, *inverse, *dual;
-    double *shift;          /* how far beyond each constraint a value may still be, in its slack */
-    double *hessian, *exact;  /* (N, hessian_size): by states, without and with curvature */
+    double *shift;          /* by which each constraint is relaxed; included in its slack */
+    double *hessian, *exact;  /* (N, hessian_size): without and with second derivatives */
     double *gradient;       /* (N, P, Z), by states */
     double *gradient_T, *hessian_T;    /* (N), by durations themselves */
 
     /* scratch */
     double *trial_variables, *trial_states, *trial_values, *trial_slack;
     double *trial_gradient, *trial_gradient_T, *step_states, *newton;
-    int32_t shifted;        /* whether there are shifts */
+    int32_t shifted;        /* whether any constraint is relaxed */
 } Problem;
 
-/* A Newton step of all variables, and where a part of it leads. */
+/* A Newton step of all variables, and the result of the last trial along it. */
 typedef struct {
     double *direction;
-    double *correction;     /* by the step's size squared, or NULL */
-    double *rate;           /* how slacks change with the step's size */
-    double *variables, *slack;  /* where the last trial led */
-    double gain;            /* that the whole step promises, to first order */
-    double steepest;        /* the largest part of a slack by which it falls on the whole step */
-    double cost, log;       /* where the last trial led: objective, sum of the slacks' logarithms */
+    double *correction;     /* second-order, times the size squared, or NULL */
+    double *rate;           /* derivatives of the slacks by the step's size */
+    double *variables, *slack;  /* after the last trial */
+    double gain;            /* predicted decrease of the merit on the whole step, to first order */
+    double steepest;        /* the largest relative decrease of a slack on the whole step */
+    double cost, log;       /* after the last trial: objective, sum of the slacks' logarithms */
     double shorter;         /* the size that the last trial suggests instead */
 } Step;
 
 static inline size_t points_of(const Problem *p) { return 2 * (size_t)p->n + 1; }
 
-/* Of a segment's Hessian: (P, Z, Z), where there are bounds alone its diagonals (P, Z). */
+/* The size of a segment's Hessian: (P, Z, Z); with bounds alone it is diagonal, (P, Z). */
 static inline size_t hessian_size(const Problem *p)
 {
     const size_t Z = 4 * p->J;
@@ -102,7 +104,7 @@ static inline size_t slacks_size(const Problem *p)
     return 2 * (size_t)p->N * (constraints_of(p) + 1);
 }
 
-/* The unknowns of a motion, one behind the other. */
+/* The unknowns of a motion, contiguous in memory. */
 typedef struct {
     double *inner;          /* (N, n - 1, J), accelerations at a segment's inner nodes */
     double *v, *a;          /* (N - 1, J), velocities and accelerations at via points */
@@ -124,14 +126,13 @@ static inline Variables variables_at(const Problem *p, double *memory)
     return m;
 }
 
-/* ramps.c: the states of a motion, and a step of its variables that keeps the via points; 0 where a
- * duration would not be positive. */
+/* ramps.c: the states of a motion, and a step of its variables after which it meets the via
+ * points. */
 void motion_states(const Problem *p, Variables m, double *z);
-int motion_stepped(const Problem *p, Variables m, Variables step, double size, Variables moved);
+int step_motion(const Problem *p, Variables m, Variables step, double size, Variables moved);
 
 /* torque.c and path_table.c: the general constraints at a point. Values x (E), gradients by state
- * (E, Z), and the weighted sum's second derivatives (Z, Z), added to what is there; NULL: not
- * wanted. */
+ * (E, Z), and second derivatives (Z, Z) of the weighted sum, which are added; each may be NULL. */
 void torque_at(const double *arm, const double *z, double *x, double *gradient,
                const double *weights, double *second);
 void path_at(const Problem *p, int segment, int point, const double *z, double *x,
@@ -141,12 +142,13 @@ void path_at(const Problem *p, int segment, int point, const double *z, double *
 void slacks_at(const Problem *p, const double *T, const double *z, double part, double *x,
                double *slack);
 void slack_rates(const Problem *p, const double *dT, const double *dz, double *rate);
-void pulled(const Problem *p, const double *pull, double *gradient, double *gradient_T);
-double timing_log(const Problem *p, const double *slack);
+void weighted_gradient(const Problem *p, const double *weights, double *gradient,
+                       double *gradient_T);
+double timing_log_sum(const Problem *p, const double *slack);
 
-/* newton.c: solves for a step, and for how states change on it, (N, P, Z); the gain is minus the
- * gradient's product with it. Not 0 where the system is singular. */
-int newton_solved(const Problem *p, const double *hessian, const double *gradient,
+/* newton.c: the Newton step and the changes of the states along it, (N, P, Z); the gain is minus
+ * the product of gradient and step. Returns 1 where the system is singular, else 0. */
+int newton_step(const Problem *p, const double *hessian, const double *gradient,
                   const double *gradient_T, double *direction, double *dz, double *gain);
 
 #endif

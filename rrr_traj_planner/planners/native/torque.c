@@ -12,15 +12,18 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* Torques of the arm, their derivatives by state and their own bends (ramp_constraints.py). */
+/* Joint torques by the equations of motion (thesis (5.39) to (5.54), corrected), with their first
+ * and second derivatives by the state (joint_timing/constraints.py). */
 #include "timing_problem.h"
 
 #include <math.h>
 
-static const double DIFFERENCE = 1e-7;  /* rad, over which the terms change by q2 and q3 */
+static const double DIFFERENCE = 1e-7;  /* rad, step of the difference quotients by q2 and q3 */
 
+/* Terms of the inertia matrix M, its partial derivatives (M11_q2 = dM11/dq2), and gravity's
+ * torque. */
 typedef struct {
-    double H11, H22, H23, H33, D2, D3, bc3, g2, g3;
+    double M11, M22, M23, M33, M11_q2, M11_q3, M23_q3, g2, g3;
 } Terms;
 
 enum { A2, L3, M3, BASE, UPPER, FORE, SHOULDER, ELBOW, COUPLING, UPPER_WEIGHT, FORE_WEIGHT };
@@ -30,50 +33,51 @@ static Terms terms(const double *k, double q2, double q3)
     const double s2 = sin(q2), c2 = cos(q2), s3 = sin(q3), c3 = cos(q3);
     const double s23 = s2 * c3 + c2 * s3, c23 = c2 * c3 - s2 * s3;
     const double r = k[L3] * s23 + k[A2] * c2, m3r = k[M3] * r, fore = k[FORE] * s23;
-    const double half_D3 = (fore + m3r * k[L3]) * c23, bs3 = k[COUPLING] * s3;
+    const double half_M11_q3 = (fore + m3r * k[L3]) * c23, M23_part = k[COUPLING] * s3;
     Terms t;
-    t.H11 = k[BASE] + k[UPPER] * c2 * c2 + fore * s23 + m3r * r;
-    t.H22 = k[SHOULDER] + 2.0 * bs3;
-    t.H23 = k[ELBOW] + bs3;
-    t.H33 = k[ELBOW];
-    t.D2 = 2.0 * (half_D3 - (k[UPPER] * c2 + m3r * k[A2]) * s2);
-    t.D3 = 2.0 * half_D3;
-    t.bc3 = k[COUPLING] * c3;
+    t.M11 = k[BASE] + k[UPPER] * c2 * c2 + fore * s23 + m3r * r;
+    t.M22 = k[SHOULDER] + 2.0 * M23_part;
+    t.M23 = k[ELBOW] + M23_part;
+    t.M33 = k[ELBOW];
+    t.M11_q2 = 2.0 * (half_M11_q3 - (k[UPPER] * c2 + m3r * k[A2]) * s2);
+    t.M11_q3 = 2.0 * half_M11_q3;
+    t.M23_q3 = k[COUPLING] * c3;
     t.g3 = k[FORE_WEIGHT] * s23;
     t.g2 = k[UPPER_WEIGHT] * c2 + t.g3;
     return t;
 }
 
-static Terms change(Terms a, Terms b, double difference)
+static Terms difference_quotient(Terms from, Terms to, double step)
 {
-    Terms d = {(b.H11 - a.H11) / difference, (b.H22 - a.H22) / difference,
-               (b.H23 - a.H23) / difference, (b.H33 - a.H33) / difference,
-               (b.D2 - a.D2) / difference, (b.D3 - a.D3) / difference,
-               (b.bc3 - a.bc3) / difference, (b.g2 - a.g2) / difference,
-               (b.g3 - a.g3) / difference};
+    Terms d = {(to.M11 - from.M11) / step, (to.M22 - from.M22) / step,
+               (to.M23 - from.M23) / step, (to.M33 - from.M33) / step,
+               (to.M11_q2 - from.M11_q2) / step, (to.M11_q3 - from.M11_q3) / step,
+               (to.M23_q3 - from.M23_q3) / step, (to.g2 - from.g2) / step,
+               (to.g3 - from.g3) / step};
     return d;
 }
 
-static void torques(const Terms *t, const double *w, const double *a, double *tau)
+static void torques(const Terms *t, const double *qd, const double *qdd, double *tau)
 {
-    const double half = 0.5 * w[0] * w[0];
-    tau[0] = t->H11 * a[0] + (t->D2 * w[1] + t->D3 * w[2]) * w[0];
-    tau[1] = t->H22 * a[1] + t->H23 * a[2] + t->bc3 * w[2] * (w[2] + 2.0 * w[1]) - t->D2 * half
-        + t->g2;
-    tau[2] = t->H23 * a[1] + t->H33 * a[2] - t->D3 * half - t->bc3 * w[1] * w[1] + t->g3;
+    const double half = 0.5 * qd[0] * qd[0];
+    tau[0] = t->M11 * qdd[0] + (t->M11_q2 * qd[1] + t->M11_q3 * qd[2]) * qd[0];
+    tau[1] = t->M22 * qdd[1] + t->M23 * qdd[2] + t->M23_q3 * qd[2] * (qd[2] + 2.0 * qd[1])
+        - t->M11_q2 * half + t->g2;
+    tau[2] = t->M23 * qdd[1] + t->M33 * qdd[2] - t->M11_q3 * half - t->M23_q3 * qd[1] * qd[1]
+        + t->g3;
 }
 
 void torque_at(const double *arm, const double *z, double *x, double *gradient,
                const double *weights, double *second)
 {
-    const double *q = z, *w = z + 3, *a = z + 6;
+    const double *q = z, *qd = z + 3, *qdd = z + 6;
     const Terms t = terms(arm, q[1], q[2]);
     if (x)
-        torques(&t, w, a, x);
+        torques(&t, qd, qdd, x);
     if (!gradient && !second)
         return;
-    const Terms by[2] = {change(t, terms(arm, q[1] + DIFFERENCE, q[2]), DIFFERENCE),
-                         change(t, terms(arm, q[1], q[2] + DIFFERENCE), DIFFERENCE)};
+    const Terms by[2] = {difference_quotient(t, terms(arm, q[1] + DIFFERENCE, q[2]), DIFFERENCE),
+                         difference_quotient(t, terms(arm, q[1], q[2] + DIFFERENCE), DIFFERENCE)};
     if (gradient) {
         double (*g)[12] = (double (*)[12])gradient;
         for (int e = 0; e < 3; ++e)
@@ -81,37 +85,40 @@ void torque_at(const double *arm, const double *z, double *x, double *gradient,
                 g[e][c] = 0.0;
         for (int c = 0; c < 2; ++c) {
             double tau[3];
-            torques(&by[c], w, a, tau);
+            torques(&by[c], qd, qdd, tau);
             for (int e = 0; e < 3; ++e)
                 g[e][1 + c] = tau[e];
         }
-        g[0][3] = t.D2 * w[1] + t.D3 * w[2], g[0][4] = t.D2 * w[0], g[0][5] = t.D3 * w[0];
-        g[1][3] = -t.D2 * w[0], g[1][4] = 2.0 * t.bc3 * w[2];
-        g[1][5] = 2.0 * t.bc3 * (w[1] + w[2]);
-        g[2][3] = -t.D3 * w[0], g[2][4] = -2.0 * t.bc3 * w[1];
-        g[0][6] = t.H11, g[1][7] = t.H22, g[1][8] = g[2][7] = t.H23, g[2][8] = t.H33;
+        g[0][3] = t.M11_q2 * qd[1] + t.M11_q3 * qd[2];
+        g[0][4] = t.M11_q2 * qd[0], g[0][5] = t.M11_q3 * qd[0];
+        g[1][3] = -t.M11_q2 * qd[0], g[1][4] = 2.0 * t.M23_q3 * qd[2];
+        g[1][5] = 2.0 * t.M23_q3 * (qd[1] + qd[2]);
+        g[2][3] = -t.M11_q3 * qd[0], g[2][4] = -2.0 * t.M23_q3 * qd[1];
+        g[0][6] = t.M11, g[1][7] = t.M22, g[1][8] = g[2][7] = t.M23, g[2][8] = t.M33;
     }
     if (second) {
-        double H[9][9] = {{0.0}};
-        const double s1 = weights[0], s2 = weights[1], s3 = weights[2];
+        double hessian[9][9] = {{0.0}};
+        const double l1 = weights[0], l2 = weights[1], l3 = weights[2];
         for (int c = 0; c < 2; ++c) {
             const Terms *d = &by[c];
-            double *row = H[1 + c];
-            row[3] = s1 * (d->D2 * w[1] + d->D3 * w[2]) - (s2 * d->D2 + s3 * d->D3) * w[0];
-            row[4] = s1 * d->D2 * w[0] + 2.0 * d->bc3 * (s2 * w[2] - s3 * w[1]);
-            row[5] = s1 * d->D3 * w[0] + 2.0 * s2 * d->bc3 * (w[1] + w[2]);
-            row[6] = s1 * d->H11, row[7] = s2 * d->H22 + s3 * d->H23, row[8] = s2 * d->H23;
+            double *row = hessian[1 + c];
+            row[3] = l1 * (d->M11_q2 * qd[1] + d->M11_q3 * qd[2])
+                - (l2 * d->M11_q2 + l3 * d->M11_q3) * qd[0];
+            row[4] = l1 * d->M11_q2 * qd[0] + 2.0 * d->M23_q3 * (l2 * qd[2] - l3 * qd[1]);
+            row[5] = l1 * d->M11_q3 * qd[0] + 2.0 * l2 * d->M23_q3 * (qd[1] + qd[2]);
+            row[6] = l1 * d->M11, row[7] = l2 * d->M22 + l3 * d->M23, row[8] = l2 * d->M23;
         }
-        H[3][4] = s1 * t.D2, H[3][5] = s1 * t.D3, H[4][5] = 2.0 * s2 * t.bc3;
-        H[1][2] = -(s2 + s3) * t.g3;
+        hessian[3][4] = l1 * t.M11_q2, hessian[3][5] = l1 * t.M11_q3;
+        hessian[4][5] = 2.0 * l2 * t.M23_q3;
+        hessian[1][2] = -(l2 + l3) * t.g3;
         for (int i = 0; i < 9; ++i)
             for (int k = i + 1; k < 9; ++k)
-                H[k][i] = H[i][k];
-        H[1][1] = -(s2 * t.g2 + s3 * t.g3), H[2][2] = -(s2 + s3) * t.g3;
-        H[3][3] = -(s2 * t.D2 + s3 * t.D3);
-        H[4][4] = -2.0 * s3 * t.bc3, H[5][5] = 2.0 * s2 * t.bc3;
+                hessian[k][i] = hessian[i][k];
+        hessian[1][1] = -(l2 * t.g2 + l3 * t.g3), hessian[2][2] = -(l2 + l3) * t.g3;
+        hessian[3][3] = -(l2 * t.M11_q2 + l3 * t.M11_q3);
+        hessian[4][4] = -2.0 * l3 * t.M23_q3, hessian[5][5] = 2.0 * l2 * t.M23_q3;
         for (int i = 0; i < 9; ++i)
             for (int k = 0; k < 9; ++k)
-                second[i * 12 + k] += H[i][k];
+                second[i * 12 + k] += hessian[i][k];
     }
 }

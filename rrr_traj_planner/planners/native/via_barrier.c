@@ -12,7 +12,8 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The log barrier: values, gradients, Hessians and damping of its parts. */
+/* The logarithmic barrier of the via-point problem: values, gradients, Hessians and damping of its
+ * parts (solver/via_barrier.py). */
 #include "via_problem.h"
 
 #include "blocks.h"
@@ -38,7 +39,7 @@ static double barrier(double product, double least)
     return least > 0.0 ? -log(product) : INFINITY;
 }
 
-/* -sum log(slack) of each part at a point; infinite where a constraint is not strictly kept. */
+/* -sum log(slack) of each part at a point; infinite where a constraint does not hold strictly. */
 static void part_values(const ViaProblem *p, const double *point, double *values)
 {
     const int n = p->n;
@@ -68,8 +69,8 @@ static void part_values(const ViaProblem *p, const double *point, double *values
     }
     values += (n - 1) * JOINTS;
     for (int k = 0; k < n; ++k) {
-        const double spare = p->floor ? T[k] - p->floor[k] : 1.0;
-        values[k] = barrier(spare, spare);
+        const double slack = p->floor ? T[k] - p->floor[k] : 1.0;
+        values[k] = barrier(slack, slack);
     }
 }
 
@@ -82,8 +83,10 @@ static double objective(const ViaProblem *p, const double *point)
     return p->proportions ? T[0] / p->proportions[0] : sum;
 }
 
-/* Add -log of a slack to the derivatives. */
-static void pushed(double slack, const double gradient[3], double slope[3], double block[3][3])
+/* Add the derivatives of -log(slack): gradient, and Hessian but for the slack's own second
+ * derivative. */
+static void add_log_derivatives(double slack, const double gradient[3], double slope[3],
+                                double block[3][3])
 {
     const double inverse = 1.0 / slack;
     double relative[3];
@@ -96,9 +99,9 @@ static void pushed(double slack, const double gradient[3], double slope[3], doub
             block[i][c] += relative[i] * relative[c];
 }
 
-/* The reach forth (sign 1) or back (-1), and its own second derivatives. */
-static void reach_pushed(const Law *law, double sign, double v0, double v1, double T, double D,
-                         double slope[3], double block[3][3])
+/* Add the derivatives of -log(reach - D), forward (sign 1) or backward (sign -1). */
+static void add_reach_derivatives(const Law *law, double sign, double v0, double v1, double T,
+                                  double D, double slope[3], double block[3][3])
 {
     const double by[3] = {sign, sign, 1.0};
     ReachDerivatives at = reach_derivatives(law, sign * v0, sign * v1, T);
@@ -108,7 +111,7 @@ static void reach_pushed(const Law *law, double sign, double v0, double v1, doub
         for (int c = 0; c < 3; ++c)
             block[i][c] -= by[i] * by[c] * inverse * at.hessian[i][c];
     }
-    pushed(slack, at.gradient, slope, block);
+    add_log_derivatives(slack, at.gradient, slope, block);
 }
 
 /* The parts' derivatives at the iterate. */
@@ -128,11 +131,11 @@ static void differentiate(const ViaProblem *p)
             const double D = p->displacements[at];
             const double change = largest_change(&law, T[k]), rate = change_rate(&law, T[k]);
             const double up[3] = {1.0, -1.0, rate}, down[3] = {-1.0, 1.0, rate};
-            reach_pushed(&law, 1.0, v0, v1, T[k], D, slope, block);
-            reach_pushed(&law, -1.0, v0, v1, T[k], D, slope, block);
-            pushed(change - (v1 - v0), up, slope, block);
-            pushed(change + (v1 - v0), down, slope, block);
-            made_convex(block);
+            add_reach_derivatives(&law, 1.0, v0, v1, T[k], D, slope, block);
+            add_reach_derivatives(&law, -1.0, v0, v1, T[k], D, slope, block);
+            add_log_derivatives(change - (v1 - v0), up, slope, block);
+            add_log_derivatives(change + (v1 - v0), down, slope, block);
+            make_convex(block);
         }
     }
     double (*bound)[2] = p->bound;
@@ -142,13 +145,13 @@ static void differentiate(const ViaProblem *p)
         (*bound)[1] = low * low + high * high;
     }
     for (int k = 0; k < n; ++k, ++bound) {
-        const double spare = p->floor ? 1.0 / (T[k] - p->floor[k]) : 0.0;
-        (*bound)[0] = -spare;
-        (*bound)[1] = spare * spare;
+        const double slack = p->floor ? 1.0 / (T[k] - p->floor[k]) : 0.0;
+        (*bound)[0] = -slack;
+        (*bound)[1] = slack * slack;
     }
 }
 
-/* Begin at the iterate: barrier and derivatives there. */
+/* Evaluate the barrier and its derivatives at the first iterate. */
 EXPORTED void via_begin(ViaProblem *p)
 {
     p->objective = objective(p, p->point);
@@ -156,8 +159,8 @@ EXPORTED void via_begin(ViaProblem *p)
     differentiate(p);
 }
 
-/* Try the damped Newton step; how weight * objective + barrier changes on it, infinite where it breaks
- * a constraint. */
+/* Try the damped Newton step; returns the change of weight * objective + barrier along it,
+ * infinite where a constraint is violated. */
 EXPORTED double via_attempt(ViaProblem *p, double weight)
 {
     p->decrement = via_newton(p, weight);
@@ -172,7 +175,7 @@ EXPORTED double via_attempt(ViaProblem *p, double weight)
     return change;
 }
 
-/* Go where the last attempt led; every part's damping is multiplied by a factor. */
+/* Accept the last attempt; the damping of every part is multiplied by a factor. */
 EXPORTED void via_accept(ViaProblem *p, double less_damping)
 {
     memcpy(p->point, p->next, unknowns_of(p) * sizeof(double));
@@ -183,8 +186,8 @@ EXPORTED void via_accept(ViaProblem *p, double less_damping)
     differentiate(p);
 }
 
-/* Damp the parts that rose more on the last attempt than their derivatives foretell: more than their
- * slope by a share of the damped curvature's full term. All, if none did. */
+/* Raise the damping of the parts that increased on the last attempt by more than their derivatives
+ * predict: by more than g's + tolerated * s'Hs, H damped. Raises all if there is none. */
 EXPORTED void via_damp(const ViaProblem *p, double tolerated, double more_damping)
 {
     const int segments = p->n * JOINTS, bounds = segments - JOINTS, all = parts_of(p);

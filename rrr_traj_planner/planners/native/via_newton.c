@@ -12,13 +12,14 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The Newton step of weight * objective + barrier, whose cost is linear in the via points. */
+/* The Newton step of weight * objective + barrier of the via-point problem: a banded system, whose
+ * solution costs time linear in the number of via points. */
 #include "blocks.h"
 #include "via_problem.h"
 
 #include <string.h>
 
-/* First and second derivatives by a via velocity, and by a duration. */
+/* First and (damped) second derivatives of the barrier by a via velocity, and by a duration. */
 static void by_velocity(const ViaProblem *p, int i, double *first, double *second)
 {
     const double *damping = p->damping, *bound = damping + p->n * JOINTS;
@@ -39,14 +40,14 @@ static void by_duration(const ViaProblem *p, int k, double *first, double *secon
     }
 }
 
-/* A damped entry of a segment's block. */
+/* A damped entry of the Hessian of a segment's joint. */
 static double entry(const ViaProblem *p, int i, int row, int column)
 {
     return p->hessian[i][row][column] * (1.0 + p->damping[i]);
 }
 
-/* Every duration is free: unknowns T0, v0 of three joints, T1, v1, ... Gives the decrement squared;
- * negative where rounding leaves no step. */
+/* The step with all durations free, unknowns T0, v0 of three joints, T1, v1, ... Returns the
+ * Newton decrement squared, negative where the matrix is not positive definite numerically. */
 static double free_step(const ViaProblem *p, double weight)
 {
     enum { W = 5, OWN = 1 + JOINTS };
@@ -55,24 +56,24 @@ static double free_step(const ViaProblem *p, double weight)
     for (int k = 0; k < n; ++k) {
         double first, *column = p->band + (size_t)OWN * k * W;
         by_duration(p, k, &first, column);
-        p->pull[OWN * k] = -(weight + first);
+        p->total_gradient[OWN * k] = -(weight + first);
         for (int j = 0; j < JOINTS && k < n - 1; ++j) {
             const int i = k * JOINTS + j;
             double *own = column + (1 + j) * W;
             by_velocity(p, i, &first, own);
-            p->pull[OWN * k + 1 + j] = -first;
+            p->total_gradient[OWN * k + 1 + j] = -first;
             column[1 + j] = entry(p, i, 1, 2);
             own[JOINTS - j] = entry(p, i + JOINTS, 0, 2);
             if (k < n - 2)
                 own[OWN] = entry(p, i + JOINTS, 0, 1);
         }
     }
-    memcpy(p->right, p->pull, m * sizeof(double));
-    if (band_solved(p->band, p->right, m, W, 1))
+    memcpy(p->right, p->total_gradient, m * sizeof(double));
+    if (solve_band(p->band, p->right, m, W, 1))
         return -1.0;
     double decrement = 0.0, *dT = p->step + (n - 1) * JOINTS;
     for (int i = 0; i < m; ++i)
-        decrement += p->pull[i] * p->right[i];
+        decrement += p->total_gradient[i] * p->right[i];
     for (int k = 0; k < n; ++k) {
         dT[k] = p->right[OWN * k];
         for (int j = 0; j < JOINTS && k < n - 1; ++j)
@@ -81,7 +82,8 @@ static double free_step(const ViaProblem *p, double weight)
     return decrement;
 }
 
-/* A common stretch: a band for the velocities, bordered by the stretch. */
+/* The step with durations in fixed proportions: a band for the velocities, bordered by the row of
+ * their common factor, which is eliminated first. */
 static double common_step(const ViaProblem *p, double weight)
 {
     enum { W = JOINTS + 1 };
@@ -97,28 +99,28 @@ static double common_step(const ViaProblem *p, double weight)
     memset(p->band, 0, (size_t)m * W * sizeof(double));
     for (int i = 0; i < m; ++i) {
         const int k = i / JOINTS;
-        by_velocity(p, i, &p->pull[i], &p->band[(size_t)i * W]);
+        by_velocity(p, i, &p->total_gradient[i], &p->band[(size_t)i * W]);
         if (i + JOINTS < m)
             p->band[(size_t)i * W + JOINTS] = entry(p, i + JOINTS, 0, 1);
         p->border[i] = entry(p, i, 1, 2) * in[k] + entry(p, i + JOINTS, 0, 2) * in[k + 1];
-        p->right[2 * i] = p->pull[i];
+        p->right[2 * i] = p->total_gradient[i];
         p->right[2 * i + 1] = p->border[i];
     }
-    if (band_solved(p->band, p->right, m, W, 2))
+    if (solve_band(p->band, p->right, m, W, 2))
         return -1.0;
     double by_pull = 0.0, by_border = 0.0;
     for (int i = 0; i < m; ++i) {
         by_pull += p->border[i] * p->right[2 * i];
         by_border += p->border[i] * p->right[2 * i + 1];
     }
-    const double stretch = -(g - by_pull) / (h - by_border);
-    double decrement = -g * stretch, *dT = p->step + m;
+    const double factor = -(g - by_pull) / (h - by_border);
+    double decrement = -g * factor, *dT = p->step + m;
     for (int i = 0; i < m; ++i) {
-        p->step[i] = -(p->right[2 * i] + p->right[2 * i + 1] * stretch);
-        decrement -= p->pull[i] * p->step[i];
+        p->step[i] = -(p->right[2 * i] + p->right[2 * i + 1] * factor);
+        decrement -= p->total_gradient[i] * p->step[i];
     }
     for (int k = 0; k < n; ++k)
-        dT[k] = stretch * in[k];
+        dT[k] = factor * in[k];
     return decrement;
 }
 

@@ -12,8 +12,8 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The least time through via points by transitions and cruises, as a barrier problem. Python holds
- * all arrays and decides on every step: solver/via_barrier.py, solver/barrier_method.py. */
+/* The least time through via points by transitions and cruises, as a barrier problem. Python owns
+ * all arrays and controls the iteration: solver/via_barrier.py, solver/barrier_method.py. */
 #ifndef RRR_TRAJ_PLANNER_VIA_PROBLEM_H
 #define RRR_TRAJ_PLANNER_VIA_PROBLEM_H
 
@@ -23,9 +23,9 @@
 
 enum { JOINTS = 3 };
 
-/* A point is via velocities (n - 1, 3), then durations (n). The barrier is a sum of parts: of a
- * segment's joint (n, 3), of a via velocity's bounds (n - 1, 3), of a duration's least value (n);
- * arrays "of the parts" have these in order. */
+/* A point is via velocities (n - 1, 3), then durations (n). The barrier is a sum of parts: for
+ * each segment and joint (n, 3), for the bounds of each via velocity (n - 1, 3), and for each
+ * duration's least value (n). Arrays over parts have this order. */
 typedef struct {
     int32_t n;                         /* segments */
     const double *displacements;       /* (n, 3) */
@@ -34,21 +34,22 @@ typedef struct {
     const double *lowest, *highest;    /* (n - 1, 3) */
     const double *floor;               /* (n), least durations, or NULL */
     const double *proportions;         /* (n), whose common factor is sought, or NULL */
-    double *point, *step, *next;       /* points: the iterate, a step, and where it leads */
-    double *before, *after, *damping;  /* of the parts: barrier at both, and damping */
-    double (*gradient)[3];             /* (n, 3), of a segment's joint by v0, v1 and T */
+    double *point, *step, *next;       /* the iterate, a step, and the point after it */
+    double *before, *after, *damping;  /* over parts: barrier before and after the step, damping */
+    double (*gradient)[3];             /* (n, 3), of a segment and joint by v0, v1 and T */
     double (*hessian)[3][3];           /* (n, 3), made positive definite */
-    double (*bound)[2];                /* first and second derivative of the other parts */
-    double *band, *right, *pull, *border;  /* scratch of the Newton step: 5, 2, 1, 1 unknowns */
+    double (*bound)[2];                /* first and second derivatives of the other parts */
+    double *band, *right;              /* scratch of the Newton step: (unknowns, 5) and (.., 2), */
+    double *total_gradient, *border;   /* (unknowns) both */
     double objective;                  /* at the iterate */
-    double decrement;                  /* of the last step, squared */
+    double decrement;                  /* the Newton decrement of the last step, squared */
 } ViaProblem;
 
 static inline int unknowns_of(const ViaProblem *p) { return 4 * p->n - 3; }
 static inline int parts_of(const ViaProblem *p) { return 7 * p->n - 3; }
 
-/* The damped Newton step of weight * objective + barrier at the iterate, and its decrement squared;
- * negative where rounding leaves no step. */
+/* The damped Newton step of weight * objective + barrier at the iterate. Returns its Newton
+ * decrement squared, negative where the matrix is not positive definite numerically. */
 double via_newton(const ViaProblem *p, double weight);
 
 #endif

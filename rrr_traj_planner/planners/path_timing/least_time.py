@@ -51,7 +51,7 @@ from rrr_traj_planner.planners.solver.interior_point import (
     RELATIVE_GAP,
 )
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, stretched, Variables
+from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, time_scaled, Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 from rrr_traj_planner.planners.via_points import holding_error
 
@@ -151,7 +151,7 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     task.should_stop()
     for repair in range(REPAIRS if constraints.problem.is_within(start.motion) else 0):
         outcome = minimise(constraints.problem, start, durations, task.should_stop,
-                           former=former.problem if former else None,
+                           previous=former.problem if former else None,
                            relative_gap=RELATIVE_GAP if former else ROUGH_GAP)
         if former and not outcome.within:  # it was too much at once
             constraints = limits(0.5 * (former.margins + constraints.margins))
@@ -221,7 +221,7 @@ def _onward(outcome: Outcome, start: Centre, problem: TimingProblem,
 def _slowed(outcome: Outcome, stretch: float) -> tuple[float, Variables, float]:
     """Return a motion slowed to keep its limits, its duration and the least of any motion."""
     T, factor = float(outcome.motion.T.sum()), max(stretch, 1.0)
-    return factor * T, stretched(outcome.motion, factor), T - outcome.gap
+    return factor * T, time_scaled(outcome.motion, factor), T - outcome.gap
 
 
 def _refuse_heavy(task: PathTask, table: PathTable) -> None:
@@ -246,7 +246,7 @@ def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
     else:
         m = paced_along(grid, table.ends, paces(table, bounds))
     at = progress_at(grid, constraints.points, m)
-    return stretched(m, ROOM * least_stretch(
+    return time_scaled(m, ROOM * least_stretch(
         constraints.demand(at.s), at, bounds - constraints.margins))
 
 

@@ -13,14 +13,14 @@
 # limitations under the License.
 
 """
-The barrier method over via velocities and durations, always strictly feasible.
+The barrier method over via velocities and durations; every iterate is strictly feasible.
 
-Boyd & Vandenberghe, Convex Optimization, algorithm 11.1: the minima of weight * objective +
-barrier are followed to ever larger weights by damped Newton steps, until their gap, the number
-of constraints over the weight (11.2.2), is closed. In place of a line search along one step, the
-Hessian of those parts of the barrier alone is raised that the step misjudged (after Levenberg and
-Marquardt): the barrier has kinks, where transitions change their law, and the segments away from a
-kink need not wait for it.
+Boyd & Vandenberghe, Convex Optimization, algorithm 11.1: minimise weight * objective + barrier by
+damped Newton steps for an increasing sequence of weights, until the gap, the number of constraints
+over the weight (11.2.2), is small. Instead of a line search along one step, damping (Levenberg and
+Marquardt; Nocedal & Wright, Numerical Optimization, 10.3) scales up the Hessian of those terms of
+the barrier that a step predicted badly: the barrier has kinks where a transition passes from the
+jerk limit to the acceleration limit, and the other segments still take full steps.
 """
 
 from __future__ import annotations
@@ -32,18 +32,19 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 
+# Without unit. The first three decide accuracy, the others the number of steps.
 RELATIVE_GAP = 2e-7        # of the objective, at which the method ends
-BARRIER_REDUCTION = 0.12   # of 1 / weight, from one centre to the next
 CENTRED = 0.5              # Newton decrement squared at which the weight is raised,
 POLISHED = 1e-7            # and at the end: the answer then varies smoothly with the task
-STEPS_TO_CENTRE = 25       # after which the weight is raised all the same
-SUFFICIENT_DECREASE = 0.1  # of the decrement squared
+BARRIER_REDUCTION = 0.12   # of 1 / weight, from one centre to the next
+STEPS_TO_CENTRE = 25       # at most, before the weight is raised
+SUFFICIENT_DECREASE = 0.1  # of the decrement squared (Armijo)
 TRIALS = 30                # of damping, for one step
-TOLERATED = 0.75           # of s' H s, by which a part may rise beside its slope on a step s: of a
-#                            quadratic it is half
-MORE_DAMPING = 4.0         # of the parts that a trial misjudged
-LESS_DAMPING = 0.25        # of all parts, after a step
-ROUNDING = 1e-15           # of weight * objective, below which no decrease is seen
+TOLERATED_RISE = 0.75      # of s'Hs: a term may increase by so much beyond g's on a step s; 1/2 is
+#                            the prediction of the quadratic model
+MORE_DAMPING = 4.0         # factor for the terms that a trial predicted badly
+LESS_DAMPING = 0.25        # factor for all terms after an accepted step
+ROUNDING = 1e-15           # of weight * objective, below which a decrease is rounding
 
 
 class Solution(NamedTuple):
@@ -51,24 +52,24 @@ class Solution(NamedTuple):
 
     velocities: Array  # shape (n - 1, 3) [rad/s]
     durations: Array   # shape (n,) [s]
-    gap: float         # what a better answer could save at most, of the objective
+    gap: float         # upper bound on objective - optimum, where the problem is convex
 
 
 def minimise(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> Solution:
     """
-    Return the minimum of the objective of a barrier problem.
+    Return the minimiser of the objective of a barrier problem.
 
     Parameters
     ----------
     barrier : ViaBarrier
         The problem, at a strictly feasible point.
     should_stop : callable
-        The cancellation callback, called before every step; True ends the method with the iterate.
+        Cancellation callback, called before every step; True ends the method with the iterate.
 
     Returns
     -------
     Solution
-        Within RELATIVE_GAP of the least, where the problem is convex and nothing cancels it.
+        Within RELATIVE_GAP of the optimum, where the problem is convex and it is not cancelled.
 
     """
     count, found = barrier.constraints, barrier.found
@@ -84,7 +85,7 @@ def minimise(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> Solution:
 
 def _centre(barrier: ViaBarrier, weight: float, decrement: float,
             should_stop: Callable[[], bool]) -> bool:
-    """Go near the minimum of weight * objective + barrier; return whether to stop altogether."""
+    """Minimise weight * objective + barrier up to a decrement; return whether it was cancelled."""
     for _ in range(STEPS_TO_CENTRE):
         if should_stop():
             return True
@@ -96,7 +97,7 @@ def _centre(barrier: ViaBarrier, weight: float, decrement: float,
 
 
 def _step(barrier: ViaBarrier, weight: float) -> float | None:
-    """Take a Newton step; return its decrement squared, None where rounding leaves no step."""
+    """Take a Newton step; return its decrement squared, None where rounding allows no decrease."""
     at, found = barrier.at, barrier.found
     for _ in range(TRIALS):
         change = KERNELS.via_attempt(at, weight)
@@ -106,5 +107,5 @@ def _step(barrier: ViaBarrier, weight: float) -> float | None:
         if change <= -SUFFICIENT_DECREASE * squared:
             KERNELS.via_accept(at, LESS_DAMPING)
             return squared
-        KERNELS.via_damp(at, TOLERATED, MORE_DAMPING)
+        KERNELS.via_damp(at, TOLERATED_RISE, MORE_DAMPING)
     return None

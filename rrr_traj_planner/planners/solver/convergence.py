@@ -12,29 +12,29 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How near the optimum counts as there, and what is said of a motion that is not."""
+"""The optimisation methods' convergence criterion, and the note of a motion that misses it."""
 
 from __future__ import annotations
 
-CONVERGED = 5e-3  # relative gap
-INFORMATIVE = 0.5  # a larger part of the time says nothing that a reader could use
+CONVERGED = 5e-3   # gap to the optimum, as a part of the time
+INFORMATIVE = 0.5  # gap, as a part of the time, up to which the bound is of use to a reader
 
 
 def unconverged_note(gap: float, duration: float) -> str:
     """
-    Return what there is to be said where the method ended before it converged.
+    Return the note of a motion whose optimisation ended before it converged.
 
     Parameters
     ----------
     gap : float
-        What a better motion could save at most [s]; infinite where nothing is known.
+        Upper bound on the time that the optimum saves [s]; infinite where none is known.
     duration : float
         The motion's [s].
 
     Returns
     -------
     str
-        Empty where it converged; with a bound on what could be saved where it is a useful one.
+        Empty where it converged; with the bound where it is INFORMATIVE.
 
     """
     if gap < CONVERGED * duration:

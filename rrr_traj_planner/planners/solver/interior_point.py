@@ -13,20 +13,20 @@
 # limitations under the License.
 
 """
-The least time of a motion: a primal-dual interior-point method whose iterates are all feasible.
+The least time of a motion: a feasible primal-dual interior-point method.
 
 Nocedal & Wright, Numerical Optimization, chapter 19, and Waechter & Biegler, On the implementation
 of an interior-point filter line-search algorithm, Mathematical Programming 106 (2006): the barrier
-parameter is lowered monotonically (section 2.1 there), multipliers are kept in sight of
-barrier / slack (eq. 16). Unlike there, no iterate leaves the constraints: whatever ends the
-method, it has a valid motion, and the merit is objective + barrier alone. The gap to the optimum
-is bounded by duality, as on a central path (Boyd & Vandenberghe, Convex Optimization, 11.2.2),
-with what a Newton step still promises added; where torque makes the problem nonconvex it is an
-estimate.
+parameter is lowered monotonically (section 2.1 there), multipliers are confined to a corridor
+around barrier / slack (eq. 16). Unlike there, every iterate is strictly feasible: whenever the
+method ends it has a valid motion, and the merit function is objective + barrier alone. The gap to
+the optimum is bounded by duality, as on the central path (Boyd & Vandenberghe, Convex
+Optimization, 11.2.2), plus the decrease that the Newton step predicts; where torque makes the
+problem nonconvex it is an estimate.
 
-Limits may come closer to an iterate that is already there, even beyond it: then the constraints
-are shifted out to where they were, and steps take the shifts away as they go (shifted barriers:
-Freund, Mathematical Programming 51, 1991).
+When limits are tightened so that the last iterate violates them, the constraints are first shifted
+out to the previous limits, and the steps reduce the shifts to zero (shifted barriers: Freund,
+Mathematical Programming 51, 1991).
 """
 
 from __future__ import annotations
@@ -42,59 +42,60 @@ from rrr_traj_planner.planners.solver.line_search import best_step, promised_gai
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
+# Without unit, and found by trial on the benchmarks: fewest iterations for the same times.
 RELATIVE_GAP = 1e-3          # of the objective, at which the method ends
-BARRIER_REDUCTION = 0.1
-CENTRED = 0.1                # gain left per constraint at which the barrier is lowered
-PATIENCE = 6                 # steps after which it is lowered all the same, where they gain less
-STALL = 3e-4                 # than this part of the objective
-START = 0.3                  # the first barrier per constraint, over the start's objective
-FAR_FROM_CENTRE = 1e5        # gain over barrier at the start at which the barrier is raised
-RAISES = 6
-ITERATIONS = 200
-DUAL_CORRIDOR = 1e6          # how far multipliers may be from barrier / slack
-SMALL_SHIFT = 0.5            # part of its slack: a smaller shift is taken away at once
+BARRIER_REDUCTION = 0.1      # factor on the barrier parameter
+CENTRED = 0.1                # predicted decrease / (constraints * barrier) at which it is lowered
+PATIENCE = 6                 # iterations after which it is lowered too, where they have gained
+STALL = 3e-4                 # less than this part of the objective
+START = 0.3                  # first barrier * constraints / objective
+FAR_FROM_CENTRE = 1e5        # predicted decrease / barrier at which the first barrier is raised,
+RAISES = 6                   # at most so many times
+ITERATIONS = 200             # at most
+DUAL_CORRIDOR = 1e6          # largest ratio of a multiplier to barrier / slack, and its inverse
+SMALL_SHIFT = 0.5            # part of its slack below which a shift is removed at once
 
 
 class Centre(NamedTuple):
-    """A motion strictly within its limits, and the barrier that keeps it there."""
+    """A point near the central path: a strictly feasible motion and its barrier parameter."""
 
     motion: Variables
     barrier: float | None  # None: not known
 
 
 class Outcome(NamedTuple):
-    """What the method ended with."""
+    """The result of the method."""
 
     motion: Variables
-    gap: float             # what a better motion could save at most, by duality [s]
+    gap: float             # bound on the time that the optimum saves, by duality [s]
     converged: bool
-    centres: list[Centre]  # that it passed, slowest first
-    within: bool = True    # False where it did not get within the limits from former ones
+    centres: list[Centre]  # points near the central path on the way, slowest first
+    within: bool = True    # False where shifts remain: the new limits were not reached
 
 
 def minimise(problem: TimingProblem, start: Centre, durations: DurationConstraints,
              should_stop: Callable[[], bool], least_barrier: float = 0.0,
-             relative_gap: float = RELATIVE_GAP, former: TimingProblem | None = None) -> Outcome:
+             relative_gap: float = RELATIVE_GAP, previous: TimingProblem | None = None) -> Outcome:
     """
-    Return the motion of least weighted durations.
+    Return the motion whose weighted sum of durations is least.
 
     Parameters
     ----------
     problem : TimingProblem
         The limits.
     start : Centre
-        Strictly within them, or within the former ones.
+        Strictly within them, or within the previous ones.
     durations : DurationConstraints
-        What may change, and the weights.
+        Which durations are free, and their weights in the objective.
     should_stop : callable
-        The cancellation callback, called before every iteration; True ends the method with what
-        it has.
+        Cancellation callback, called before every iteration; True ends the method with the best
+        motion so far.
     least_barrier : float
-        The method ends at its centre,
+        The method ends when it has converged for this barrier parameter,
     relative_gap : float
-        or where so much of the objective may be left to gain.
-    former : TimingProblem, optional
-        Limits that the start keeps where it does not keep these yet.
+        or when the gap is this part of the objective.
+    previous : TimingProblem, optional
+        Wider limits, which the start keeps; None: it keeps those of the problem.
 
     Returns
     -------
@@ -103,15 +104,15 @@ def minimise(problem: TimingProblem, start: Centre, durations: DurationConstrain
 
     """
     problem.begin(start.motion, durations)
-    at, count = problem.at, KERNELS.timing_count(problem.at)
+    at, count = problem.at, KERNELS.timing_constraint_count(problem.at)
     iterate, slack = (problem.arrays.addresses[name] for name in ('variables', 'slack'))
     cost = best_cost = KERNELS.timing_cost(at, iterate)
     best, gap, centres = problem.arrays['variables'].copy(), math.inf, []
     barrier = start.barrier or START * cost / count
-    if former is None:
+    if previous is None:
         barrier = _first_barrier(problem, barrier)
     else:
-        problem.shift(former.limits)
+        problem.shift(previous.limits)
         _central(problem, barrier)
     merits: list[float] = []  # at this barrier
     log = math.nan            # the sum of the iterate's slacks' logarithms; not known yet
@@ -121,14 +122,14 @@ def minimise(problem: TimingProblem, start: Centre, durations: DurationConstrain
         KERNELS.timing_linearise(at, barrier)
         closing = problem.shifted
         if math.isnan(log) and not closing:
-            log = KERNELS.timing_log(at, slack)
+            log = KERNELS.timing_log_sum(at, slack)
         found = best_step(problem, barrier, None if closing else cost - barrier * log)
         if found is None:
             break
         size, step = found.size, found.step
         moved = size > 0.0
         if closing and moved:
-            KERNELS.timing_close(at, step.at, size, SMALL_SHIFT)
+            KERNELS.timing_reduce_shifts(at, step.at, size, SMALL_SHIFT)
         KERNELS.timing_accept(at, step.at, moved, barrier, TO_BOUNDARY, DUAL_CORRIDOR)
         if moved:
             cost, log = step.found.cost, math.nan if closing else step.found.log
@@ -139,7 +140,7 @@ def minimise(problem: TimingProblem, start: Centre, durations: DurationConstrain
                 break
             continue
         merits.append(cost - barrier * log)
-        # what is left to gain at this barrier, and below it
+        # predicted decrease at this barrier, plus the duality gap of its centre
         gap = min(gap, step.found.gain * (1.0 - 0.5 * size) + count * barrier)
         stalled = not moved or len(merits) > PATIENCE and (
             merits[-1 - PATIENCE] - merits[-1] < STALL * cost)
@@ -154,14 +155,14 @@ def minimise(problem: TimingProblem, start: Centre, durations: DurationConstrain
 
 
 def _central(problem: TimingProblem, barrier: float) -> None:
-    """Give every multiplier its value on the central path: barrier / slack."""
+    """Set every multiplier to its value on the central path: barrier / slack."""
     addresses = problem.arrays.addresses
     KERNELS.timing_slacks(problem.at, addresses['variables'], addresses['slack'])
     KERNELS.timing_central_duals(problem.at, barrier)
 
 
 def _first_barrier(problem: TimingProblem, barrier: float) -> float:
-    """Return a barrier high enough to lead away from limits that the start is close to."""
+    """Return a barrier parameter large enough to move a start that is close to a limit off it."""
     _central(problem, barrier)
     for _ in range(RAISES):
         KERNELS.timing_linearise(problem.at, barrier)

@@ -15,9 +15,9 @@
 """
 The compiled kernels: the C code of `planners/native`, called through ctypes.
 
-A kernel is a plain function over arrays that Python holds; a structure has their addresses, made
-once for each problem. Kernels last microseconds to a few milliseconds and keep Python's global
-lock: handing it over at every call would cost more than they do.
+A kernel is a plain function over arrays that Python owns; a structure holds their addresses, made
+once for each problem. A call takes microseconds to a few milliseconds and keeps Python's global
+interpreter lock: releasing it would cost more than the shortest calls.
 """
 
 from __future__ import annotations
@@ -47,12 +47,12 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     'path_checked': (None, [c_void_p] * 3),
     'timing_accept': (None, [c_void_p, c_void_p, c_int32, *[c_double] * 3]),
     'timing_central_duals': (None, [c_void_p, c_double]),
-    'timing_close': (None, [c_void_p, c_void_p, c_double, c_double]),
+    'timing_reduce_shifts': (None, [c_void_p, c_void_p, c_double, c_double]),
     'timing_correct': (c_int32, [c_void_p, c_void_p, c_double, c_void_p]),
     'timing_cost': (c_double, [c_void_p] * 2),
-    'timing_count': (c_double, [c_void_p]),
+    'timing_constraint_count': (c_double, [c_void_p]),
     'timing_linearise': (None, [c_void_p, c_double]),
-    'timing_log': (c_double, [c_void_p] * 2),
+    'timing_log_sum': (c_double, [c_void_p] * 2),
     'timing_newton': (c_int32, [c_void_p, c_int32, c_void_p]),
     'timing_newton_size': (c_int64, [c_void_p]),
     'timing_slacks': (c_double, [c_void_p] * 3),
@@ -67,7 +67,7 @@ def load(folder: Path) -> Any:
     Parameters
     ----------
     folder : Path
-        Where the library is.
+        The folder of the shared library.
 
     Returns
     -------
@@ -98,7 +98,7 @@ KERNELS = load(_NATIVE)
 
 class Arena:
     """
-    Memory for the arrays of one problem, in one block, so that their addresses are sums.
+    Memory for the arrays of one problem, allocated as one block.
 
     Parameters
     ----------
@@ -121,14 +121,14 @@ class Arena:
         self.addresses = {name: first + size * start for name, start in zip(shapes, ends)}
 
     def __getitem__(self, name: str) -> Array:
-        """Return an array, not a copy: what kernels write into."""
+        """Return an array: a view of the memory that kernels write into."""
         start, end = self._parts[name]
         return self._block[start:end].reshape(self._shapes[name])
 
 
 def contiguous(values: Array) -> Array:
     """
-    Return an array as kernels take it.
+    Return an array in the layout that kernels read.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def contiguous(values: Array) -> Array:
     Returns
     -------
     ndarray
-        Of float64, in C order; the same array where it is so already.
+        Of float64, in C order; the same array where it is already.
 
     """
     return np.ascontiguousarray(values, dtype=float)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a motion must keep, as arrays: limits on states and durations."""
+"""The constraints of a timing problem as arrays: limits on states, constraints on durations."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ class Limits(NamedTuple):
     kind: int               # of the general constraints: BOUNDS_ALONE (none), TORQUE or PATH
     lower: Array            # (N, P, 4 J), of position, velocity, acceleration and jerk
     upper: Array
-    bounded: BoolArray      # (P, 4 J), which of these there are
+    bounded: BoolArray      # (P, 4 J), which of these are limited
     general_lower: Array    # (N, P, E)
     general_upper: Array
-    general: BoolArray      # (P, E), which of these there are
+    general: BoolArray      # (P, E), which of these are limited
     floor: Array | None = None    # (N,), least durations
     arm: Array | None = None      # coefficients of the equations of motion, of TORQUE
     table: Array | None = None    # (N, 4, intervals, 18), cubic coefficients, of PATH
@@ -42,20 +42,20 @@ class Limits(NamedTuple):
 
 class DurationConstraints(NamedTuple):
     """
-    Which durations are free, and which are common multiples of given ones; what stays at rest.
+    Which durations are free, fixed or in fixed proportions; which via velocities are fixed.
 
-    Durations that are not free change by `tie` times a common unknown.
+    A duration that is not free changes by its proportion times a common unknown.
     """
 
-    free: BoolArray  # (N,)
-    tie: Array       # (N,), 0 where free or fixed
-    weights: Array   # (N,), in the objective
-    still: BoolArray  # (N - 1, J), joints whose velocity at a via point stays as it is
+    free: BoolArray     # (N,)
+    proportions: Array  # (N,), 0 where free or fixed
+    weights: Array      # (N,), in the objective
+    fixed_velocities: BoolArray  # (N - 1, J), whether a joint's via velocity does not change
 
     @classmethod
     def all_free(cls, segments: int, joints: int) -> DurationConstraints:
         """
-        Return none at all, and the sum of durations as the objective.
+        Return free durations and via velocities, with the sum of durations as the objective.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ class DurationConstraints(NamedTuple):
         Returns
         -------
         DurationConstraints
-            Nothing stays at rest.
+            No constraint at all.
 
         """
         return cls(np.ones(segments, bool), np.zeros(segments), np.ones(segments),

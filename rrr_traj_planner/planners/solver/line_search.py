@@ -13,14 +13,16 @@
 # limitations under the License.
 
 """
-The step of one iteration: Newton steps that the problem suggests, each followed as far as it pays.
+The line search of one iteration: Newton steps, shortened until they are acceptable.
 
-The first to be tried has the curvature of the constraints, weighted by their multipliers, which
-may lead astray, the next one has not. A step begins at the fraction to the boundary (Nocedal &
-Wright, Numerical Optimization, eq. 19.9; Waechter & Biegler 2006, eq. 8) and is shortened until
-every slack keeps a part of itself and the merit falls enough (Armijo). One that gets nowhere since
-constraints curve away from it is tried again with a second-order correction (Nocedal & Wright
-18.3; Waechter & Biegler 2.4), here of the whole path: step * size + correction * size^2.
+The first step is computed with the second derivatives of the constraints, weighted by their
+multipliers; it need not be a descent direction. The second is computed without them (Gauss-Newton)
+and tried where the first makes little progress. The step size starts at the fraction to the
+boundary (Nocedal & Wright, Numerical Optimization, eq. 19.9; Waechter & Biegler 2006, eq. 8) and
+is reduced until every slack retains a part of itself and the merit decreases sufficiently
+(Armijo). A step that stays short because constraints are curved is tried again with a second-order
+correction (Nocedal & Wright 18.3; Waechter & Biegler 2.4), here along a parabola: step * size +
+correction * size^2.
 """
 
 from __future__ import annotations
@@ -32,26 +34,28 @@ from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE
 from rrr_traj_planner.planners.solver.timing_problem import Step, TimingProblem
 
-BACKTRACKS = 30
-SUFFICIENT_GAIN = 1e-4       # part of the promised gain
-SHORT = 0.05                 # a step of which no more is taken is corrected, or replaced
-LEAST_CORRECTED = 1e-3       # size of step at which curvature is found out
-TO_BOUNDARY = 0.995          # part of the way to the boundary that a step may go
-LEAST_SLACK_KEPT = 0.004     # part of its slack that a constraint keeps in a step
-SLACK_AIMED_AT = 0.05        # part that it is to keep where a step was too long for it
-LONGEST_RETRY = 0.95         # of a step that was too long
+# Without unit; sizes are parts of the whole Newton step.
+BACKTRACKS = 30              # reductions of one step's size, at most
+SUFFICIENT_GAIN = 1e-4       # part of the predicted decrease of the merit (Armijo)
+SHORT = 0.05                 # size up to which a step is corrected, then replaced by the next
+LEAST_CORRECTED = 1e-3       # least size at which constraints are evaluated for the correction
+TO_BOUNDARY = 0.995          # fraction to the boundary
+LEAST_SLACK_RETAINED = 0.004   # part of its slack that a constraint must retain after a step
+TARGET_SLACK = 0.05          # part that a shorter step is to retain where one was too long
+LONGEST_RETRY = 0.95         # of the size of a step that was too long
 
 
-class Searched(NamedTuple):
-    """A step, and the part of it that is taken; 0: none."""
+class LineSearchResult(NamedTuple):
+    """A step, and the size taken; 0: it was not acceptable."""
 
     step: Step
     size: float
 
 
-def best_step(problem: TimingProblem, barrier: float, merit: float | None) -> Searched | None:
+def best_step(problem: TimingProblem, barrier: float,
+              merit: float | None) -> LineSearchResult | None:
     """
-    Return the first of the suggested steps that gets far, else the one that gets furthest.
+    Return the first Newton step that is acceptable at more than SHORT size, else the longest.
 
     Parameters
     ----------
@@ -61,16 +65,16 @@ def best_step(problem: TimingProblem, barrier: float, merit: float | None) -> Se
         The barrier parameter.
     merit : float or None
         Objective - barrier * sum of logarithms at the iterate; None where constraints are
-        shifted: shifts are taken away whatever that costs.
+        shifted: the merit may then increase.
 
     Returns
     -------
-    Searched or None
-        None where there is no step.
+    LineSearchResult or None
+        None where the Newton system is singular.
 
     """
-    best: Searched | None = None
-    for step, corrected in _suggested(problem):
+    best: LineSearchResult | None = None
+    for step, corrected in _newton_steps(problem):
         found = _search(problem, step, barrier, merit)
         if best is None or found.size > best.size:
             best = found
@@ -86,7 +90,7 @@ def best_step(problem: TimingProblem, barrier: float, merit: float | None) -> Se
 
 def promised_gain(problem: TimingProblem) -> float | None:
     """
-    Return the gain that the first suggested step promises.
+    Return the decrease of the merit that the first Newton step predicts.
 
     Parameters
     ----------
@@ -96,14 +100,14 @@ def promised_gain(problem: TimingProblem) -> float | None:
     Returns
     -------
     float or None
-        None where there is no step.
+        None where the Newton system is singular.
 
     """
-    return next((float(step.found.gain) for step, _ in _suggested(problem)), None)
+    return next((float(step.found.gain) for step, _ in _newton_steps(problem)), None)
 
 
-def _suggested(problem: TimingProblem) -> Iterator[tuple[Step, Step]]:
-    """Give Newton steps, each with room for its correction."""
+def _newton_steps(problem: TimingProblem) -> Iterator[tuple[Step, Step]]:
+    """Yield the Newton steps, each with memory for its correction."""
     exact, exact_corrected, plain, plain_corrected = problem.steps
     if problem.limits.kind != BOUNDS_ALONE:
         if KERNELS.timing_newton(problem.at, 1, exact.at) and exact.found.gain > 0.0:
@@ -113,15 +117,16 @@ def _suggested(problem: TimingProblem) -> Iterator[tuple[Step, Step]]:
 
 
 def _search(problem: TimingProblem, step: Step, barrier: float,
-            merit: float | None) -> Searched:
-    """Return how far a step goes: backtracking, by parabolas where it breaks a constraint."""
+            merit: float | None) -> LineSearchResult:
+    """Backtrack along a step, by parabolas of the slacks where it violates a constraint."""
     at, found = problem.at, step.found
     gain, steepest = found.gain, found.steepest
     size = TO_BOUNDARY / steepest if steepest > TO_BOUNDARY else 1.0
     for _ in range(BACKTRACKS):
-        kept = KERNELS.timing_trial(at, step.at, size, LEAST_SLACK_KEPT, SLACK_AIMED_AT)
-        if kept and (merit is None or found.cost - barrier * found.log
-                     <= merit - SUFFICIENT_GAIN * size * gain):
-            return Searched(step, size)
-        size = 0.5 * size if kept else max(min(found.shorter, LONGEST_RETRY * size), 0.5 * size)
-    return Searched(step, 0.0)
+        feasible = KERNELS.timing_trial(at, step.at, size, LEAST_SLACK_RETAINED, TARGET_SLACK)
+        if feasible and (merit is None or found.cost - barrier * found.log
+                         <= merit - SUFFICIENT_GAIN * size * gain):
+            return LineSearchResult(step, size)
+        size = 0.5 * size if feasible else max(
+            min(found.shorter, LONGEST_RETRY * size), 0.5 * size)
+    return LineSearchResult(step, 0.0)

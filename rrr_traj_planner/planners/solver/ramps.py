@@ -15,9 +15,9 @@
 """
 Motions whose acceleration is a sequence of ramps between node values.
 
-Each segment between via points has n ramps of equal length. Node accelerations are the unknowns:
-the acceleration keeps its limits everywhere if it does at the nodes, jerk is continuous, zero at
-every node and closed-form at its peaks, and position and velocity are linear in them.
+Each segment between via points has n ramps of equal duration. The node accelerations are the
+unknowns: position and velocity are linear in them, acceleration keeps its limits everywhere if it
+does at the nodes, and jerk is continuous, zero at every node, its peaks known in closed form.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Variables(NamedTuple):
 
 
 class States(NamedTuple):
-    """A motion at its points: nodes, then the middles between them; or its rate of change."""
+    """The states of a motion at the nodes, then at the middles between them."""
 
     q: Array     # shape (N, 2 n + 1, 3)
     qd: Array
@@ -52,7 +52,7 @@ class States(NamedTuple):
 @lru_cache(maxsize=64)
 def grid_of(n: int, cruise: float) -> Grid:
     """
-    Return the grid of so many ramps, made once.
+    Return the grid of n ramps, computed once.
 
     Parameters
     ----------
@@ -70,28 +70,28 @@ def grid_of(n: int, cruise: float) -> Grid:
 
 class Grid:
     """
-    Constant matrices of n ramps in a segment.
+    The constant matrices of n ramps in a segment, of duration h each.
 
     Parameters
     ----------
     n : int
         Number of ramps, at least 4.
     cruise : float
-        Part of each during which jerk is constant; 0: the thesis's half-periods.
+        Part of each during which jerk is constant; 0: the thesis's half-periods (6.3).
 
     Attributes
     ----------
     shape : RampShape
         Of every ramp.
     qdd, qd, q : ndarray, shape (2 n + 1, n + 1)
-        From node accelerations to acceleration, velocity gained / h and way gained / h^2 at the
-        points, h the length of a ramp.
+        Times the node accelerations: acceleration, change of velocity / h and displacement / h^2
+        at the points, without the start velocity's part.
     jerk : ndarray, shape (n, n + 1)
-        To the jerk's peaks times h.
+        Times the node accelerations: peaks of jerk times h.
     elapsed : ndarray, shape (2 n + 1,)
         Time of each point / h.
     restore : ndarray, shape (n - 1, 2)
-        Smooth inner accelerations that gain a unit of velocity / h, and of way / h^2.
+        Smooth inner accelerations that change velocity by h, and displacement by h^2.
 
     """
 
@@ -112,7 +112,7 @@ class Grid:
         self.restore = self._restoring_shapes()
 
     def _restoring_shapes(self) -> Array:
-        """Return smooth changes of inner accelerations that add a unit of velocity, and of way."""
+        """Return inner accelerations, sine-shaped, for a unit of velocity and of displacement."""
         s = np.arange(1, self.n) / self.n
         shapes = np.stack((np.sin(np.pi * s), np.sin(2.0 * np.pi * s)), axis=1)
         gains = np.stack((self.qd[self.n], self.q[self.n]))[:, 1:-1] @ shapes
@@ -125,7 +125,7 @@ class Grid:
         Parameters
         ----------
         m : Variables
-            Its unknowns.
+            The motion.
 
         Returns
         -------
@@ -140,14 +140,14 @@ class Grid:
 
     def states(self, points: Array, m: Variables) -> States:
         """
-        Return the motion at its points; it begins each segment at its via point.
+        Return the states of a motion; each segment is integrated from its own via point.
 
         Parameters
         ----------
         points : ndarray, shape (N + 1, 3)
             Via points [rad].
         m : Variables
-            Its unknowns.
+            The motion.
 
         Returns
         -------
@@ -158,9 +158,9 @@ class Grid:
         nodes, v0, _ = self.nodes(m)
         h = (m.T / self.n)[:, np.newaxis, np.newaxis]
         v0 = v0[:, np.newaxis]
-        way = h * (self.elapsed[:, np.newaxis] * v0 + h * (self.q @ nodes))
+        displacement = h * (self.elapsed[:, np.newaxis] * v0 + h * (self.q @ nodes))
         return States(
-            points[:-1, np.newaxis] + way,
+            points[:-1, np.newaxis] + displacement,
             v0 + h * (self.qd @ nodes), self.qdd @ nodes, (self.jerk @ nodes) / h)
 
     def profiles(self, points: Array, m: Variables) -> list[JointProfile]:
@@ -172,7 +172,7 @@ class Grid:
         points : ndarray, shape (N + 1, J)
             Via points.
         m : Variables
-            Its unknowns.
+            The motion.
 
         Returns
         -------
@@ -195,7 +195,7 @@ class Grid:
         points : ndarray, shape (N + 1, 3)
             Via points [rad].
         m : Variables
-            Its unknowns.
+            The motion.
 
         Returns
         -------
@@ -209,7 +209,7 @@ class Grid:
 
 def restored(grid: Grid, points: Array, m: Variables) -> Variables:
     """
-    Return the motion with inner accelerations mended to meet the via points exactly.
+    Return the motion with inner accelerations corrected so that it meets the via points exactly.
 
     Parameters
     ----------
@@ -218,57 +218,57 @@ def restored(grid: Grid, points: Array, m: Variables) -> Variables:
     points : ndarray, shape (N + 1, 3)
         Via points [rad].
     m : Variables
-        Its unknowns.
+        The motion, up to rounding or a step's second order.
 
     Returns
     -------
     Variables
-        Of the same via velocities, via accelerations and durations.
+        With the same via velocities, via accelerations and durations.
 
     """
     nodes, v0, v1 = grid.nodes(m)
     h = (m.T / grid.n)[:, np.newaxis]
-    wanted = np.stack(((v1 - v0) / h, (np.diff(points, axis=0) - m.T[:, np.newaxis] * v0)
+    target = np.stack(((v1 - v0) / h, (np.diff(points, axis=0) - m.T[:, np.newaxis] * v0)
                        / h ** 2), axis=1)
-    lacking = wanted - np.stack((grid.qd[grid.n], grid.q[grid.n])) @ nodes
-    return m._replace(inner=m.inner + grid.restore @ lacking)
+    residual = target - np.stack((grid.qd[grid.n], grid.q[grid.n])) @ nodes
+    return m._replace(inner=m.inner + grid.restore @ residual)
 
 
-def stretched(m: Variables, factor: float) -> Variables:
+def time_scaled(m: Variables, factor: float) -> Variables:
     """
-    Return a motion run through more slowly, as a whole.
+    Return a motion along the same path with all times scaled.
 
     Parameters
     ----------
     m : Variables
-        Its unknowns.
+        The motion.
     factor : float
-        What every time is multiplied by.
+        Above 1: slower.
 
     Returns
     -------
     Variables
-        The same way.
+        Velocities are divided by the factor, accelerations by its square.
 
     """
     return Variables(m.inner / factor ** 2, m.v / factor, m.a / factor ** 2, m.T * factor)
 
 
-def slowed(m: Variables, T: Array) -> Variables:
+def with_durations(m: Variables, T: Array) -> Variables:
     """
-    Return a motion with stops at every via point, run through in other durations.
+    Return a motion that stops at every via point along the same path in other durations.
 
     Parameters
     ----------
     m : Variables
-        Its unknowns.
+        The motion.
     T : ndarray, shape (N,)
         The durations [s].
 
     Returns
     -------
     Variables
-        The same way.
+        Each segment scaled in time by itself.
 
     """
     return m._replace(inner=m.inner * ((m.T / T) ** 2)[:, np.newaxis, np.newaxis], T=T)

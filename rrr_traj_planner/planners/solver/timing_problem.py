@@ -15,9 +15,10 @@
 """
 The least-time problem over segments between via points, as the compiled kernels see it.
 
-Decision variables are those of a family of motions (`ramps`). A motion's states are bounded at the
-points of every segment, and so are further quantities of a state: torques, or what joints do while
-the tip follows a path. Durations may be free, fixed or tied to each other, and have least values.
+The decision variables are those of `ramps` (direct transcription). Bounds hold for the states at
+the points of every segment, general constraints for functions of a state: torques, or the joints'
+velocities, accelerations, jerks and torques while the tip follows a path. Durations may be free,
+fixed or in fixed proportions, and have lower bounds.
 """
 
 from __future__ import annotations
@@ -32,11 +33,11 @@ from rrr_traj_planner.planners.solver.library import Arena, contiguous, KERNELS
 from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, DurationConstraints, Limits
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
-STEPS = 4  # that one iteration may try; every second one is the one before, corrected
+STEPS = 4  # of one iteration: two Newton steps, each followed by its second-order correction
 
 
 class _Ramp(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_double) for name in ('whole', 'way', 'speed', 'peak')]
+    _fields_ = [(name, ctypes.c_double) for name in ('end_q', 'mid_q', 'mid_qd', 'peak_jerk')]
 
 
 class _Problem(ctypes.Structure):  # as in native/timing_problem.h
@@ -46,11 +47,11 @@ class _Problem(ctypes.Structure):  # as in native/timing_problem.h
         ('ramp', _Ramp),
         *((name, ctypes.c_void_p) for name in (
             'points', 'restore', 'lower', 'upper', 'general_lower', 'general_upper', 'bound_at',
-            'general_at', 'has_general', 'floor', 'free', 'tie', 'weights', 'still', 'arm',
-            'table', 'overshoot', 'variables', 'states', 'values', 'jacobian', 'slack',
-            'inverse', 'dual', 'shift', 'hessian', 'exact', 'gradient', 'gradient_T',
-            'hessian_T', 'trial_variables', 'trial_states', 'trial_values', 'trial_slack',
-            'trial_gradient', 'trial_gradient_T', 'step_states', 'newton')),
+            'general_at', 'has_general', 'floor', 'free', 'proportions', 'weights',
+            'fixed_velocity', 'arm', 'table', 'overshoot', 'variables', 'states', 'values',
+            'jacobian', 'slack', 'inverse', 'dual', 'shift', 'hessian', 'exact', 'gradient',
+            'gradient_T', 'hessian_T', 'trial_variables', 'trial_states', 'trial_values',
+            'trial_slack', 'trial_gradient', 'trial_gradient_T', 'step_states', 'newton')),
         ('shifted', ctypes.c_int32)]
 
 
@@ -64,31 +65,31 @@ class _Step(ctypes.Structure):  # as in native/timing_problem.h
 
 
 class Step(NamedTuple):
-    """A Newton step, and where a part of it leads."""
+    """A Newton step, and the result of a trial along it."""
 
-    at: Any     # its address: what kernels are given
-    found: Any  # what they found: see native/timing_problem.h
+    at: Any     # its address, for the kernels
+    found: Any  # the structure itself: see native/timing_problem.h
 
 
 class Workspace:
-    """Memory of problems that are solved one after the other: fresh memory costs time."""
+    """Memory shared by problems that are solved one after the other: allocation costs time."""
 
     def __init__(self) -> None:
         self._arenas: dict[tuple[tuple[int, ...], ...], Arena] = {}
 
     def arena(self, shapes: dict[str, tuple[int, ...]]) -> Arena:
         """
-        Return memory for arrays.
+        Return memory for arrays of given shapes.
 
         Parameters
         ----------
         shapes : dict
-            Of each array.
+            The shape of each array.
 
         Returns
         -------
         Arena
-            The same for the same shapes.
+            The same one for the same shapes.
 
         """
         key = tuple(shapes.values())
@@ -99,7 +100,7 @@ class Workspace:
 
 class TimingProblem:
     """
-    A problem, its iterate and what is known there.
+    A timing problem, its iterate, and values and derivatives there.
 
     Parameters
     ----------
@@ -108,16 +109,16 @@ class TimingProblem:
     points : ndarray, shape (N + 1, J)
         Via points.
     limits : Limits
-        What motions must keep.
+        The constraints.
     workspace : Workspace, optional
-        Memory that it shares with problems which are solved before and after it.
+        Memory shared with problems that are solved before and after this one.
 
     Attributes
     ----------
     grid, points, limits
         As given.
     at : object
-        The problem's address: what kernels are given.
+        The problem's address, for the kernels.
 
     """
 
@@ -131,7 +132,7 @@ class TimingProblem:
             J=J, N=N, n=n, kind=limits.kind, E=limits.general_lower.shape[-1],
             intervals=0 if limits.table is None else limits.table.shape[2],
             ramp=_Ramp(float(whole), float(way), float(speed), grid.shape.peak_jerk))
-        self._kept: dict[str, Array] = {}
+        self._bound_arrays: dict[str, Array] = {}
         bound_at, general_at = (np.flatnonzero(which) for which in (
             limits.bounded, limits.general))
         self._problem.bounds, self._problem.general = len(bound_at), len(general_at)
@@ -141,21 +142,21 @@ class TimingProblem:
                 ('general_upper', limits.general_upper), ('floor', limits.floor),
                 ('arm', limits.arm), ('table', limits.table), ('overshoot', limits.overshoot)):
             if values is not None:
-                self._keep(name, contiguous(values))
-        self._keep('bound_at', bound_at.astype(np.int32))
-        self._keep('general_at', general_at.astype(np.int32))
-        self._keep('has_general', limits.general.any(axis=1).astype(np.uint8))
+                self._bind(name, contiguous(values))
+        self._bind('bound_at', bound_at.astype(np.int32))
+        self._bind('general_at', general_at.astype(np.int32))
+        self._bind('has_general', limits.general.any(axis=1).astype(np.uint8))
         self._shape = N, n, J
         self.at: Any = ctypes.byref(self._problem)
 
-    def _keep(self, name: str, values: Any) -> None:
-        """Let the kernels know an array, and keep it as long as the problem."""
-        self._kept[name] = values
+    def _bind(self, name: str, values: Any) -> None:
+        """Give the kernels an array's address, and hold the array as long as the problem."""
+        self._bound_arrays[name] = values
         setattr(self._problem, name, values.ctypes.data)
 
     @cached_property
     def arrays(self) -> Arena:
-        """Return what the kernels work on, under the names of native/timing_problem.h."""
+        """Return the kernels' arrays, under the names of native/timing_problem.h."""
         (N, n, J), p = self._shape, self._problem
         P, Z, E = 2 * n + 1, 4 * J, p.E
         unknowns = N * (n - 1) * J + 2 * (N - 1) * J + N
@@ -179,7 +180,7 @@ class TimingProblem:
 
     @cached_property
     def steps(self) -> list[Step]:
-        """Return room for the steps of an iteration; every second one has a correction."""
+        """Return the memory of an iteration's steps; every second one has a correction."""
         found = []
         for k in range(STEPS):
             direction, correction, *others = (
@@ -190,40 +191,40 @@ class TimingProblem:
 
     def begin(self, motion: Variables, durations: DurationConstraints) -> None:
         """
-        Begin at a motion.
+        Set the first iterate, without shifts.
 
         Parameters
         ----------
         motion : Variables
             The iterate.
         durations : DurationConstraints
-            What may change.
+            Which durations and via velocities may change.
 
         """
         self.arrays['variables'][:] = np.concatenate([f.ravel() for f in motion])
         self.arrays['shift'][:] = 0.0
         self._problem.shifted = 0
-        self._keep('free', durations.free.astype(np.uint8))
-        self._keep('tie', contiguous(durations.tie))
-        self._keep('weights', contiguous(durations.weights))
-        self._keep('still', durations.still.astype(np.uint8))
+        self._bind('free', durations.free.astype(np.uint8))
+        self._bind('proportions', contiguous(durations.proportions))
+        self._bind('weights', contiguous(durations.weights))
+        self._bind('fixed_velocity', durations.fixed_velocities.astype(np.uint8))
 
-    def shift(self, former: Limits) -> None:
+    def shift(self, previous: Limits) -> None:
         """
-        Shift every constraint out to where it was before.
+        Relax every constraint to the previous limits where those are wider.
 
         Parameters
         ----------
-        former : Limits
-            On the same quantities; where they are no wider nothing is shifted.
+        previous : Limits
+            On the same quantities.
 
         """
         now = self.limits
-        above = np.concatenate(((former.upper - now.upper)[:, now.bounded],
-                                (former.general_upper - now.general_upper)[:, now.general]),
+        above = np.concatenate(((previous.upper - now.upper)[:, now.bounded],
+                                (previous.general_upper - now.general_upper)[:, now.general]),
                                axis=1)
-        below = np.concatenate(((now.lower - former.lower)[:, now.bounded],
-                                (now.general_lower - former.general_lower)[:, now.general]),
+        below = np.concatenate(((now.lower - previous.lower)[:, now.bounded],
+                                (now.general_lower - previous.general_lower)[:, now.general]),
                                axis=1)
         wider = np.maximum(np.stack((above, below), axis=-1), 0.0).ravel()
         self.arrays['shift'][:wider.size] = wider
@@ -231,12 +232,12 @@ class TimingProblem:
 
     @property
     def shifted(self) -> bool:
-        """Return whether any constraint is."""
+        """Return whether any constraint is relaxed."""
         return bool(self._problem.shifted)
 
     def slacks(self, motion: Variables) -> Array:
         """
-        Return how far a motion is within each constraint; see native/timing_problem.h.
+        Return the slack of each constraint, in the order of native/timing_problem.h.
 
         Parameters
         ----------
@@ -246,7 +247,7 @@ class TimingProblem:
         Returns
         -------
         ndarray
-            Positive strictly within.
+            Positive where the constraint holds strictly.
 
         """
         flat = np.concatenate([f.ravel() for f in motion])
@@ -256,7 +257,7 @@ class TimingProblem:
 
     def is_within(self, motion: Variables) -> bool:
         """
-        Return whether a motion is strictly within all constraints, as an iterate must be.
+        Return whether a motion is strictly feasible, as an iterate must be.
 
         Parameters
         ----------
@@ -266,24 +267,24 @@ class TimingProblem:
         Returns
         -------
         bool
-            False on a constraint.
+            False where a slack is 0.
 
         """
         return bool(self.slacks(motion).min() > 0.0)
 
     def motion(self, variables: Array) -> Variables:
         """
-        Return a motion.
+        Return a motion from the vector of its unknowns.
 
         Parameters
         ----------
         variables : ndarray
-            Its unknowns, one behind the other.
+            The fields of `Variables`, flattened and concatenated.
 
         Returns
         -------
         Variables
-            The same unknowns, not copied.
+            Views, not copies.
 
         """
         N, n, J = self._shape

@@ -15,12 +15,12 @@
 """
 The logarithmic barrier of the least-time problem over via velocities and durations.
 
-For every segment and joint four constraints must be kept strictly: the displacement lies between
-the least and the largest that the transition law allows in the duration, between the velocities
-at the ends, and velocity changes by no more than the law allows, up or down. Via velocities have
-bounds, durations may have least values. The barrier is the sum of -log(slack) (Boyd &
-Vandenberghe, Convex Optimization, 11.2). Where a segment's part is not convex its Hessian is given
-the magnitudes of its eigenvalues.
+For every segment and joint there are four constraints: the displacement is between the least and
+the largest that the transition law allows in the duration and between the end velocities, and the
+change of velocity is between those that it allows. Via velocities have bounds, durations may have
+lower bounds. The barrier is the sum of -log(slack) (Boyd & Vandenberghe, Convex Optimization,
+11.2). Where the term of a segment and joint is not convex, the eigenvalues of its Hessian are
+replaced by their magnitudes (Nocedal & Wright, Numerical Optimization, 3.4).
 """
 
 from __future__ import annotations
@@ -33,23 +33,23 @@ from rrr_traj_planner.planners.solver.library import Arena, KERNELS
 
 
 class Law(Protocol):
-    """How long a transition by u must last: max(slope u, root sqrt(u)) [s]."""
+    """The least duration of a change of velocity u: max(slope u, root sqrt(u)) [s]."""
 
     @property
     def slope(self) -> Array:
-        """Return the part of a limit on acceleration, shape (3,) [s^2/rad]."""
+        """Return the coefficient of the acceleration limit, shape (3,) [s^2/rad]."""
 
     @property
     def root(self) -> Array:
-        """Return the part of a limit on jerk, 0 without one, shape (3,) [s sqrt(s/rad)]."""
+        """Return the coefficient of the jerk limit, 0 without one, shape (3,) [s sqrt(s/rad)]."""
 
 
 class ViaLimits(Protocol):
-    """Via points, and what bounds the motion through them."""
+    """The via points, and the limits of the motion through them."""
 
     @property
     def displacements(self) -> Array:
-        """Return the ways from point to point, shape (n, 3) [rad]."""
+        """Return the displacements from point to point, shape (n, 3) [rad]."""
 
     @property
     def law(self) -> Law:
@@ -72,7 +72,7 @@ class _ViaProblem(ctypes.Structure):  # as in native/via_problem.h
     _fields_ = [('n', ctypes.c_int32), *((name, ctypes.c_void_p) for name in (
         'displacements', 'slope', 'root', 'max_velocity', 'lowest', 'highest', 'floor',
         'proportions', 'point', 'step', 'next', 'before', 'after', 'damping', 'gradient',
-        'hessian', 'bound', 'band', 'right', 'pull', 'border')),
+        'hessian', 'bound', 'band', 'right', 'total_gradient', 'border')),
         ('objective', ctypes.c_double), ('decrement', ctypes.c_double)]
 
 
@@ -85,23 +85,23 @@ class ViaBarrier:
     limits : ViaLimits
         The via points.
     v : ndarray, shape (n - 1, 3)
-        Via velocities to begin with [rad/s].
+        Via velocities of the first iterate [rad/s].
     T : ndarray, shape (n,)
-        Durations to begin with [s]; the point is strictly feasible.
+        Its durations [s]; the point is strictly feasible.
     floor : ndarray, shape (n,), optional
         Least durations [s].
     proportions : ndarray, shape (n,), optional
-        Durations of which a common multiple is sought [s], the least factor; None: durations are
-        free, of least sum.
+        Durations [s] whose common factor is minimised; None: durations are free, their sum is
+        minimised.
 
     Attributes
     ----------
     at : object
-        The problem's address: what kernels are given.
+        The problem's address, for the kernels.
     found : object
-        What they found: objective at the iterate, and decrement, of the last attempt, squared.
+        The structure itself: objective of the iterate, and decrement of the last step, squared.
     arrays : Arena
-        What they work on, under the names of native/via_problem.h.
+        The kernels' arrays, under the names of native/via_problem.h.
     constraints : int
         The number of logarithms.
     velocities, durations : ndarray
@@ -124,7 +124,7 @@ class ViaBarrier:
             'point': unknowns, 'step': unknowns, 'next': unknowns, 'before': parts,
             'after': parts, 'damping': parts, 'gradient': (n, 3, 3), 'hessian': (n, 3, 3, 3),
             'bound': (*unknowns, 2), 'band': (*unknowns, 5), 'right': (*unknowns, 2),
-            'pull': unknowns, 'border': unknowns})
+            'total_gradient': unknowns, 'border': unknowns})
         for name, array in given.items():
             self.arrays[name][...] = array
         self.arrays['damping'][:] = 0.0

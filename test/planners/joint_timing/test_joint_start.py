@@ -42,7 +42,7 @@ from rrr_traj_planner.planners.joint_timing.start import (
     rest_to_rest_shapes,
 )
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.solver.ramps import Grid, slowed, Variables
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables, with_durations
 
 SEEDS = range(12)
 ROOM = 1.02
@@ -66,7 +66,7 @@ def test_start_stops_at_every_via_point_strictly_within_all_limits(seed, limits)
 def test_start_is_slower_than_it_must_be_by_two_percent_only(seed):
     grid, points, _ = random_motion(seed)
     constraints, m = slow_start(LIMITS, grid, points)
-    faster = slowed(m, m.T / (1.001 * ROOM))
+    faster = with_durations(m, m.T / (1.001 * ROOM))
     slacks = constraints.problem.slacks(faster)[:-2 * len(m.T)]  # but for floors
     # in each segment some limit is then broken
     assert (slacks.reshape(len(m.T), -1).min(axis=1) < 0.0).all()
@@ -129,7 +129,7 @@ def test_the_faster_of_the_straight_way_and_another_is_taken():
         way = rest_to_rest_shapes(grid, task.points)[:, 1:-1]
 
         def straight_in(part, grid=grid, way=way, rest=rest, T=m.T, constraints=constraints):
-            m = slowed(Variables(way, rest, rest, np.ones(1)), part * T)
+            m = with_durations(Variables(way, rest, rest, np.ones(1)), part * T)
             return constraints.problem.is_within(m)
 
         assert not straight_in(1.0 / (1.001 * ROOM))

@@ -29,7 +29,7 @@ from rrr_traj_planner.planners.joint_timing.problem import JointProblem
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.interior_point import Centre, minimise
-from rrr_traj_planner.planners.solver.ramps import restored, stretched
+from rrr_traj_planner.planners.solver.ramps import restored, time_scaled
 
 SEEDS = range(8)
 KINDS = ('torque', 'velocity', 'range')
@@ -77,7 +77,7 @@ class Case:
         start, freedom = rest_to_rest(self.task, constraints), all_free(len(self.points) - 1)
         assert constraints.problem.is_within(start)
         return start, minimise(constraints.problem, Centre(start, None),
-                               freedom._replace(still=room.still), never).motion
+                               freedom._replace(fixed_velocities=room.at_rest), never).motion
 
     def look(self, m):
         return DenseCheck(self.task, self.grid, m)
@@ -187,7 +187,7 @@ def test_a_motion_planned_again_with_room_exceeds_much_less(kind, seed):
                      for m in (c.motion, again))
     # Where a joint is to stop at a via point from now on, the motion takes another course, which
     # exceeds limits in other places: what the first round makes of it says nothing.
-    assert (after <= np.maximum(LESS * before, COUNTS)).all() or c.room.still.any()
+    assert (after <= np.maximum(LESS * before, COUNTS)).all() or c.room.at_rest.any()
 
 
 @every
@@ -197,7 +197,7 @@ def test_rounds_of_room_end_near_the_optimum_within_every_limit(kind, seed):
     assert found.gap <= NEAR * found.cost
     slower = found.cost / found.motion.T.sum()
     assert slower <= 1.0 + NEAR
-    exceeded = [x.max() for x in c.excess(stretched(found.motion, slower))]
+    exceeded = [x.max() for x in c.excess(time_scaled(found.motion, slower))]
     assert max(exceeded[:2]) <= JOINT_ROUNDING
     assert max(exceeded[2:]) <= KEPT * max(
         limit.max() for limit in (c.task.limits.max_velocity, c.task.limits.max_effort)
@@ -209,7 +209,7 @@ def test_room_stays_as_it_was_where_no_limit_is_broken(kind, seed):
     c = case(kind, seed)
     again = c.room.widened(c.task, c.grid, c.slow, c.look(c.slow))
     assert max(x.max() for x in c.excess(c.slow)) <= 1e-9
-    for name in ('positions', 'velocities', 'efforts', 'still'):
+    for name in ('positions', 'velocities', 'efforts', 'at_rest'):
         assert (getattr(again, name) == getattr(c.room, name)).all()
 
 
@@ -253,9 +253,9 @@ def test_joints_that_leave_their_range_beside_a_via_point_at_its_end_stop_there(
         m = restored(grid, points, m)
         room = Margins.none(grid, 3)
         slow = rest_to_rest(task, constraints_with(room, task, grid))
-        still = room.widened(task, grid, slow, DenseCheck(task, grid, m)).still
+        at_rest = room.widened(task, grid, slow, DenseCheck(task, grid, m)).at_rest
         beside = grid.states(points, m).q[[k - 1, k], :, j].max() > points[k, j] + 1e-6
-        assert not beside or still[k - 1, j]
-        assert not np.delete(still, j, axis=1).any()
+        assert not beside or at_rest[k - 1, j]
+        assert not np.delete(at_rest, j, axis=1).any()
         found.append(bool(beside))
     assert any(found)

@@ -129,7 +129,7 @@ def test_limits_that_come_closer_are_kept_from_the_first_centre_on(seed, limits,
     anew = solve(closer(limits, part), grid, points)[3].motion.T.sum()
     assert part > 0.9 or not close.is_within(passed.centres[-3].motion)
     for centre in passed.centres[:-2]:  # others have next to no room to come from
-        found = minimise(close, centre, free, never, former=wide)
+        found = minimise(close, centre, free, never, previous=wide)
         assert found.within
         for m in (found.motion, *(c.motion for c in found.centres)):
             assert close.is_within(m)
@@ -141,7 +141,7 @@ def test_limits_that_cannot_be_kept_are_not_said_to_be():
     wide, _, _, passed = solve(LIMITS, grid, points)
     weak = replace(LIMITS, max_effort=[0.5] * 3)  # N m: the arm would fall
     found = minimise(bounds(weak, grid, points).problem, passed.centres[-1],
-                     all_free(len(points) - 1), never, former=wide)
+                     all_free(len(points) - 1), never, previous=wide)
     assert not found.within and not found.centres and not found.converged
 
 
@@ -150,7 +150,7 @@ def test_stopped_before_closer_limits_are_kept_it_says_so():
     wide, _, _, passed = solve(LIMITS, grid, points)
     close = bounds(closer(LIMITS, 0.9), grid, points).problem
     found = minimise(close, passed.centres[-1], all_free(len(points) - 1), lambda: True,
-                     former=wide)
+                     previous=wide)
     assert not found.within and not found.centres
 
 
@@ -177,25 +177,26 @@ def test_stopped_at_once_it_returns_a_motion_within_limits_not_slower_than_its_s
 @pytest.mark.parametrize('seed', SEEDS)
 def test_fixed_durations_stay_and_tied_ones_keep_their_ratio(seed):
     grid, points, _ = random_motion(seed, segments=3)
-    still = np.zeros((2, 3), bool)
+    at_rest = np.zeros((2, 3), bool)
     fixed = DurationConstraints(np.array([True, False, True]), np.zeros(3),
-                                np.array([1.0, 0.0, 1.0]), still)
+                                np.array([1.0, 0.0, 1.0]), at_rest)
     _, start, _, outcome = solve(FREE, grid, points, freedom=fixed)
     assert outcome.motion.T[1] == start.T[1]
     assert outcome.motion.T[[0, 2]].sum() < start.T[[0, 2]].sum()
-    tied = DurationConstraints(np.zeros(3, bool), start.T, np.ones(3), still)
+    tied = DurationConstraints(np.zeros(3, bool), start.T, np.ones(3), at_rest)
     _, start, _, outcome = solve(FREE, grid, points, freedom=tied)
     ratio = outcome.motion.T / start.T
     assert ratio == pytest.approx(np.full(3, ratio[0]), rel=1e-9)
     assert ratio[0] < 1.0
 
 
-def test_velocities_that_are_still_stay_zero():
+def test_velocities_at_rest_stay_zero():
     grid, points, _ = random_motion(4, segments=3)
-    still = np.array([[True, False, False], [False, False, True]])
-    found = solve(FREE, grid, points, freedom=all_free(3)._replace(still=still))[3].motion
-    assert np.abs(found.v[still]).max() <= 1e-12
-    assert np.abs(found.v[~still]).min() > 1e-3
+    at_rest = np.array([[True, False, False], [False, False, True]])
+    freedom = all_free(3)._replace(fixed_velocities=at_rest)
+    found = solve(FREE, grid, points, freedom=freedom)[3].motion
+    assert np.abs(found.v[at_rest]).max() <= 1e-12
+    assert np.abs(found.v[~at_rest]).min() > 1e-3
 
 
 # --- Centres of the central path --------------------------------------------------------------

@@ -23,7 +23,13 @@ from rrr_traj_planner.planners.joint_timing.start import (
     rest_to_rest_legs,
     rest_to_rest_shapes,
 )
-from rrr_traj_planner.planners.solver.ramps import Grid, restored, slowed, stretched, Variables
+from rrr_traj_planner.planners.solver.ramps import (
+    Grid,
+    restored,
+    time_scaled,
+    Variables,
+    with_durations,
+)
 
 SEEDS = range(8)
 EXACT = {'rel': 1e-11, 'abs': 1e-11}      # rounding
@@ -105,7 +111,7 @@ def test_a_step_that_stretches_time_is_followed_as_a_stretch(seed):
         # the derivative of a stretch by the factor 1 + rate * size
         step = Variables(-2.0 * rate * m.inner, -rate * m.v, -2.0 * rate * m.a, rate * m.T)
         moved = moved_by(grid, points, m, step, size)
-        for found, expected in zip(moved, stretched(m, 1.0 + rate * size)):
+        for found, expected in zip(moved, time_scaled(m, 1.0 + rate * size)):
             assert found == pytest.approx(expected, **EXACT)
 
 
@@ -165,7 +171,7 @@ def test_straight_motions_stop_at_every_point_and_never_turn_back(n):
     grid = Grid(n)
     rest = np.zeros((1, 3))
     m = Variables(rest_to_rest_shapes(grid, points)[:, 1:-1], rest, rest, np.ones(2))
-    slow = slowed(m, np.array([2.0, 3.0]))
+    slow = with_durations(m, np.array([2.0, 3.0]))
     for motion in (m, slow):
         at = grid.states(points, motion)
         assert at.q[:, n] == pytest.approx(points[1:], **EXACT)
@@ -217,7 +223,7 @@ def test_legs_have_ramps_as_the_roots_of_their_lengths_beside_the_least():
 @pytest.mark.parametrize('seed', SEEDS)
 def test_stretched_motions_go_the_same_way_more_slowly(seed):
     grid, points, m = random_motion(seed)
-    at, slow = grid.states(points, m), grid.states(points, stretched(m, 1.7))
+    at, slow = grid.states(points, m), grid.states(points, time_scaled(m, 1.7))
     assert slow.q == pytest.approx(at.q, **EXACT)
     assert slow.qd == pytest.approx(at.qd / 1.7, **EXACT)
     assert slow.jerk == pytest.approx(at.jerk / 1.7 ** 3, **EXACT)

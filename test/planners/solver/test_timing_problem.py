@@ -27,7 +27,7 @@ from rrr_traj_planner.planners.path_timing.start import paced_along
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, stretched
+from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled
 
 SEEDS = range(5)
 BARRIER = 1e-3
@@ -110,10 +110,10 @@ class Case:
         N, d = len(self.motion.T), self.durations
         start = len(self.x) - N
         fixed = [start + k for k in range(N) if not d.free[k]]
-        fixed += [self.motion.inner.size + i for i in np.flatnonzero(d.still.ravel())]
+        fixed += [self.motion.inner.size + i for i in np.flatnonzero(d.fixed_velocities.ravel())]
         basis = np.delete(np.eye(len(self.x)), fixed, axis=1)
-        tie = np.concatenate((np.zeros(start), d.tie))
-        return np.column_stack((basis, tie)) if d.tie.any() else basis
+        tie = np.concatenate((np.zeros(start), d.proportions))
+        return np.column_stack((basis, tie)) if d.proportions.any() else basis
 
 
 def joint_problem(limits, seed, segments=None, floor=False):
@@ -133,7 +133,7 @@ def path_problem(seed):
         np.zeros((N, 2 * grid.n + 1, QUANTITIES)), np.zeros(N, bool))
     m = paced_along(grid, table.ends, np.concatenate(([0.0], np.full(N - 1, 0.3), [0.0])))
     while not constraints.problem.is_within(m):
-        m = stretched(m, 1.3)
+        m = time_scaled(m, 1.3)
     return constraints.problem, m
 
 
@@ -294,10 +294,10 @@ def test_shifts_are_what_former_limits_are_wider_by_and_go_with_the_step():
     assert set(np.round(shift, 9)) == {0.0, *np.round(0.5 * LIMITS.max_velocity, 9)}
     step = close.steps[0]
     arrays['slack 0'][:] = 10.0
-    KERNELS.timing_close(close.at, step.at, 0.25, 0.0)
+    KERNELS.timing_reduce_shifts(close.at, step.at, 0.25, 0.0)
     assert arrays['shift'] == pytest.approx(0.75 * shift)
     assert close.shifted
-    KERNELS.timing_close(close.at, step.at, 0.0, 1.0)  # next to slacks of 10 they are small
+    KERNELS.timing_reduce_shifts(close.at, step.at, 0.0, 1.0)  # small beside slacks of 10
     assert not close.shifted and (arrays['shift'] == 0.0).all()
     assert arrays['slack 0'] == pytest.approx(10.0 - 0.75 * shift)
 
@@ -319,7 +319,7 @@ def test_limits_on_no_state_but_ranges_are_none_of_the_others():
 def test_slacks_are_of_the_motion_given_and_leave_the_iterate_alone():
     case = Case('torque', 1)
     before = case.x.copy()
-    other = stretched(case.motion, 2.0)
+    other = time_scaled(case.motion, 2.0)
     assert (case.problem.slacks(other) != case.problem.slacks(case.motion)).any()
     assert (case.arrays['variables'] == before).all()
     assert flat(case.motion) == pytest.approx(before)
