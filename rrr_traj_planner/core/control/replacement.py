@@ -78,7 +78,7 @@ class Takeover:
     model : RobotModel
         The arm.
     running : DesiredMotion, optional
-        What is followed now; None: only the command is known.
+        What would have to stop now (`what_moves`); None: only the command is known.
 
     """
 
@@ -246,7 +246,8 @@ def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
     """
     Return a quintic to the motion's end, later than on schedule, or a stop and a move there.
 
-    Where the motion has a velocity at its end, the quintic leads to where it would be by then.
+    Where the motion has a velocity at its end, the quintic leads to where it would be by then, if
+    the arm can stop inside its ranges from there.
     Where gravity alone asks too much of a motor on the way, or the end is outside a range, the arm
     stays where it has stopped.
     """
@@ -259,6 +260,8 @@ def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
     q, qd, qdd = np.reshape(motion.end_state, (3, 3))
     q = q + qd * (T - due)[:, np.newaxis]
     met = _within_limits(takeover, T, (q, np.tile(qd, (len(T), 1)), np.tile(qdd, (len(T), 1))))
+    rest = q + 0.5 * qd * np.abs(qd) / takeover.limits.max_acceleration
+    met &= ~(_outside(takeover, q) | _outside(takeover, rest)).any(axis=1)
     if met.any():
         i = int(np.argmax(met))
         late = DesiredMotion(T[i:i + 1], np.zeros((0, 3, 6)), q[i], nanoseconds(takeover.now),
@@ -286,5 +289,12 @@ def _ends_outside(takeover: Takeover, motion: DesiredMotion) -> tuple[str, ...]:
     return tuple(
         'the trajectory would end with {} at {} rad, range [{}, {}] rad: holding'.format(
             name, *told_apart(float(q), float(a), float(b)))
-        for name, q, a, b in zip(takeover.model.joint_names, motion.final, low, high)
-        if not a - ROUNDED * max(1.0, abs(a)) <= q <= b + ROUNDED * max(1.0, abs(b)))
+        for name, q, a, b, beyond in zip(takeover.model.joint_names, motion.final, low, high,
+                                         _outside(takeover, motion.final)) if beyond)
+
+
+def _outside(takeover: Takeover, q: Array) -> BoolArray:
+    """Return which positions are outside their ranges by more than rounding, shape (..., 3)."""
+    low, high = takeover.limits.min_position, takeover.limits.max_position
+    return np.asarray((q < low - ROUNDED * np.maximum(1.0, np.abs(low)))
+                      | (q > high + ROUNDED * np.maximum(1.0, np.abs(high))))

@@ -24,7 +24,7 @@ from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.control_loop import ControlLoop
 from rrr_traj_planner.core.states import Desired
 from rrr_traj_planner.core.stopping.stop import Stop, stop
-from rrr_traj_planner.core.stopping.task import measured, time_inside, what_moves
+from rrr_traj_planner.core.stopping.task import MeasuredState, time_inside, what_moves
 from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion, holding
 from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 
@@ -124,7 +124,7 @@ class ControlledArm(ControlLoop):
 
         """
         takeover = Takeover(self.time, self.desired, self.settings.limits,
-                            self.settings.controller_model, self.motion)
+                            self.settings.controller_model, self._what_moves())
         self.motion, self.stop_warnings = replacement(
             takeover, points, origin_ns, self.settings.step)
         self.violation = ()
@@ -133,7 +133,7 @@ class ControlledArm(ControlLoop):
 
     def hold(self) -> None:
         """Stop inside the ranges, as fast as the limits allow, and stay there."""
-        self._stop(what_moves(self.motion, self.now, self.seen, self.settings.limits))
+        self._stop(self._what_moves())
 
     def advance(self, steps: int) -> None:
         """
@@ -157,7 +157,9 @@ class ControlledArm(ControlLoop):
         """Brake a motion that has come to its end while moving."""
         motion = self.motion
         if motion.ends_moving and self.now >= motion.end_ns:
-            self.motion, self.stop_warnings = self._stopped(motion, motion.end)
+            moving = self._what_moves()
+            self.motion, self.stop_warnings = self._stopped(
+                moving, motion.end if moving is motion else self.time)
 
     def _advance(self, steps: int) -> None:
         """Simulate control and physics, with a motion that does not end moving meanwhile."""
@@ -175,14 +177,18 @@ class ControlledArm(ControlLoop):
                 self.seen, self.desired, self.time - self.motion.end, self._first_check)
             self._first_check = False
             if lines:
-                self._stop(measured(self.seen, self.now))
+                self._stop(MeasuredState(self.seen, self.now, self.motion))
                 self.violation = lines
 
     def _keep_ranges(self) -> None:
         """Stop a motion that leaves the ranges, which have become smaller."""
         if time_inside(self.motion, self.time, self.settings.limits) < self.motion.end:
-            self._stop(what_moves(self.motion, self.now, self.seen, self.settings.limits))
+            self._stop(self._what_moves())
             self.stop_warnings = (OUTSIDE_NEW_RANGES, *self.stop_warnings)
+
+    def _what_moves(self) -> DesiredMotion:
+        """Return what would have to stop now."""
+        return what_moves(self.motion, self.now, self.seen, self.settings.limits)
 
     def _stop(self, motion: DesiredMotion) -> None:
         """Stop what is a motion now."""

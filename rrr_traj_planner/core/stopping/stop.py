@@ -18,8 +18,8 @@ Bringing the arm to rest from the motion it is in: inside its ranges, as fast as
 Candidates are brakes of each joint by itself and the motion itself ever more slowly, either at
 once or after the motion has been followed for a while, down to its own end. Whatever the state of
 a motion that ends at rest inside the ranges, one of them keeps ranges and limits; of those that
-do, the quickest is taken. From other states each joint brakes as hard as its range asks, and what
-that breaks is told.
+do, the quickest is taken. From other states each joint brakes as hard as its range asks, at once
+where it is at its end or beyond, and what that breaks is told.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.stopping.candidates import Indices, JointBrakes, Slowdowns
 from rrr_traj_planner.core.stopping.joint_brake import greatest_deceleration
 from rrr_traj_planner.core.stopping.point_to_point import moved_on, quickest
@@ -130,7 +130,8 @@ def stop(motion: DesiredMotion, now: float, limits: JointLimits, model: RobotMod
     Return the quickest way to rest that keeps every range and limit.
 
     Position and velocity go on from the motion's without a jump, acceleration too where jerk is
-    limited. A joint outside its range stops and then goes back to its end.
+    limited, unless a joint has to stop at once. A joint outside its range stops and then goes back
+    to its end.
 
     Parameters
     ----------
@@ -229,12 +230,20 @@ def _end(motion: DesiredMotion, now: float, qd: Array, qdd: Array) -> tuple[Arra
     return (motion.final, np.zeros(3), np.zeros(3)) if rests else (motion.final, qd, qdd)
 
 
+def _at_once(task: StopTask, q: Array, qd: Array) -> BoolArray:
+    """Return which joints cannot but stop at once: no range is left, or that beyond it."""
+    room, limits = task.room(q, qd), task.limits
+    beyond = (np.where(qd > 0.0, q - limits.max_position, limits.min_position - q)
+              > POSITION_TOLERANCE)
+    return np.asarray((2.0 * room < np.abs(qd) * INSTANT)
+                      | (beyond & (0.5 * qd ** 2 > limits.max_acceleration * room)))
+
+
 def _as_hard_as_needed(task: StopTask) -> tuple[DesiredMotion, list[str]]:
     """Return a brake that ends inside the ranges, whatever it takes, and what that is."""
     q, qd, qdd = (x[0] for x in _delays(task)[1])
-    low, high = task.ranges(q)
-    room = np.maximum(np.where(qd > 0.0, high - q, q - low), 0.0)
-    at_once = 2.0 * room < np.abs(qd) * INSTANT
+    at_once = _at_once(task, q, qd)
+    room = task.room(q, qd)
     v, a = np.where(at_once, 0.0, qd), np.where(at_once, 0.0, qdd)
     needed = np.divide(0.5 * v ** 2, room, out=np.zeros(3), where=v != 0.0)
     unlimited, n = np.full(3, inf), len(RATES)

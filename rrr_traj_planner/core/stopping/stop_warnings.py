@@ -22,12 +22,12 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.stopping.task import StopTask
+from rrr_traj_planner.core.stopping.task import MeasuredState, StopTask
 from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
 
 # What a joint slower than this does at the end of its range is not worth a word [rad/s], nor is
 # one so little outside its range [rad].
-SLOW, NEAR = 0.01, 1e-3
+SLOW, NEAR = 0.01, 1e-4
 
 # A limit is exceeded from this part of it on; torques are looked at so often.
 TOLERANCE, SAMPLES = 1e-4, 241
@@ -43,7 +43,7 @@ def harder(task: StopTask, q: Array, qd: Array, needed: Array) -> list[str]:
         The task.
     q, qd, needed : ndarray, shape (3,)
         Positions [rad], velocities [rad/s] and decelerations [rad/s^2]; of these, infinite where
-        a joint is too fast at the end of its range, 0 where its own is enough.
+        a joint stops at once, 0 where its own is enough.
 
     Returns
     -------
@@ -52,13 +52,14 @@ def harder(task: StopTask, q: Array, qd: Array, needed: Array) -> list[str]:
 
     """
     limits, told = task.limits, []
+    source = 'measured' if isinstance(task.motion, MeasuredState) else 'commanded'
     for i, name in enumerate(task.model.joint_names):
         if needed[i] > limits.max_acceleration[i] * (1.0 + TOLERANCE) and (
                 abs(qd[i]) > SLOW):
             how = (f'brakes with {needed[i]:.4g} rad/s^2, limit '
                    f'{limits.max_acceleration[i]:.4g} rad/s^2, to rest inside it'
-                   if needed[i] < inf else 'meets its end')
-            told.append(f'{name} moves at {qd[i]:.4g} rad/s at {q[i]:.6g} rad, range '
+                   if needed[i] < inf else 'stops at once')
+            told.append(f'{name} moves at {qd[i]:.4g} rad/s at {q[i]:.6g} rad ({source}), range '
                         f'{_range(limits, i)} rad: it {how}')
     return told
 
@@ -91,14 +92,14 @@ def torques_beyond(task: StopTask, motion: DesiredMotion) -> list[str]:
 
 def outside(task: StopTask, q: Array) -> list[str]:
     """
-    Tell of joints outside their ranges.
+    Tell of joints outside their ranges, or commanded to be there.
 
     Parameters
     ----------
     task : StopTask
         The task.
     q : ndarray, shape (3,)
-        Positions [rad].
+        Positions from which the stop begins [rad].
 
     Returns
     -------
@@ -106,10 +107,22 @@ def outside(task: StopTask, q: Array) -> list[str]:
         A sentence for each of them.
 
     """
-    limits = task.limits
-    beyond = np.maximum(q - limits.max_position, limits.min_position - q)
-    return [f'{name} is at {q[i]:.6g} rad, outside its range {_range(limits, i)} rad: it goes '
-            f'back inside' for i, name in enumerate(task.model.joint_names) if beyond[i] > NEAR]
+    limits, told = task.limits, []
+    measured = isinstance(task.motion, MeasuredState)
+    command = task.motion.commanded_position if isinstance(task.motion, MeasuredState) else q
+    for i, name in enumerate(task.model.joint_names):
+        if _beyond(limits, q)[i] > NEAR:
+            told.append(f'{name} is {"at" if measured else "commanded to"} {q[i]:.6g} rad, '
+                        f'outside its range {_range(limits, i)} rad: it goes back inside')
+        elif _beyond(limits, command)[i] > NEAR:
+            told.append(f'{name} is commanded to {command[i]:.6g} rad, outside its range '
+                        f'{_range(limits, i)} rad: the arm stops from where it is measured')
+    return told
+
+
+def _beyond(limits: JointLimits, q: Array) -> Array:
+    """Return how far positions are outside their ranges; negative inside [rad]."""
+    return np.maximum(q - limits.max_position, limits.min_position - q)
 
 
 def _range(limits: JointLimits, i: int) -> str:

@@ -30,14 +30,14 @@ from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
 # So far beyond a range is within it [rad]; a motion may touch its ends to the other.
 POSITION_TOLERANCE, TOUCH = 1e-9, 1e-6
 
-# A joint that is outside its range may go so much further before it comes back [rad].
-OUTSIDE_ROOM = 0.05
+# A joint outside its range may go so much further where it brakes within its limits [rad].
+OUTSIDE_ROOM = 0.01
 
 # At so many instants it is looked whether a motion stays inside.
 LOOKS = 1001
 
 # A command so far from the arm is not what has to stop: outside the ranges, inside [rad].
-ASTRAY_OUTSIDE, ASTRAY = 1e-3, 0.2
+ASTRAY_OUTSIDE, ASTRAY = 1e-4, 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +120,24 @@ class StopTask:
         return (np.where(q < low - POSITION_TOLERANCE, q - OUTSIDE_ROOM, low),
                 np.where(q > high + POSITION_TOLERANCE, q + OUTSIDE_ROOM, high))
 
+    def room(self, q: Array, qd: Array) -> Array:
+        """
+        Return the way that is left to stop in.
+
+        Parameters
+        ----------
+        q, qd : ndarray, shape (3,)
+            Positions [rad] and velocities [rad/s].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            To the end of `ranges` towards which a joint moves [rad], not negative.
+
+        """
+        low, high = self.ranges(q)
+        return np.maximum(np.where(qd > 0.0, high - q, q - low), 0.0)
+
 
 def time_inside(motion: DesiredMotion, now: float, limits: JointLimits) -> float:
     """
@@ -170,9 +188,11 @@ def from_state(state: Desired, now: int) -> DesiredMotion:
     return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), q, now, qd, qdd)
 
 
-def measured(seen: State, now: int) -> DesiredMotion:
+class MeasuredState(DesiredMotion):
     """
-    Return a measured state as a motion that is over, for `stop`.
+    A measured state as a motion that is over, for `stop`.
+
+    It has one knot, and no acceleration, which is not measured.
 
     Parameters
     ----------
@@ -180,14 +200,20 @@ def measured(seen: State, now: int) -> DesiredMotion:
         Positions [rad] and velocities [rad/s].
     now : int
         The time [ns].
+    commanded : DesiredMotion
+        What was commanded then.
 
-    Returns
-    -------
-    DesiredMotion
-        Of one knot; without acceleration, which is not measured.
+    Attributes
+    ----------
+    commanded_position : ndarray, shape (3,)
+        [rad].
 
     """
-    return from_state((*seen, 0.0, 0.0, 0.0), now)
+
+    def __init__(self, seen: State, now: int, commanded: DesiredMotion) -> None:
+        super().__init__(np.zeros(1), np.zeros((0, 3, 6)), np.array(seen[:3]), now,
+                         np.array(seen[3:]), np.zeros(3))
+        self.commanded_position = np.array(commanded.command(now)[:3])
 
 
 def what_moves(motion: DesiredMotion, now: int, seen: State,
@@ -213,6 +239,6 @@ def what_moves(motion: DesiredMotion, now: int, seen: State,
 
     """
     q = np.array(motion.command(now)[:3])
-    outside = ((q < limits.min_position) | (q > limits.max_position)).any()
+    outside = ((q < limits.min_position - TOUCH) | (q > limits.max_position + TOUCH)).any()
     astray = np.abs(q - seen[:3]).max() > (ASTRAY_OUTSIDE if outside else ASTRAY)
-    return measured(seen, now) if astray else motion
+    return MeasuredState(seen, now, motion) if astray else motion

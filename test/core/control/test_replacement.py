@@ -264,3 +264,22 @@ def test_motion_of_our_own_does_not_end_outside_a_range(command, q, text):
 def test_last_point_rounded_to_four_digits_is_inside():
     found = replacement(takeover(), single((1.5708, 1.0, 0.2), 0.1), NOW_NS, LEAD)
     assert found.motion.final[0] == 1.5708 and not found.warnings
+
+
+@pytest.mark.parametrize(('joint', 'end'), [(0, 0.0), (0, np.pi / 2), (2, -np.pi), (1, np.pi)])
+@pytest.mark.parametrize('before', [0.0, 0.02, 0.3])
+@pytest.mark.parametrize('speed', [0.2, 0.9])
+def test_point_that_is_met_late_does_not_lead_the_arm_out_of_a_range(joint, end, before, speed):
+    side = np.sign(end - Q[joint])
+    command = np.array(REST)
+    command[joint] = end - side * (before + 0.3)
+    q, qd = command[:3].copy(), np.zeros(3)
+    q[joint], qd[joint] = end - side * before, side * speed
+    # 0.3 rad in 0.1 s is too much; meanwhile the point would be so much further
+    motion, warnings = replacement(takeover(tuple(command.tolist())), MotionPoints(
+        [0.1], [q], [qd], np.zeros((1, 3)), [True], [True]), NOW_NS, LEAD)
+    states = commands(motion, motion.end + 0.1)[1]
+    assert (side * (states[:, joint] - end)).max() <= 1e-4
+    arrived = motion.final[joint] + 0.5 * motion.final_velocity[joint] * speed  # v^2 / 2 A on
+    assert side * (arrived - end) <= 1e-4
+    assert warnings == ()

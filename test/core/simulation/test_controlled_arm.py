@@ -27,6 +27,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.core.trajectory.reference_trajectory import through
 from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
 
 MODEL = RobotModel()
@@ -257,3 +258,36 @@ def test_step_cannot_change_while_the_arm_runs():
 def test_step_must_be_positive(step):
     with pytest.raises(InvalidInputError, match=r'^step is .* s, must be (positive|finite)'):
         replace(SETTINGS, step=step)
+
+
+def end_of_the_trajectory(arm):
+    arm.advance(1)
+
+
+def refused_join(arm):
+    q = np.array(arm.desired[:3])
+    arm.follow(MotionPoints([0.0], [q + (q - Q)], *np.zeros((2, 1, 3)), [True], [False]), arm.now)
+
+
+@pytest.mark.parametrize('means', [end_of_the_trajectory, ControlledArm.hold, refused_join])
+@pytest.mark.parametrize(('joint', 'end', 'beyond'), [
+    (0, 0.0, 0.0156), (0, np.pi / 2, 0.3), (1, np.pi, 0.002), (2, -np.pi, 0.0156)])
+def test_arm_at_a_stop_does_not_push_while_its_command_is_brought_back(means, joint, end, beyond):
+    speed, T = np.sign(end - Q[joint]) * 0.4, 0.8
+    q, qd = np.tile(Q, (2, 1)), np.zeros((2, 3))
+    qd[:, joint] = speed
+    q[:, joint] = end + np.sign(speed) * beyond - speed * np.array([T, 0.0])
+    arm = ControlledArm(SETTINGS, q[0])
+    arm.state = (*q[0], *qd[0])
+    arm.motion = through(MotionPoints([0.0, T], q, qd, np.zeros((2, 3)),
+                                      *np.ones((2, 2), dtype=bool)))
+    arm.advance(round(T / SETTINGS.step) - 1)
+    command = q[1, joint] if means is end_of_the_trajectory else arm.desired[joint]
+    means(arm)
+    assert arm.stop_warnings[0].startswith(
+        f'{MODEL.joint_names[joint]} is commanded to {command:.6g} rad, outside its range [')
+    arm.advance(1)
+    arm.monitor.take()
+    arm.advance(1000)
+    assert arm.monitor.take().pressed[joint] == 0.0
+    np.testing.assert_allclose(arm.state[joint], end, atol=1e-5)

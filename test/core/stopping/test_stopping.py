@@ -151,14 +151,14 @@ def test_state_that_is_too_fast_for_its_range_brakes_as_hard_as_that_takes(end, 
     assert motion.final[0] == end
     assert np.abs(states[:, 6]).max() == pytest.approx(0.9 ** 2 / 2.0 / 0.05)  # v^2 / 2 s
     assert warnings == (
-        f'joint_1 moves at {0.9 * sign:.4g} rad/s at {q:.6g} rad, range [0, 1.5708] rad: it '
-        'brakes with 8.1 rad/s^2, limit 1 rad/s^2, to rest inside it',)
+        f'joint_1 moves at {0.9 * sign:.4g} rad/s at {q:.6g} rad (commanded), range [0, 1.5708] '
+        'rad: it brakes with 8.1 rad/s^2, limit 1 rad/s^2, to rest inside it',)
 
 
 def test_joint_that_is_fast_at_the_end_of_its_range_rests_there():
     motion, warnings = stopped((np.pi / 2, 1.0, 0.2, 0.9, *(0.0,) * 5))
     assert motion.final[0] == np.pi / 2
-    assert 'range [0, 1.5708] rad: it meets its end' in warnings[0]
+    assert 'range [0, 1.5708] rad: it stops at once' in warnings[0]
 
 
 def test_joints_that_rest_at_the_ends_of_their_ranges_stay_while_another_brakes_hard():
@@ -175,7 +175,33 @@ def test_joint_outside_its_range_stops_and_goes_back():
     assert np.abs(states[:, 6:]).max() <= 1.0 + 1e-6
     assert states[:, 0].max() < 1.72  # 0.1 rad/s takes 0.01 rad
     assert warnings == (
-        'joint_1 is at 1.7 rad, outside its range [0, 1.5708] rad: it goes back inside',)
+        'joint_1 is commanded to 1.7 rad, outside its range [0, 1.5708] rad: it goes back '
+        'inside',)
+
+
+@pytest.mark.parametrize('joint', [0, 1, 2])
+@pytest.mark.parametrize('side', [-1.0, 1.0])
+@pytest.mark.parametrize(('beyond', 'speed'), [
+    (1e-6, 3.0), (1e-6, 0.05), (5e-4, 0.2), (0.0156, 0.9), (0.3, 0.05), (0.3, 3.0)])
+def test_joint_that_leaves_its_range_turns_back_as_soon_as_it_can(joint, side, beyond, speed):
+    A, J = 1.0, 10.0
+    end = (LIMITS.max_position if side > 0.0 else LIMITS.min_position)[joint]
+    q, qd = np.array([0.5, 1.0, 0.2]), np.zeros(3)
+    q[joint], qd[joint] = end + side * beyond, side * speed
+    motion, warnings = stopped((*q, *qd, 0.0, 0.0, 0.0))
+    further = (side * (sampled(motion)[1][:, joint] - q[joint])).max()
+    # Deceleration within the limits takes v^2 / 2 A + v A / 2 J, in v / A + A / J.
+    gentle = speed ** 2 / (2.0 * A) + speed * A / (2.0 * J) < 0.01
+    assert further <= (0.01 if gentle else 0.0) + ROUNDING
+    # A quintic from rest to rest over s: v = 15 s / 8 T, a = 10 s / 3^(1/2) T^2, j = 60 s / T^3.
+    s = beyond + max(further, 0.0)
+    back = max(0.01, 1.875 * s, (10.0 / 3.0 ** 0.5 * s / A) ** 0.5, (60.0 * s / J) ** (1 / 3))
+    assert motion.end - NOW <= back + (speed / A + A / J if gentle else 0.0) + ROUNDING
+    assert motion.final[joint] == end
+    told = ' '.join(warnings)
+    assert (f'{MODEL.joint_names[joint]} is commanded to {q[joint]:.6g} rad, outside its range'
+            in told) == (beyond > 1e-4)
+    assert ('it stops at once' in told) == (not gentle)
 
 
 @pytest.mark.parametrize('velocity', [1e-12, 1e3, 1e6])
