@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The demonstration's client: asks the planner, drives the arm, records what it did."""
+"""The demo's client: requests a plan, sends it to the arm, and records the arm's motion."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
 from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.process.node_claim import is_claimed
 from rrr_traj_planner.nodes.process.node_start import KEEP_APART
-from rrr_traj_planner.nodes.process.processes import ending
+from rrr_traj_planner.nodes.process.processes import exit_message
 from rrr_traj_planner.nodes.recording.bag import Bag
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
@@ -46,27 +46,27 @@ from trajectory_msgs.msg import JointTrajectory
 
 NODES = ('trajectory_planner', 'simulated_arm')
 
-PATIENCE = 20.0       # s that a node is given to appear or to answer
-HEAD_START = 0.5      # s between sending a trajectory and its start
-SETTLING = 0.5        # s that is recorded after the end
-PROGRESS_PERIOD = 0.5  # s
-AT_START = 1e-6       # rad
+TIMEOUT = 20.0         # s for a node to appear, to answer, or to make progress
+START_DELAY = 0.5      # s between sending a trajectory and its start
+SETTLING_TIME = 0.5    # s that is recorded after the end
+PROGRESS_PERIOD = 0.5  # s between two progress lines
+AT_START = 1e-6        # rad, within which the arm counts as at the start of the motion
 
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What was asked, planned and done."""
+    """One run of the demo: the task, the planner's response, and the recorded motion."""
 
     task: Task
     config: PlannerConfig
     response: Any             # PlanTrajectory.Response
     planned: TrajectoryPoints
-    recorded: TrajectoryPoints  # of the arm; time 0 is the motion's start
-    torque: Array             # of the motors, at the recorded points [N m]
+    recorded: TrajectoryPoints  # the arm's motion; time 0 is the start of the trajectory
+    torque: Array             # motor torques at the recorded points, shape (n, 3) [N m]
 
 
 class Client(Node):
-    """Talks to both nodes."""
+    """A client of both nodes."""
 
     def __init__(self) -> None:
         super().__init__('demo')
@@ -87,14 +87,14 @@ class Client(Node):
         task : Task
             The via points.
         ended : callable
-            Tells which node's process has ended, if one has.
+            Returns name and exit code of a node's process that has ended, else None.
         bag : Bag, optional
-            Records what comes by.
+            Bag to record all topics in.
 
         Returns
         -------
         Run
-            The whole story.
+            Request, plan and recorded motion.
 
         Raises
         ------
@@ -126,32 +126,32 @@ class Client(Node):
 
     def check_free(self) -> None:
         """
-        Refuse to run where the demonstration's nodes would not be the only ones of their names.
+        Refuse to run beside other nodes of the same names on this machine.
 
         Raises
         ------
         StartError
-            If one runs already.
+            If such a node is running.
 
         """
         for name in self._claimed():
             raise StartError(f'a node {name} runs already: {KEEP_APART}')
 
     def _claimed(self) -> list[str]:
-        """Return which nodes run on this machine."""
+        """Return which of the two nodes run on this machine."""
         prefix, domain = self.get_namespace().rstrip('/'), self.context.get_domain_id()
         names = [f'{prefix}/{node}' for node in NODES]
         return [name for name in names if is_claimed(domain, name)]
 
     def _check_alone(self) -> None:
-        """Refuse to share topics with nodes of another machine: all would answer and drive."""
+        """Refuse to run beside the same nodes on another machine: all would answer and move."""
         found = self.get_node_names_and_namespaces()
         if max(self._send.get_subscription_count(), self.count_publishers('joint_states'),
                *(found.count((node, self.get_namespace())) for node in NODES)) > 1:
             raise StartError(f'another planner or arm is running here: {KEEP_APART}')
 
     def _planner_config(self) -> PlannerConfig:
-        """Return the planner's parameters, asked of the node itself."""
+        """Return the planner's configuration, read from the running node."""
         names = self._parameter_values(['joint_names'])['joint_names']
         return PlannerConfig.from_values(self._parameter_values(list(rows_of(PLANNER, names))))
 
@@ -160,7 +160,7 @@ class Client(Node):
         return dict(zip(names, map(parameter_value_to_python, answer.values)))
 
     def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
-        """Bring the arm to the start of the motion, if it is elsewhere."""
+        """Move the arm to the start of the motion, if it is elsewhere."""
         state = self._states[-1]
         if np.abs(_in_order([state], config, 'position')[0] - q).max() <= AT_START:
             return
@@ -185,8 +185,8 @@ class Client(Node):
         return future.result()
 
     def _drive(self, trajectory: JointTrajectory, what: str) -> float:
-        """Send a trajectory, wait for its end, and return when it started [s]."""
-        start = self.get_clock().now().nanoseconds + int(HEAD_START * 1e9)
+        """Send a trajectory, wait for its end, and return its start time [s]."""
+        start = self.get_clock().now().nanoseconds + int(START_DELAY * 1e9)
         trajectory.header.stamp = Time(nanoseconds=start).to_msg()
         last = trajectory.points[-1].time_from_start
         duration = last.sec + 1e-9 * last.nanosec
@@ -195,38 +195,39 @@ class Client(Node):
         shown = -1.0
         begin = start * 1e-9
 
-        def over() -> bool:
+        def finished() -> bool:
             nonlocal shown
-            now = _stamp(self._states[-1]) - begin if self._states else -HEAD_START
+            now = _stamp(self._states[-1]) - begin if self._states else -START_DELAY
             if now - shown >= PROGRESS_PERIOD and now >= 0.0 and shown < duration:
                 shown = now
                 print(f'{what}: {min(now, duration):5.2f} of {duration:.2f} s', flush=True)
-            return now >= duration + SETTLING
+            return now >= duration + SETTLING_TIME
 
-        # On a busy machine the arm's time runs slower than the clock; it only must not stand.
-        self._wait(over, 'the arm to go on', lambda: self._states and _stamp(self._states[-1]))
+        # On a busy machine simulated time is slower than the clock; it must only advance.
+        self._wait(finished, 'the arm to go on',
+                   lambda: self._states and _stamp(self._states[-1]))
         return begin
 
     def _wait(self, ready: Callable[[], Any], what: str,
               progress: Callable[[], Any] = lambda: None) -> None:
-        """Wait as long as there is progress; say what did not come, or which node ended."""
-        reached, deadline = progress(), monotonic() + PATIENCE
+        """Wait as long as there is progress; raise StartError on timeout or if a node ended."""
+        reached, deadline = progress(), monotonic() + TIMEOUT
         while not ready():
             if progress() != reached:
-                reached, deadline = progress(), monotonic() + PATIENCE
+                reached, deadline = progress(), monotonic() + TIMEOUT
             if not self.context.ok():
                 raise KeyboardInterrupt
             ended = self._ended()
             if ended is not None:
-                raise StartError(ending(*ended))
+                raise StartError(exit_message(*ended))
             if monotonic() > deadline:
-                raise StartError(f'waited {PATIENCE:.0f} s for {what} in vain')
+                raise StartError(f'waited {TIMEOUT:.0f} s for {what} in vain')
             sleep(0.02)
 
 
 def _recorded(states: list[JointState], config: PlannerConfig,
               start: float) -> tuple[TrajectoryPoints, Array]:
-    """Return recorded states with times from the start, and the torques."""
+    """Return the recorded motion, with times from its start, and the motor torques [N m]."""
     times = np.array([_stamp(s) for s in states]) - start
     fresh = np.concatenate(([True], np.diff(times) > 0.0))
     q, qd, torque = (_in_order(states, config, f)[fresh]

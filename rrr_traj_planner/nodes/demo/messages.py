@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a client of the planner sends and gets, as messages."""
+"""Conversion of tasks to requests, and of trajectory messages to arrays, for a client."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 def plan_request(task: Task) -> PlanTrajectory.Request:
     """
-    Return the request of a task.
+    Return the request message of a task.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def plan_request(task: Task) -> PlanTrajectory.Request:
     Returns
     -------
     PlanTrajectory.Request
-        All else left to the node's defaults.
+        Other fields are empty: the node's defaults.
 
     """
     request = PlanTrajectory.Request(planner_id=task.planner_id)
@@ -49,17 +49,17 @@ def plan_request(task: Task) -> PlanTrajectory.Request:
 
 def trajectory_points(trajectory: JointTrajectory) -> TrajectoryPoints:
     """
-    Return the points of a planned trajectory.
+    Return the points of a trajectory message.
 
     Parameters
     ----------
     trajectory : JointTrajectory
-        With velocities and accelerations.
+        Points with velocities and accelerations.
 
     Returns
     -------
     TrajectoryPoints
-        Times from the start.
+        Times are from the start of the trajectory.
 
     """
     points = trajectory.points

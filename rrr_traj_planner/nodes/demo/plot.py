@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The demonstration's plot: every profile against its limits, and the tip's path in space."""
+"""The demo's plot: every profile with its limits, the tip's path, and the tracking error."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.nodes.demo.client import Run
 
-COLOURS = ('#0072b2', '#d55e00', '#009e73')  # told apart by colour-blind eyes, and in print
-CUT_OFF = 2.0  # limits, beyond which a curve is cut off
-STEPS = 2000
-SAME_PLACE = 1e-6  # of the picture
+COLOURS = ('#0072b2', '#d55e00', '#009e73')  # Okabe and Ito's: distinct for colour-blind people
+CUT_OFF = 2.0      # multiple of the limit at which a curve is cut off
+STEPS = 2000       # times at which curves are drawn
+SAME_PLACE = 1e-6  # of the width of the picture; closer via points share one label
 STYLE = {
     'font.size': 9, 'axes.grid': True, 'grid.alpha': 0.25, 'grid.linewidth': 0.6,
     'axes.spines.top': False, 'axes.spines.right': False, 'lines.linewidth': 1.4,
@@ -47,14 +47,14 @@ VIA = {'color': '0.75', 'linewidth': 0.8, 'zorder': 0}
 
 def draw(run: Run, file: Path) -> None:
     """
-    Draw a run.
+    Draw a run of the demo.
 
     Parameters
     ----------
     run : Run
-        What was asked, planned and done.
+        The run.
     file : Path
-        Where the picture goes; its ending says the format.
+        The picture; its suffix sets the format.
 
     """
     with matplotlib.rc_context(STYLE):
@@ -72,7 +72,7 @@ def draw(run: Run, file: Path) -> None:
 
 
 def _profiles(figure: Any, run: Run) -> list[Any]:
-    """Draw position to torque over time, one above the other."""
+    """Draw position, velocity, acceleration, jerk and torque over time, one above the other."""
     limits, names = run.config.limits, run.config.model.joint_names
     t = np.linspace(0.0, run.planned.duration, STEPS)
     q, qd, qdd = Interpolant(run.planned)(t)
@@ -88,7 +88,7 @@ def _profiles(figure: Any, run: Run) -> list[Any]:
             axes.plot(t, values[:, joint], color=colour, label=names[joint])
         if limit is not None:
             _limit_lines(axes, limit)
-            _keep_readable(axes, values, limit)
+            _cut_off(axes, values, limit)
         _via_lines(axes, run)
         axes.set_ylabel(label)
     for joint in range(len(COLOURS)):
@@ -109,7 +109,7 @@ def _via_lines(axes: Any, run: Run) -> None:
 
 
 def _limit_lines(axes: Any, limit: Array) -> None:
-    """Draw finite limits, in the joints' colours where they differ."""
+    """Draw finite limits; in the joints' colours if they differ."""
     same = np.ptp(limit[np.isfinite(limit)]) == 0.0 if np.isfinite(limit).any() else True
     for joint, colour in enumerate(COLOURS):
         if np.isfinite(limit[joint]):
@@ -118,8 +118,8 @@ def _limit_lines(axes: Any, limit: Array) -> None:
                     'color': colour})})
 
 
-def _keep_readable(axes: Any, values: Array, limit: Array) -> None:
-    """Cut off what goes far beyond the limits: jerk between points where acceleration steps."""
+def _cut_off(axes: Any, values: Array, limit: Array) -> None:
+    """Cut off peaks far above the limits: jerk between points where the acceleration steps."""
     most = CUT_OFF * limit.max()
     if np.isfinite(most) and np.abs(values).max() > most:
         axes.set_ylim(-most, most)
@@ -149,7 +149,7 @@ def _space(axes: Any, run: Run) -> None:
 
 
 def _tick_step(axes: Any) -> float:
-    """Return a step of ticks for all three directions, which share their scale."""
+    """Return the distance of ticks, the same for all three axes."""
     longest = max(np.ptp(limits) for limits in (
         axes.get_xlim(), axes.get_ylim(), axes.get_zlim()))
     return next(step for step in (0.1 * 2.0 ** k for k in range(-9, 30)) if step > longest / 5.0)
@@ -164,7 +164,7 @@ def _number(axes: Any, points: Array) -> None:
         distance = np.linalg.norm(away, axis=1)
         same = np.flatnonzero(distance <= SAME_PLACE)
         if same[0] < i:
-            continue  # it stands beside the first one there
+            continue  # its number is in the label of the first one
         distance[same] = np.inf
         nearest = distance.argmin()
         direction = away[nearest] / distance[nearest] if len(same) < len(seen) else (1.0, 0.0)
@@ -173,7 +173,7 @@ def _number(axes: Any, points: Array) -> None:
 
 
 def _tracking(axes: Any, run: Run) -> None:
-    """Draw how far the tip is from the plan."""
+    """Draw the distance between planned and actual tip position over time."""
     t = run.recorded.times[(run.recorded.times >= 0.0)]
     driven = run.recorded.positions[run.recorded.times >= 0.0]
     wanted = Interpolant(run.planned)(t)[0]

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the demonstration records."""
+"""The recorder of the demo and its topics."""
 
 from __future__ import annotations
 
@@ -36,19 +36,19 @@ LATCHED = ((JointTrajectory, 'planned_trajectory'), (Path, 'planned_path'),
 
 def demo_recorder(node: Node, bag: Bag) -> Recorder:
     """
-    Return what records both nodes, what is sent to them, and whatever else comes by.
+    Return a recorder of the topics of both nodes, and of every other topic with a publisher.
 
     Parameters
     ----------
     node : Node
-        The demonstration's client.
+        The demo's client.
     bag : Bag
-        Where it goes.
+        The bag to write to.
 
     Returns
     -------
     Recorder
-        At work as long as the node is.
+        Records as long as the node is spun.
 
     """
     recorder = Recorder(node, bag, PASSING, LATCHED)

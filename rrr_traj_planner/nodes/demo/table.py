@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The demonstration's figures, each with its bound, and the table that shows them."""
+"""The demo's figures (errors and peaks), their bounds, and the table that shows them."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from rrr_traj_planner.core.trajectory.limit_check import TOLERANCE
 from rrr_traj_planner.nodes.demo.client import Run
 from rrr_traj_planner.planners.registry import planner, Registered
 
-PLANNED_BOUND = 1e-9  # rad
-REACHED_BOUND = 2e-3  # m
-FINAL_BOUND = 1e-3    # m
+PLANNED_BOUND = 1e-9  # rad, error of the plan at via points: rounding
+REACHED_BOUND = 2e-3  # m, error of the arm's tip at via points: tracking
+FINAL_BOUND = 1e-3    # m, error of the arm's tip at rest
 
 
 class Figure(NamedTuple):
-    """A figure and the bound that it must keep."""
+    """A value and its upper bound."""
 
     name: str
     value: float
@@ -43,37 +43,37 @@ class Figure(NamedTuple):
     unit: str
 
     @property
-    def kept(self) -> bool:
-        """Whether the figure is inside its bound."""
+    def within_bound(self) -> bool:
+        """Return whether the value is at most the bound."""
         return bool(self.value <= self.bound)
 
     @property
     def text(self) -> str:
-        """Return a line for people."""
+        """Return name, value, bound and unit in a line."""
         value, bound = told_apart(self.value, self.bound)
         return f'{self.name} is {value} {self.unit}, bound {bound} {self.unit}'
 
 
 def figures(run: Run) -> list[Figure]:
     """
-    Return every figure of a run.
+    Return all figures of a run.
 
     Parameters
     ----------
     run : Run
-        What was asked, planned and done.
+        The run.
 
     Returns
     -------
     list of Figure
-        With their bounds.
+        Values with their bounds.
 
     """
     found = []
     last = len(run.task.via_points) - 1
     missed = _planner(run).misses_via_points
     for i, (planned, reached) in enumerate(zip(planned_errors(run), reached_errors(run))):
-        if missed and 0 < i < last:  # passed by at a distance, as the message says
+        if missed and 0 < i < last:  # this planner misses via points, as its message says
             continue
         found += [Figure(f'via point {i}: planned error', planned, PLANNED_BOUND, 'rad'),
                   Figure(f'via point {i}: error reached', reached, REACHED_BOUND, 'm')]
@@ -88,7 +88,7 @@ def figures(run: Run) -> list[Figure]:
             found.append(Figure(f'{joint}: planned {name}', p, m * (1.0 + TOLERANCE), unit))
     for joint, p, m in zip(run.config.model.joint_names, driven_torque(run),
                            run.config.limits.max_effort):
-        # at the limit the motor is saturated
+        # A torque at the limit means saturation, so the bound is just below.
         found.append(Figure(f'{joint}: torque driven', p, np.nextafter(m, 0.0), 'N m'))
     return found
 
@@ -100,7 +100,7 @@ def table(run: Run, found: list[Figure]) -> str:
     Parameters
     ----------
     run : Run
-        What was asked, planned and done.
+        The run.
     found : list of Figure
         Its figures.
 
@@ -132,24 +132,24 @@ def table(run: Run, found: list[Figure]) -> str:
         label = f'{name} [{unit}]'
         lines.append(f'{label:<24}' + ''.join(
             f'{f"{p:.4g} / {_limit(m)}":>24}' for p, m in zip(peak, limit)))
-    kept = sum(f.kept for f in found)
-    lines += ['', f'{kept} of {len(found)} figures are inside their bounds']
+    within = sum(f.within_bound for f in found)
+    lines += ['', f'{within} of {len(found)} figures are inside their bounds']
     return '\n'.join(lines)
 
 
 def follows_path(run: Run) -> bool:
     """
-    Return whether the tip was planned along a path.
+    Return whether the planner is Cartesian: whether it plans the tip's path.
 
     Parameters
     ----------
     run : Run
-        What was asked, planned and done.
+        The run.
 
     Returns
     -------
     bool
-        False where the joints were.
+        False for planners in joint space.
 
     """
     return _planner(run).plan_path is not None
@@ -161,17 +161,17 @@ def _planner(run: Run) -> Registered:
 
 def deviations(run: Run) -> tuple[float, float]:
     """
-    Return how far the tip was from the polyline through the via points.
+    Return the tip's largest distances from the polyline through the via points.
 
     Parameters
     ----------
     run : Run
-        What was asked, planned and done.
+        The run.
 
     Returns
     -------
     tuple of float
-        At most [m]: as planned, and as driven.
+        Of the planned and of the executed motion [m].
 
     """
     moving = run.recorded.times >= 0.0
@@ -184,17 +184,17 @@ def deviations(run: Run) -> tuple[float, float]:
 
 def planned_errors(run: Run) -> list[float]:
     """
-    Return how far the plan is from the via points, at their times [rad].
+    Return the plan's joint position errors at the via points [rad].
 
     Parameters
     ----------
     run : Run
-        What was asked, planned and done.
+        The run.
 
     Returns
     -------
     list of float
-        The largest of the three joints' for each via point.
+        The largest of the three joints' errors for each via point.
 
     """
     errors = []
@@ -206,12 +206,12 @@ def planned_errors(run: Run) -> list[float]:
 
 def reached_errors(run: Run) -> list[float]:
     """
-    Return how far the arm's tip was from the via points, at their times [m].
+    Return the distances of the arm's tip from the via points at their times [m].
 
     Parameters
     ----------
     run : Run
-        What was asked, planned and done.
+        The run.
 
     Returns
     -------
@@ -226,12 +226,12 @@ def reached_errors(run: Run) -> list[float]:
 
 def final_error(run: Run) -> float:
     """
-    Return how far from the last via point the arm came to rest [m].
+    Return the distance of the arm's final position from the last via point [m].
 
     Parameters
     ----------
     run : Run
-        What was asked, planned and done.
+        The run.
 
     Returns
     -------
@@ -245,12 +245,12 @@ def final_error(run: Run) -> float:
 
 def driven_torque(run: Run) -> Array:
     """
-    Return the largest torque that each motor gave, as recorded [N m].
+    Return the largest recorded torque of each motor [N m].
 
     Parameters
     ----------
     run : Run
-        What was asked, planned and done.
+        The run.
 
     Returns
     -------

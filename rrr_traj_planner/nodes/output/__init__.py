@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What both nodes send and log alike: diagnostics, markers, repeated lines."""
+"""Output that both nodes share: diagnostics, markers, throttled log messages."""

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Diagnostics of a node: one status, with the same keys each time, so that tools can plot them."""
+"""Diagnostics message of a node: one status with the same keys each time, for tools that plot."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ def diagnostics(name: str, level: bytes, text: str, values: Iterable[tuple[str, 
     Parameters
     ----------
     name : str
-        The node's, and what of it.
+        Name of the status: the node's name and the part of it.
     level : bytes
         `DiagnosticStatus.OK`, `WARN` or `ERROR`.
     text : str
-        What there is to say.
+        Summary.
     values : iterable of (str, str)
         Keys and values.
     stamp : Time
-        Now.
+        Present time.
 
     Returns
     -------

@@ -13,10 +13,10 @@
 # limitations under the License.
 
 """
-Markers for RViz: the arm and where its tip has been, a plan's via points and path.
+Markers for RViz: the arm and its tip's past path, the via points and path of a plan.
 
-A marker's namespace and id are fixed, so that each message replaces what an earlier one showed.
-The header's stamp is 0: markers that are kept for late subscribers stay good as they age.
+Namespaces and ids are fixed, so that each message replaces the markers of the one before. The
+header's stamp is 0: RViz shows markers of any age, such as those kept for late subscribers.
 """
 
 from __future__ import annotations
@@ -37,33 +37,32 @@ from visualization_msgs.msg import Marker, MarkerArray
 ARM, EXECUTED, PLANNED, VIA_POINTS = 'arm', 'executed_path', 'planned_path', 'via_points'
 RODS, JOINTS = (0, 1, 2), 3  # ids in the namespace of the arm
 
-# Told apart by colour-blind eyes: the colours of the demonstration's plot.
+# The colours of the demo's plot (Okabe and Ito's), which colour-blind people can distinguish.
 BLUE, RED, GREEN = (0.0, 0.45, 0.7, 1.0), (0.84, 0.37, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
 
-# Sizes are parts of the arm's reach: of lines and of balls at via points.
+# Width of lines and diameter of via points, as fractions of the arm's reach.
 LINE_WIDTH, BALL = 1.0 / 320.0, 1.0 / 64.0
 
-# A plan may have any number of points; so many of its path, and of its via points, are drawn.
-MOST_POINTS = 1000
+MAX_POINTS = 1000  # drawn of a path, and of its via points; RViz becomes slow with more
 
-SAME_TIME = 1e-9  # s, to which points meet via points
+SAME_TIME = 1e-9  # s, rounding of times
 
 
 def arm_markers(model: RobotModel, frame: str, joints: Iterable[tuple[float, float, float]],
                 trail: Iterable[tuple[float, float, float]]) -> MarkerArray:
     """
-    Return the arm as it is, and where its tip has been.
+    Return the markers of the arm and of its tip's past path.
 
     Parameters
     ----------
     model : RobotModel
-        For the size of what is drawn.
+        Its reach scales the markers.
     frame : str
         The base frame.
     joints : iterable of 4 points
         Base, shoulder, elbow and tip [m].
     trail : iterable of points
-        The tip's places until now, from the oldest on [m].
+        Past tip positions, oldest first [m].
 
     Returns
     -------
@@ -77,7 +76,7 @@ def arm_markers(model: RobotModel, frame: str, joints: Iterable[tuple[float, flo
     balls = _marker(frame, ARM, JOINTS, Marker.SPHERE_LIST, COLOURS['dark'],
                     (2.8 * RADIUS * reach,) * 3)
     balls.points = [point(*p) for p in points[1:3]]
-    # The last place may be up to a step back.
+    # The trail may end up to a step before the present position.
     line = _line(frame, EXECUTED, GREEN, [point(*p) for p in (*trail, points[-1])], reach)
     return MarkerArray(markers=[*markers, balls, line])
 
@@ -85,14 +84,14 @@ def arm_markers(model: RobotModel, frame: str, joints: Iterable[tuple[float, flo
 def plan_markers(points: TrajectoryPoints, via_times: Array, model: RobotModel,
                  frame: str) -> MarkerArray:
     """
-    Return the path of a plan, and its via points.
+    Return the markers of a plan's path and via points.
 
     Parameters
     ----------
     points : TrajectoryPoints
-        The plan's.
+        The plan's points.
     via_times : ndarray
-        When each via point is passed [s]; there is a point at each of these times.
+        Times of the via points [s]; `points` has a point at each.
     model : RobotModel
         The arm.
     frame : str
@@ -101,13 +100,13 @@ def plan_markers(points: TrajectoryPoints, via_times: Array, model: RobotModel,
     Returns
     -------
     MarkerArray
-        Balls, at most `MOST_POINTS`, and a line of at most twice as many points.
+        At most `MAX_POINTS` balls, and a line of at most twice as many points.
 
     """
-    some = picked(len(via_times), MOST_POINTS)
+    some = picked(len(via_times), MAX_POINTS)
     via = np.searchsorted(points.times, via_times[some] - SAME_TIME).clip(
         max=len(points.times) - 1)
-    shown = picked(len(points.times), MOST_POINTS, via)
+    shown = picked(len(points.times), MAX_POINTS, via)
     path, passed = (_points(forward_kinematics(model, points.positions[i]))
                     for i in (shown, via))
     balls = _marker(frame, VIA_POINTS, 0, Marker.SPHERE_LIST, RED, (BALL * model.reach[1],) * 3)
@@ -117,7 +116,7 @@ def plan_markers(points: TrajectoryPoints, via_times: Array, model: RobotModel,
 
 def no_plan_markers(frame: str) -> MarkerArray:
     """
-    Return what takes the markers of a plan away.
+    Return a message that deletes the markers of a plan.
 
     Parameters
     ----------
@@ -127,7 +126,7 @@ def no_plan_markers(frame: str) -> MarkerArray:
     Returns
     -------
     MarkerArray
-        Nothing else is taken away: DELETEALL would clear other nodes' markers too.
+        Deletes these two markers only: DELETEALL would delete other nodes' markers too.
 
     """
     markers = MarkerArray(markers=[Marker(ns=ns, action=Marker.DELETE)
@@ -139,12 +138,12 @@ def no_plan_markers(frame: str) -> MarkerArray:
 
 def point(x: float, y: float, z: float) -> Point:
     """
-    Return a point's message.
+    Return a point message.
 
     Parameters
     ----------
     x, y, z : float
-        [m].
+        Coordinates [m].
 
     Returns
     -------
@@ -164,7 +163,7 @@ def _rod_marker(frame: str, number: int, shape: Rod, thickness: float) -> Marker
                      (thickness, thickness, shape.length))
     x, y, z, w = shape.quaternion
     marker.pose = Pose(position=point(*shape.centre), orientation=Quaternion(x=x, y=y, z=z, w=w))
-    if shape.length == 0.0:  # RViz complains of what has no size
+    if shape.length == 0.0:  # RViz warns of markers without size
         marker.action = Marker.DELETE
     return marker
 
@@ -173,7 +172,7 @@ def _line(frame: str, namespace: str, colour: tuple[float, ...], points: list[Po
           reach: float) -> Marker:
     marker = _marker(frame, namespace, 0, Marker.LINE_STRIP, colour,
                      (LINE_WIDTH * reach, 0.0, 0.0))
-    if len(points) < 2:  # no line yet, or no longer
+    if len(points) < 2:  # not a line
         marker.action = Marker.DELETE
     else:
         marker.points = points

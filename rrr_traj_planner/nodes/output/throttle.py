@@ -12,24 +12,24 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Lines of the log that would come again and again, once in a while."""
+"""Throttling of repeated log messages by kind."""
 
 from __future__ import annotations
 
 from collections.abc import Hashable
 from time import monotonic
 
-PERIOD = 2.0  # s
+PERIOD = 2.0  # s between messages of a kind
 
 
 class Throttle:
     """
-    Lets a message of each kind pass once in a period of steady time.
+    Lets one message of each kind pass per period of steady time.
 
     Parameters
     ----------
     period : float
-        [s].
+        Period [s].
 
     """
 
@@ -40,17 +40,18 @@ class Throttle:
 
     def passes(self, *kinds: Hashable) -> bool:
         """
-        Return whether a message may pass now: if any of the kinds that it is of may.
+        Return whether a message of one or several kinds may be logged now.
 
         Parameters
         ----------
         *kinds : hashable
-            What it is about, such as what is wrong and with which joint.
+            Kinds of the message, such as pairs of problem and joint.
 
         Returns
         -------
         bool
-            If so, all of them have passed.
+            True if at least one kind has not passed within the period; then all kinds count as
+            passed now.
 
         """
         now = monotonic()
@@ -63,7 +64,7 @@ class Throttle:
 
     def held(self, kind: Hashable) -> int:
         """
-        Return how many messages of a kind were held back since this was asked last.
+        Return the number of messages of a kind that were held back since the last call.
 
         Parameters
         ----------
@@ -73,7 +74,7 @@ class Throttle:
         Returns
         -------
         int
-            How many.
+            Number of messages.
 
         """
         return self._held.pop(kind, 0)

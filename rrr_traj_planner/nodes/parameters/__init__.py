@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters of both nodes, files of them, and the configurations made of them."""
+"""Parameters of both nodes: their table, their files, and the configurations built from them."""

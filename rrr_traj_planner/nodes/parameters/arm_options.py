@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What parameters say about the simulated arm beyond its model, limits and gains."""
+"""Options of the simulated arm from parameters: payload, friction, encoders, tolerances, rules."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ from rrr_traj_planner.core.control.trajectory_validation import Rules
 from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.simulation.encoder import EncoderSettings
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
-from rrr_traj_planner.nodes.parameters.naming import named, of_group
+from rrr_traj_planner.nodes.parameters.naming import from_group, named
 
 Values = Mapping[str, Any]
 
-# How much faster than it must be the estimate of velocity is, for a controller that is stable.
+# Factor by which the encoders' velocity estimate must be faster than the limit of stability.
 STABILITY_MARGIN = 2.0
 
 
 def physical_options(values: Values) -> dict[str, Any]:
     """
-    Return what the arm carries, what slows it, and what limits its following.
+    Return payload, friction, soft stops and tolerances.
 
     Parameters
     ----------
@@ -50,19 +50,19 @@ def physical_options(values: Values) -> dict[str, Any]:
     Returns
     -------
     dict
-        Arguments of `ArmSettings`.
+        These arguments of `ArmSettings`.
 
     """
     return {
-        'payload': of_group(Payload, 'payload', values),
-        'friction': of_group(Friction, 'friction', values),
-        'soft_stops': of_group(SoftStops, 'soft_stops', values),
+        'payload': from_group(Payload, 'payload', values),
+        'friction': from_group(Friction, 'friction', values),
+        'soft_stops': from_group(SoftStops, 'soft_stops', values),
         'tolerances': tolerances(values)}
 
 
 def tolerances(values: Values) -> Tolerances:
     """
-    Return the tolerances of following a trajectory.
+    Return the tolerances of trajectory following.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def tolerances(values: Values) -> Tolerances:
     Returns
     -------
     Tolerances
-        By joint, in the arm's order.
+        Arrays in the order of the joints.
 
     """
     of_joints = [np.array([values[f'constraints.{joint}.{name}']
@@ -86,29 +86,29 @@ def tolerances(values: Values) -> Tolerances:
 
 def encoder(values: Values, gains: ControllerGains) -> EncoderSettings:
     """
-    Return the encoders, if the controller is stable with them.
+    Return the encoder settings; check that the controller is stable with them.
 
     Parameters
     ----------
     values : mapping
         Each parameter's value by name.
     gains : ControllerGains
-        Of the controller that uses the velocities.
+        Gains of the controller that uses the velocity estimate.
 
     Returns
     -------
     EncoderSettings
-        Of all joints.
+        Common to all joints.
 
     Raises
     ------
     InvalidInputError
-        If their estimate of velocity is too slow for the controller.
+        If the velocity estimate is too slow for the controller.
 
     """
-    settings = of_group(EncoderSettings, 'encoder', values)
-    # Routh's criterion for the tracking loop within the controller's: bandwidth / natural
-    # frequency above (zeta + sqrt(zeta^2 + 4)) / 2.
+    settings = from_group(EncoderSettings, 'encoder', values)
+    # Routh's criterion for the encoders' tracking loop inside the controller's: stable if
+    # bandwidth / natural frequency > (zeta + sqrt(zeta^2 + 4)) / 2.
     zeta = gains.damping_ratio
     least = STABILITY_MARGIN * 0.5 * (zeta + sqrt(zeta * zeta + 4.0)) * gains.natural_frequency
     if not settings.is_true and settings.bandwidth < least:
@@ -122,7 +122,7 @@ def encoder(values: Values, gains: ControllerGains) -> EncoderSettings:
 
 def trajectory_rules(values: Values) -> Rules:
     """
-    Return which trajectories are taken.
+    Return the rules by which trajectories are accepted.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def trajectory_rules(values: Values) -> Rules:
     Returns
     -------
     Rules
-        By the names of joint_trajectory_controller's parameters.
+        Fields are named like joint_trajectory_controller's parameters.
 
     """
     return Rules(*(values[name] for name in Rules._fields))
@@ -150,7 +150,7 @@ def frame_names(values: Values) -> FrameNames:
     Returns
     -------
     FrameNames
-        Of base, links and tip.
+        Names for base, links and tip.
 
     Raises
     ------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the nodes make of their parameters: frozen values, checked as a whole."""
+"""Configurations of both nodes: frozen values built from parameters and checked as a whole."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ from rrr_traj_planner.nodes.parameters.arm_options import (
     physical_options,
     trajectory_rules,
 )
-from rrr_traj_planner.nodes.parameters.naming import named, of_group
+from rrr_traj_planner.nodes.parameters.naming import from_group, named
 from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]
 
-# The torque is held over a physics step: a controller that would undo more than all of a
-# velocity error within one is unstable, and half of that is still smooth.
-MOST_DAMPING_PER_STEP = 1.0
+# Bound on damping * physics_step. The torque is held over a step, which multiplies a velocity
+# error by 1 - damping * step: the error alternates above a product of 1, and grows above 2.
+MAX_DAMPING_PER_STEP = 1.0
 
 
 @dataclass(frozen=True, eq=False)
 class PlannerConfig:
-    """The planner node's parameters: names, [s] and [m]."""
+    """The planner node's configuration; times in [s], lengths in [m]."""
 
     model: RobotModel
     limits: JointLimits
@@ -102,7 +102,7 @@ class PlannerConfig:
 
 @dataclass(frozen=True, eq=False)
 class ArmConfig:
-    """The arm node's parameters: [Hz], [rad]."""
+    """The arm node's configuration; rates in [Hz], positions in [rad]."""
 
     settings: ArmSettings
     publish_rate: float
@@ -135,10 +135,10 @@ class ArmConfig:
 
         """
         limits = joint_limits(values)
-        gains = of_group(ControllerGains, 'controller', values)
+        gains = from_group(ControllerGains, 'controller', values)
         step = values['physics_step']
-        if gains.damping * step > MOST_DAMPING_PER_STEP:
-            frequency, most = told_apart(gains.natural_frequency, MOST_DAMPING_PER_STEP / (
+        if gains.damping * step > MAX_DAMPING_PER_STEP:
+            frequency, most = told_apart(gains.natural_frequency, MAX_DAMPING_PER_STEP / (
                 2.0 * gains.damping_ratio * step))
             raise InvalidInputError(
                 f'controller.natural_frequency is {frequency} rad/s, must be at most {most} rad/s '
@@ -154,7 +154,7 @@ class ArmConfig:
 
 def robot_model(values: Values) -> RobotModel:
     """
-    Return the arm that parameters describe.
+    Return the arm's model.
 
     Parameters
     ----------
@@ -164,12 +164,12 @@ def robot_model(values: Values) -> RobotModel:
     Returns
     -------
     RobotModel
-        The arm.
+        The model.
 
     Raises
     ------
     InvalidInputError
-        If a pose of the arm has no inertia, or names repeat.
+        If the inertia matrix is singular in some pose, or names repeat.
 
     """
     inertia = np.array([list(values[f'arm.inertia_{i}']) for i in (1, 2, 3)])
@@ -183,7 +183,7 @@ def robot_model(values: Values) -> RobotModel:
 
 def joint_limits(values: Values) -> JointLimits:
     """
-    Return the limits that parameters describe, infinite where `has_..._limits` is false.
+    Return the joints' limits, infinite where `has_..._limits` is false.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def joint_limits(values: Values) -> JointLimits:
 
 
 def _initial_positions(values: Values, limits: JointLimits) -> Array:
-    """Return where the arm starts; refuse what its stops do not let it be in."""
+    """Return the initial joint positions; refuse positions outside their ranges."""
     q = finite_array('initial_positions', values['initial_positions'], (3,))
     for i, (x, low, high) in enumerate(zip(q, limits.min_position, limits.max_position)):
         if not low <= x <= high:

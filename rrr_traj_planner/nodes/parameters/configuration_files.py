@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Files of the package's config/ and of users: arms' parameters and via points."""
+"""Via-point files, and where they and arm parameter files are looked for."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from rrr_traj_planner.nodes.parameters.point_tables import (
 )
 import yaml
 
-CHECKOUT = Path(__file__).resolve().parents[3] / 'config'
+CHECKOUT = Path(__file__).resolve().parents[3] / 'config'  # of the source tree
 FIELDS = ('planner_id', 'via_points', 'segment_durations', 'arm')
 
 
@@ -41,7 +41,7 @@ class Task:
     Attributes
     ----------
     name : str
-        The file's, without its ending.
+        The file's name without its suffix.
     via_points : ndarray, shape (n, 3)
         Tip positions [m].
     arm : Path
@@ -49,7 +49,7 @@ class Task:
     planner_id : str
         Empty: the planner node's default.
     segment_durations : ndarray
-        [s], empty: as fast as the limits allow.
+        Time for each segment [s]; empty: as fast as the limits allow.
 
     """
 
@@ -62,23 +62,22 @@ class Task:
 
 def read_task(file: str) -> Task:
     """
-    Return what a via-point file says, a YAML document or a table of comma-separated values (.csv).
+    Read a via-point file: YAML, or comma-separated values if its suffix is .csv.
 
     Parameters
     ----------
     file : str
-        A path, or the name of a file of the package's config/.
+        A path, or the name of a file in the package's config/.
 
     Returns
     -------
     Task
-        Checked.
+        The content, checked.
 
     Raises
     ------
     InvalidInputError
-        If the file is missing, no YAML, or malformed; names the file, the line where there is one,
-        and what is wrong.
+        If the file is missing or malformed; names the file, the line if known, and what is wrong.
 
     """
     path = _found(file, Path.cwd())
@@ -95,7 +94,7 @@ def read_task(file: str) -> Task:
 
 
 def _table(text: str) -> tuple[dict[str, Any], list[int]]:
-    """Return the content of a CSV file, as if it were a document, and no lines."""
+    """Return the content of a CSV file in the form of `_document`, without line numbers."""
     points = tabulated_points(text).tolist()
     if not points:
         raise InvalidInputError('no via_points')
@@ -103,7 +102,7 @@ def _table(text: str) -> tuple[dict[str, Any], list[int]]:
 
 
 def _document(text: str) -> tuple[dict[str, Any], list[int]]:
-    """Return the content of a YAML file, and in which lines its via points begin."""
+    """Return the content of a YAML file, and the line number of each via point."""
     try:
         loader = yaml.SafeLoader(text)
         root = loader.get_single_node()
@@ -124,7 +123,7 @@ def _document(text: str) -> tuple[dict[str, Any], list[int]]:
 
 
 def _check_keys(root: yaml.MappingNode) -> None:
-    """Refuse keys that are unknown, or stand twice: YAML would take the last."""
+    """Refuse unknown and repeated keys: of repeated ones YAML takes the last."""
     lines: dict[str, int] = {}
     for key, _ in root.value:
         name, line = str(key.value), key.start_mark.line + 1
@@ -138,14 +137,14 @@ def _check_keys(root: yaml.MappingNode) -> None:
 
 def arm_file(name: str, folder: Path) -> Path:
     """
-    Return an arm's parameter file.
+    Return the path of an arm's parameter file.
 
     Parameters
     ----------
     name : str
-        A path, absolute or seen from a folder, or the name of a file of the package's config/.
+        A path, absolute or relative to the folder, or the name of a file in the package's config/.
     folder : Path
-        That folder.
+        The folder that relative paths begin from.
 
     Returns
     -------
@@ -155,7 +154,7 @@ def arm_file(name: str, folder: Path) -> Path:
     Raises
     ------
     InvalidInputError
-        If there is none.
+        If there is no such file.
 
     """
     return _found(name, folder)
@@ -192,8 +191,8 @@ def shipped_folder() -> Path:
     Returns
     -------
     Path
-        share/rrr_traj_planner/config where the package is installed, config/ in a checkout or
-        without ROS.
+        share/rrr_traj_planner/config of the installed package; config/ of the source tree where
+        the package is not installed or ROS is missing.
 
     """
     try:

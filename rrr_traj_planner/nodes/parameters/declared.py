@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A node's parameters on ROS: declared from the table, checked as one whole at every change."""
+"""A node's ROS parameters: declared from the table, and checked together at every change."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Config = TypeVar('Config')
 
 class DeclaredParameters(Generic[Config]):
     """
-    The parameters of one node and the configuration that they make.
+    The parameters of one node, and the configuration built from them.
 
     Parameters
     ----------
@@ -46,32 +46,32 @@ class DeclaredParameters(Generic[Config]):
     role : str
         `table.PLANNER` or `table.ARM`.
     build : callable
-        Makes a configuration of values by name; raises an InvalidInputError where they do not
-        fit together.
+        Returns a configuration for a mapping of values by name; raises an InvalidInputError if
+        they contradict each other.
     changed : callable
-        Called with the new configuration after parameters were set.
+        Called with the new configuration after parameters are set.
 
     Attributes
     ----------
     config : object
         The configuration in force.
     given : dict
-        The value of each parameter that a file, the command line or the program gives.
+        Parameter overrides by name: from files, the command line or the program.
     joint_names : list of str
-        The three joints.
+        Names of the three joints.
 
     Raises
     ------
     InvalidInputError
-        If a value from a file or the command line is wrong; names parameter, value and range. If
-        a name is unknown, or a joint lacks limits of its own.
+        If an override is out of range (names parameter, value and range), a name is unknown, or
+        limits of a renamed joint are missing.
 
     """
 
     def __init__(self, node: Node, role: str, build: Callable[[Mapping[str, Any]], Config],
                  changed: Callable[[Config], None]) -> None:
         self._node, self._build, self._changed = node, build, changed
-        # rclpy has no public way to what is given but not declared.
+        # rclpy has no public access to overrides of undeclared parameters.
         self.given = {name: p.value for name, p in node._parameter_overrides.items()}
         row = rows_of(role, ())['joint_names']
         joint_names = self._declare(row)
@@ -89,8 +89,8 @@ class DeclaredParameters(Generic[Config]):
         node.add_post_set_parameters_callback(self._apply)
 
     def _declare(self, row: Row) -> Any:
-        """Declare one parameter, and return its value from file, command line or table."""
-        # Loosely typed at first: rclpy's own refusals do not tell the range.
+        """Declare one parameter; return its override, or the default of the table."""
+        # Dynamically typed at first: rclpy's own error messages do not tell the range.
         loose = ParameterDescriptor(dynamic_typing=True)
         value = self._node.declare_parameter(row.name, row.default, loose).value
         try:
@@ -101,7 +101,7 @@ class DeclaredParameters(Generic[Config]):
         return _plain(value)
 
     def _check(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Refuse values that are out of range or do not fit the others."""
+        """Refuse values that are out of range or contradict others."""
         try:
             self._build(self._with(parameters))
         except RrrPlannerError as error:
@@ -109,14 +109,14 @@ class DeclaredParameters(Generic[Config]):
         return SetParametersResult(successful=True)
 
     def _apply(self, parameters: list[Parameter]) -> None:
-        """Put checked values in force."""
+        """Rebuild the configuration from checked values."""
         if any(p.name in self._rows for p in parameters):
             self._values = self._with(parameters)
             self.config = self._build(self._values)
             self._changed(self.config)
 
     def _with(self, parameters: Iterable[Parameter]) -> dict[str, Any]:
-        """Return the values in force with some replaced."""
+        """Return the present values, with some replaced."""
         values = dict(self._values)
         for parameter in parameters:
             row = self._rows.get(parameter.name)
@@ -128,7 +128,7 @@ class DeclaredParameters(Generic[Config]):
 
 def descriptor(row: Row) -> ParameterDescriptor:
     """
-    Return what ROS tools show of a parameter.
+    Return a parameter's descriptor, which ROS tools show.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def descriptor(row: Row) -> ParameterDescriptor:
     Returns
     -------
     ParameterDescriptor
-        Type, meaning, unit, range (of single numbers), whether it can be set.
+        Type, meaning, unit, range (of single numbers), and whether it is read-only.
 
     """
     unit = f' [{row.unit}]' if row.unit else ''
@@ -155,7 +155,7 @@ def descriptor(row: Row) -> ParameterDescriptor:
 
 
 def _check_distinct(row: Row, names: list[str]) -> None:
-    """Refuse joint names that repeat: their limits would share their parameters' names."""
+    """Refuse repeated joint names: the joints would share the parameters of their limits."""
     if len(set(names)) != len(names) or '' in names:
         raise InvalidInputError(f'parameter {row.name} is {names}, must be {row.range_text}')
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The names of parameters that are given: mistaken ones, missing ones, ones that nobody uses."""
+"""Checks of the names of parameter overrides: unknown, missing and unused parameters."""
 
 from __future__ import annotations
 
@@ -24,27 +24,27 @@ from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.table import ARM, PLANNER, rows_of
 
-KINDS = ('velocity', 'acceleration', 'jerk', 'effort')
-ROS_S_OWN = ('use_sim_time', 'qos_overrides', 'start_type_description_service')
-SHOWN = 3        # names of many that are alike
-LIKENESS = 0.75  # of a name that nobody uses to the one that is suggested, 1 for equal
+KINDS = ('velocity', 'acceleration', 'jerk', 'effort')  # of limits
+ROS_PARAMETERS = ('use_sim_time', 'qos_overrides', 'start_type_description_service')
+MAX_SHOWN = 3      # unknown names in one message
+SIMILARITY = 0.75  # least ratio (difflib's; 1: equal) for a known name to be suggested
 
 
 def check_given(given: Mapping[str, Any], joint_names: Sequence[str]) -> None:
     """
-    Refuse unknown names in the groups of both nodes, and joints that would get another's limits.
+    Refuse unknown names in the nodes' parameter groups, and renamed joints without own limits.
 
     Parameters
     ----------
     given : mapping
-        The value of each parameter that a file, the command line or a program gives.
+        Parameter overrides by name.
     joint_names : sequence of str
-        The three joints.
+        Names of the three joints.
 
     Raises
     ------
     InvalidInputError
-        Naming them, and for each unknown name the nearest known one.
+        Lists them, with the most similar known name for each unknown one.
 
     """
     faults = [*_missing_limits(given, joint_names), *_unknown(given, joint_names)]
@@ -52,34 +52,34 @@ def check_given(given: Mapping[str, Any], joint_names: Sequence[str]) -> None:
         raise InvalidInputError('; '.join(faults))
 
 
-def unused(given: Collection[str], joint_names: Sequence[str]) -> list[str]:
+def unused_warnings(given: Collection[str], joint_names: Sequence[str]) -> list[str]:
     """
-    Return what is to be said of parameters that neither node uses.
+    Return warnings about parameters that neither node uses.
 
     Parameters
     ----------
     given : collection of str
-        Names.
+        Names of parameter overrides.
     joint_names : sequence of str
-        The three joints.
+        Names of the three joints.
 
     Returns
     -------
     list of str
-        A text for each, with the known name that it may have been meant for.
+        One text per unused parameter, with a similar known name if there is one.
 
     """
     known, texts = _known(joint_names), []
     for name in given:
-        if name not in known and _group(name) not in (*map(_group, known), *ROS_S_OWN):
-            near = get_close_matches(name, known, 1, LIKENESS)
+        if name not in known and _group(name) not in (*map(_group, known), *ROS_PARAMETERS):
+            near = get_close_matches(name, known, 1, SIMILARITY)
             texts.append(f'parameter {name} is used by neither node'
                          + ''.join(f'; is {other} meant?' for other in near))
     return texts
 
 
 def _known(joint_names: Sequence[str]) -> list[str]:
-    """Return the names of both nodes' parameters: one file serves both."""
+    """Return the parameter names of both nodes: one file may serve both."""
     return list({**rows_of(PLANNER, joint_names), **rows_of(ARM, joint_names)})
 
 
@@ -91,15 +91,15 @@ def _unknown(given: Mapping[str, Any], joint_names: Sequence[str]) -> Iterator[s
     known = _known(joint_names)
     groups = set(map(_group, known))
     unknown = [name for name in given if name not in known and _group(name) in groups]
-    for name in unknown[:SHOWN]:
+    for name in unknown[:MAX_SHOWN]:
         near, = get_close_matches(name, [k for k in known if _group(k) == _group(name)], 1, 0.0)
         yield f'parameter {name} is unknown, the nearest known one is {near}'
-    if len(unknown) > SHOWN:
-        yield f'{len(unknown) - SHOWN} more are unknown'
+    if len(unknown) > MAX_SHOWN:
+        yield f'{len(unknown) - MAX_SHOWN} more are unknown'
 
 
 def _missing_limits(given: Mapping[str, Any], joint_names: Sequence[str]) -> Iterator[str]:
-    """Yield what joints that are not the default arm's lack."""
+    """Yield a message for each renamed joint that lacks limits of its own."""
     for index, (joint, default) in enumerate(zip(joint_names, JOINT_NAMES)):
         if joint == default:
             continue

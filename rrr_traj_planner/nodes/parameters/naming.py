@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Errors about arguments of the library, told by the names of fields and parameters."""
+"""Translates argument names in the library's errors to names of parameters and message fields."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ Value = TypeVar('Value')
 @contextmanager
 def named(names: Mapping[str, str]) -> Iterator[None]:
     """
-    Have errors about arguments begin with other names.
+    Replace the argument's name at the start of an error's message.
 
     Parameters
     ----------
     names : mapping
-        By the arguments' names, with which messages begin.
+        The name to show for each argument.
 
     Raises
     ------
     InvalidInputError
-        As raised within, but for the name.
+        As raised within the context, with the name replaced.
 
     """
     try:
@@ -53,14 +53,14 @@ def named(names: Mapping[str, str]) -> Iterator[None]:
         raise InvalidInputError(message, error.via_point) from None
 
 
-def of_group(kind: type[Value], group: str, values: Mapping[str, Any]) -> Value:
+def from_group(kind: type[Value], group: str, values: Mapping[str, Any]) -> Value:
     """
-    Return the value that a group of parameters describes.
+    Build a dataclass from a group of parameters.
 
     Parameters
     ----------
     kind : type
-        A dataclass whose fields are called like the group's parameters.
+        A dataclass whose fields have the names of the group's parameters.
     group : str
         The group's name.
     values : mapping
@@ -69,12 +69,12 @@ def of_group(kind: type[Value], group: str, values: Mapping[str, Any]) -> Value:
     Returns
     -------
     object
-        Of that class.
+        An instance of that class.
 
     Raises
     ------
     InvalidInputError
-        If a value is refused; it begins with the parameter's name.
+        If the class refuses a value; the message begins with the parameter's name.
 
     """
     parameters = {field.name: f'{group}.{field.name}' for field in fields(kind)}

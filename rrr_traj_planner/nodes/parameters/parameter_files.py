@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A parameter file read without ROS, as the planner node would read it."""
+"""Parameter files read without ROS, with the result that the planner node would have."""
 
 from __future__ import annotations
 
@@ -28,27 +28,28 @@ from rrr_traj_planner.nodes.parameters.names import check_given
 from rrr_traj_planner.nodes.parameters.table import check_value, PLANNER, rows_of
 import yaml
 
-NODES = ('/**', 'trajectory_planner', '/trajectory_planner')  # later ones say more
+# Sections that apply to the planner node; values of later ones take precedence.
+NODES = ('/**', 'trajectory_planner', '/trajectory_planner')
 
 
 def planner_config(file: Path) -> PlannerConfig:
     """
-    Return the planner node's configuration by a parameter file.
+    Return the planner node's configuration from a parameter file.
 
     Parameters
     ----------
     file : Path
-        As ROS takes it: `/**:` or the node's name, `ros__parameters:`, values.
+        A ROS parameter file: `/**:` or the node's name, `ros__parameters:`, values.
 
     Returns
     -------
     PlannerConfig
-        Checked; what the file leaves out has its default.
+        Checked; parameters that the file leaves out have their defaults.
 
     Raises
     ------
     InvalidInputError
-        If the file is missing, no YAML or malformed, or a value is wrong; it names the file.
+        If the file is missing or malformed, or a value is wrong; names the file.
 
     """
     try:
@@ -57,21 +58,21 @@ def planner_config(file: Path) -> PlannerConfig:
         raise InvalidInputError(f'{file}: {" ".join(str(error).split())}') from None
 
 
-def speaks_of(file: Path, node: str) -> bool:
+def has_section_for(file: Path, node: str) -> bool:
     """
-    Return whether a parameter file has something for a node.
+    Return whether a parameter file has a section for a node.
 
     Parameters
     ----------
     file : Path
-        As ROS takes it.
+        A ROS parameter file.
     node : str
-        Fully qualified name.
+        The node's fully qualified name.
 
     Returns
     -------
     bool
-        True also where it cannot be read: ROS says that.
+        True also if the file cannot be read: ROS reports that itself.
 
     """
     def sections(tree: Any, path: str) -> Iterator[str]:
@@ -102,7 +103,7 @@ def _config(given: dict[str, Any]) -> PlannerConfig:
 
 
 def _values(file: Path) -> dict[str, Any]:
-    """Return a file's parameters by their dotted names."""
+    """Return a file's parameters by their full names, with dots."""
     content = yaml.safe_load(file.read_text())
     found: dict[str, Any] = {}
     for node in NODES:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Via points as files have them: lists of YAML, and tables of comma-separated values."""
+"""Parsing of via points: YAML lists, and tables of comma-separated values."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ LARGEST = sys.float_info.max
 
 def listed_points(value: Any, lines: Sequence[int] = ()) -> Array:
     """
-    Return the points of a list.
+    Return the via points of a YAML list.
 
     Parameters
     ----------
     value : object
-        Of a YAML file.
+        The list as parsed.
     lines : sequence of int, optional
-        In which each of its items begins, for messages.
+        Line number of each item, for messages.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def listed_points(value: Any, lines: Sequence[int] = ()) -> Array:
     Raises
     ------
     InvalidInputError
-        If it is no list of points; names the point, and what is missing or wrong.
+        If it is not a list of points; names the point, and what is missing or wrong.
 
     """
     if not isinstance(value, list):
@@ -69,19 +69,19 @@ def listed_points(value: Any, lines: Sequence[int] = ()) -> Array:
 
 def check_number(name: str, value: Any) -> None:
     """
-    Refuse what is no finite number.
+    Refuse a value that is not a finite number.
 
     Parameters
     ----------
     name : str
-        For the message.
+        Name for the message.
     value : object
-        Of a YAML file.
+        The value as parsed from YAML.
 
     Raises
     ------
     InvalidInputError
-        Naming it.
+        Gives name and value.
 
     """
     if isinstance(value, bool) or not isinstance(value, (int, float)):
@@ -109,21 +109,21 @@ class _Row(NamedTuple):
     decimal_comma: bool
 
     def number(self, column: int) -> float | None:
-        """Return a field as a number, None if it is none."""
+        """Return a field as a number, None if it is not one."""
         text = self.fields[column]
         return _number(text.replace(',', '.') if self.decimal_comma else text)
 
 
 def tabulated_points(text: str) -> Array:
     """
-    Return the points of a table of comma-separated values.
+    Return the via points of a table of comma-separated values.
 
     Parameters
     ----------
     text : str
-        A point a line, as x, y, z, or with a header that names these columns and maybe others, as
-        `t, x [m], y [m], z [m]`. Fields are parted by semicolons or tabs where the line has any,
-        and numbers may then have decimal commas. Empty lines and what follows a # are no matter.
+        One point per line: x, y, z. A header line may name the columns, in any order and among
+        others, as in `t, x [m], y [m], z [m]`. A line with semicolons or tabs is split at these,
+        and its numbers may have decimal commas. Empty lines and comments from # on are ignored.
 
     Returns
     -------
@@ -133,7 +133,7 @@ def tabulated_points(text: str) -> Array:
     Raises
     ------
     InvalidInputError
-        Naming the line, and what is missing or wrong.
+        Names the line, and what is missing or wrong.
 
     """
     rows = list(_rows(text))
@@ -155,7 +155,7 @@ def _rows(text: str) -> Iterator[_Row]:
 
 
 def _header(row: _Row) -> list[int]:
-    """Return the columns of x, y and z."""
+    """Return the column indices of x, y and z."""
     names = [re.split(r'\W', field.lower())[0] for field in row.fields]
     for axis in AXES:
         if names.count(axis) != 1:
@@ -166,7 +166,7 @@ def _header(row: _Row) -> list[int]:
 
 
 def _check_width(row: _Row, width: int) -> None:
-    """Refuse a line with more fields than the header has columns; empty ones are no matter."""
+    """Refuse a line with more non-empty fields than the header has columns."""
     more = [field for field in row.fields[width:] if field]
     if more:
         raise InvalidInputError(

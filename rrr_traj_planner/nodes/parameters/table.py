@@ -13,9 +13,9 @@
 # limitations under the License.
 
 """
-The parameters of both nodes: one table, the checks it implies, the configurations made of it.
+The table of all parameters of both nodes, and the check of values against it.
 
-Nothing here needs ROS: `declared` brings the table to a node.
+This module does not need ROS; `declared` declares the parameters on a node.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from rrr_traj_planner.core.trajectory.sampling import MOST_POINTS
 
 PLANNER, ARM = 'planner', 'arm'
 
-# The first via point of table 6.1 [m]; the arm waits there.
+# The first via point of the thesis's table 6.1 [m]: the arm's initial tip position.
 START_POINT = (1.02, 0.59, 0.97)
 
-HOW_WRITTEN = {
+NOTATION_HINT = {
     bool: '', str: '', int: ' (a whole number)', float: ' (written with a point, as 5.0)'}
 
 
 class Row(NamedTuple):
-    """A parameter, or with {joint} in its name one for each joint."""
+    """A parameter; with {joint} in its name, one parameter for each joint."""
 
     name: str
     default: Any  # its type is the parameter's; a tuple of three where the name has {joint}
@@ -52,7 +52,7 @@ class Row(NamedTuple):
 
     @property
     def range_text(self) -> str:
-        """Return what its value must be, for people."""
+        """Return the constraint on the value, for messages."""
         if not isinstance(self.default, list):
             return self.item_text
         if isinstance(self.default[0], str):
@@ -61,7 +61,7 @@ class Row(NamedTuple):
 
     @property
     def item_text(self) -> str:
-        """Return what its value, or each item of a list, must be."""
+        """Return the constraint on the value or, for lists, on each item."""
         item = self.default[0] if isinstance(self.default, list) else self.default
         if isinstance(item, bool):
             return 'true or false'
@@ -70,7 +70,7 @@ class Row(NamedTuple):
         return f'in [{self.low:g}, {self.high:g}]' + (f' {self.unit}' if self.unit else '')
 
 
-LARGEST_SEED = 2 ** 31 - 1
+MAX_SEED = 2 ** 31 - 1
 
 
 def _joint_limit(name: str, kind: str, values: tuple[Any, ...], unit: str, low: float,
@@ -107,73 +107,73 @@ TABLE: tuple[Row, ...] = (
     *_joint_limit('effort', "torque of the joint's motor", (150.0, 200.0, 200.0), 'N m', 1e-6,
                   1e6),
     Row('default_planner_id', 'cycloid', 'planner of requests that name none', nodes=(PLANNER,)),
-    Row('sample_period', 0.01, 'time between trajectory points where a request says none', 's',
+    Row('sample_period', 0.01, 'time between trajectory points if the request gives none', 's',
         1e-4, 10.0, nodes=(PLANNER,)),
-    Row('max_deviation', 0.05, 'how far a Cartesian path may leave the polyline where a request '
-        'says nothing', 'm', 1e-6, 100.0, nodes=(PLANNER,)),
-    Row('start_state_tolerance', 0.01, 'a start state no further outside the ranges is on their '
-        'end, one no faster is at rest', 'rad, rad/s', 0.0, 1.0, nodes=(PLANNER,)),
+    Row('max_deviation', 0.05, 'largest distance of a Cartesian path from the straight lines '
+        'between via points, if the request gives none', 'm', 1e-6, 100.0, nodes=(PLANNER,)),
+    Row('start_state_tolerance', 0.01, 'start positions that are less outside a range count as '
+        'its end, smaller start velocities as zero', 'rad, rad/s', 0.0, 1.0, nodes=(PLANNER,)),
     Row('max_tip_speed', 0.0, 'bound on the speed of the tip along a Cartesian path; 0: none',
         'm/s', 0.0, 100.0, nodes=(PLANNER,)),
-    Row('steady_zones', False, 'whether the tip keeps its speed on the curved zones of a '
+    Row('steady_zones', False, 'whether the speed of the tip is constant on the curved zones of a '
         'Cartesian path', nodes=(PLANNER,)),
-    Row('poly_414.t_acc', 0.5, 'half the length of a transition of planner poly_414', 's', 0.001,
+    Row('poly_414.t_acc', 0.5, 'half the duration of a transition of planner poly_414', 's', 0.001,
         100.0, nodes=(PLANNER,)),
-    Row('planning_time_limit', 1.0, 'time for a request; then the best motion is the answer, '
-        'or a refusal that says what took the time', 's', 1e-3, 3600.0, nodes=(PLANNER,)),
-    Row('max_points', MOST_POINTS, 'points that an answer may have; a request for more is refused '
-        'before they are computed', 'points', 2, 10_000_000, nodes=(PLANNER,)),
-    Row('max_via_points', 1000, 'via points that a request may have; one with more is refused '
-        'before it is looked at', 'points', 2, 100_000, nodes=(PLANNER,)),
+    Row('planning_time_limit', 1.0, 'time after which planning stops with the best motion so far, '
+        'or with an error that names the step in progress', 's', 1e-3, 3600.0, nodes=(PLANNER,)),
+    Row('max_points', MOST_POINTS, 'largest number of points of an answer; a request for more is '
+        'refused before they are computed', 'points', 2, 10_000_000, nodes=(PLANNER,)),
+    Row('max_via_points', 1000, 'largest number of via points of a request', 'points', 2, 100_000,
+        nodes=(PLANNER,)),
     Row('publish_rate', 200.0, 'rate of joint_states and desired_joint_states', 'Hz', 1.0, 1000.0,
         nodes=(ARM,)),
     Row('marker_rate', 10.0, 'rate of markers, in wall time; 0: none', 'Hz', 0.0, 100.0,
         nodes=(ARM,)),
     Row('physics_step', 0.001, 'time step of physics and control', 's', 1e-5, 0.01, True, (ARM,)),
     Row('initial_positions', inverse_kinematics(RobotModel(), START_POINT).tolist(),
-        'where the arm starts, and rests after a reset', 'rad', -1e3, 1e3, nodes=(ARM,)),
-    Row('controller.natural_frequency', 30.0, 'of the decay of tracking errors', 'rad/s', 0.1,
-        1000.0, nodes=(ARM,)),
-    Row('controller.damping_ratio', 1.0, 'of the same; 1 is critical', '', 0.01, 10.0,
-        nodes=(ARM,)),
+        'joint positions at the start and after ~/reset', 'rad', -1e3, 1e3, nodes=(ARM,)),
+    Row('controller.natural_frequency', 30.0, 'natural frequency of the tracking error', 'rad/s',
+        0.1, 1000.0, nodes=(ARM,)),
+    Row('controller.damping_ratio', 1.0, 'damping ratio of the tracking error; 1 is critical', '',
+        0.01, 10.0, nodes=(ARM,)),
     Row('payload.mass', 0.0, 'point mass at the tip', 'kg', 0.0, 1e4, nodes=(ARM,)),
-    Row('payload.known_to_controller', False, 'whether the controller reckons with it',
+    Row('payload.known_to_controller', False, "whether the controller's model has the payload",
         nodes=(ARM,)),
-    Row('friction.viscous', [0.0, 0.0, 0.0], 'friction of each joint against its velocity',
+    Row('friction.viscous', [0.0, 0.0, 0.0], 'viscous friction of each joint',
         'N m s/rad', 0.0, 1e5, nodes=(ARM,)),
-    Row('friction.coulomb', [0.0, 0.0, 0.0], 'friction of each joint whatever its velocity',
+    Row('friction.coulomb', [0.0, 0.0, 0.0], 'Coulomb friction of each joint',
         'N m', 0.0, 1e5, nodes=(ARM,)),
-    Row('soft_stops.width', 0.0, 'bumpers between the ends of the ranges and hard stops behind '
-        'them; 0: none', 'rad', 0.0, 1.0, nodes=(ARM,)),
-    Row('soft_stops.stiffness', 1e4, 'of a bumper', 'N m/rad', 0.0, 1e6, nodes=(ARM,)),
-    Row('soft_stops.damping', 0.2, 'of a bumper, a part of its stiffness', 's/rad', 0.0, 100.0,
+    Row('soft_stops.width', 0.0, 'width of the bumpers between the ends of the ranges and the '
+        'hard stops; 0: no bumpers', 'rad', 0.0, 1.0, nodes=(ARM,)),
+    Row('soft_stops.stiffness', 1e4, 'stiffness of a bumper', 'N m/rad', 0.0, 1e6, nodes=(ARM,)),
+    Row('soft_stops.damping', 0.2, 'damping of a bumper, per stiffness', 's/rad', 0.0, 100.0,
         nodes=(ARM,)),
-    Row('encoder.resolution', 0.0, 'positions are seen in multiples of it; 0: any', 'rad', 0.0,
+    Row('encoder.resolution', 0.0, 'measured positions are multiples of it; 0: exact', 'rad', 0.0,
         0.1, nodes=(ARM,)),
-    Row('encoder.noise', 0.0, 'of the positions seen, standard deviation', 'rad', 0.0, 0.1,
-        nodes=(ARM,)),
-    Row('encoder.seed', 0, 'of the noise', '', 0, LARGEST_SEED, nodes=(ARM,)),
-    Row('encoder.bandwidth', 250.0, 'of the velocities that are made of positions seen, where '
-        'they have resolution or noise', 'rad/s', 1.0, 1e4, nodes=(ARM,)),
+    Row('encoder.noise', 0.0, 'standard deviation of the noise of measured positions', 'rad', 0.0,
+        0.1, nodes=(ARM,)),
+    Row('encoder.seed', 0, 'seed of the noise', '', 0, MAX_SEED, nodes=(ARM,)),
+    Row('encoder.bandwidth', 250.0, 'bandwidth of the velocity estimate, used if there is '
+        'resolution or noise', 'rad/s', 1.0, 1e4, nodes=(ARM,)),
     Row('allow_partial_joints_goal', False, 'whether a trajectory may leave joints out; they '
-        'stay where they are', nodes=(ARM,)),
+        'hold their position', nodes=(ARM,)),
     Row('allow_nonzero_velocity_at_trajectory_end', False, 'whether the last point of a '
         'trajectory may have a velocity', nodes=(ARM,)),
-    Row('constraints.stopped_velocity_tolerance', 0.01, 'velocity error that is none at a '
-        "trajectory's end; 0: any", 'rad/s', 0.0, 1e3, nodes=(ARM,)),
-    Row('constraints.goal_time', 0.0, "time after a trajectory's end for meeting the goal's "
-        'tolerances; 0: any', 's', 0.0, 1e6, nodes=(ARM,)),
-    Row('constraints.{joint}.trajectory', (0.0, 0.0, 0.0), 'position error at which a trajectory '
-        'is given up; 0: none', 'rad', 0.0, 1e3, nodes=(ARM,)),
-    Row('constraints.{joint}.goal', (0.0, 0.0, 0.0), "the same from a trajectory's end and "
-        'constraints.goal_time on; 0: none', 'rad', 0.0, 1e3, nodes=(ARM,)),
-    Row('cmd_timeout', 0.0, "time after a trajectory's end after which the position is held that "
-        'the arm then has; ignored unless above constraints.goal_time; 0: never', 's', 0.0, 1e6,
+    Row('constraints.stopped_velocity_tolerance', 0.01, 'largest velocity error at the goal; 0: '
+        'not checked', 'rad/s', 0.0, 1e3, nodes=(ARM,)),
+    Row('constraints.goal_time', 0.0, "time after a trajectory's end in which the goal tolerances "
+        'must be met; 0: not checked', 's', 0.0, 1e6, nodes=(ARM,)),
+    Row('constraints.{joint}.trajectory', (0.0, 0.0, 0.0), 'largest position error during a '
+        'trajectory, beyond which it is aborted; 0: not checked', 'rad', 0.0, 1e3, nodes=(ARM,)),
+    Row('constraints.{joint}.goal', (0.0, 0.0, 0.0), 'largest position error at the goal, after '
+        'constraints.goal_time; 0: not checked', 'rad', 0.0, 1e3, nodes=(ARM,)),
+    Row('cmd_timeout', 0.0, "time after a trajectory's end after which the arm holds its measured "
+        'position; ignored unless above constraints.goal_time; 0: never', 's', 0.0, 1e6,
         nodes=(ARM,)),
-    Row('publish_clock', False, 'whether the arm is the clock, on /clock', read_only=True,
-        nodes=(ARM,)),
-    Row('real_time_factor', 1.0, 'simulated time to wall time where the arm is the clock; 0: as '
-        'fast as it can', '', 0.0, 1000.0, nodes=(ARM,)),
+    Row('publish_clock', False, 'whether the arm publishes its simulated time on /clock',
+        read_only=True, nodes=(ARM,)),
+    Row('real_time_factor', 1.0, 'simulated time per wall time if the arm publishes /clock; 0: as '
+        'fast as possible', '', 0.0, 1000.0, nodes=(ARM,)),
 )
 
 
@@ -221,7 +221,7 @@ def check_value(row: Row, value: Any) -> None:
     Raises
     ------
     InvalidInputError
-        Naming parameter, value and range.
+        Names parameter, value and range.
 
     """
     is_list = isinstance(row.default, list)
@@ -230,7 +230,7 @@ def check_value(row: Row, value: Any) -> None:
     items = list(value) if sequence else [value]
     if sequence != is_list or any(type(x) is not wanted for x in items):
         raise InvalidInputError(
-            f'{row.name} is {_shown(value)}, must be {row.range_text}{HOW_WRITTEN[wanted]}')
+            f'{row.name} is {_shown(value)}, must be {row.range_text}{NOTATION_HINT[wanted]}')
     if is_list and len(items) != len(row.default):
         raise InvalidInputError(
             f'{row.name} has {len(items)} values, {_shown(value)}, must be {row.range_text}')

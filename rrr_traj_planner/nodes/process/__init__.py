@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The life of a process: its start, its signals, its node, its end."""
+"""Processes of scripts and nodes: start, signals, spinning, shutdown."""

@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-How every script begins and ends: its arguments, what goes wrong, its exit code.
+Start and end of every script: command line, error messages, exit code.
 
-`--help` is answered before ROS is touched; a start that fails says why in one line and ends with
-exit code 1; SIGINT and SIGTERM end the script with exit code 0, from its first lines on. What is
-imported here is light, so that those lines come early.
+`--help` works without ROS; a start that fails prints the reason in one line and exits with code 1;
+SIGINT and SIGTERM end the script with exit code 0 from its first lines on. This module imports
+little, so that it handles signals early.
 """
 
 from __future__ import annotations
@@ -45,28 +45,28 @@ EPILOG = (
 
 
 class StartError(RrrPlannerError):
-    """A script that cannot start: its text is all that a user needs."""
+    """A script that cannot start: its message is printed without a traceback."""
 
 
 def parse(name: str, description: str, arguments: Sequence[str] | None,
           add_options: Callable[[argparse.ArgumentParser], None] | None = None,
           ) -> tuple[argparse.Namespace, list[str]]:
     """
-    Answer `--help` and wrong options, and set aside what is for ROS.
+    Parse a script's options, and separate the arguments for ROS.
 
     Parameters
     ----------
     name, description : str
-        The script and what it does.
+        The script's name and description, for `--help`.
     arguments : sequence of str, optional
         The command line without the script's name; None: `sys.argv`'s.
     add_options : callable, optional
-        Adds a script's own options to the parser.
+        Adds the script's own options to the parser.
 
     Returns
     -------
     options : argparse.Namespace
-        The script's own.
+        The script's options.
     ros_arguments : list of str
         From each `--ros-args` up to `--` or the end, for `rclpy.init`.
 
@@ -82,7 +82,7 @@ def parse(name: str, description: str, arguments: Sequence[str] | None,
 
 def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
     """
-    Return the arguments of a script and those of ROS.
+    Split a command line into the script's arguments and those for ROS.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]
     Returns
     -------
     tuple of two lists of str
-        ROS's own begin with `--ros-args` and end with `--` or the line's end.
+        The script's, and those for ROS: from each `--ros-args` up to `--` or the end.
 
     """
     own: list[str] = []
@@ -105,27 +105,27 @@ def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]
     return own, ros
 
 
-def guarded(name: str, work: Callable[[], int]) -> int:
+def run_script(name: str, work: Callable[[], int]) -> int:
     """
-    Run a script's work; turn its end, whichever way, into an exit code.
+    Run a script's main function and return the exit code.
 
     Parameters
     ----------
     name : str
-        The script, named before an error's text.
+        The script's name, for error messages.
     work : callable
-        Returns an exit code.
+        The main function; returns an exit code.
 
     Returns
     -------
     int
-        The work's; 0 after SIGINT or SIGTERM; 1, and one line on stderr, after an error that
-        has a text for users. Other exceptions are bugs and pass.
+        The main function's code; 0 after SIGINT or SIGTERM; 1 after an error that concerns the
+        user, whose message is printed on stderr. Other exceptions are bugs and are not caught.
 
     """
     end_at_signals()
-    # The planners' matrices are small: more threads only wait for each other. Told before NumPy
-    # is loaded, and to the children too.
+    # The planners' matrices are too small for several threads. Set before NumPy is imported, and
+    # inherited by child processes.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     try:
         return work()

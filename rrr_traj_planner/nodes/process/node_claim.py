@@ -13,10 +13,10 @@
 # limitations under the License.
 
 """
-A node's claim to its name among the processes of this machine.
+Lock on a node's name among the processes of this machine.
 
-Discovery takes up to three seconds to find a node that runs already. A socket in Linux's abstract
-namespace is there at once, reaches as far as the loopback interface, and ends with its process.
+DDS discovery takes up to three seconds to find a node that is running already. A socket in Linux's
+abstract namespace is visible at once, is local to the machine, and disappears with its process.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ def claim(domain: int, name: str) -> socket.socket | None:
     Parameters
     ----------
     domain : int
-        ROS's.
+        ROS domain id.
     name : str
-        Fully qualified.
+        The node's fully qualified name.
 
     Returns
     -------
     socket or None
-        The claim, to be closed when the node ends; None where another has it.
+        The lock, to be closed when the node ends; None if another process holds it.
 
     """
     held = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
@@ -55,19 +55,19 @@ def claim(domain: int, name: str) -> socket.socket | None:
 
 def is_claimed(domain: int, name: str) -> bool:
     """
-    Return whether a node of this machine has a name.
+    Return whether a node of this package and machine runs under a name.
 
     Parameters
     ----------
     domain : int
-        ROS's.
+        ROS domain id.
     name : str
-        Fully qualified.
+        The node's fully qualified name.
 
     Returns
     -------
     bool
-        Of this package's nodes alone.
+        Whether a process holds the lock.
 
     """
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as probe:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a node says when it starts, and when another node has its name."""
+"""A node's log messages at its start, and its warning of another node of the same name."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
-from rrr_traj_planner.nodes.parameters.names import unused
-from rrr_traj_planner.nodes.parameters.parameter_files import speaks_of
+from rrr_traj_planner.nodes.parameters.names import unused_warnings
+from rrr_traj_planner.nodes.parameters.parameter_files import has_section_for
 from rrr_traj_planner.nodes.process.node_claim import claim
 
 SECOND = 1_000_000_000  # ns
-AT_ONCE = 0.001         # s
-WATCH_PERIOD = 1.0      # s
+FIRST_DELAY = 0.001     # s, until the first spin
+WATCH_PERIOD = 1.0      # s, between two checks for nodes of the same name
 
 KEEP_APART = ('end one, or give it a namespace (--ros-args -r __ns:=/NAME) or another '
               'ROS_DOMAIN_ID')
@@ -41,20 +41,20 @@ DEFAULT = 'no parameter file, the default arm'
 
 class NodeStart:
     """
-    Logs a line when the node is first spun, and warns of another node of its name.
+    Logs a line when the node is first spun, and warns of other nodes of the same name.
 
     Parameters
     ----------
     node : Node
-        The node; all else that it needs is made.
+        The node, fully set up.
     parameters : DeclaredParameters
-        Its own.
+        The node's parameters.
     limits : JointLimits
-        In force.
+        The joints' limits, for the log line.
     offer : str
-        What it does for others, and where.
+        The node's main interface, for the log line.
     arguments : sequence of str, optional
-        That ROS has been given for this node alone.
+        ROS arguments of this node alone (`cli_args`).
 
     """
 
@@ -63,37 +63,37 @@ class NodeStart:
         self._node, self._parameters = node, parameters
         self._name = node.get_fully_qualified_name()
         files = parameter_files([*sys.argv, *(arguments or ())])
-        self._strange = [file for file in files if not speaks_of(Path(file), self._name)]
-        arm = ', '.join(f for f in files if f not in self._strange) or DEFAULT
+        self._unused = [file for file in files if not has_section_for(Path(file), self._name)]
+        arm = ', '.join(f for f in files if f not in self._unused) or DEFAULT
         self._text = (f'{self._name}: {arm}; {limits_text(limits, parameters.joint_names)}; '
                       f'{offer}; ready')
         self._claim = claim(node.context.get_domain_id(), self._name)
         self._others = 0
         self._timer = node.create_timer(
-            AT_ONCE, self._begin, clock=Clock(clock_type=ClockType.STEADY_TIME))
+            FIRST_DELAY, self._begin, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _begin(self) -> None:
-        """Say what the node is, and what it was given in vain; then go on watching."""
+        """Log the start line and warnings of unused parameters and files; then start watching."""
         self._timer.timer_period_ns = round(WATCH_PERIOD * SECOND)
         self._timer.callback = self._watch
         log, given = self._node.get_logger(), self._parameters.given
         log.info(self._text)
-        for text in unused([name for name in given if not self._node.has_parameter(name)],
-                           self._parameters.joint_names):
+        undeclared = [name for name in given if not self._node.has_parameter(name)]
+        for text in unused_warnings(undeclared, self._parameters.joint_names):
             log.warning(text)
-        for file in self._strange:
+        for file in self._unused:
             log.warning(f'parameter file {file} has nothing for this node, {self._name}')
         self._warn_of(int(self._claim is None))
 
     def _watch(self) -> None:
-        """Look for nodes of the same name, of this machine and others."""
+        """Check for nodes of the same name on any machine."""
         own = self._node.get_name(), self._node.get_namespace()
         self._warn_of(self._node.get_node_names_and_namespaces().count(own) - 1)
         if self._claim is None:
             self._claim = claim(self._node.context.get_domain_id(), self._name)
 
     def _warn_of(self, others: int) -> None:
-        """Warn, once, of another node of the same name: each would answer for the other."""
+        """Warn once of another node of the same name: both would answer every request."""
         if others > self._others:
             self._node.get_logger().warning(
                 f'another node is named {self._name}: they share topics and services; '
@@ -101,14 +101,14 @@ class NodeStart:
         self._others = max(others, int(self._claim is None))
 
     def end(self) -> None:
-        """Leave the name to others."""
+        """Release the name."""
         if self._claim is not None:
             self._claim.close()
 
 
 def parameter_files(arguments: Sequence[str]) -> list[str]:
     """
-    Return the parameter files that a command line names.
+    Return the parameter files on a command line.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def parameter_files(arguments: Sequence[str]) -> list[str]:
     Returns
     -------
     list of str
-        In their order.
+        Their paths, in order.
 
     """
     return [file for option, file in zip(arguments, arguments[1:]) if option == '--params-file']
@@ -126,19 +126,19 @@ def parameter_files(arguments: Sequence[str]) -> list[str]:
 
 def limits_text(limits: JointLimits, joint_names: Sequence[str]) -> str:
     """
-    Return limits in a line.
+    Return the joints' limits as one line of text.
 
     Parameters
     ----------
     limits : JointLimits
-        Infinite where there is none.
+        The limits; infinite ones are left out.
     joint_names : sequence of str
-        The joints.
+        Names of the joints.
 
     Returns
     -------
     str
-        For people.
+        Range and limits of each joint, with units.
 
     """
     units = (('max_velocity', 'rad/s'), ('max_acceleration', 'rad/s^2'), ('max_jerk', 'rad/s^3'),

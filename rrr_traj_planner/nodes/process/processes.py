@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Both nodes as processes of their own: started, watched and ended together."""
+"""Both nodes as child processes: started, watched and ended together."""
 
 from __future__ import annotations
 
@@ -29,28 +29,28 @@ from rrr_traj_planner.nodes.process.signals import signal_arrived, signals_block
 MODULES = {'planner': 'rrr_traj_planner.nodes.scripts.planner',
            'simulated_arm': 'rrr_traj_planner.nodes.scripts.simulated_arm'}
 
-# As -m does it, but from where this package is: -m prefers what lies in the folder.
-PLACE = str(Path(__file__).parents[3])
+# Like `python -m`, but with this copy of the package: -m prefers one in the current folder.
+PACKAGE_PATH = str(Path(__file__).parents[3])
 RUN_MODULE = f"""\
 import runpy, sys
-sys.path[:1] = [] if {PLACE!r} in sys.path else [{PLACE!r}]
+sys.path[:1] = [] if {PACKAGE_PATH!r} in sys.path else [{PACKAGE_PATH!r}]
 del sys.argv[0]
 runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"""
 
-POLL_PERIOD = 0.1   # s
-PATIENCE = 1.5      # s that a process is given to end by itself
+POLL_PERIOD = 0.1   # s, between two checks whether a process has ended
+STOP_TIMEOUT = 1.5  # s after SIGINT, then SIGKILL
 
 
 class NodeProcesses:
     """
-    The planner and the simulated arm; a context that ends them.
+    The processes of the planner and the simulated arm; a context manager that ends them.
 
-    Signals must be deferred while it is open (`signals.py`).
+    Signals must be deferred within the context (`signals.py`).
 
     Parameters
     ----------
     ros_arguments : sequence of str
-        For both, as after `--ros-args`, that word included.
+        ROS arguments of both, beginning with `--ros-args`.
 
     """
 
@@ -59,7 +59,7 @@ class NodeProcesses:
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
 
     def __enter__(self) -> NodeProcesses:
-        """Start both, or none."""
+        """Start both, or neither."""
         try:
             with signals_blocked():
                 for name, module in MODULES.items():
@@ -72,17 +72,17 @@ class NodeProcesses:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
-        """End both, whatever the reason."""
+        """End both."""
         self.stop()
 
     def ended(self) -> tuple[str, int] | None:
         """
-        Return the process that has ended, if one has.
+        Return the process that has ended, if any.
 
         Returns
         -------
         tuple of str and int, or None
-            Its name and exit code.
+            Name and exit code.
 
         """
         for name, process in self._processes.items():
@@ -97,7 +97,7 @@ class NodeProcesses:
         Returns
         -------
         tuple of str and int, or None
-            Its name and exit code; None after a signal.
+            Name and exit code of the process; None after a signal.
 
         """
         while not signal_arrived():
@@ -108,8 +108,8 @@ class NodeProcesses:
         return None
 
     def stop(self) -> None:
-        """End both: SIGINT, and SIGKILL for what does not heed it."""
-        deadline = monotonic() + PATIENCE
+        """End both by SIGINT, and by SIGKILL after `STOP_TIMEOUT`."""
+        deadline = monotonic() + STOP_TIMEOUT
         for process in self._processes.values():
             if process.poll() is None:
                 process.send_signal(signal.SIGINT)
@@ -121,21 +121,21 @@ class NodeProcesses:
                 process.wait()
 
 
-def ending(name: str, code: int) -> str:
+def exit_message(name: str, code: int) -> str:
     """
-    Return what has become of a process.
+    Return how a process has ended, as text.
 
     Parameters
     ----------
     name : str
-        The node.
+        The node's name.
     code : int
-        Exit code, or the negative number of the signal that has killed it.
+        Exit code, or the negative number of the signal that has killed the process.
 
     Returns
     -------
     str
-        For people.
+        One line.
 
     """
     if code < 0:

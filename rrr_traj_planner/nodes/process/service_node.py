@@ -13,12 +13,12 @@
 # limitations under the License.
 
 """
-A node whose services answer clients that it has not discovered wholly yet.
+A node whose services also answer clients that DDS has discovered only in part.
 
-A service is two DDS topics, found one by one: a request may arrive before the reader of its answer
-is known. rmw_fastrtps and rmw_cyclonedds then wait 0.1 s and drop the answer
-(github.com/ros2/rmw_fastrtps/issues/842), of which rclpy tells by a warning only. What was dropped
-may be sent again (ros2/rmw_fastrtps, pull request 467).
+A service is two DDS topics, discovered one by one: a request may arrive before the reader of its
+response is known. rmw_fastrtps and rmw_cyclonedds then wait 0.1 s and drop the response
+(github.com/ros2/rmw_fastrtps/issues/842); rclpy only warns. A dropped response may be sent again
+(ros2/rmw_fastrtps, pull request 467).
 """
 
 from __future__ import annotations
@@ -31,31 +31,31 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.service import Service
 
-DROPPED = 'failed to send response'  # how rclpy's warning begins
+DROPPED = 'failed to send response'  # beginning of rclpy's warning
 
-FIRST_WAIT = 0.1    # s until an answer is sent again; every further wait is twice as long,
-LONGEST_WAIT = 6.4  # s, of eight: 12.7 s in all. Fast DDS announces itself again every 3 s
+FIRST_WAIT = 0.1  # s until the response is sent again; each further wait is twice as long
+MAX_WAIT = 6.4    # s, the last of seven waits, 12.7 s in all; Fast DDS announces itself every 3 s
 
 
 class ServiceNode(Node):
     """
-    Sends an answer again as long as its client's reader is not discovered.
+    Sends a response again until its client's reader has been discovered.
 
     Parameters
     ----------
     *args, **kwargs
-        For `rclpy.node.Node`.
+        Arguments of `rclpy.node.Node`.
 
     """
 
     def create_service(self, *args: Any, **kwargs: Any) -> Service:
         """
-        Create a service, as `Node` does; a node's parameters are served by this too.
+        Create a service, as `Node` does; `Node` creates its parameter services by this too.
 
         Parameters
         ----------
         *args, **kwargs
-            For `Node.create_service`.
+            Arguments of `Node.create_service`.
 
         Returns
         -------
@@ -68,13 +68,13 @@ class ServiceNode(Node):
         return service
 
     def _send(self, service: Service, wait: float, response: Any, header: Any) -> None:
-        """Send an answer; if it is dropped, again after a while."""
-        with warnings.catch_warnings(record=True) as told:
+        """Send a response; if it is dropped, send it again after a wait."""
+        with warnings.catch_warnings(record=True) as caught:
             warnings.filterwarnings('always', DROPPED, RuntimeWarning)
             Service.send_response(service, response, header)
-        if not any(str(warning.message).startswith(DROPPED) for warning in told):
+        if not any(str(warning.message).startswith(DROPPED) for warning in caught):
             return
-        if wait > LONGEST_WAIT:
+        if wait > MAX_WAIT:
             self.get_logger().warning(
                 f'an answer of {service.service_name} is lost: its client is not discovered')
             return

@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-SIGINT and SIGTERM: at once the end of the process, or a note of which its end is made in order.
+Handling of SIGINT and SIGTERM: end the process at once or, after ROS has started, in order.
 
-No exception leaves the handler: it would hit whatever code is running, imports, destructors and
-compiled modules included. A script has nothing to put in order until it has started ROS or other
-processes; from then on signals are deferred.
+The handler raises no exception: it would interrupt any code, such as imports, destructors and
+compiled modules. Until a script has started ROS or other processes it has nothing to clean up and
+ends at once; from then on signals are deferred: the handler only records them.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class _Handler:
     arrived = False
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
-        """End the process, or note that it is to end."""
+        """Record the signal; end the process unless signals are deferred."""
         self.arrived = True
         if not self.deferred:
             os._exit(0)
@@ -50,22 +50,22 @@ _handler = _Handler()  # one for the process, as signals are
 
 
 def end_at_signals() -> None:
-    """Let both signals end the process with exit code 0, also one that was blocked so far."""
+    """Let both signals end the process with exit code 0, including one that is pending."""
     _handler.deferred = _handler.arrived = False
     for number in SIGNALS:
         signal.signal(number, _handler)
-    # Python's own end takes handlers away before it is through.
+    # Interpreter shutdown restores the default handlers before the process ends.
     atexit.register(signal.pthread_sigmask, signal.SIG_BLOCK, SIGNALS)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)  # see setup.py and processes.py
 
 
 def defer_signals() -> None:
-    """Only take note of both signals: ROS runs, or other processes, and must be ended first."""
+    """Only record both signals: ROS or child processes must be shut down first."""
     _handler.deferred = True
 
 
 def end_if_signalled() -> None:
-    """End the process if a signal has arrived; else let the next one end it."""
+    """End the process if a signal has arrived, else let the next one end it."""
     _handler.deferred = False
     if _handler.arrived:
         sys.stdout.flush()
@@ -81,9 +81,9 @@ def signal_arrived() -> bool:
 @contextmanager
 def signals_blocked() -> Iterator[None]:
     """
-    Keep both signals waiting, and from what is started meanwhile.
+    Block both signals, in this process and in child processes started within the context.
 
-    A process that begins with both blocked takes them when it calls `end_at_signals`.
+    A child unblocks them when it calls `end_at_signals`.
     """
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     try:

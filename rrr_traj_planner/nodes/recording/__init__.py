@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Records topics in MCAP files."""
+"""Recording of topics in MCAP files."""

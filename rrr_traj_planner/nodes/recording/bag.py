@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A bag: messages as they were on the wire, in an MCAP file that ROS 2's tools open."""
+"""A bag: serialized messages in an MCAP file, which ROS 2's tools can open."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ NO_MCAP = ('recording needs the Python package mcap: python3 -m pip install mcap
 
 class Bag:
     """
-    An MCAP file of profile ros2, open as a context, whole when that is left.
+    An MCAP file of profile ros2; a context manager that completes the file at its end.
 
     Parameters
     ----------
     file : Path
-        Not there yet; devices may be.
+        A file that does not exist yet, or a device.
 
     Raises
     ------
     StartError
-        If the package mcap is missing, or the file is there or cannot be written.
+        If the package mcap is missing, or the file exists already or cannot be written.
 
     """
 
@@ -71,7 +71,7 @@ class Bag:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
-        """Write the index and close the file; tell of what could not be written."""
+        """Write the index and close the file; print a message if the file is incomplete."""
         with self._lock:
             self._closed = True
             try:
@@ -89,16 +89,16 @@ class Bag:
 
     def add_topic(self, topic: str, kind: str, definition: str, qos: str) -> None:
         """
-        Make a topic known, before its first message.
+        Add a topic, before its first message.
 
         Parameters
         ----------
         topic : str
             Full name.
         kind, definition : str
-            Type as `sensor_msgs/msg/JointState`, and its definition in the form ros2msg.
+            Type, such as `sensor_msgs/msg/JointState`, and its definition in the form ros2msg.
         qos : str
-            Offered by its publishers, as rosbag2 writes it.
+            Quality of service that its publishers offer, in rosbag2's YAML form.
 
         """
         with self._lock:
@@ -109,14 +109,14 @@ class Bag:
 
     def write(self, topic: str, message: bytes, received: int, sent: int) -> None:
         """
-        Add a message; after a failure to write, do nothing.
+        Add a message; does nothing after a write has failed.
 
         Parameters
         ----------
         topic : str
-            One that has been added.
+            A topic that has been added.
         message : bytes
-            As serialized by ROS.
+            The serialized message.
         received, sent : int
             Wall times [ns].
 
@@ -129,5 +129,5 @@ class Bag:
                 self._writer.add_message(self._channels[topic], received, message, sent,
                                          self._sequence[topic])
                 self.count += 1
-            except OSError as error:  # a full disk ends the recording, not what is recorded
+            except OSError as error:  # a full disk ends the recording, not the demo
                 self._error = error

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Definitions of messages as the files of bags hold them: a type and all that it is made of."""
+"""Message definitions in the form that bags contain: a type followed by the types it contains."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ SEPARATOR = '=' * 80
 
 def definition(name: str) -> str:
     """
-    Return a message's definition, followed by those of the types in it.
+    Return a message's definition, followed by those of all types that it contains.
 
     Parameters
     ----------
     name : str
-        As `sensor_msgs/msg/JointState`.
+        Full name, such as `sensor_msgs/msg/JointState`.
 
     Returns
     -------
     str
-        In the form that MCAP calls ros2msg: .msg files under `MSG: package/Name`.
+        In the form that MCAP calls ros2msg: .msg files under headings `MSG: package/Name`.
 
     Raises
     ------
     FileNotFoundError
-        If a package is there without its .msg files.
+        If a package does not contain its .msg files.
 
     """
     package, _, kind = name.split('/')
@@ -62,7 +62,7 @@ def _text(package: str, kind: str) -> str:
 
 
 def _inner_types(package: str, text: str) -> list[str]:
-    """Return the types of a definition's fields that are messages, with their packages."""
+    """Return the message types of a definition's fields, as `package/Name`."""
     names = []
     for line in text.splitlines():
         words = line.partition('#')[0].split()

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Records topics in a bag: what comes by, byte for byte."""
+"""Records topics in a bag, message by message as serialized."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ from rrr_traj_planner.nodes.recording.bag import Bag
 from rrr_traj_planner.nodes.recording.message_definitions import definition
 
 SECOND = 1_000_000_000  # ns
-QUEUE_DEPTH = 1000
-LOOKING_PERIOD = 0.1  # s
+QUEUE_DEPTH = 1000      # messages per topic; some seconds of the fastest one
+DISCOVERY_PERIOD = 0.1  # s between two checks for new topics
 
 PASSING = QoSProfile(depth=QUEUE_DEPTH)
 LATCHED = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -39,18 +39,18 @@ LATCHED = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LO
 
 class Recorder:
     """
-    Subscribes topics on a node and writes what arrives.
+    Subscribes to topics on a node and writes their messages to a bag.
 
     Parameters
     ----------
     node : Node
-        Spun by an executor.
+        The node; an executor must spin it.
     bag : Bag
-        Where the messages go.
+        The bag to write to.
     topics : iterable of (type, str)
-        Message types and names, relative ones to the node's namespace.
+        Message types and topic names; relative names are in the node's namespace.
     latched : iterable of (type, str)
-        The same, of topics whose publishers are transient local.
+        The same for topics with transient local publishers.
 
     """
 
@@ -64,13 +64,13 @@ class Recorder:
                 self._subscribe(kind, topic, qos)
 
     def record_all(self) -> None:
-        """Subscribe every other topic that has a publisher, or that gets one later."""
-        self._look()
+        """Subscribe to every other topic that has a publisher, now or later."""
+        self._discover()
         self._timer = self._node.create_timer(
-            LOOKING_PERIOD, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+            DISCOVERY_PERIOD, self._discover, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def _look(self) -> None:
-        """Subscribe topics that are new; hidden ones are left alone, as in rosbag2."""
+    def _discover(self) -> None:
+        """Subscribe to new topics, except hidden ones, as rosbag2 does."""
         for topic, types in self._node.get_topic_names_and_types():
             if topic in self._known or '/_' in topic:
                 continue
@@ -79,7 +79,7 @@ class Recorder:
                 continue
             try:
                 definition(types[0])
-                self._subscribe(message_type(types[0]), topic, suiting(offered))
+                self._subscribe(message_type(types[0]), topic, compatible_qos(offered))
             except (ImportError, AttributeError, LookupError, OSError) as error:
                 self._known.add(topic)
                 self._node.get_logger().warning(
@@ -91,7 +91,7 @@ class Recorder:
             kind, topic, self._writer_of(kind, topic), qos, raw=True))
 
     def is_connected(self) -> bool:
-        """Return whether it receives from every publisher that the node knows of."""
+        """Return whether every publisher that the node has discovered is matched."""
         return all(s.get_publisher_count() >= self._node.count_publishers(s.topic_name)
                    for s in self._subscriptions)
 
@@ -110,19 +110,19 @@ class Recorder:
         return write
 
 
-def suiting(offered: Sequence[QoSProfile]) -> QoSProfile:
+def compatible_qos(offered: Sequence[QoSProfile]) -> QoSProfile:
     """
-    Return the quality of service that receives most from all publishers of a topic.
+    Return the strictest quality of service that is compatible with all publishers of a topic.
 
     Parameters
     ----------
     offered : sequence of QoSProfile
-        Theirs.
+        The publishers' profiles.
 
     Returns
     -------
     QoSProfile
-        Reliable and transient local, each where all of them are.
+        Reliable if all publishers are, transient local if all are.
 
     """
     def all_are(name: str, value: Any) -> bool:
@@ -143,7 +143,7 @@ def message_type(name: str) -> Any:
     Parameters
     ----------
     name : str
-        As `sensor_msgs/msg/JointState`.
+        Full name, such as `sensor_msgs/msg/JointState`.
 
     Returns
     -------
@@ -167,7 +167,7 @@ def type_name(kind: Any) -> str:
     Returns
     -------
     str
-        As `sensor_msgs/msg/JointState`.
+        Such as `sensor_msgs/msg/JointState`.
 
     """
     package, folder, *_ = kind.__module__.split('.')
@@ -176,19 +176,19 @@ def type_name(kind: Any) -> str:
 
 def offered_qos(node: Node, topic: str) -> str:
     """
-    Return what a topic's publishers offer, for the player of a bag.
+    Return the quality of service that a topic's publishers offer, for playback of the bag.
 
     Parameters
     ----------
     node : Node
-        Which knows of them.
+        A node that has discovered the publishers.
     topic : str
         Full name.
 
     Returns
     -------
     str
-        YAML, as rosbag2 writes it.
+        In rosbag2's YAML form.
 
     """
     return '\n'.join(_qos_text(info.qos_profile)

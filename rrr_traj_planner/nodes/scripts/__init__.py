@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The entry scripts, one file each."""
+"""The scripts of `ros2 run`, one module each."""

@@ -21,8 +21,8 @@ from collections.abc import Sequence
 from pathlib import Path
 import sys
 
-from rrr_traj_planner.nodes.process.entry import guarded, parse
-from rrr_traj_planner.nodes.process.processes import ending, NodeProcesses
+from rrr_traj_planner.nodes.process.entry import parse, run_script
+from rrr_traj_planner.nodes.process.processes import exit_message, NodeProcesses
 from rrr_traj_planner.nodes.process.signals import defer_signals
 
 DESCRIPTION = 'Run the trajectory planner and the simulated arm, until Ctrl-C.'
@@ -47,7 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options, ros_arguments = parse('bringup', DESCRIPTION, arguments, _add_options)
         return _run(options.arm, ros_arguments)
 
-    return guarded('bringup', work)
+    return run_script('bringup', work)
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
@@ -67,7 +67,7 @@ def _run(arm: str, ros_arguments: list[str]) -> int:
     if ended is None:
         return 0
     name, code = ended
-    print(f'bringup: {ending(name, code)}', file=sys.stderr)
+    print(f'bringup: {exit_message(name, code)}', file=sys.stderr)
     return code if code >= 0 else 128 - code
 
 
@@ -78,14 +78,14 @@ def node_arguments(parameters: Path, ros_arguments: Sequence[str]) -> list[str]:
     Parameters
     ----------
     parameters : Path
-        The arm's parameter file; what the user gives goes before it.
+        The arm's parameter file.
     ros_arguments : sequence of str
-        The user's own.
+        The user's own arguments, which take precedence over the file.
 
     Returns
     -------
     list of str
-        In the order in which they are to be read.
+        The arguments in the order in which ROS reads them.
 
     """
     own = [a for a in ros_arguments if a not in ('--ros-args', '--')]

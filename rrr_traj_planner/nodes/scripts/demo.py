@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The script `demo`: plan through via points, drive the simulated arm, show how well it went."""
+"""The script `demo`: plans through via points, drives the simulated arm, compares the two."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ from dataclasses import replace
 from pathlib import Path
 import sys
 
-from rrr_traj_planner.nodes.process.entry import guarded, parse
+from rrr_traj_planner.nodes.process.entry import parse, run_script
 
 DESCRIPTION = """\
 Plan a motion through the via points of a file, run it on the simulated arm and show the figures.
 
 Starts the planner and the arm, calls the planner's service, sends its answer to the arm, and
-compares what was asked, planned and reached. The exit code is 0 only if every figure is inside
-its bound."""
+compares the requested, planned and executed motion. The exit code is 0 only if every figure is
+inside its bound."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -52,7 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options, ros_arguments = parse('demo', DESCRIPTION, arguments, _add_options)
         return _run(options, ros_arguments)
 
-    return guarded('demo', work)
+    return run_script('demo', work)
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
@@ -62,16 +62,16 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--planner', default='', metavar='ID',
                         help="planner id (default: the file's)")
     parser.add_argument('--plot', type=Path, metavar='PNG',
-                        help='where the plot goes (default: demo_TASK.png); "" for none')
+                        help='file of the plot (default: demo_TASK.png); "" for none')
     parser.add_argument('--record', type=Path, metavar='MCAP',
-                        help='write what comes by on the topics in this file, a ROS 2 bag')
+                        help='record all topics in this file, a ROS 2 bag')
 
 
 def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.demo.client import Client
     from rrr_traj_planner.nodes.demo.table import figures, table
     from rrr_traj_planner.nodes.parameters.configuration_files import read_task
-    from rrr_traj_planner.nodes.process.node_life import spun_in_background
+    from rrr_traj_planner.nodes.process.node_runner import spin_in_background
     from rrr_traj_planner.nodes.process.processes import NodeProcesses
     from rrr_traj_planner.nodes.recording.bag import Bag
     from rrr_traj_planner.nodes.scripts.bringup import node_arguments
@@ -79,7 +79,7 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     task = read_task(options.task)
     task = replace(task, planner_id=options.planner or task.planner_id)
     with ExitStack() as stack:
-        client = stack.enter_context(spun_in_background(Client, ros_arguments))
+        client = stack.enter_context(spin_in_background(Client, ros_arguments))
         client.check_free()
         bag = None if options.record is None else stack.enter_context(Bag(options.record))
         nodes = stack.enter_context(NodeProcesses(node_arguments(task.arm, ros_arguments)))
@@ -91,10 +91,10 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     plot = Path(f'demo_{task.name}.png') if options.plot is None else options.plot
     if str(plot) not in ('', '.'):
         _plot(run, plot)
-    broken = [f for f in found if not f.kept]
-    for figure in broken:
+    exceeded = [f for f in found if not f.within_bound]
+    for figure in exceeded:
         print(f'demo: out of bounds: {figure.text}', file=sys.stderr)
-    return 1 if broken else 0
+    return 1 if exceeded else 0
 
 
 def _plot(run: object, file: Path) -> None:
@@ -106,7 +106,7 @@ def _plot(run: object, file: Path) -> None:
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         draw(run, file)  # type: ignore[arg-type]
-    except (OSError, ValueError) as error:  # ValueError: an ending that is no picture's
+    except (OSError, ValueError) as error:  # ValueError: an unknown suffix
         print(f'demo: no plot: {error}', file=sys.stderr)
         return
     print(f'plot: {file}')

@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rrr_traj_planner.nodes.process.node_life import run_node
+from rrr_traj_planner.nodes.process.node_runner import run_node
 
 if TYPE_CHECKING:
     from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
@@ -31,7 +31,7 @@ Plan motions of the arm through via points, exactly and without stopping.
   publishes   planned_trajectory (trajectory_msgs/JointTrajectory), planned_path (nav_msgs/Path),
               diagnostics (diagnostic_msgs/DiagnosticArray)
               markers (visualization_msgs/MarkerArray)
-  parameters  config/thesis_arm.yaml shows them all"""
+  parameters  config/thesis_arm.yaml lists them all"""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -55,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _load() -> type[TrajectoryPlanner]:
     from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
     from rrr_traj_planner.planners.registry import planner_ids
-    planner_ids()  # imports the planners, before ROS starts and signals have to wait for them
+    planner_ids()  # imports the planners now: once ROS has started, signals would wait for that
     return TrajectoryPlanner
 
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The script `report`: the thesis's figures redrawn, or any plan drawn; needs no ROS."""
+"""The script `report`: a page with the thesis's figures, or with any plan; needs no ROS."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from collections.abc import Sequence
 from pathlib import Path
 import sys
 
-from rrr_traj_planner.nodes.process.entry import guarded, parse, StartError
+from rrr_traj_planner.nodes.process.entry import parse, run_script, StartError
 
 DESCRIPTION = """\
-Write a page that stands alone, OUT_DIR/index.html, with its figures as PNG and CSV beside it.
+Write a self-contained page, OUT_DIR/index.html, with its figures as PNG and CSV beside it.
 
 --thesis redraws the thesis's tables and figures from this package's own planners. --plan draws a
 plan of a via-point file: profiles against limits, torque use, path, animation, peaks; by several
@@ -35,7 +35,7 @@ NO_MATPLOTLIB = (
     'no figures, matplotlib is missing ({error}): sudo apt install python3-matplotlib, or '
     "pip install matplotlib (the package's extra 'figures')")
 
-MOST_BYTES = 200  # of a folder's name; file systems take 255
+MAX_NAME = 200  # bytes of a folder's name; file systems allow 255
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -68,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except OSError as error:
             raise StartError(f'cannot write the page: {error}') from None
 
-    return guarded('report', work)
+    return run_script('report', work)
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
@@ -78,11 +78,11 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     what.add_argument('--plan', metavar='FILE',
                       help="draw a plan: via points, a file or one of the package's config/")
     parser.add_argument('--planner', action='append', default=[], metavar='ID',
-                        help="planner id, may be repeated (default: the file's); 'all' for every "
-                             'one there is')
+                        help="planner id, may be repeated (default: the file's); 'all' for all "
+                             'planners')
     parser.add_argument('--output', type=Path, metavar='OUT_DIR',
-                        help='where the page of --plan goes (default: report_FILE); an earlier '
-                             'report there is replaced, nothing else is touched')
+                        help='folder of the page of --plan (default: report_FILE); an earlier '
+                             'report there is replaced, other files are left alone')
 
 
 def _thesis(folder: Path) -> int:
@@ -111,7 +111,7 @@ def _plan(options: argparse.Namespace) -> int:
     print('planning and drawing ...', flush=True)
     found = attempts(Task(file.name, config.model, config.limits, request),
                      planner_ids() if 'all' in ids else ids)
-    name = file.name.encode()[:MOST_BYTES].decode(errors='ignore')
+    name = file.name.encode()[:MAX_NAME].decode(errors='ignore')
     page = write_plan_report(options.output or Path(f'report_{name}'), found)
     print(f'page: {page}')
     refused = [a for a in found if a.plan is None]

@@ -20,15 +20,15 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rrr_traj_planner.nodes.process.entry import guarded, parse
-from rrr_traj_planner.nodes.process.node_life import end_ros, made, spin, start_ros
+from rrr_traj_planner.nodes.process.entry import parse, run_script
+from rrr_traj_planner.nodes.process.node_runner import create_node, end_ros, spin, start_ros
 
 if TYPE_CHECKING:
     from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
 
 DESCRIPTION = """\
-Simulate the arm: it follows the trajectories that it receives, as joint_trajectory_controller
-would have it, and holds its position otherwise.
+Simulate the arm: it follows the trajectories that it receives by the rules of
+joint_trajectory_controller, and holds its position otherwise.
 
   subscribes  joint_trajectory (trajectory_msgs/JointTrajectory)
               disturbance (sensor_msgs/JointState: names and efforts)
@@ -37,7 +37,7 @@ would have it, and holds its position otherwise.
               robot_description (std_msgs/String), markers (visualization_msgs/MarkerArray)
               /clock (rosgraph_msgs/Clock), with publish_clock
   services    ~/reset, ~/hold, ~/step (std_srvs/Trigger), ~/pause (std_srvs/SetBool)
-  parameters  config/thesis_arm.yaml shows them all"""
+  parameters  config/thesis_arm.yaml lists them all"""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -59,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options, ros_arguments = parse('simulated_arm', DESCRIPTION, arguments, _add_options)
         return _print_urdf(ros_arguments) if options.urdf else spin(_load, ros_arguments)
 
-    return guarded('simulated_arm', work)
+    return run_script('simulated_arm', work)
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
@@ -68,7 +68,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _print_urdf(ros_arguments: list[str]) -> int:
-    """Read the parameters as the node would, but run none."""
+    """Print the URDF for the parameters that the node would have; the node does not run."""
     from rclpy.node import Node
     from rrr_traj_planner.nodes.arm_node.arm_view import description
     from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
@@ -78,8 +78,8 @@ def _print_urdf(ros_arguments: list[str]) -> int:
     node = None
     try:
         start_ros(ros_arguments)
-        node = made(lambda: Node('simulated_arm', enable_rosout=False,
-                                 start_parameter_services=False))
+        node = create_node(lambda: Node(
+            'simulated_arm', enable_rosout=False, start_parameter_services=False))
         print(description(DeclaredParameters(
             node, ARM, ArmConfig.from_values, lambda config: None).config), end='')
     finally:

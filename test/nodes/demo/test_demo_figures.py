@@ -57,7 +57,7 @@ def task():
 
 
 def broken(run):
-    return [figure.name for figure in figures(run) if not figure.kept]
+    return [figure.name for figure in figures(run) if not figure.within_bound]
 
 
 def test_perfect_run_keeps_every_bound(task):
@@ -72,7 +72,7 @@ def test_error_between_the_bounds_breaks_the_final_one_alone(task):
 def test_large_error_breaks_every_bound_reached(task):
     run = driven(task, off=0.005)
     assert broken(run) == [*(f'via point {i}: error reached' for i in range(3)), 'final error']
-    texts = [figure.text for figure in figures(run) if not figure.kept]
+    texts = [figure.text for figure in figures(run) if not figure.within_bound]
     assert texts[0] == 'via point 0: error reached is 0.00589173 m, bound 0.002 m'
 
 

@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arm.urdf import FrameNames, urdf
 from rrr_traj_planner.core.arm.wireframe import skeleton
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
-from rrr_traj_planner.nodes.output.marker_messages import MOST_POINTS, plan_markers
+from rrr_traj_planner.nodes.output.marker_messages import MAX_POINTS, plan_markers
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from std_msgs.msg import String
@@ -185,12 +185,12 @@ def test_markers_of_long_plans_stay_small(count, via_count):
     at_via = np.unique(np.concatenate(([0], rng.integers(0, count, via_count), [count - 1])))
     line, balls = plan_markers(points, times[at_via], MODEL, 'base_link').markers
     tips = forward_kinematics(MODEL, points.positions)
-    assert len(balls.points) == min(len(at_via), MOST_POINTS)
+    assert len(balls.points) == min(len(at_via), MAX_POINTS)
     if count == 1:
         assert line.action == Marker.DELETE
         return
-    assert len(line.points) <= 2 * MOST_POINTS
-    if via_count < MOST_POINTS:
+    assert len(line.points) <= 2 * MAX_POINTS
+    if via_count < MAX_POINTS:
         np.testing.assert_allclose(places(balls.points), tips[at_via], rtol=0.0, atol=1e-12)
     drawn = {tuple(p) for p in places(line.points).tolist()}
     assert drawn <= {tuple(p) for p in tips.tolist()}

@@ -22,7 +22,7 @@ from helpers.own_limits import own_limits
 import pytest
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.parameters.names import check_given, unused
+from rrr_traj_planner.nodes.parameters.names import check_given, unused_warnings
 
 OWN = own_limits('base', 'lift', 'bend')
 NAMES = OWN['joint_names']
@@ -96,7 +96,7 @@ def test_joints_in_another_order_need_their_own_limits():
     ('max_via_point', '; is max_via_points meant?')])
 def test_name_that_neither_node_uses_is_told(name, hint):
     known = ['publish_rate', 'sample_period', 'joint_names']  # each of some node
-    assert unused([name, *known, *OWN], NAMES) == [
+    assert unused_warnings([name, *known, *OWN], NAMES) == [
         f'parameter {name} is used by neither node{hint}']
 
 
@@ -105,4 +105,4 @@ def test_name_that_neither_node_uses_is_told(name, hint):
     'start_type_description_service'])
 def test_ros_s_own_names_are_left_alone(name):
     check_given({name: 1}, JOINT_NAMES)
-    assert unused([name], JOINT_NAMES) == []
+    assert unused_warnings([name], JOINT_NAMES) == []

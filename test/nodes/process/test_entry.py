@@ -48,7 +48,7 @@ def test_missing_ros_is_said_in_one_line():
 
 def test_missing_interfaces_are_said_in_one_line():
     code, _, errors = ended(arm_process(code=(
-        'import sys; from rrr_traj_planner.nodes.process.node_life import run_node\n'
+        'import sys; from rrr_traj_planner.nodes.process.node_runner import run_node\n'
         'def load():\n    sys.modules["rrr_traj_planner_interfaces"] = None\n'
         '    import rrr_traj_planner_interfaces\n'
         'sys.exit(run_node("planner", "", load))')))

@@ -22,7 +22,7 @@ from helpers.own_limits import own_limits
 from helpers.places import CONFIG
 from helpers.scripts import Script, script
 import pytest
-from rrr_traj_planner.nodes.parameters.parameter_files import speaks_of
+from rrr_traj_planner.nodes.parameters.parameter_files import has_section_for
 import yaml
 
 
@@ -64,7 +64,7 @@ def test_file_speaks_of_a_node_by_ros_s_rules(tmp_path, sections, node, speaks):
 
     file = tmp_path / 'some.yaml'
     file.write_text(yaml.safe_dump(with_parameters(sections)))
-    assert speaks_of(file, node) == speaks
+    assert has_section_for(file, node) == speaks
 
 
 def test_files_and_parameters_that_serve_nobody_are_warned_of(tmp_path):

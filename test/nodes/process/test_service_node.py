@@ -59,7 +59,7 @@ def test_answer_that_was_dropped_is_sent_again(ros, monkeypatch, node, service, 
 
 
 def test_client_that_is_never_discovered_is_told_of_and_holds_up_no_other(ros, monkeypatch):
-    monkeypatch.setattr(service_node, 'LONGEST_WAIT', 2.0 * service_node.FIRST_WAIT)
+    monkeypatch.setattr(service_node, 'MAX_WAIT', 2.0 * service_node.FIRST_WAIT)
     log = ros.listen(Log, '/rosout')
     ros.add(SimulatedArm(context=ros.context))
     assert ros.call(Trigger, 'simulated_arm/reset').success

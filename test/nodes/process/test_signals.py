@@ -29,7 +29,7 @@ BOTH = (signal.SIGINT, signal.SIGTERM)
 # exceptions: in a destructor, as an extension module's import has them.
 WHILE_IMPORTING = """
 import os, sys
-from rrr_traj_planner.nodes.process.node_life import run_node
+from rrr_traj_planner.nodes.process.node_runner import run_node
 class Hides:
     def __del__(self):
         os.kill(os.getpid(), {number})

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The life of a node's process: ROS starts, the node is made and spins, all is cleaned up."""
+"""Runs a node: starts ROS, creates the node, spins, and cleans up."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ from threading import Event, Thread
 from typing import Any
 import warnings
 
-from rrr_traj_planner.nodes.process.entry import guarded, parse, StartError
+from rrr_traj_planner.nodes.process.entry import parse, run_script, StartError
 from rrr_traj_planner.nodes.process.signals import defer_signals, end_if_signalled, signal_arrived
 
-WATCH_PERIOD = 0.25  # s
+WAKE_PERIOD = 0.25  # s, after which the executor checks for shutdown at the latest
 
 
 def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
              arguments: Sequence[str] | None = None) -> int:
     """
-    Run one node until it is told to end.
+    Run one node until SIGINT or SIGTERM.
 
     Parameters
     ----------
     name, description : str
-        The script and what it does.
+        The script's name and description, for `--help`.
     load : callable
-        Imports the node's module and returns its class; called when `--help` is out of the way.
+        Imports the node's module and returns its class; not called for `--help`.
     arguments : sequence of str, optional
         The command line without the script's name; None: `sys.argv`'s.
 
@@ -48,7 +48,7 @@ def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
         Exit code: 0 after SIGINT or SIGTERM, 1 after a start that failed.
 
     """
-    return guarded(name, lambda: spin(load, parse(name, description, arguments)[1]))
+    return run_script(name, lambda: spin(load, parse(name, description, arguments)[1]))
 
 
 def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int:
@@ -60,7 +60,7 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
     load : callable
         Imports the node's module and returns its class.
     ros_arguments : list of str
-        As from `entry.parse`.
+        From `entry.parse`.
 
     Returns
     -------
@@ -76,17 +76,17 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
     try:
         start_ros(ros_arguments)
         executor = SingleThreadedExecutor()
-        node = made(make_node)
+        node = create_node(make_node)
         # A signal wakes the executor before it shuts the context down: on a busy machine the
-        # executor may find the context well and go to sleep for good. So it looks again.
-        node.create_timer(WATCH_PERIOD, lambda: None, clock=Clock(
+        # executor may see a valid context and sleep again. The timer wakes it once more.
+        node.create_timer(WAKE_PERIOD, lambda: None, clock=Clock(
             clock_type=ClockType.STEADY_TIME))
         executor.add_node(node)
         executor.spin()
     except ExternalShutdownException:
         pass
     except Exception:
-        if not signal_arrived():  # else ROS was shut down under what is running
+        if not signal_arrived():  # else a consequence of the shutdown
             raise
     finally:
         _clean_up(executor, node)
@@ -94,16 +94,16 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
 
 
 @contextmanager
-def spun_in_background(make_node: Callable[[], Any], ros_arguments: list[str]) -> Iterator[Any]:
+def spin_in_background(make_node: Callable[[], Any], ros_arguments: list[str]) -> Iterator[Any]:
     """
-    Start ROS and a node that a thread spins; end both.
+    Start ROS and a node, spin it in a thread, and clean up at the end of the context.
 
     Parameters
     ----------
     make_node : callable
         The node's class.
     ros_arguments : list of str
-        As from `entry.parse`.
+        From `entry.parse`.
 
     Yields
     ------
@@ -113,9 +113,9 @@ def spun_in_background(make_node: Callable[[], Any], ros_arguments: list[str]) -
     Raises
     ------
     StartError
-        If ROS refuses.
+        If ROS or the node does not start.
     KeyboardInterrupt
-        After SIGINT or SIGTERM, whatever else the body raises then.
+        After SIGINT or SIGTERM, in place of any other exception of the body.
 
     """
     from rclpy.executors import SingleThreadedExecutor
@@ -124,14 +124,14 @@ def spun_in_background(make_node: Callable[[], Any], ros_arguments: list[str]) -
     closing = Event()
     try:
         start_ros(ros_arguments)
-        node = made(make_node)
+        node = create_node(make_node)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
         thread = Thread(target=_spin_until, args=(closing, executor), daemon=True)
         thread.start()
         yield node
     except Exception:
-        if not signal_arrived():  # else ROS was shut down under what is running
+        if not signal_arrived():  # else a consequence of the shutdown
             raise
         raise KeyboardInterrupt from None
     finally:
@@ -149,18 +149,18 @@ def _spin_until(closing: Event, executor: Any) -> None:
         while rclpy.ok() and not closing.is_set():
             executor.spin_once()
     except Exception:
-        if rclpy.ok():  # else a signal has shut ROS down, of which the main thread takes note
+        if rclpy.ok():  # else a signal has shut ROS down, which the main thread handles
             raise
 
 
 def start_ros(ros_arguments: list[str]) -> None:
     """
-    Start ROS; from then on SIGINT and SIGTERM shut its context down, and the script ends in order.
+    Start ROS; from then on SIGINT and SIGTERM shut down its context instead of the process.
 
     Parameters
     ----------
     ros_arguments : list of str
-        As from `entry.parse`.
+        From `entry.parse`.
 
     Raises
     ------
@@ -177,20 +177,20 @@ def start_ros(ros_arguments: list[str]) -> None:
 
 
 def end_ros() -> None:
-    """End ROS, and the process if a signal has arrived."""
+    """Shut ROS down, and end the process if a signal has arrived."""
     import rclpy
     rclpy.try_shutdown()
     end_if_signalled()
 
 
-def made(make_node: Callable[[], Any]) -> Any:
+def create_node(make_node: Callable[[], Any]) -> Any:
     """
-    Make a node; names and parameter files that ROS refuses are the user's to read.
+    Create a node; turn ROS's errors about names and parameters into messages for the user.
 
     Parameters
     ----------
     make_node : callable
-        Its class.
+        The node's class.
 
     Returns
     -------
@@ -200,7 +200,7 @@ def made(make_node: Callable[[], Any]) -> Any:
     Raises
     ------
     StartError
-        If ROS refuses.
+        If ROS refuses a name or a parameter.
 
     """
     from rclpy.exceptions import NameValidationException, ParameterException
@@ -208,15 +208,15 @@ def made(make_node: Callable[[], Any]) -> Any:
     try:
         return make_node()
     except (ParameterException, NameValidationException, rclpy_implementation.RCLError) as error:
-        if signal_arrived():  # ROS was shut down meanwhile: no fault of the node
+        if signal_arrived():  # a consequence of the shutdown
             raise
         raise StartError(_one_line(error)) from error
 
 
 def _clean_up(executor: Any, node: Any) -> None:
-    """End what was started."""
+    """Shut down the executor, the node and ROS."""
     import rclpy
-    # What a signal has kept the executor from starting is no news.
+    # A coroutine that the executor could not start before a signal is no error.
     warnings.filterwarnings('ignore', 'coroutine .* was never awaited', RuntimeWarning)
     if executor is not None:
         executor.shutdown(timeout_sec=1.0)
