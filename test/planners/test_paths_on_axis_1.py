@@ -40,7 +40,8 @@ def motion_of(planner_id, tips, limits=FREE, **request):
     assert passed == pytest.approx(np.array(tips), abs=HIT)
     q = found.trajectory(np.linspace(0.0, found.trajectory.duration, 4001))[0]
     assert (q >= limits.min_position - STILL).all() and (q <= limits.max_position + STILL).all()
-    assert np.abs(np.diff(q[:, 0])).max() < 2e-3  # at 1 rad/s for no more than 8 s: no jump
+    per_step = found.trajectory.duration / (len(q) - 1)  # at 1 rad/s: no joint jumps
+    assert np.abs(np.diff(q, axis=0)).max() < 1.01 * per_step
     return q
 
 
@@ -71,3 +72,38 @@ def test_lines_to_the_axis_keep_within_the_range_that_holds_their_via_points(pla
     limits = replace(FREE, min_position=(azimuth[0] - 1e-3, -6.0, -6.0),
                      max_position=(azimuth[1] + 1e-3, 6.0, 6.0))
     motion_of(planner_id, tips[::-1] if reverse else tips, limits, max_deviation=0.25)
+
+
+P, Q = (0.9, -0.1, 0.7), (0.5, 0.8, 1.0)
+LOW, HIGH = (0.0, 0.0, 1.4), (0.0, 0.0, 1.7)
+
+
+@each_planner
+@pytest.mark.parametrize('max_deviation', [0.002, 0.05, 0.3])
+@pytest.mark.parametrize('tips', [
+    (P, Q, LOW, HIGH), (HIGH, LOW, Q, P), (LOW, HIGH, Q, P), (P, (0.25, 0.4, 1.2), LOW, HIGH),
+    (P, Q, LOW, (0.25, 0.4, 1.9)), (HIGH, LOW, Q, P, (1.0, 0.3, 0.8), (0.5, 0.5, 1.5), HIGH)])
+def test_lines_along_the_axis_are_reached_in_one_plane(planner_id, max_deviation, tips):
+    # Those legs that meet on the axis lie in one plane; no zone leads the path out of it.
+    azimuths = np.unwrap(np.arctan2(*np.array([t for t in tips if t[0] > 0.0]).T[1::-1]))
+    limits = replace(FREE, min_position=(azimuths.min() - 0.3, -6.0, -6.0),
+                     max_position=(azimuths.max() + 0.3, 6.0, 6.0))
+    q = motion_of(planner_id, tips, limits, max_deviation=max_deviation)
+    near = near_axis(q, 0.05)
+    parts = np.split(np.flatnonzero(near), np.flatnonzero(np.diff(np.flatnonzero(near)) > 1) + 1)
+    assert all(np.ptp(q[part, 0]) < STILL for part in parts)
+
+
+@each_planner
+@pytest.mark.parametrize('back', [False, True])
+@pytest.mark.parametrize('tips', [(Q, P), (Q, P, (1.0, 0.3, 0.8)), (HIGH, Q, P)])
+def test_a_start_on_the_axis_leads_on_along_a_leg_to_which_joint_1_points(planner_id, back, tips):
+    # The arm stands with joint 1 in the leg's plane: to its azimuth, or half a turn from it.
+    azimuth = np.arctan2(Q[1], Q[0])
+    turn = np.pi if back else 0.0
+    lift = 2.0  # of the upper arm; the forearm leads the tip back to the axis
+    start = (azimuth - turn, lift, np.arcsin(-0.9 * np.cos(lift) / 0.7) - lift)
+    limits = replace(FREE, min_position=(-4.0, -6.0, -6.0), max_position=(4.0, 6.0, 6.0))
+    q = motion_of(planner_id, tips, limits, start=start)
+    assert q[0] == pytest.approx(start, abs=1e-9)
+    assert np.ptp(q[near_axis(q, 0.3), 0]) < STILL  # the first leg is 0.94 m long from the axis

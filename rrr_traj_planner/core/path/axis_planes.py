@@ -19,7 +19,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray
 from rrr_traj_planner.core.kinematics.along_path import PathPoints
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
@@ -32,7 +32,8 @@ class AxisPlanes(NamedTuple):
     """
     The beginning and the end of a path where they lie in a plane through the axis.
 
-    A line that begins or ends on joint axis 1 does, and a path all of whose via points do.
+    A line that begins or ends on joint axis 1 does, a path all of whose via points do, and lines
+    that the zone beside them leaves as they are (`zone_sides`).
     """
 
     first: float  # azimuth [rad] of the first plane, its positive side the path's
@@ -91,14 +92,58 @@ def axis_planes(path: CartesianPath, posture: Posture, theta_1: float) -> AxisPl
         return AxisPlanes(azimuth, azimuth, before=np.inf)
     planes, on_axis = AxisPlanes(0.0, 0.0), np.hypot(
         *path.points[[0, -1], :2].T) <= TIP_ROUNDING
+    for k in np.flatnonzero(path.side > 0) + 1:
+        planes = planes._replace(first=_azimuth(path.points[k]), before=float(path.via_s[k]))
+    for k in np.flatnonzero(path.side < 0) + 1:
+        planes = planes._replace(last=_azimuth(path.points[k]), after=float(path.via_s[k]))
     if not on_axis.any():
         return planes
     before, after = path.zone_ends[0, 0], path.zone_ends[-1, 1]
-    if on_axis[0] and before > 0.0:
+    if on_axis[0] and before > 0.0 and planes.before < 0.0:
         planes = planes._replace(first=_azimuth(path(before)[0]), before=float(before))
-    if on_axis[1] and after < path.length:
+    if on_axis[1] and after < path.length and planes.after > path.length:
         planes = planes._replace(last=_azimuth(path(after)[0]), after=float(after))
     return planes
+
+
+def zone_sides(points: Array, started: bool) -> IntArray:
+    """
+    Return at which via points a zone is to leave the lines on one side as they are.
+
+    Zones move the lines beside them. Legs at the beginning or the end of a path that lie in one
+    plane through joint axis 1 stay in it only so, and must where the tip is on the axis between
+    them, or where a start state says how joint 1 stands on the axis.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Via points [m].
+    started : bool
+        Whether the path begins in given joint positions.
+
+    Returns
+    -------
+    ndarray of int, shape (n - 2,)
+        As of `ZoneKind`: 1 at the last via point in the first plane, -1 at the first in the last.
+
+    """
+    n = len(points)
+    side, on_axis = np.zeros(max(n - 2, 0), dtype=np.intp), np.hypot(
+        *points[:, :2].T) <= TIP_ROUNDING
+    if not on_axis.any() or common_plane(points) is not None:
+        return side
+    last = max((k for k in range(1, n) if _in_half_plane(points[:k + 1])), default=0)
+    first = min((k for k in range(n - 1) if _in_half_plane(points[k:])), default=n - 1)
+    if on_axis[0 if started else 1:last + 1].any() and not on_axis[last]:
+        side[last - 1] = 1
+    if on_axis[first:n - 1].any() and not on_axis[first]:
+        side[first - 1] = -1
+    return side
+
+
+def _in_half_plane(points: Array) -> bool:
+    """Return whether points lie in a vertical plane through joint axis 1, on one side of it."""
+    return common_plane(points) is not None and not passes_axis(points)
 
 
 def common_plane(points: Array) -> Array | None:

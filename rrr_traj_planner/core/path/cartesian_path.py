@@ -35,9 +35,9 @@ ROUNDING = 1e-9        # of the path's length, by which a place may be outside
 
 
 class Zones(Protocol):
-    """Curved zones of least radius 1, each in a plane of its own, the via point its origin."""
+    """Curved zones of least radius 1, each in a plane of its own, its middle the origin."""
 
-    before: Array  # length before the via point, in least radii, shape (k,)
+    before: Array  # length before the middle, in least radii, shape (k,)
     after: Array
 
     def at(self, zone: IntArray, sigma: Array) -> Array:
@@ -49,7 +49,7 @@ class Zones(Protocol):
         zone : ndarray of int, shape (m,)
             Which zone.
         sigma : ndarray, shape (m,)
-            Length from the via point, in least radii.
+            Length from the middle, in least radii.
 
         Returns
         -------
@@ -75,9 +75,12 @@ class CartesianPath(ReadOnlyArrays):
     lines : Tangents
         The n - 1 lines between the zones.
     tangent, normal : ndarray, shape (n - 2, 3)
-        Unit vectors of the path at the interior via points (5.56, 5.64).
+        Unit vectors of the path in the middles of the zones, where their via points are unless
+        they are at a side (5.56, 5.64).
     zones : Zones
         Shapes of the zones.
+    side : ndarray of int, shape (n - 2,)
+        Where each zone has its via point, see `ZoneKind`.
 
     """
 
@@ -88,6 +91,7 @@ class CartesianPath(ReadOnlyArrays):
     tangent: Array
     normal: Array
     zones: Zones
+    side: IntArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -116,9 +120,23 @@ class CartesianPath(ReadOnlyArrays):
         return float(self._bounds[-1])
 
     @cached_property
+    def _middles(self) -> Array:
+        """Places of the zones' middles along the path [m], shape (n - 2,)."""
+        return np.asarray(self._bounds[1:-1:2] + self._zone_lengths[0])
+
+    @cached_property
+    def _origins(self) -> Array:
+        """Positions of the zones' middles [m], shape (n - 2, 3)."""
+        x, y = self.zones.at(np.arange(len(self.side)), self.zones.after)[0]
+        along = (self.side * self.radii * x)[:, np.newaxis] * self.tangent
+        inward = (self.side ** 2 * self.radii * y)[:, np.newaxis] * self.normal
+        return np.asarray(self.points[1:-1] + along - inward)
+
+    @cached_property
     def via_s(self) -> Array:
         """Places of the via points along the path [m], shape (n,)."""
-        inner = self._bounds[1:-1:2] + self._zone_lengths[0]
+        inner = np.choose(self.side + 1, (
+            self._bounds[2:-1:2], self._middles, self._bounds[1:-1:2]))
         return np.concatenate(([0.0], inner, self._bounds[-1:]))
 
     @cached_property
@@ -207,12 +225,12 @@ class CartesianPath(ReadOnlyArrays):
         power = rho ** (1.0 - np.arange(4.0))[:, np.newaxis]
         values[:, at] = ((power * x)[..., np.newaxis] * self.tangent[zone]
                          + (power * y)[..., np.newaxis] * self.normal[zone])
-        values[0, at] += self.points[zone + 1]
+        values[0, at] += self._origins[zone]
 
     def _sigma(self, s: Array, piece: IntArray) -> Array:
-        """Return lengths from the via point in radii, at the ends of a zone exactly its own."""
+        """Return lengths from the middle in radii, at the ends of a zone exactly its own."""
         zone = piece // 2
         first, last = -self.zones.before[zone], self.zones.after[zone]
-        sigma = np.clip((s - self.via_s[zone + 1]) / self.radii[zone], first, last)
+        sigma = np.clip((s - self._middles[zone]) / self.radii[zone], first, last)
         sigma = np.where(s == self._bounds[piece], first, sigma)
         return np.where(s == self._bounds[piece + 1], last, sigma)

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, bound_array, finite_array
+from rrr_traj_planner.core.arrays import Array, bound_array, finite_array, IntArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.path.arc_zone import ArcZones
@@ -27,13 +27,14 @@ from rrr_traj_planner.core.path.fitting_radii import fit_radii
 from rrr_traj_planner.core.path.polynomial_zone import PolynomialZones
 from rrr_traj_planner.core.path.tangent_lines import frames, Tangents
 from rrr_traj_planner.core.path.three_point_arc import three_point_arc
+from rrr_traj_planner.core.path.zone_kind import ZoneKind
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 REVERSAL = 1e-6        # rad, by which a turn must stay below half a revolution
 
 
 def line_arc(points: ArrayLike, radii: ArrayLike,
-             should_stop: ShouldStop = never) -> CartesianPath:
+             should_stop: ShouldStop = never, side: ArrayLike = 0) -> CartesianPath:
     """
     Return lines and arcs of circles; the tangent is continuous, curvature steps at the joins.
 
@@ -49,6 +50,8 @@ def line_arc(points: ArrayLike, radii: ArrayLike,
         Radius at each interior point [m]; shrunk where neighbouring arcs would overlap.
     should_stop : callable
         See `fit_radii`.
+    side : array_like of int, shape (n - 2,) or ()
+        Where each zone has its via point, see `ZoneKind`; 0: in its middle.
 
     Returns
     -------
@@ -63,18 +66,18 @@ def line_arc(points: ArrayLike, radii: ArrayLike,
         If no lines were found.
 
     """
-    points, asked = _checked(points, radii)
-    if len(points) == 3:
+    points, asked, side = _checked(points, radii, side)
+    if len(points) == 3 and not side.any():
         arc = three_point_arc(points, float(asked[0]))
         return CartesianPath(points, asked, np.array([arc.radius]), arc.lines,
-                             arc.tangent, arc.normal, ArcZones([arc.before], [arc.after]))
-    fitted = fit_radii(points, asked, ArcZones.ends, should_stop)
+                             arc.tangent, arc.normal, ArcZones([arc.before], [arc.after]), side)
+    fitted = fit_radii(points, asked, ZoneKind(ArcZones.ends, side), should_stop)
     half = fitted.lines.angle
-    return _path(points, asked, fitted.radii, fitted.lines, ArcZones(half, half))
+    return _path(points, asked, fitted.radii, fitted.lines, ArcZones(half, half), side)
 
 
 def line_polynomial(points: ArrayLike, radii: ArrayLike,
-                    should_stop: ShouldStop = never) -> CartesianPath:
+                    should_stop: ShouldStop = never, side: ArrayLike = 0) -> CartesianPath:
     """
     Return lines and polynomial curved zones (3.18); curvature is continuous.
 
@@ -87,6 +90,8 @@ def line_polynomial(points: ArrayLike, radii: ArrayLike,
         neighbouring zones would overlap.
     should_stop : callable
         See `fit_radii`.
+    side : array_like of int, shape (n - 2,) or ()
+        Where each zone has its via point, see `ZoneKind`; 0: in its middle.
 
     Returns
     -------
@@ -101,16 +106,17 @@ def line_polynomial(points: ArrayLike, radii: ArrayLike,
         If no lines were found.
 
     """
-    points, asked = _checked(points, radii)
-    fitted = fit_radii(points, asked, PolynomialZones.ends, should_stop)
-    return _path(points, asked, fitted.radii, fitted.lines, PolynomialZones(fitted.lines.angle))
+    points, asked, side = _checked(points, radii, side)
+    fitted = fit_radii(points, asked, ZoneKind(PolynomialZones.ends, side), should_stop)
+    return _path(points, asked, fitted.radii, fitted.lines, PolynomialZones(fitted.lines.angle),
+                 side)
 
 
 def _path(points: Array, asked: Array, radii: Array, lines: Tangents,
-          zones: Zones) -> CartesianPath:
-    """Return the path of lines between zones that are symmetric about their via points."""
+          zones: Zones, side: IntArray) -> CartesianPath:
+    """Return the path of lines between symmetric zones."""
     T, N = frames(lines.direction[:-1], lines.direction[1:])
-    return CartesianPath(points, asked, radii, lines, T, N, zones)
+    return CartesianPath(points, asked, radii, lines, T, N, zones, side)
 
 
 def check_points(points: ArrayLike) -> Array:
@@ -151,8 +157,9 @@ def check_points(points: ArrayLike) -> Array:
     return points
 
 
-def _checked(points: ArrayLike, radii: ArrayLike) -> tuple[Array, Array]:
-    """Return via points and a radius for each interior one."""
+def _checked(points: ArrayLike, radii: ArrayLike,
+             side: ArrayLike) -> tuple[Array, Array, IntArray]:
+    """Return via points, and a radius and a side for each interior one."""
     points = check_points(points)
     given = bound_array('radii', radii)
     if given.ndim == 0:
@@ -161,4 +168,4 @@ def _checked(points: ArrayLike, radii: ArrayLike) -> tuple[Array, Array]:
     for j in np.flatnonzero(asked <= 0.0):
         raise InvalidInputError(
             f'via point {j + 1}: radius is {asked[j]:.6g} m, must be positive', int(j) + 1)
-    return points, asked
+    return points, asked, np.broadcast_to(np.asarray(side, dtype=np.intp), asked.shape)

@@ -28,8 +28,8 @@ from rrr_traj_planner.core.path.tangent_lines import (
     EXACT,
     nearly_tangent_lines,
     Tangents,
-    ZoneEnds,
 )
+from rrr_traj_planner.core.path.zone_kind import ZoneKind
 
 FASTEST = 1.5    # radii, from one step to the next
 SLOWEST = 1.005  # a zone that cannot grow by this much touches a neighbour
@@ -51,7 +51,7 @@ class Fitted(NamedTuple):
     lines: Tangents
 
 
-def fit_radii(points: Array, radii: Array, ends: ZoneEnds,
+def fit_radii(points: Array, radii: Array, kind: ZoneKind,
               should_stop: ShouldStop = never) -> Fitted:
     """
     Return the radii asked for, or the largest that fit where zones would overlap.
@@ -67,7 +67,7 @@ def fit_radii(points: Array, radii: Array, ends: ZoneEnds,
         Via points [m].
     radii : ndarray, shape (n - 2,)
         Least radius asked for at each interior point [m].
-    ends : callable
+    kind : ZoneKind
         The kind of zone.
     should_stop : callable
         Asked in every step; once it answers True, radii no longer grow.
@@ -83,7 +83,7 @@ def fit_radii(points: Array, radii: Array, ends: ZoneEnds,
         If not even very small zones fit.
 
     """
-    lines, hindered = _tried(points, radii, ends, None)
+    lines, hindered = _tried(points, radii, kind, None)
     if not hindered.any():
         return Fitted(radii, lines)
     smaller, accuracy = radii.copy(), ROUGH
@@ -92,13 +92,13 @@ def fit_radii(points: Array, radii: Array, ends: ZoneEnds,
         if hindered.any():
             smaller[_near(hindered, smaller > LEAST * radii)] *= 0.5
         elif accuracy is EXACT:
-            return _grown(points, radii, ends, Fitted(smaller, lines), should_stop)
+            return _grown(points, radii, kind, Fitted(smaller, lines), should_stop)
         accuracy = ROUGH if hindered.any() else EXACT
-        lines, hindered = _tried(points, smaller, ends, None, accuracy)
+        lines, hindered = _tried(points, smaller, kind, None, accuracy)
     raise ConvergenceError(f'no curved zones fit, not even with radii {smaller.tolist()} m')
 
 
-def _grown(points: Array, radii: Array, ends: ZoneEnds, least: Fitted,
+def _grown(points: Array, radii: Array, kind: ZoneKind, least: Fitted,
            should_stop: ShouldStop) -> Fitted:
     """Return radii grown from smaller ones until zones touch."""
     share, lines = least.radii / radii, least.lines
@@ -108,7 +108,7 @@ def _grown(points: Array, radii: Array, ends: ZoneEnds, least: Fitted,
         while growing.any() and steps and not should_stop():
             steps -= 1
             larger = np.where(growing, np.minimum(share * factor, 1.0), share)
-            tried, hindered = _tried(points, larger * radii, ends, lines.direction, ROUGH)
+            tried, hindered = _tried(points, larger * radii, kind, lines.direction, ROUGH)
             if not hindered.any():
                 share, lines = larger, tried
                 growing &= share < 1.0
@@ -116,28 +116,28 @@ def _grown(points: Array, radii: Array, ends: ZoneEnds, least: Fitted,
                 continue
             slower = _near(hindered, growing)
             stuck = slower & (factor <= SLOWEST)
-            touching = stuck & ~_free_alone(points, radii, ends, share, lines, stuck)
+            touching = stuck & ~_free_alone(points, radii, kind, share, lines, stuck)
             growing &= ~(touching if touching.any() else _tightest(points, lines, stuck))
             factor[slower] = np.maximum(np.sqrt(factor[slower]), SLOWEST)
     for margin in MARGINS:
         fitting = np.where(share < 1.0, margin * share, 1.0) * radii
-        exact, hindered = _tried(points, fitting, ends, lines.direction)
+        exact, hindered = _tried(points, fitting, kind, lines.direction)
         if not hindered.any():
             return Fitted(fitting, exact)
     return least
 
 
-def _tried(points: Array, radii: Array, ends: ZoneEnds, near: Array | None,
+def _tried(points: Array, radii: Array, kind: ZoneKind, near: Array | None,
            accuracy: Accuracy = EXACT) -> tuple[Tangents, BoolArray]:
     """Return the lines between zones, and which miss them most or overlap them, shape (n - 1,)."""
     with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
-        lines, misses = nearly_tangent_lines(points, radii, ends, near, accuracy)
+        lines, misses = nearly_tangent_lines(points, radii, kind, near, accuracy)
         worst = misses.max()
         return lines, np.asarray(misses >= BLAMED * worst if worst > accuracy.tolerance
                                  else ~(lines.length >= 0.0))
 
 
-def _free_alone(points: Array, radii: Array, ends: ZoneEnds, share: Array, lines: Tangents,
+def _free_alone(points: Array, radii: Array, kind: ZoneKind, share: Array, lines: Tangents,
                 zones: BoolArray) -> BoolArray:
     """Return which zones can grow while all near them stay as they are."""
     free = zones.copy()
@@ -146,7 +146,7 @@ def _free_alone(points: Array, radii: Array, ends: ZoneEnds, share: Array, lines
         alone[first::REACH] = zones[first::REACH]
         if alone.any():
             larger = np.where(alone, np.minimum(share * SLOWEST, 1.0), share)
-            _, hindered = _tried(points, larger * radii, ends, lines.direction, ROUGH)
+            _, hindered = _tried(points, larger * radii, kind, lines.direction, ROUGH)
             if hindered.any():
                 free &= ~_next_to(hindered, alone)
     return free

@@ -16,17 +16,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError
+from rrr_traj_planner.core.path.zone_kind import ZoneKind
 from scipy.linalg import solve_banded
-
-# Half turn of a zone -> where it meets its lines (x along the tangent, y along the normal), for
-# least radius 1.
-ZoneEnds: TypeAlias = Callable[[Array], tuple[Array, Array]]
 
 DIFFERENCE = 1e-7   # rad, step of the numerical derivative
 LARGEST_STEP = 0.3  # rad
@@ -64,12 +60,12 @@ class Tangents(NamedTuple):
         return np.asarray(np.einsum('...i,...i', self.direction, self.stop - self.start))
 
 
-def tangents(points: Array, radii: Array, ends: ZoneEnds, direction: Array) -> Tangents:
+def tangents(points: Array, radii: Array, kind: ZoneKind, direction: Array) -> Tangents:
     """
     Return the lines for given directions; they miss their zones unless the directions fit.
 
     A zone whose lines have the directions d1 and d2 has its tangent along d1 + d2 and its normal
-    along d2 - d1 at the via point (5.56 and 5.64 with unit vectors).
+    along d2 - d1 in its middle (5.56 and 5.64 with unit vectors).
 
     Parameters
     ----------
@@ -77,7 +73,7 @@ def tangents(points: Array, radii: Array, ends: ZoneEnds, direction: Array) -> T
         Via points [m].
     radii : ndarray, shape (n - 2,)
         Least radius of each zone [m].
-    ends : callable
+    kind : ZoneKind
         The kind of zone.
     direction : ndarray, shape (..., n - 1, 3)
         Unit vectors.
@@ -92,18 +88,19 @@ def tangents(points: Array, radii: Array, ends: ZoneEnds, direction: Array) -> T
     inward = 0.5 * (direction[..., 1:, :] - direction[..., :-1, :])
     cosine, sine = np.linalg.norm(along, axis=-1), np.linalg.norm(inward, axis=-1)
     angle = np.arctan2(sine, cosine)
-    x, y = ends(angle)
+    x, y = kind.ends(angle)
     straight = sine == 0.0
     forward = (radii * x / cosine)[..., np.newaxis] * along
     across = np.where(straight, 0.0, radii * y / np.where(straight, 1.0, sine))
-    centre = points[1:-1] + across[..., np.newaxis] * inward
+    side = np.asarray(kind.side)[..., np.newaxis]
+    centre = points[1:-1] + (1 - side ** 2) * across[..., np.newaxis] * inward + side * forward
     first = np.broadcast_to(points[:1], direction.shape[:-2] + (1, 3))
     last = np.broadcast_to(points[-1:], first.shape)
     return Tangents(direction, np.concatenate((first, centre + forward), axis=-2),
                     np.concatenate((centre - forward, last), axis=-2), angle)
 
 
-def tangent_lines(points: Array, radii: Array, ends: ZoneEnds,
+def tangent_lines(points: Array, radii: Array, kind: ZoneKind,
                   near: Array | None = None) -> Tangents:
     """
     Return the lines that are tangent to every zone while each zone contains its via point.
@@ -116,7 +113,7 @@ def tangent_lines(points: Array, radii: Array, ends: ZoneEnds,
         Via points [m].
     radii : ndarray, shape (n - 2,)
         Least radius of each zone [m].
-    ends : callable
+    kind : ZoneKind
         The kind of zone.
     near : ndarray, shape (n - 1, 3), optional
         Directions to begin with; without them, the polyline's.
@@ -132,7 +129,7 @@ def tangent_lines(points: Array, radii: Array, ends: ZoneEnds,
         If there are no such lines, or none were found: the radii are too large.
 
     """
-    lines, misses = nearly_tangent_lines(points, radii, ends, near)
+    lines, misses = nearly_tangent_lines(points, radii, kind, near)
     if not (misses <= EXACT.tolerance).all():
         raise ConvergenceError(
             f'no lines are tangent to zones with radii {radii.tolist()} m: the best miss by '
@@ -140,7 +137,7 @@ def tangent_lines(points: Array, radii: Array, ends: ZoneEnds,
     return lines
 
 
-def nearly_tangent_lines(points: Array, radii: Array, ends: ZoneEnds, near: Array | None = None,
+def nearly_tangent_lines(points: Array, radii: Array, kind: ZoneKind, near: Array | None = None,
                          accuracy: Accuracy = EXACT) -> tuple[Tangents, Array]:
     """
     Return the lines of `tangent_lines`, or the best that were found, and by how far they miss.
@@ -151,7 +148,7 @@ def nearly_tangent_lines(points: Array, radii: Array, ends: ZoneEnds, near: Arra
 
     Parameters
     ----------
-    points, radii, ends, near
+    points, radii, kind, near
         As of `tangent_lines`.
     accuracy : Accuracy
         How good the lines are to be.
@@ -166,15 +163,15 @@ def nearly_tangent_lines(points: Array, radii: Array, ends: ZoneEnds, near: Arra
     direction = _unit(legs) if near is None else near
     scale = max(float(np.ptp(points, axis=0).max()), float(np.abs(points).max()))
     basis = _basis(direction)
-    lines = tangents(points, radii, ends, direction)
+    lines = tangents(points, radii, kind, direction)
     misses, before = _misses(lines, basis), np.inf
     for _ in range(accuracy.iterations):
         miss = _largest(misses)
         if miss <= accuracy.aimed_at * scale or 0.5 * before < miss <= accuracy.tolerance * scale:
             break
-        step = _newton_step(points, radii, ends, lines, basis)
+        step = _newton_step(points, radii, kind, lines, basis)
         better = None if step is None else _damped(
-            points, radii, ends, lines, basis, step, miss, accuracy.halvings)
+            points, radii, kind, lines, basis, step, miss, accuracy.halvings)
         if better is None:
             break
         lines, basis, before = better, _basis(better.direction), miss
@@ -211,26 +208,26 @@ def frames(first: Array, second: Array) -> tuple[Array, Array]:
     return T, N / np.where(size > 0.0, size, 1.0)
 
 
-def _damped(points: Array, radii: Array, ends: ZoneEnds, lines: Tangents, basis: Array,
+def _damped(points: Array, radii: Array, kind: ZoneKind, lines: Tangents, basis: Array,
             step: Array, miss: float, halvings: int) -> Tangents | None:
     """Return the lines after as much of a step as makes them miss by less, or None."""
     share = min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
     for _ in range(halvings):
-        tried = tangents(points, radii, ends, _turned(lines.direction, basis, share * step))
+        tried = tangents(points, radii, kind, _turned(lines.direction, basis, share * step))
         if _largest(_misses(tried, _basis(tried.direction))) < miss:
             return tried
         share *= 0.5
     return None
 
 
-def _newton_step(points: Array, radii: Array, ends: ZoneEnds, lines: Tangents,
+def _newton_step(points: Array, radii: Array, kind: ZoneKind, lines: Tangents,
                  basis: Array) -> Array | None:
     """Return by what angles the lines are to be turned, shape (n - 1, 2) [rad], or None."""
     n = len(lines.direction)
     turns = np.zeros((COLOURS, 2, n, 2))
     for colour in range(COLOURS):
         turns[colour, :, colour::COLOURS] = np.eye(2)[:, np.newaxis] * DIFFERENCE
-    turned = tangents(points, radii, ends, _turned(lines.direction, basis, turns))
+    turned = tangents(points, radii, kind, _turned(lines.direction, basis, turns))
     base = _misses(lines, basis)
     slope = (_misses(turned, basis) - base) / DIFFERENCE  # colour, turn, line, component
     band = np.zeros((2 * BAND + 1, n, 2))  # diagonals of LAPACK's band, by line and turn

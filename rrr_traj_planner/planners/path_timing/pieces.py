@@ -91,7 +91,7 @@ def _nearest_root(p: Array, u: Array, R: float) -> Array:
     """Return the least |x|, x complex, with (p + x u)^2 = R^2; infinite where there is none."""
     a, b, c = (u * u).sum(axis=1), (p * u).sum(axis=1), (p * p).sum(axis=1) - R * R
     farther = np.abs(np.abs(b) + np.sqrt(b * b - a * c + 0j))  # a times the other root
-    with np.errstate(divide='ignore'):
+    with np.errstate(divide='ignore', invalid='ignore'):  # 0 / 0 on a line along the axis itself
         return np.asarray(np.abs(c) / farther)
 
 

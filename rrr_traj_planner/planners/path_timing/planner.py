@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.cancellation import ShouldStop, step
 from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
+from rrr_traj_planner.core.path.axis_planes import zone_sides
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.path.largest_radii import largest_radii
 from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
@@ -38,7 +39,8 @@ from rrr_traj_planner.planners.request import CartesianTask
 from rrr_traj_planner.planners.sampling_jerk_limit import followable
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 
-Family = Callable[[Array, ArrayLike, ShouldStop], CartesianPath]
+Family = Callable[[Array, ArrayLike, ShouldStop, ArrayLike], CartesianPath]
+Design = Callable[[Array, ArrayLike], CartesianPath]  # of points and radii
 
 DESIGN = 0.3     # of the time, for the first path: the motion takes the rest
 AGAIN = 0.4      # of the time, after which no other path is begun
@@ -77,24 +79,28 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
 
     """
     early = part_of(task.should_stop, DESIGN)
+    side = zone_sides(task.tips, task.start is not None)
+
+    def design(points: Array, radii: ArrayLike) -> CartesianPath:
+        return family(points, radii, early, side)
+
     with step(f'the design of a path through {len(task.tips)} points'):
-        path = largest_radii(lambda points, radii: family(points, radii, early),
-                             task.tips, task.max_deviation, early)
+        path = largest_radii(design, task.tips, task.max_deviation, early)
     with step(f'the timing along a path through {len(task.tips)} points'):
-        return _fastest(task, family, path, early)
+        return _fastest(task, design, path, early)
 
 
-def _fastest(task: CartesianTask, family: Family, path: CartesianPath,
+def _fastest(task: CartesianTask, design: Design, path: CartesianPath,
              early: ShouldStop) -> PathTrajectory:
     """Return the fastest motion along a path, or along one of smaller radii."""
-    asked = _followed(task, family, path, early)
+    asked = _followed(task, design, path, early)
     path = asked.arm_path.path
     timed = nearly_fastest_along(asked)
     late = part_of(task.should_stop, AGAIN)
     while len(path.radii) and not late():
         # smaller ones bend more, but their way is another one: now and then the faster
         try:
-            path = family(task.tips, SMALLER * path.radii, early)
+            path = design(task.tips, SMALLER * path.radii)
             if (path.deviation > task.max_deviation).any():
                 break
             smaller = _timing(task, path)
@@ -108,7 +114,7 @@ def _fastest(task: CartesianTask, family: Family, path: CartesianPath,
     return timed.trajectory.noted(_note(task, timed))
 
 
-def _followed(task: CartesianTask, family: Family, path: CartesianPath,
+def _followed(task: CartesianTask, design: Design, path: CartesianPath,
               early: ShouldStop) -> PathTask:
     """
     Return what is asked of the timing along a path, or along one of smaller radii.
@@ -124,7 +130,7 @@ def _followed(task: CartesianTask, family: Family, path: CartesianPath,
         refusal = error
     radii, least = path.radii, LEAST_PART * path.radii
     try:
-        nearest = _timing(task, family(task.tips, least, early))
+        nearest = _timing(task, design(task.tips, least))
     except (UnreachableError, LimitViolationError):
         raise refusal from None
     smaller = _around(refusal, radii)
@@ -132,7 +138,7 @@ def _followed(task: CartesianTask, family: Family, path: CartesianPath,
         if not (smaller & (radii > least)).any():
             smaller = radii > least
         radii = np.maximum(np.where(smaller, HALVED, 1.0) * radii, least)
-        path = family(task.tips, radii, early)
+        path = design(task.tips, radii)
         smaller = path.deviation > task.max_deviation
         if smaller.any():
             continue

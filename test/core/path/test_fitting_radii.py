@@ -22,8 +22,9 @@ from rrr_traj_planner.core.path.arc_zone import ArcZones
 from rrr_traj_planner.core.path.fitting_radii import fit_radii
 from rrr_traj_planner.core.path.polynomial_zone import PolynomialZones
 from rrr_traj_planner.core.path.tangent_lines import tangent_lines
+from rrr_traj_planner.core.path.zone_kind import ZoneKind
 
-ENDS = [ArcZones.ends, PolynomialZones.ends]
+ENDS = [ZoneKind(ArcZones.ends), ZoneKind(PolynomialZones.ends)]
 GROWN = 1.06  # a zone that can grow by this much has not been grown far enough
 
 
@@ -58,7 +59,7 @@ def test_steps_do_not_grow_with_the_number_of_points(ends, monkeypatch):
 
 def test_arcs_through_points_on_a_circle_are_nearly_all_of_it():
     # Arcs whose lines have no length left would be the circle itself.
-    fitted = fit_radii(circle(40), np.full(38, 0.5), ArcZones.ends)
+    fitted = fit_radii(circle(40), np.full(38, 0.5), ZoneKind(ArcZones.ends))
     assert np.median(fitted.radii) == pytest.approx(0.1, rel=0.1)
     assert fitted.lines.length.sum() < 0.25 * 2.0 * np.pi * 0.1
 
@@ -83,8 +84,8 @@ def test_zones_do_not_overlap_and_none_can_grow_alone(ends, n):
 
 def test_told_to_stop_it_returns_radii_that_fit():
     points = walk(30, 1)
-    fitted = fit_radii(points, np.full(28, 5.0), ArcZones.ends, lambda: True)
-    whole = fit_radii(points, np.full(28, 5.0), ArcZones.ends)
+    fitted = fit_radii(points, np.full(28, 5.0), ZoneKind(ArcZones.ends), lambda: True)
+    whole = fit_radii(points, np.full(28, 5.0), ZoneKind(ArcZones.ends))
     assert (fitted.lines.length >= 0.0).all()
     assert (fitted.radii < whole.radii).mean() > 0.9
 
@@ -94,4 +95,4 @@ def test_what_the_question_raises_ends_it():
         raise TimeLimitError(1.0, 1.3)
 
     with pytest.raises(TimeLimitError, match=r'^planning_time_limit 1 s: given up after 1.30 s$'):
-        fit_radii(walk(30, 1), np.full(28, 5.0), ArcZones.ends, given_up)
+        fit_radii(walk(30, 1), np.full(28, 5.0), ZoneKind(ArcZones.ends), given_up)

@@ -270,3 +270,20 @@ def test_same_points_give_the_same_path_bit_for_bit_and_read_only(family):
     assert np.array_equal(first(s), second(s))
     with pytest.raises(ValueError, match='read-only'):
         first.radii[0] = 1.0
+
+
+@pytest.mark.parametrize('family', [line_arc, line_polynomial])
+def test_a_zone_at_one_side_of_its_via_point_leaves_the_leg_on_the_other_as_it_is(family):
+    rng = np.random.default_rng(9)
+    for _ in range(20):
+        points = np.cumsum(rng.normal(size=(4, 3)), axis=0)
+        for side, leg in (((-1, 1), 1), ((1, 0), 0), ((0, -1), 2)):
+            path = family(points, rng.uniform(0.01, 0.1), side=side)
+            assert path(path.via_s)[0] == pytest.approx(points, abs=1e-12)
+            s = np.linspace(path.via_s[leg], path.via_s[leg + 1], 50)
+            share = np.linspace(0.0, 1.0, 50)[:, np.newaxis]
+            straight = points[leg] + share * (points[leg + 1] - points[leg])
+            assert path(s)[0] == pytest.approx(straight, abs=1e-12)
+            before, after = path(path.joins, left=True), path(path.joins)
+            assert before[0] == pytest.approx(after[0], abs=1e-12)
+            assert before[1] == pytest.approx(after[1], abs=1e-10)
