@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from geometry_msgs.msg import Pose, PoseArray
 import numpy as np
+from rclpy.parameter import Parameter
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
@@ -31,6 +32,12 @@ TABLE_6_3 = ((0.2, 0.8, 0.5), (0.5, 1.0, 1.0), (0.8, 1.2, 0.6))
 NEAR = ((1.02, 0.59, 0.97), (1.0, 0.6, 1.0))  # planned and driven in no time
 START = inverse_kinematics(RobotModel(), TABLE_6_1[0])
 SECOND = 10 ** 9
+
+
+def patient(**overrides):
+    """Return parameters of a planner that plans to the end, however busy the machine is."""
+    return [Parameter(name, value=value)
+            for name, value in {'planning_time_limit': 60.0, **overrides}.items()]
 
 
 def plan_request(points=TABLE_6_1, frame='', start=None, **fields):

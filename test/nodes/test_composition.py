@@ -22,10 +22,9 @@ from threading import Condition
 from helpers.arm_in_ros import at, moving, stamp
 from helpers.own_limits import own_limits
 from helpers.places import CONFIG
-from helpers.plan_requests import NEAR, plan_request
+from helpers.plan_requests import NEAR, patient, plan_request
 from helpers.scripts import Script, script
 import numpy as np
-from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
@@ -54,7 +53,7 @@ OTHER_POINTS = (OTHER_START, OTHER_START + (0.02, 0.02, -0.01))
 
 def options(ros, overrides, *remappings, namespace=''):
     return {'context': ros.context, 'namespace': namespace,
-            'parameter_overrides': [Parameter(n, value=v) for n, v in overrides.items()],
+            'parameter_overrides': patient(**overrides),
             'cli_args': ['--ros-args', *(a for r in remappings for a in ('-r', r))]}
 
 
@@ -167,7 +166,7 @@ def test_arm_that_appears_later_is_driven_with_what_was_planned_before(ros):
 def test_planner_that_appears_later_answers_a_client_that_was_there_before(ros):
     client = ros.node.create_client(PlanTrajectory, 'plan_trajectory')
     assert not client.service_is_ready()
-    ros.add(TrajectoryPlanner(context=ros.context))
+    ros.add(TrajectoryPlanner(**options(ros, {})))
     assert client.wait_for_service(DEADLINE)
     response = client.call(plan_request(NEAR), timeout_sec=DEADLINE)
     assert response.error_code == response.SUCCESS

@@ -17,8 +17,9 @@ Scheduler of threads of which one works at a time: short jobs first.
 
 Python runs one thread at a time, so jobs that ran side by side would only delay each other. The
 order is that of a multilevel feedback queue (Corbato et al., An Experimental Time-Sharing System,
-1962): a job's priority falls as its run time doubles, and rises while it waits (aging), so that
-long jobs finish however many short ones come.
+1962): a job's priority falls as its processor time doubles, and rises while it waits (aging), so
+that long jobs finish however many short ones come. A job that another program delays is no longer
+one for it.
 """
 
 from __future__ import annotations
@@ -27,9 +28,9 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from math import floor, log2
 from threading import Condition
-from time import perf_counter
+from time import perf_counter, thread_time
 
-FIRST_LEVEL = 0.1    # s of run time at level 0, the most urgent; each further level has twice that
+FIRST_LEVEL = 0.1    # s of processor time at level 0, the most urgent; each further one has twice
 AGING_PERIOD = 1.0   # s of waiting after which a job is more urgent by one level
 MIN_SLICE = 0.02     # s that a job may run before it is preempted; more after a long wait:
 SLICE_PER_WAIT = 0.1  # of the time that the job has waited,
@@ -45,8 +46,8 @@ class Job:
     scheduler : Scheduler
         The scheduler that the job belongs to.
     expected : float
-        Lower bound on the job's run time [s]: the job is never more urgent than one that has run
-        for so long.
+        Lower bound on the job's processor time [s]: the job is never more urgent than one that has
+        run for so long.
 
     """
 
@@ -55,6 +56,7 @@ class Job:
         self._before = 0.0            # run time before the present slice [s]
         self._since = perf_counter()  # start of the present slice, or of the present wait
         self._slice = MIN_SLICE
+        self._processor = 0.0  # processor time, while the job runs less its thread's at the start
 
     def run_time(self) -> float:
         """Return the run time so far, without waiting [s]; call it while the job runs."""
@@ -71,15 +73,32 @@ class Job:
         now = perf_counter()
         waited, self._since = now - self._since, now
         self._slice = max(MIN_SLICE, min(SLICE_PER_WAIT * waited, MAX_SLICE))
+        self._processor -= thread_time()
 
     def suspend(self) -> None:
         """End the time slice and start waiting."""
         self._before, self._since = self.run_time(), perf_counter()
+        self._processor += thread_time()
 
     def level(self, running: bool, now: float) -> float:
-        """Return the priority level at a time: 0 for a new short job, lower is more urgent."""
-        done = max(self._expected, self.run_time() if running else self._before,
-                   0.5 * FIRST_LEVEL)
+        """
+        Return the priority level at a time: 0 for a new short job, lower is more urgent.
+
+        Parameters
+        ----------
+        running : bool
+            Whether the job runs, in the calling thread; else it waits.
+        now : float
+            The time, as of `perf_counter` [s].
+
+        Returns
+        -------
+        float
+            The level.
+
+        """
+        processor = self._processor + (thread_time() if running else 0.0)
+        done = max(self._expected, processor, 0.5 * FIRST_LEVEL)
         waited = 0.0 if running else now - self._since
         return floor(1.0 + log2(done / FIRST_LEVEL)) - waited / AGING_PERIOD
 

@@ -17,10 +17,9 @@
 from __future__ import annotations
 
 from helpers.arm_in_ros import Arm, at, GOAL, rest_to_rest, START
-from helpers.plan_requests import plan_request, TABLE_6_1, TABLE_6_3
+from helpers.plan_requests import patient, plan_request, TABLE_6_1, TABLE_6_3
 import numpy as np
 import pytest
-from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -158,8 +157,8 @@ def test_marker_rate_zero_ends_them_and_another_brings_them_back(ros):
 
 
 def test_plan_is_shown_to_whoever_comes_late(ros):
-    ros.add(TrajectoryPlanner(context=ros.context, parameter_overrides=[
-        Parameter('base_frame', value='floor')]))
+    ros.add(TrajectoryPlanner(
+        context=ros.context, parameter_overrides=patient(base_frame='floor')))
     cleared = by_name(ros.listen(MarkerArray, 'markers', LATCHED).wait_for())
     assert {name: m.action for name, m in cleared.items()} == {
         ('planned_path', 0): Marker.DELETE, ('via_points', 0): Marker.DELETE}

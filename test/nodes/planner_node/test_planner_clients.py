@@ -19,7 +19,7 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 from threading import Condition
 
-from helpers.plan_requests import NAMES, NEAR, plan_request, TABLE_6_1
+from helpers.plan_requests import NAMES, NEAR, patient, plan_request, TABLE_6_1
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter as ParameterMessage
@@ -41,7 +41,7 @@ POSITIONS = [f'joint_limits.{name}.{end}_position' for name in NAMES for end in 
 
 @pytest.fixture
 def planner(ros):
-    return ros.add(TrajectoryPlanner(context=ros.context))
+    return ros.add(TrajectoryPlanner(context=ros.context, parameter_overrides=patient()))
 
 
 def parameter(name, value):

@@ -25,6 +25,7 @@ from helpers.plan_requests import (
     is_refused,
     NAMES,
     NEAR,
+    patient,
     plan_request,
     points_of,
     stamps,
@@ -37,7 +38,6 @@ import pytest
 from rcl_interfaces.msg import Log, ParameterType, ParameterValue
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.srv import GetParameters, SetParameters
-from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError
@@ -58,8 +58,7 @@ pytestmark = pytest.mark.filterwarnings(
 
 def made(ros, cli_args=None, **overrides):
     return ros.add(TrajectoryPlanner(
-        context=ros.context, cli_args=cli_args, parameter_overrides=[
-            Parameter(name, value=value) for name, value in overrides.items()]))
+        context=ros.context, cli_args=cli_args, parameter_overrides=patient(**overrides)))
 
 
 def plan(ros, *points, **fields):

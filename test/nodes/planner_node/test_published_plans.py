@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from threading import Event
 
-from helpers.plan_requests import NEAR, plan_request
+from helpers.plan_requests import NEAR, patient, plan_request
 from nav_msgs.msg import Path
 import pytest
 from rcl_interfaces.msg import Log
@@ -69,7 +69,7 @@ def drawing(ros, monkeypatch):
 
 @pytest.fixture
 def planner(ros):
-    return ros.add(TrajectoryPlanner(context=ros.context))
+    return ros.add(TrajectoryPlanner(context=ros.context, parameter_overrides=patient()))
 
 
 class Topics:
@@ -215,5 +215,5 @@ def test_node_can_be_destroyed_between_its_publications(ros, planner, monkeypatc
 
 
 def executor_goes_on(ros):
-    ros.add(TrajectoryPlanner(context=ros.context))
+    ros.add(TrajectoryPlanner(context=ros.context, parameter_overrides=patient()))
     assert is_responsive(ros)

@@ -18,10 +18,9 @@ from __future__ import annotations
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from helpers.plan_requests import plan_request, TABLE_6_3
+from helpers.plan_requests import patient, plan_request, TABLE_6_3
 import numpy as np
 import pytest
-from rclpy.parameter import Parameter
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner.nodes.planner_node.request_statistics import CODES, RequestStatistics, WINDOW
 from rrr_traj_planner.planners import registry
@@ -102,8 +101,8 @@ def test_percentiles_are_of_the_last_requests_alone():
 
 
 def made(ros, **overrides):
-    return ros.add(TrajectoryPlanner(context=ros.context, parameter_overrides=[
-        Parameter(name, value=value) for name, value in overrides.items()]))
+    return ros.add(TrajectoryPlanner(
+        context=ros.context, parameter_overrides=patient(**overrides)))
 
 
 def values_of(message):

@@ -15,7 +15,7 @@
 """Scheduler of threads: one works at a time, short jobs first, long jobs finish all the same."""
 
 from threading import Event, Thread
-from time import perf_counter, thread_time
+from time import perf_counter, sleep, thread_time
 
 import pytest
 from rrr_traj_planner.nodes.planner_node.scheduler import FIRST_LEVEL, Scheduler
@@ -66,6 +66,34 @@ def test_short_work_goes_before_long_work_that_came_first():
     for worker in long_ones:
         worker.join()
     assert short.ended < min(w.ended for w in long_ones)
+
+
+def test_short_work_that_other_programs_delay_keeps_its_turn():
+    scheduler, order = Scheduler(), []
+
+    def delayed():
+        with scheduler.job() as job:
+            running.set()
+            assert asked.wait(DEADLINE)
+            sleep(3.0 * FIRST_LEVEL)  # as if another program had the processor
+            job.checkpoint()
+            order.append('delayed')
+
+    def short():
+        with scheduler.run(queued):
+            order.append('later')
+
+    running, asked = Event(), Event()
+    thread = Thread(target=delayed)
+    thread.start()
+    assert running.wait(DEADLINE)
+    queued = scheduler.enqueue()
+    later = Thread(target=short)
+    later.start()
+    asked.set()
+    thread.join(DEADLINE)
+    later.join(DEADLINE)
+    assert order == ['delayed', 'later']
 
 
 def test_run_time_leaves_out_the_time_of_others():
