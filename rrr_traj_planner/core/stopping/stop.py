@@ -30,7 +30,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.stopping.candidates import Indices, JointBrakes, Slowdowns
 from rrr_traj_planner.core.stopping.joint_brake import greatest_deceleration
 from rrr_traj_planner.core.stopping.point_to_point import moved_on, quickest
@@ -230,20 +230,12 @@ def _end(motion: DesiredMotion, now: float, qd: Array, qdd: Array) -> tuple[Arra
     return (motion.final, np.zeros(3), np.zeros(3)) if rests else (motion.final, qd, qdd)
 
 
-def _at_once(task: StopTask, q: Array, qd: Array) -> BoolArray:
-    """Return which joints cannot but stop at once: no range is left, or that beyond it."""
-    room, limits = task.room(q, qd), task.limits
-    beyond = (np.where(qd > 0.0, q - limits.max_position, limits.min_position - q)
-              > POSITION_TOLERANCE)
-    return np.asarray((2.0 * room < np.abs(qd) * INSTANT)
-                      | (beyond & (0.5 * qd ** 2 > limits.max_acceleration * room)))
-
-
 def _as_hard_as_needed(task: StopTask) -> tuple[DesiredMotion, list[str]]:
     """Return a brake that ends inside the ranges, whatever it takes, and what that is."""
     q, qd, qdd = (x[0] for x in _delays(task)[1])
-    at_once = _at_once(task, q, qd)
-    room = task.room(q, qd)
+    low, high = task.ranges(q)
+    room = np.maximum(np.where(qd > 0.0, high - q, q - low), 0.0)
+    at_once = 2.0 * room < np.abs(qd) * INSTANT
     v, a = np.where(at_once, 0.0, qd), np.where(at_once, 0.0, qdd)
     needed = np.divide(0.5 * v ** 2, room, out=np.zeros(3), where=v != 0.0)
     unlimited, n = np.full(3, inf), len(RATES)

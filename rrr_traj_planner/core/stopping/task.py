@@ -30,9 +30,6 @@ from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
 # So far beyond a range is within it [rad]; a motion may touch its ends to the other.
 POSITION_TOLERANCE, TOUCH = 1e-9, 1e-6
 
-# A joint outside its range may go so much further where it brakes within its limits [rad].
-OUTSIDE_ROOM = 0.01
-
 # At so many instants it is looked whether a motion stays inside.
 LOOKS = 1001
 
@@ -103,7 +100,7 @@ class StopTask:
 
     def ranges(self, q: Array) -> tuple[Array, Array]:
         """
-        Return the ranges, wider by a little on the side on which a joint is outside.
+        Return the ranges, up to where joints are that are outside, and a little further.
 
         Parameters
         ----------
@@ -117,26 +114,8 @@ class StopTask:
 
         """
         low, high = self.limits.min_position, self.limits.max_position
-        return (np.where(q < low - POSITION_TOLERANCE, q - OUTSIDE_ROOM, low),
-                np.where(q > high + POSITION_TOLERANCE, q + OUTSIDE_ROOM, high))
-
-    def room(self, q: Array, qd: Array) -> Array:
-        """
-        Return the way that is left to stop in.
-
-        Parameters
-        ----------
-        q, qd : ndarray, shape (3,)
-            Positions [rad] and velocities [rad/s].
-
-        Returns
-        -------
-        ndarray, shape (3,)
-            To the end of `ranges` towards which a joint moves [rad], not negative.
-
-        """
-        low, high = self.ranges(q)
-        return np.maximum(np.where(qd > 0.0, high - q, q - low), 0.0)
+        return (np.where(q < low - POSITION_TOLERANCE, q - TOUCH, low),
+                np.where(q > high + POSITION_TOLERANCE, q + TOUCH, high))
 
 
 def time_inside(motion: DesiredMotion, now: float, limits: JointLimits) -> float:
