@@ -27,6 +27,7 @@ from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.postures import posture_of
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.planners.path_timing.planner import SMALLER, WORTH_IT
+from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
 SEEDS = range(16)
@@ -201,3 +202,12 @@ def test_some_limit_is_used_to_95_percent_for_80_percent_of_the_time(planner_id,
 @pytest.mark.parametrize('table', TABLES)
 def test_the_same_with_ten_times_the_jerk(planner_id, table):
     assert share_of_time_at_limits(table, planner_id, max_jerk=[100.0] * 3) >= 0.8
+
+
+def test_a_circle_about_joint_axis_1_takes_the_time_of_one_turn_however_many_its_points():
+    # From rest to rest with 1 rad/s and 1 rad/s^2: 2 pi + 1 s.
+    angle = np.linspace(-np.pi, np.pi, 80)
+    tips = np.stack((0.8 * np.cos(angle), 0.8 * np.sin(angle), np.full(80, 0.9)), axis=1)
+    limits = JointLimits(min_position=[-4.0, 0.0, -np.pi], max_position=[4.0, np.pi, 6.0])
+    found = plan(RobotModel(), limits, PlanningRequest(tips, planner_id='line_arc'))
+    assert 1.0 <= found.via_times[-1] / (2.0 * np.pi + 1.0) <= 1.1

@@ -43,6 +43,16 @@ class Clock:
         return self.now
 
 
+class CountingClock:
+    """A clock on which a millisecond passes whenever it is asked."""
+
+    now = 0.0
+
+    def __call__(self):
+        self.now += 1e-3
+        return self.now
+
+
 def circle(n):
     t = np.linspace(0.0, 2.0 * np.pi, n, endpoint=False)
     return np.stack((0.6 + 0.1 * np.cos(t), 0.1 * np.sin(t), 1.0 + 0.0 * t), axis=1)
@@ -117,3 +127,13 @@ def test_a_path_through_many_points_is_given_up_in_time_and_says_in_which_step()
             r'^planning_time_limit 0.02 s: given up after 0\.\d\d s, during ')):
         plan(RobotModel(), LIMITS, PlanningRequest(
             circle(1000), planner_id='line_arc', should_stop=deadline))
+
+
+def test_more_time_never_makes_a_motion_along_a_path_slower():
+    t = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    tips = [0.6, 0.0, 1.0] + [0.1, 0.15, 0.1] * np.sin(np.stack((3 * t, 2 * t, 5 * t + 0.3), 1))
+    durations = [plan(RobotModel(), LIMITS, PlanningRequest(
+        tips, planner_id='line_arc', should_stop=Deadline(limit, CountingClock()))).via_times[-1]
+        for limit in (0.05, 0.2, 0.8)]
+    assert durations[1] <= 1.02 * durations[0]
+    assert durations[2] <= 1.02 * min(durations)

@@ -41,7 +41,8 @@ PASSES = 2       # of growth: zones that were stopped grow again where neighbour
 LEAST = 0.5 ** 60  # of what was asked for
 STEPS, MOST_ZONE_STEPS = 1000, 60_000  # of growth, at most; the second over the number of zones
 ROUGH = Accuracy(1e-8, 1e-8, 10, 3)  # of lines while radii grow
-MARGINS = 1.0, 1.0 - 1e-6, 0.999, 0.97, 0.8  # of what has grown, for lines that are exact
+SHRINKING = 1.0 - 1e-3 * 2.0 ** np.arange(10)  # parts, again and again, of zones that grew too far
+SHORTEST_LINE = 1e-3  # of a leg: the time along shorter ones is ill-conditioned, for little gained
 
 
 class Fitted(NamedTuple):
@@ -119,22 +120,32 @@ def _grown(points: Array, radii: Array, kind: ZoneKind, least: Fitted,
             touching = stuck & ~_free_alone(points, radii, kind, share, lines, stuck)
             growing &= ~(touching if touching.any() else _tightest(points, lines, stuck))
             factor[slower] = np.maximum(np.sqrt(factor[slower]), SLOWEST)
-    for margin in MARGINS:
-        fitting = np.where(share < 1.0, margin * share, 1.0) * radii
-        exact, hindered = _tried(points, fitting, kind, lines.direction)
+    return _exactly(points, kind, Fitted(share * radii, lines), least, should_stop)
+
+
+def _exactly(points: Array, kind: ZoneKind, grown: Fitted, least: Fitted,
+             should_stop: ShouldStop) -> Fitted:
+    """Return grown radii with exact lines; smaller radii near lines that are not found."""
+    radii = grown.radii
+    for part in SHRINKING:
+        lines, hindered = _tried(points, radii, kind, grown.lines.direction)
         if not hindered.any():
-            return Fitted(fitting, exact)
+            return Fitted(radii, lines)
+        should_stop()
+        near = _near(hindered, radii > least.radii)
+        radii = np.maximum(np.where(near, part * radii, radii), least.radii)
     return least
 
 
 def _tried(points: Array, radii: Array, kind: ZoneKind, near: Array | None,
            accuracy: Accuracy = EXACT) -> tuple[Tangents, BoolArray]:
-    """Return the lines between zones, and which miss them most or overlap them, shape (n - 1,)."""
+    """Return the lines between zones, and which miss them most or are too short, (n - 1,)."""
     with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
         lines, misses = nearly_tangent_lines(points, radii, kind, near, accuracy)
         worst = misses.max()
+        least = SHORTEST_LINE * np.linalg.norm(np.diff(points, axis=0), axis=1)
         return lines, np.asarray(misses >= BLAMED * worst if worst > accuracy.tolerance
-                                 else ~(lines.length >= 0.0))
+                                 else ~(lines.length >= least))
 
 
 def _free_alone(points: Array, radii: Array, kind: ZoneKind, share: Array, lines: Tangents,

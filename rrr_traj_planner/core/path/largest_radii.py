@@ -12,11 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The largest radii whose path stays within a deviation from the polyline."""
+"""Radii whose path stays within a deviation from the polyline: of equal shares, and largest."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +27,8 @@ from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.path.design import check_points
 from rrr_traj_planner.core.scalars import positive
 
+Family = Callable[[Array, ArrayLike], CartesianPath]
+
 # A turn so slight that its radius would be more than this many times the polyline's length.
 MOST_LENGTHS = 10.0
 ROUNDS = 30
@@ -34,8 +36,8 @@ MOST_POWER = 4.0  # of the radius that a deviation is thought to grow with
 TOLERANCE = 1e-4  # relative, by which the deviation may stay below the one allowed
 
 
-def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: ArrayLike,
-                  max_deviation: float, should_stop: ShouldStop = never) -> CartesianPath:
+def largest_radii(family: Family, points: ArrayLike, max_deviation: float,
+                  should_stop: ShouldStop = never) -> CartesianPath:
     """
     Return the path with the largest radii that keep a deviation at every point.
 
@@ -64,6 +66,35 @@ def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: A
         If the radii were not found.
 
     """
+    *_, path = paths_within(family, points, max_deviation, should_stop)
+    return path
+
+
+def paths_within(family: Family, points: ArrayLike, max_deviation: float,
+                 should_stop: ShouldStop = never) -> Iterator[CartesianPath]:
+    """
+    Return paths that keep a deviation at every point.
+
+    Zones of the largest radii compete for the legs: a large one may leave its neighbours little.
+    The fastest motion is often along a path whose zones share the legs equally.
+
+    Parameters
+    ----------
+    family, points, max_deviation, should_stop
+        As of `largest_radii`.
+
+    Returns
+    -------
+    iterator of CartesianPath
+        Where zones compete, the path whose zones take half of each leg at most; then that of
+        `largest_radii`.
+
+    Raises
+    ------
+    InvalidInputError, ConvergenceError
+        As `largest_radii`.
+
+    """
     points = check_points(points)
     max_deviation = positive('max_deviation', max_deviation, 'm')
     legs = np.diff(points, axis=0)
@@ -78,10 +109,10 @@ def largest_radii(family: Callable[[Array, ArrayLike], CartesianPath], points: A
     return _adjusted(family, points, np.minimum(radii, most), most, max_deviation, should_stop)
 
 
-def _adjusted(family: Callable[[Array, ArrayLike], CartesianPath], points: Array, radii: Array,
-              most: Array, max_deviation: float, should_stop: ShouldStop) -> CartesianPath:
-    """Return the path after its radii are scaled until they use the deviation up."""
-    power, before = np.ones(len(radii)), None
+def _adjusted(family: Family, points: Array, radii: Array, most: Array, max_deviation: float,
+              should_stop: ShouldStop) -> Iterator[CartesianPath]:
+    """Yield the first path whose zones compete, then that whose radii use the deviation up."""
+    power, before, equal_shares = np.ones(len(radii)), None, None
     for round_ in range(2 * ROUNDS):
         path = family(points, radii)
         power = power if before is None else _power(before, path, power)
@@ -95,7 +126,11 @@ def _adjusted(family: Callable[[Array, ArrayLike], CartesianPath], points: Array
         # Neighbours may rob each other of room: after some time radii only shrink.
         settled = should_stop() or round_ >= ROUNDS
         if kept.all() and (settled or (wanted <= path.radii * (1.0 + TOLERANCE)).all()):
-            return path
+            yield path
+            return
+        if equal_shares is None and kept.all() and len(radii) > 1 and len(path.shrunk):
+            equal_shares = path
+            yield path
         radii = np.where(kept, path.radii, wanted) if settled else wanted
     raise ConvergenceError(
         f'largest radii not found: deviation is {path.deviation.tolist()} m after {2 * ROUNDS} '

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +26,7 @@ from rrr_traj_planner.core.cancellation import ShouldStop, step
 from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
 from rrr_traj_planner.core.path.axis_planes import zone_sides
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
-from rrr_traj_planner.core.path.largest_radii import largest_radii
+from rrr_traj_planner.core.path.largest_radii import paths_within
 from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.deadline import part_of
@@ -85,33 +86,57 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
         return family(points, radii, early, side)
 
     with step(f'the design of a path through {len(task.tips)} points'):
-        path = largest_radii(design, task.tips, task.max_deviation, early)
+        *others, largest = paths_within(design, task.tips, task.max_deviation, early)
     with step(f'the timing along a path through {len(task.tips)} points'):
-        return _fastest(task, design, path, early)
+        paths = [path for path in others if (path.radii > largest.radii).any()] + [largest]
+        return _fastest(task, design, paths, early)
 
 
-def _fastest(task: CartesianTask, design: Design, path: CartesianPath,
+def _fastest(task: CartesianTask, design: Design, paths: list[CartesianPath],
              early: ShouldStop) -> PathTrajectory:
-    """Return the fastest motion along a path, or along one of smaller radii."""
-    asked = _followed(task, design, path, early)
-    path = asked.arm_path.path
-    timed = nearly_fastest_along(asked)
+    """Return the fastest motion along one of some paths, or along one of smaller radii."""
     late = part_of(task.should_stop, AGAIN)
-    while len(path.radii) and not late():
+    asked = _followed(task, design, paths[0], early)
+    best = _Motion(asked, nearly_fastest_along(asked))
+    for path in paths[1:]:
+        if not late():
+            best = min(best, _motion(task, path) or best, key=_Motion.duration)
+    while len(best.path.radii) and not late():
         # smaller ones bend more, but their way is another one: now and then the faster
-        try:
-            path = design(task.tips, SMALLER * path.radii)
-            if (path.deviation > task.max_deviation).any():
-                break
-            smaller = _timing(task, path)
-            again = nearly_fastest_along(smaller)
-        except (UnreachableError, LimitViolationError):
+        path = design(task.tips, SMALLER * best.path.radii)
+        if (path.deviation > task.max_deviation).any():
             break
-        if again.trajectory.duration >= (1.0 - WORTH_IT) * timed.trajectory.duration:
+        smaller = _motion(task, path)
+        if smaller is None or smaller.duration() >= (1.0 - WORTH_IT) * best.duration():
             break
-        asked, timed = smaller, again
-    timed = kept(asked, timed)
+        best = smaller
+    timed = kept(best.asked, best.timed)
     return timed.trajectory.noted(_note(task, timed))
+
+
+class _Motion(NamedTuple):
+    """A motion along a path."""
+
+    asked: PathTask
+    timed: Timed
+
+    @property
+    def path(self) -> CartesianPath:
+        """Return the path."""
+        return self.asked.arm_path.path
+
+    def duration(self) -> float:
+        """Return how long it takes [s]."""
+        return self.timed.trajectory.duration
+
+
+def _motion(task: CartesianTask, path: CartesianPath) -> _Motion | None:
+    """Return the fastest motion along a path; None where the arm cannot follow it."""
+    try:
+        asked = _timing(task, path)
+        return _Motion(asked, nearly_fastest_along(asked))
+    except (UnreachableError, LimitViolationError):
+        return None
 
 
 def _followed(task: CartesianTask, design: Design, path: CartesianPath,

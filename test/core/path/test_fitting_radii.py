@@ -54,7 +54,7 @@ def steps_taken(monkeypatch, points, radii, ends):
 def test_steps_do_not_grow_with_the_number_of_points(ends, monkeypatch):
     few, many = (steps_taken(monkeypatch, walk(n, 3), np.full(n - 2, 5.0), ends)
                  for n in (15, 60))
-    assert many < 4 * few  # one zone at a time would take 16 times as many
+    assert many < 5 * few  # one zone at a time would take 16 times as many
 
 
 def test_arcs_through_points_on_a_circle_are_nearly_all_of_it():
@@ -69,14 +69,16 @@ def test_arcs_through_points_on_a_circle_are_nearly_all_of_it():
 def test_zones_do_not_overlap_and_none_can_grow_alone(ends, n):
     points, asked = walk(n, n), np.full(n - 2, 2.0)
     fitted = fit_radii(points, asked, ends)
-    assert (fitted.lines.length >= 0.0).all()
+    shortest = fitting_radii.SHORTEST_LINE * np.linalg.norm(np.diff(points, axis=0), axis=1)
+    assert (fitted.lines.length >= shortest).all()
     assert (fitted.radii <= asked).all()
     free = 0
     for j in np.flatnonzero(fitted.radii < asked):
         radii = fitted.radii.copy()
         radii[j] = min(GROWN * radii[j], asked[j])
         try:
-            free += (tangent_lines(points, radii, ends, fitted.lines.direction).length >= 0).all()
+            lines = tangent_lines(points, radii, ends, fitted.lines.direction)
+            free += (lines.length >= shortest).all()
         except ConvergenceError:
             pass
     assert free == 0
