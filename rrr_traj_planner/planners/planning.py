@@ -250,7 +250,7 @@ def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
         request.should_stop()
         peaks = trajectory.peaks()
         request.should_stop()
-        effort = peak_torque(model, trajectory).value
+        effort = peak_torque(model, trajectory, limits).value
         request.should_stop()
     broken = violations(limits, peaks, effort)
     if broken:

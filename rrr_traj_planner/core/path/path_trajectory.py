@@ -16,10 +16,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,8 +37,8 @@ from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 from rrr_traj_planner.core.scalars import positive
+from rrr_traj_planner.core.trajectory.maximum import maximum_over_time
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
-from rrr_traj_planner.core.trajectory.torque import maximum_over_time
 from rrr_traj_planner.core.trajectory.trajectory import (
     ending_exactly,
     Peaks,
@@ -120,6 +120,33 @@ class ArmPath(ReadOnlyArrays):
         return found._replace(q=found.q + 2.0 * np.pi * turns)
 
 
+class PathPeaks(NamedTuple):
+    """Extremes of a motion along a path."""
+
+    peaks: Peaks   # of the joints
+    speed: float   # of the tip [m/s]
+
+    def scaled(self, factor: float) -> PathPeaks:
+        """
+        Return those of the same motion at another rate.
+
+        Parameters
+        ----------
+        factor : float
+            What every time is multiplied by.
+
+        Returns
+        -------
+        PathPeaks
+            Without looking for them again.
+
+        """
+        p = self.peaks
+        return PathPeaks(
+            Peaks(p.velocity / factor, p.acceleration / factor ** 2, p.jerk / factor ** 3,
+                  p.min_position, p.max_position), self.speed / factor)
+
+
 class PathTrajectory(Trajectory):
     """
     A motion of the tip along a path.
@@ -182,56 +209,40 @@ class PathTrajectory(Trajectory):
 
     def peaks(self) -> Peaks:
         """Return the extremes over the continuous motion, both sides of what steps included."""
-        return self._peaks
+        return self._measured().peaks
 
-    @cached_property
-    def _peaks(self) -> Peaks:
-        return self._measured(lambda sd, q, qd, qdd: np.zeros((len(sd), 0)))[0]
+    @property
+    def peak_speed(self) -> float:
+        """The tip's largest speed over the continuous motion [m/s]."""
+        return self._measured().speed
 
-    def maxima(self, quantities: Callable[[Array, Array, Array, Array], Array]) -> Array:
-        """
-        Return the maxima of further quantities, found along with the peaks, which are kept.
-
-        Parameters
-        ----------
-        quantities : callable
-            Of the tip's speed, (n, 1), positions, velocities and accelerations, (n, 3): values
-            of shape (n, K).
-
-        Returns
-        -------
-        ndarray, shape (K,)
-            Over the continuous motion.
-
-        """
-        self.__dict__['_peaks'], found = self._measured(quantities)
+    def _measured(self) -> PathPeaks:
+        found = self.cache.get('path_peaks')
+        if not isinstance(found, PathPeaks):
+            found = self.cache['path_peaks'] = self._measure()
         return found
 
-    def _measured(self, quantities: Callable[[Array, Array, Array, Array], Array]) -> tuple[
-            Peaks, Array]:
+    def _measure(self) -> PathPeaks:
         grid = times_within(self, STEPS_PER_KNOT)
         grid = np.unique(np.concatenate((grid, self.knots[1:] - BEFORE)))
 
         def values(t: Array) -> Array:
             sd, q, qd, qdd, qddd = self._with_speed(t)
-            return np.concatenate((np.abs(qd), np.abs(qdd), np.abs(qddd), FAR - q, FAR + q,
-                                   quantities(sd, q, qd, qdd)), axis=1)
+            return np.concatenate((np.abs(qd), np.abs(qdd), np.abs(qddd), FAR - q, FAR + q, sd),
+                                  axis=1)
 
-        found = maximum_over_time(values, grid).value
-        velocity, acceleration, jerk, least, most = found[:15].reshape(5, 3)
-        return Peaks(velocity=velocity, acceleration=acceleration, jerk=jerk,
-                     min_position=FAR - least, max_position=most - FAR), found[15:]
+        *found, speed = maximum_over_time(values, grid).value
+        velocity, acceleration, jerk, least, most = np.reshape(found, (5, 3))
+        return PathPeaks(Peaks(
+            velocity=velocity, acceleration=acceleration, jerk=jerk,
+            min_position=FAR - least, max_position=most - FAR), float(speed))
 
     def stretched(self, factor: float) -> PathTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""
         factor = positive('factor', factor)
         slower = PathTrajectory(self.arm_path, self.progress.stretched(factor),
                                 self.via_times * factor, self.join_times * factor, self.note)
-        if '_peaks' in self.__dict__:  # they are dear
-            p = self._peaks
-            slower.__dict__['_peaks'] = Peaks(
-                p.velocity / factor, p.acceleration / factor ** 2, p.jerk / factor ** 3,
-                p.min_position, p.max_position)
+        self.pass_cache(slower, factor)
         return slower
 
     def noted(self, note: str) -> PathTrajectory:
@@ -250,6 +261,7 @@ class PathTrajectory(Trajectory):
 
         """
         found = copy(self)
+        self.pass_cache(found, 1.0)
         found.note = note
         return found
 

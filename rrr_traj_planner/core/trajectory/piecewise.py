@@ -253,5 +253,7 @@ class PiecewiseTrajectory(Trajectory):
     def stretched(self, factor: float) -> PiecewiseTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""
         factor = positive('factor', factor)
-        return PiecewiseTrajectory([p.stretched(factor) for p in self.profiles],
-                                   self.via_times * factor, self.note)
+        slower = PiecewiseTrajectory([p.stretched(factor) for p in self.profiles],
+                                     self.via_times * factor, self.note)
+        self.pass_cache(slower, factor)
+        return slower

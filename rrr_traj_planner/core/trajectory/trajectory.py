@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,6 +39,13 @@ class Peaks(ReadOnlyArrays):
     max_position: Array  # [rad]
 
 
+class Scalable(Protocol):
+    """A result about a motion that is known of the same motion at another rate too."""
+
+    def scaled(self, factor: float) -> Scalable:
+        """Return it for times that are multiplied by a factor."""
+
+
 class Trajectory(ReadOnlyArrays, ABC):
     """
     A motion in joint space that can be evaluated at any time.
@@ -56,6 +64,30 @@ class Trajectory(ReadOnlyArrays, ABC):
     duration: float
     via_times: Array
     note: str = ''
+
+    @property
+    def cache(self) -> dict[str, Scalable]:
+        """Results about the motion that may be needed again; not pickled."""
+        cache: dict[str, Scalable] = vars(self).setdefault('_cache', {})
+        return cache
+
+    def pass_cache(self, slower: Trajectory, factor: float) -> None:
+        """
+        Hand on what has been computed to the same motion at another rate.
+
+        Parameters
+        ----------
+        slower : Trajectory
+            That motion.
+        factor : float
+            What every time was multiplied by.
+
+        """
+        slower.cache.update((name, of.scaled(factor)) for name, of in self.cache.items())
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return what is pickled or copied."""
+        return {name: value for name, value in vars(self).items() if name != '_cache'}
 
     @abstractmethod
     def __call__(self, t: ArrayLike) -> tuple[Array, Array, Array, Array]:

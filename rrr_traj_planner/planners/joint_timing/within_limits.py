@@ -143,4 +143,4 @@ def torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:
     """
     effort = task.limits.max_effort
     return bool(np.isinf(effort).all() or (peak_torque(
-        task.model, trajectory).value <= effort * (1.0 + ROUNDING)).all())
+        task.model, trajectory, task.limits).value <= effort * (1.0 + ROUNDING)).all())

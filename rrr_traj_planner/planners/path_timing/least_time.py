@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import place_on_path
-from rrr_traj_planner.core.trajectory.torque import squared_stretch
+from rrr_traj_planner.core.trajectory.torque import stretch_for_torque
 from rrr_traj_planner.planners.path_timing.constraints import (
     all_bounds,
     PathConstraints,
@@ -252,16 +252,12 @@ def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
 
 def _exact_stretch(task: PathTask, trajectory: PathTrajectory) -> float:
     """Return by how much a motion must be slowed, by its own values."""
-    limits, model = task.limits, task.arm_path.model
-
-    def quantities(sd: Array, q: Array, qd: Array, qdd: Array) -> Array:
-        return np.concatenate((squared_stretch(model, limits, q, qd, qdd), sd), axis=1)
-
-    *squared, speed = trajectory.maxima(quantities)
-    peaks = trajectory.peaks()
+    limits = task.limits
+    peaks, speed = trajectory.peaks(), trajectory.peak_speed
+    torque = stretch_for_torque(task.arm_path.model, limits, trajectory).value
     return float(max((peaks.velocity / limits.max_velocity).max(), speed / task.max_tip_speed,
                      np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
-                     np.cbrt((peaks.jerk / limits.max_jerk).max()), np.sqrt(max(squared))))
+                     np.cbrt((peaks.jerk / limits.max_jerk).max()), torque.max()))
 
 
 def _trajectory(task: PathTask, table: PathTable, grid: Grid, m: Variables) -> PathTrajectory:

@@ -28,7 +28,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
-from rrr_traj_planner.core.trajectory.torque import squared_stretch, torque_grid
+from rrr_traj_planner.core.trajectory.torque import torque_sweep
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_stretch
 
@@ -120,8 +120,8 @@ def may_lack_torque(task: JointTask, motion: PiecewiseTrajectory) -> BoolArray:
         Segments on which torque at many points asks for more than PLENTY of the speed.
 
     """
-    t = torque_grid(motion)
-    squared = squared_stretch(task.model, task.limits, *motion(t)[:3]).max(axis=1)
+    sweep = torque_sweep(task.model, motion)
+    t, squared = sweep.times, sweep.squared_scaling(task.limits).max(axis=1)
     worst = np.zeros(len(motion.via_times) - 1)
     np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='right'), squared)
     np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='left'), squared)

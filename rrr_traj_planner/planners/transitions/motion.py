@@ -22,7 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.trajectory.torque import squared_stretch, torque_grid
+from rrr_traj_planner.core.trajectory.torque import torque_sweep
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.transitions import segment_motion
@@ -158,9 +158,9 @@ def segment_stretch(task: JointTask, motion: TimedMotion) -> Array:
     """
     if np.isinf(task.limits.max_effort).all():
         return np.zeros(len(motion.durations))
-    t = torque_grid(motion.trajectory)
-    squared = squared_stretch(task.model, task.limits, *motion.trajectory(t)[:3]).max(axis=1)
-    segment = np.searchsorted(motion.trajectory.via_times[1:-1], t, side='right')
+    sweep = torque_sweep(task.model, motion.trajectory)
+    squared = sweep.squared_scaling(task.limits).max(axis=1)
+    segment = np.searchsorted(motion.trajectory.via_times[1:-1], sweep.times, side='right')
     worst = np.zeros(len(motion.durations))
     np.maximum.at(worst, segment, squared)
     return np.sqrt(worst)
