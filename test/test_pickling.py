@@ -94,6 +94,11 @@ def values():
         *(plan_with(planner_id) for planner_id in planner_ids()))
 
 
+def fields_of(value):
+    """Return what a value is made of; a trajectory's cache is what can be computed again."""
+    return {name: field for name, field in vars(value).items() if name != '_cache'}
+
+
 def differences(a, b, name='value'):
     """Return where two values differ: in type, in a bit, or by an array that can be written to."""
     if type(a) is not type(b):
@@ -107,9 +112,10 @@ def differences(a, b, name='value'):
         return [d for i, (x, y) in enumerate(zip(a, b, strict=True))
                 for d in differences(x, y, f'{name}[{i}]')]
     if type(a).__module__.startswith('rrr_traj_planner') and hasattr(a, '__dict__'):
-        kept = [] if vars(a).keys() == vars(b).keys() else [f'{name}: {vars(a)} became {vars(b)}']
-        return kept + [d for key in vars(a).keys() & vars(b).keys()
-                       for d in differences(vars(a)[key], vars(b)[key], f'{name}.{key}')]
+        a, b = fields_of(a), fields_of(b)
+        kept = [] if a.keys() == b.keys() else [f'{name}: {a} became {b}']
+        return kept + [d for key in a.keys() & b.keys()
+                       for d in differences(a[key], b[key], f'{name}.{key}')]
     return [] if a == b else [f'{name}: {a} became {b}']
 
 

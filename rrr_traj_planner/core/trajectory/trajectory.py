@@ -43,7 +43,20 @@ class Scalable(Protocol):
     """A result about a motion that is known of the same motion at another rate too."""
 
     def scaled(self, factor: float) -> Scalable:
-        """Return it for times that are multiplied by a factor."""
+        """
+        Return the result for the motion at another rate.
+
+        Parameters
+        ----------
+        factor : float
+            By which every time is multiplied.
+
+        Returns
+        -------
+        Scalable
+            The same kind of result.
+
+        """
 
 
 class Trajectory(ReadOnlyArrays, ABC):
