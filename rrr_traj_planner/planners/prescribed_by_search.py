@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Durations that are prescribed to planners whose motion they determine: kept, or refused."""
+"""Prescribed durations for planners whose motion they determine, and longer ones if infeasible."""
 
 from __future__ import annotations
 
@@ -24,28 +24,29 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_stretch
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scaling
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
-TORQUE_TOLERANCE = 5e-7  # of the stretch that torque asks for
-ROUNDS = 12              # of trying gentler transitions
-STRETCH = 1.3            # from one stretch that is tried to the next
-MOST_STRETCH = 1e4
-BISECTIONS = 20
+# Without unit.
+TORQUE_TOLERANCE = 5e-7  # part by which a motion may be faster than its torques allow
+ROUNDS = 12              # of lower accelerations, at most
+SCALING_STEP = 1.3       # factor between the scalings of durations that are tried in turn
+LARGEST_SCALING = 1e4
+BISECTIONS = 20          # of the scaling: to 1.3^(2^-20)
 
 
 def within_torque(task: JointTask, law: TransitionLaw,
                   motion_by: Callable[[TransitionLaw], PiecewiseTrajectory | None],
                   ) -> PiecewiseTrajectory | None:
     """
-    Return a motion within all limits, with the fullest acceleration that torque allows.
+    Return a motion within all limits, with accelerations lowered as torque requires.
 
     Parameters
     ----------
     task : JointTask
         The arm and its limits.
     law : TransitionLaw
-        The fullest.
+        By the limits on acceleration and jerk.
     motion_by : callable
         Returns the motion with the transitions of a law, or None where there is none.
 
@@ -57,33 +58,33 @@ def within_torque(task: JointTask, law: TransitionLaw,
     Raises
     ------
     LimitViolationError
-        If gravity alone exceeds an effort limit on the way.
+        If gravity alone exceeds an effort limit along the path.
 
     """
-    scale, too_full, too_gentle = 1.0, None, None  # of the acceleration
+    scale, too_fast, too_slow = 1.0, None, None  # of the acceleration
     for _ in range(ROUNDS):
         task.should_stop()
         motion = motion_by(TransitionLaw(law.slope / scale, law.root / scale ** 0.75))
         if motion is None:
-            if too_full is None:
+            if too_fast is None:
                 return None
-            too_gentle = scale
+            too_slow = scale
         else:
-            stretch = torque_stretch(task, motion)
-            if np.isinf(stretch):
+            scaling = torque_time_scaling(task, motion)
+            if np.isinf(scaling):
                 raise cannot_hold(task, motion)
-            if stretch <= 1.0 + TORQUE_TOLERANCE:
+            if scaling <= 1.0 + TORQUE_TOLERANCE:
                 return motion
-            too_full, scale = scale, scale / stretch ** 2
-        if too_gentle is not None and too_full is not None:
-            scale = max(float(np.sqrt(too_full * too_gentle)), scale if motion else 0.0)
+            too_fast, scale = scale, scale / scaling ** 2
+        if too_slow is not None and too_fast is not None:
+            scale = max(float(np.sqrt(too_fast * too_slow)), scale if motion else 0.0)
     return None
 
 
-def kept_or_refused(motion_in: Callable[[Array], PiecewiseTrajectory | None], durations: Array,
+def motion_or_error(motion_in: Callable[[Array], PiecewiseTrajectory | None], durations: Array,
                     fastest: Callable[[], Array] | None = None) -> PiecewiseTrajectory:
     """
-    Return the motion of given durations, or say which longer ones are feasible.
+    Return the motion of given durations, or raise an error with longer feasible ones.
 
     Parameters
     ----------
@@ -92,8 +93,8 @@ def kept_or_refused(motion_in: Callable[[Array], PiecewiseTrajectory | None], du
     durations : ndarray, shape (n,)
         [s].
     fastest : callable, optional
-        Returns the durations of the fastest motion [s], below which, or below a multiple of
-        which, none is offered; None: durations are offered in the proportion of those given.
+        Returns the durations of the fastest motion [s]: the feasible ones are at least a multiple
+        of these, and at least those given. None: they are a multiple of those given.
 
     Returns
     -------
@@ -114,20 +115,21 @@ def kept_or_refused(motion_in: Callable[[Array], PiecewiseTrajectory | None], du
         which = 'the least feasible in their proportion are'
     else:
         proportions, floor, which = fastest(), durations, 'feasible are'
-    stretch = _least_stretch(motion_in, proportions, floor)
-    if stretch is None:
+    scaling = _least_scaling(motion_in, proportions, floor)
+    if scaling is None:
         raise TimingError(
-            f'segment_durations {durations.tolist()} s are too short, and no stretch of '
+            f'segment_durations {durations.tolist()} s are too short, and no multiple of '
             'them is feasible')
-    feasible = np.maximum(np.ceil(stretch * proportions * (1.0 + 1e-6) * 1e6) / 1e6, floor)
-    asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
-    raise TimingError(f'segment_durations {asked} s are too short: {which} {offered} s',
+    feasible = np.maximum(np.ceil(scaling * proportions * (1.0 + 1e-6) * 1e6) / 1e6, floor)
+    given, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
+    raise TimingError(f'segment_durations {given} s are too short: {which} {offered} s',
                       tuple(offered))
 
 
-def fastest_beside_stays(task: JointTask, fastest: Callable[[Array], Trajectory]) -> Array:
+def fastest_durations_between_stays(task: JointTask,
+                                    fastest: Callable[[Array], Trajectory]) -> Array:
     """
-    Return the durations of the fastest motion, of stays those that are prescribed.
+    Return the durations of the fastest motion; those of segments without displacement as given.
 
     Parameters
     ----------
@@ -150,16 +152,16 @@ def fastest_beside_stays(task: JointTask, fastest: Callable[[Array], Trajectory]
     return found
 
 
-def _least_stretch(motion_in: Callable[[Array], PiecewiseTrajectory | None], proportions: Array,
+def _least_scaling(motion_in: Callable[[Array], PiecewiseTrajectory | None], proportions: Array,
                    floor: Array) -> float | None:
-    """Return the least factor, at least 1, on durations above a floor that makes them feasible."""
+    """Return the least factor >= 1 on durations, with lower bounds, that makes them feasible."""
     def has_motion(factor: float) -> bool:
         return motion_in(np.maximum(factor * proportions, floor)) is not None
 
     low, high = 1.0, 1.0
     while not has_motion(high):
-        low, high = high, STRETCH * high
-        if high > MOST_STRETCH:
+        low, high = high, SCALING_STEP * high
+        if high > LARGEST_SCALING:
             return None
     for _ in range(BISECTIONS):
         middle = float(np.sqrt(low * high))

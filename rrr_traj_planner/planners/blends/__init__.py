@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motions that pass every via point in a transition: approach (b) of the thesis, Paul's 4-1-4."""
+"""Motions that blend around the via points: approach (b) of the thesis, Paul's 4-1-4."""

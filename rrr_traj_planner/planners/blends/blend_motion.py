@@ -13,13 +13,13 @@
 # limitations under the License.
 
 """
-Motions in which every via point is straddled by a transition: approach (b) of 4.2, after Paul.
+Linear motions with blends around the via points: approach (b) of thesis 4.2, after Paul.
 
-In joint space the arm follows the lines between the via points, except where a transition, half of
-it before and half of it after the time at which both lines meet in a via point, leads from the
-velocity of one to that of the other. It cuts the corner: the via point is missed. The first
-transition begins at the start, the last ends at the end: these two are not missed. A via point's
-time is the middle of its transition.
+(Siciliano et al., Robotics, 4.2.2: linear polynomials with blends.) In joint
+space the arm follows the lines between the via points. A transition, centred on the time at which
+two lines meet in a via point, leads from the velocity of one to that of the other: it cuts the
+corner, and the via point is missed. The first transition begins at the start and the last ends at
+the end: these two points are reached. A via point's time is the middle of its transition.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
-KEPT = 1e-9  # relative room for rounding, of limits that durations must keep
+ROUNDING = 1e-9  # part of a limit up to which exceeding it is rounding
 
-# Between two lines of nearly the same velocity, what remains of their difference is rounding. It
-# may be off by this part of the slower one's velocity (much more than 2^-52), and a transition is
-# long enough for that too: nearly none would be, and its jerk whatever rounding makes it.
+# Uncertainty of a change of velocity, as a part of the slower line's velocity (much more than
+# 2^-52). The difference of two nearly equal velocities is rounding only: a transition that is just
+# long enough for it would be of nearly zero duration, and of arbitrary jerk.
 VELOCITY_UNCERTAINTY = 1e-9
 
 
-class Straddling(NamedTuple):
-    """Times of a straddled motion [s]."""
+class BlendTimes(NamedTuple):
+    """Times of a motion with blends [s]."""
 
     lines: Array        # from one via point's corner to the next, shape (n,)
     transitions: Array  # around each via point, shape (n + 1,)
@@ -51,7 +51,7 @@ class Straddling(NamedTuple):
 
 def changes_of_velocity(displacements: Array, lines: Array) -> Array:
     """
-    Return by how much velocity changes at each via point, start and end included.
+    Return the change of velocity at each via point, start and end included.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def shortest_transitions(law: TransitionLaw, displacements: Array, lines: Array)
     """
     Return the shortest transitions that the limits allow, common to all joints.
 
-    They keep the limits for changes of velocity that are larger by `VELOCITY_UNCERTAINTY`, too.
+    They keep the limits also if changes of velocity are larger by `VELOCITY_UNCERTAINTY`.
 
     Parameters
     ----------
@@ -97,22 +97,22 @@ def shortest_transitions(law: TransitionLaw, displacements: Array, lines: Array)
     return np.asarray(law.least_time(changes).max(axis=1))
 
 
-def excess(problem: ViaProblem, timing: Straddling) -> Array:
+def excess(problem: ViaProblem, timing: BlendTimes) -> Array:
     """
-    Return how far a motion is beyond what it must keep, apart from its torques.
+    Return the largest ratios of a motion's quantities to their limits, torques not considered.
 
     Parameters
     ----------
     problem : ViaProblem
         The via points.
-    timing : Straddling
+    timing : BlendTimes
         Times of the motion.
 
     Returns
     -------
     ndarray, shape (3,)
-        Largest ratios of velocity to its limit, of change of velocity to what a transition can
-        do, and of half of both transitions to the line that they share. At most 1 where kept.
+        Of velocity to its limit, of change of velocity to the largest that its transition allows,
+        and of half of both transitions to the line that they share; feasible if at most 1.
 
     """
     lines, transitions = timing
@@ -120,14 +120,14 @@ def excess(problem: ViaProblem, timing: Straddling) -> Array:
     change = np.abs(changes_of_velocity(problem.displacements, lines))
     most = problem.law.largest_change(transitions[:, np.newaxis])
     with np.errstate(divide='ignore', invalid='ignore'):
-        sharp = np.where(change > 0.0, change / most, 0.0)
+        by_change = np.where(change > 0.0, change / most, 0.0)
     halves = 0.5 * (transitions[:-1] + transitions[1:])
-    return np.array([velocity.max(), sharp.max(), (halves / lines).max()])
+    return np.array([velocity.max(), by_change.max(), (halves / lines).max()])
 
 
-def is_kept(problem: ViaProblem, timing: Straddling) -> bool:
+def is_within_limits(problem: ViaProblem, timing: BlendTimes) -> bool:
     """
-    Return whether a motion keeps its limits, apart from its torques.
+    Return whether a motion keeps its limits, torques not considered.
 
     Parameters
     ----------
@@ -140,10 +140,10 @@ def is_kept(problem: ViaProblem, timing: Straddling) -> bool:
         Within rounding.
 
     """
-    return bool((timing.lines > 0.0).all() and (excess(problem, timing) <= 1.0 + KEPT).all())
+    return bool((timing.lines > 0.0).all() and (excess(problem, timing) <= 1.0 + ROUNDING).all())
 
 
-def trajectory(points: Array, timing: Straddling,
+def trajectory(points: Array, timing: BlendTimes,
                function: TransitionFunction) -> PiecewiseTrajectory:
     """
     Return the motion.
@@ -152,10 +152,10 @@ def trajectory(points: Array, timing: Straddling,
     ----------
     points : ndarray, shape (n + 1, 3)
         Joint positions at the via points [rad].
-    timing : Straddling
+    timing : BlendTimes
         Its times; no line shorter than half of both its transitions, but for rounding.
     function : TransitionFunction
-        What transitions are made of.
+        The velocity function of transitions.
 
     Returns
     -------

@@ -13,13 +13,15 @@
 # limitations under the License.
 
 """
-The fastest times of a motion in which every via point is straddled by a transition.
+The least times of a motion with blends around the via points, by sequential linear programming.
 
-With the rates r = 1 / T of the lines as unknowns, velocities are linear, the total time is convex,
-and so is all that must be kept but for two bounds from the wrong side: half of both transitions
-must fit into their line, and a transition's length may be bounded by jerk. These are replaced by
-their tangents, inside what they allow, at the last times: a linear program follows the other, each
-no slower than the one before. The time's own convexity is met by tangents of 1 / r, which add up.
+With the rates r = 1 / T of the lines as unknowns, velocities are linear and the total time is
+convex, and so are all constraints but two: half of both transitions must fit into their line, and
+transitions are bounded by the jerk limit. These are replaced by their tangents at the last
+solution, which lie inside the feasible set (convex-concave procedure: Lipp & Boyd, Optimization
+and Engineering 17, 2016), so that no linear program's solution is slower than the one before. The
+convex 1 / r is bounded from below by tangents, which accumulate (Kelley's cutting planes, J. SIAM
+8, 1960).
 """
 
 from __future__ import annotations
@@ -29,24 +31,25 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.blends.blend_motion import excess, shortest_transitions, Straddling
+from rrr_traj_planner.planners.blends.blend_motion import BlendTimes, excess, shortest_transitions
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 from scipy import sparse
 from scipy.optimize import linprog
 
-ROUNDS = 40
-GAIN = 1e-5                                # relative, below which a round is the last
-FIRST_TANGENTS = np.geomspace(1.0, 30.0, 12)  # over the first rates
-STRETCHES = 60                             # of the rest that rounding in a program leaves
-# The tangent of jerk's bound, a root, would be infinitely steep at a transition of no length, as
-# between lines of one velocity, and keep them at it for good: it is taken at no less than this
-# part of the shorter line.
+# Without unit.
+ROUNDS = 40             # of linear programming, at most
+GAIN = 1e-5             # part of the time, below which a round is the last
+FIRST_TANGENTS = np.geomspace(1.0, 30.0, 12)  # of 1 / r, at these multiples of the first rates
+SCALINGS = 60           # of times, until rounding in a linear program's solution is made up for
+DURATION_MARGIN = 1e-6  # part added to the least durations
+# Least duration of the transition at which the jerk limit's tangent is taken, as a part of the
+# shorter line: at zero duration, between lines of equal velocity, the tangent would be vertical
+# and the duration would stay zero.
 LEAST_TANGENT = 0.05
-ROOM = 1e-6                                # durations are longer than the least by this part
 
 
 def fastest(problem: ViaProblem, transitions: Array | None,
-            should_stop: Callable[[], bool]) -> Straddling:
+            should_stop: Callable[[], bool]) -> BlendTimes:
     """
     Return the times of least sum within the limits on velocity, acceleration and jerk.
 
@@ -57,37 +60,37 @@ def fastest(problem: ViaProblem, transitions: Array | None,
     transitions : ndarray, shape (n + 1,), optional
         Lengths of the transitions [s]; None: free.
     should_stop : callable
-        Asked before every round; True ends the search with what it has.
+        Cancellation callback, called before every round; True ends the method with the best times.
 
     Returns
     -------
-    Straddling
+    BlendTimes
         The times.
 
     """
-    best = _made_feasible(problem, problem.rest_to_rest_times(), transitions)
+    best = _feasible(problem, problem.rest_to_rest_times(), transitions)
     program = _Program(problem, transitions, best)
     point = best
     for _ in range(ROUNDS):
         solved = None if should_stop() else program.solved(point)
         if solved is None:
             break
-        point, found = solved, _made_feasible(problem, solved.lines, transitions)
+        point, found = solved, _feasible(problem, solved.lines, transitions)
         gain = total_time(best) - total_time(found)
         if gain > 0.0:
             best = found
         if abs(gain) < GAIN * total_time(best):
             break
-    return best._replace(lines=best.lines * (1.0 + ROOM))
+    return best._replace(lines=best.lines * (1.0 + DURATION_MARGIN))
 
 
-def total_time(timing: Straddling) -> float:
+def total_time(timing: BlendTimes) -> float:
     """
     Return the duration of a motion.
 
     Parameters
     ----------
-    timing : Straddling
+    timing : BlendTimes
         Its times.
 
     Returns
@@ -99,19 +102,19 @@ def total_time(timing: Straddling) -> float:
     return float(timing.lines.sum() + 0.5 * (timing.transitions[0] + timing.transitions[-1]))
 
 
-def _made_feasible(problem: ViaProblem, lines: Array, transitions: Array | None) -> Straddling:
-    """Return times stretched in proportion, if need be, until they keep the limits."""
-    for _ in range(STRETCHES):
-        timing = Straddling(lines, shortest_transitions(
+def _feasible(problem: ViaProblem, lines: Array, transitions: Array | None) -> BlendTimes:
+    """Return times scaled up, where necessary, until they keep the limits."""
+    for _ in range(SCALINGS):
+        timing = BlendTimes(lines, shortest_transitions(
             problem.law, problem.displacements, lines) if transitions is None else transitions)
         velocity, change, halves = excess(problem, timing)
-        if transitions is None:  # changes are kept; transitions shrink like the root, or slower
+        if transitions is None:  # changes are feasible; transitions shorten like the root or less
             change, halves = 0.0, np.sqrt(halves) if halves > 1.0 + 1e-9 else halves ** (2.0 / 3.0)
         factor = max(velocity, change, halves)
         if factor <= 1.0:
             return timing
         lines = lines * factor
-    return Straddling(lines, timing.transitions)
+    return BlendTimes(lines, timing.transitions)
 
 
 class _Rows(NamedTuple):
@@ -122,11 +125,11 @@ class _Rows(NamedTuple):
 
 
 class _Program:
-    """The linear programs; unknowns: rates (n), transitions (n + 1) and times of lines (n)."""
+    """The linear programs. Unknowns: rates (n), transitions (n + 1) and times of lines (n)."""
 
-    def __init__(self, problem: ViaProblem, transitions: Array | None, start: Straddling) -> None:
+    def __init__(self, problem: ViaProblem, transitions: Array | None, start: BlendTimes) -> None:
         self.problem, self.transitions = problem, transitions
-        self.unit = float(start.lines.mean())  # of time, in which all unknowns are about 1
+        self.unit = float(start.lines.mean())  # of time [s]: scales all unknowns to about 1
         self.n = len(start.lines)
         self.tangents = [self.unit / start.lines * factor for factor in FIRST_TANGENTS]
         D = problem.displacements / self.unit
@@ -140,12 +143,12 @@ class _Program:
         self.halves = sparse.csr_array(
             0.5 * (sparse.eye(n, n + 1) + sparse.eye(n, n + 1, k=1)))
 
-    def solved(self, at: Straddling) -> Straddling | None:
-        """Return the solution of the program whose tangents are at given times; None if none."""
+    def solved(self, at: BlendTimes) -> BlendTimes | None:
+        """Return the solution of the program with tangents at given times; None if it fails."""
         rates, unit, n = self.unit / at.lines, self.unit, self.n
         self.tangents.append(rates)
-        rows = [self._fitting(rates), *self._times_above_tangents()]
-        rows += self._bounded_changes() if self.transitions is not None else (
+        rows = [self._transitions_fit(rates), *self._times_above_tangents()]
+        rows += self._changes_within_limits() if self.transitions is not None else (
             self._long_transitions(rates, at.transitions / unit))
         with np.errstate(divide='ignore'):
             fastest_rates = unit * (self.problem.max_velocity / np.abs(
@@ -160,33 +163,33 @@ class _Program:
                                     np.concatenate((fastest_rates, high, np.full(n, np.inf))))))
         if answer.status != 0:
             return None
-        return Straddling(unit / answer.x[:n], unit * answer.x[n:2 * n + 1])
+        return BlendTimes(unit / answer.x[:n], unit * answer.x[n:2 * n + 1])
 
     def _row(self, by_rate: sparse.sparray | None, by_transition: sparse.sparray | None,
              by_time: sparse.sparray | None, bound: Array) -> _Rows:
-        """Return rows from the parts for rates, transitions and times."""
+        """Return rows from their blocks for rates, transitions and times."""
         m, n = len(bound), self.n
         parts = [sparse.csr_array((m, size)) if part is None else part for part, size in (
             (by_rate, n), (by_transition, n + 1), (by_time, n))]
         return _Rows(sparse.csr_array(sparse.hstack(parts)), bound)
 
-    def _fitting(self, rates: Array) -> _Rows:
-        """Return that half of both transitions is at most 1 / r, by its tangent."""
+    def _transitions_fit(self, rates: Array) -> _Rows:
+        """Return the constraint that half of both transitions is at most 1 / r, by its tangent."""
         return self._row(sparse.diags(1.0 / rates ** 2), self.halves, None, 2.0 / rates)
 
     def _times_above_tangents(self) -> list[_Rows]:
-        """Return that times are at least 1 / r, by its tangents."""
+        """Return the constraint that times are at least 1 / r, by its tangents."""
         return [self._row(sparse.diags(-1.0 / r ** 2), None, -sparse.eye(self.n),
                           -2.0 / r) for r in self.tangents]
 
-    def _bounded_changes(self) -> list[_Rows]:
-        """Return that changes of velocity are at most what fixed transitions can do."""
+    def _changes_within_limits(self) -> list[_Rows]:
+        """Return the constraint on changes of velocity by transitions of fixed durations."""
         assert self.transitions is not None
         most = self.problem.law.largest_change(self.transitions[:, np.newaxis]).ravel()
         return [self._row(side * self.changes, None, None, most) for side in (1.0, -1.0)]
 
     def _long_transitions(self, rates: Array, transitions: Array) -> list[_Rows]:
-        """Return that transitions last as long as acceleration and jerk ask for."""
+        """Return the constraint that transitions last as long as acceleration and jerk require."""
         slope = np.tile(self.problem.law.slope / self.unit, self.n + 1)
         squared = np.tile((self.problem.law.root / self.unit) ** 2, self.n + 1)
         lines = np.append(np.append(np.inf, 1.0 / rates), np.inf)

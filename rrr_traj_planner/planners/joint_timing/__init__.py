@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The least time of joint motions: limits, a start, tightening until nothing breaks a limit."""
+"""The least time of joint motions: constraints, a feasible start, margins tightened in rounds."""

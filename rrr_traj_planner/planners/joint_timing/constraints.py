@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Limits on velocity, acceleration, jerk, position and torque of the joints for the solver."""
+"""The joints' limits on position, velocity, acceleration, jerk and torque, for the solver."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Works
 # Beyond a range, for joints that stay at its end [rad]; less than what counts as leaving it.
 EDGE = 5e-10
 
-# Stands for no bound: so far away that it does not count.
+# Stands for no bound, in SI units and rad: never active.
 FAR = 1e6
 
 
 class JointConstraints:
     """
-    Limits on velocity, acceleration, jerk, position and torque.
+    The joints' limits, less margins.
 
     Parameters
     ----------
@@ -49,22 +49,22 @@ class JointConstraints:
     points : ndarray, shape (N + 1, 3)
         Via points [rad].
     margins : ndarray, shape (2, N, 2 n + 1, 3)
-        How far inside the range each joint is to stay at each point, above and below [rad].
+        Distance to keep from the ends of each joint's range at each point, upper and lower [rad].
     velocity_margins : ndarray, shape (N, 2 n + 1, 3)
-        How far below its limit each velocity is to stay at each point [rad/s].
+        Subtracted from each joint's velocity limit at each point [rad/s].
     effort_margins : ndarray, shape (N, 2 n + 1, 3)
-        How far below its limit each torque is to stay at each point [N m].
+        Subtracted from each joint's effort limit at each point [N m].
     floor : ndarray, shape (N,), optional
         Least durations of the segments [s].
     workspace : Workspace, optional
-        Memory that problems share which are solved one after the other.
+        Memory shared by problems that are solved one after the other.
 
     Attributes
     ----------
     effort : ndarray, shape (N, 2 n, 3)
-        Bounds of the torques, margins taken off, at all points but a segment's first [N m].
+        Bounds of the torques, less margins, at all points but a segment's first [N m].
     with_torque : bool
-        Whether torque is limited; without it the joints are independent but for time.
+        Whether torque is limited; without it the joints are coupled through the durations only.
 
     """
 
@@ -90,10 +90,10 @@ class JointConstraints:
             general, self.floor, np.array(equations.constants(self._model))), self._workspace)
 
     def _bounds(self) -> tuple[Array, Array, BoolArray]:
-        """Return bounds on states (N, P, 12), lower and upper, and which there are (P, 12)."""
+        """Return lower and upper bounds on states (N, P, 12), and which are limited (P, 12)."""
         limits, n, N = self.limits, self.grid.n, len(self.points) - 1
         bounds, bounded = np.zeros((2, N, 2 * n + 1, 4, 3)), np.zeros((2 * n + 1, 4, 3), bool)
-        inside = np.r_[1:n, n + 1:2 * n + 1]  # not at the via points, where the place is given
+        inside = np.r_[1:n, n + 1:2 * n + 1]  # not at the via points, where position is given
         fastest = limits.max_velocity - self._velocity_margins[:, 1:]
         above, below = self._margins[:, :, inside]
         for kind, points, lowest, highest in (

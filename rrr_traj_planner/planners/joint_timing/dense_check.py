@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Dense check of joint motions: what they exceed between the points of the problem, and where."""
+"""Dense check of joint motions: by how much they exceed limits between the problem's points."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
-CHECKS = 12               # between two points
-ROUNDING = 1e-7          # relative
+CHECKS = 12      # samples between two points
+ROUNDING = 1e-7  # part of a limit up to which exceeding it is rounding
 
 
 class DenseCheck:
     """
-    Positions, velocities, accelerations and torques of a motion at many times.
+    Positions, velocities, accelerations and torques of a motion, densely sampled.
 
     Parameters
     ----------
@@ -67,14 +67,17 @@ class DenseCheck:
             return None
         return inverse_dynamics(self._task.model, self.q, self.qd, self.qdd)
 
-    def stretch(self) -> float:
+    def time_scaling(self) -> float:
         """
-        Return by how much the motion must be slowed for what is checked, but positions.
+        Return the least factor on all times with which limits other than positions hold.
+
+        Velocity falls with the factor, acceleration and the torque beside gravity's with its
+        square, jerk with its cube (Hollerbach, Dynamic scaling of manipulator trajectories, 1984).
 
         Returns
         -------
         float
-            At most 1 where it fits as it is; infinite where no slowing helps.
+            At most 1 where they hold as it is; infinite where no factor helps.
 
         """
         limits, tau = self._task.limits, self.tau
@@ -86,30 +89,30 @@ class DenseCheck:
             return float(factor)
         gravity = gravity_torque(self._task.model, self.q)
         motion = tau - gravity
-        room = limits.max_effort - np.sign(motion) * gravity
+        margin = limits.max_effort - np.sign(motion) * gravity
         with np.errstate(divide='ignore', invalid='ignore'):
-            share = np.where(room > 0.0, np.abs(motion) / room, np.inf)
+            share = np.where(margin > 0.0, np.abs(motion) / margin, np.inf)
         by_torque = np.where(np.isinf(limits.max_effort), 0.0, share).max()
         return float(max(factor, np.sqrt(by_torque)))
 
     @cached_property
     def beyond_range(self) -> Array:
         """
-        Return how far each joint leaves its range in each segment, between checks too.
+        Return how far each joint leaves its range in each segment, between samples too.
 
-        Shape (2, N, 3), above and below [rad]; 0 within.
+        Shape (2, N, 3), upper and lower end [rad]; 0 within.
         """
         limits, q = self._task.limits, self.q
-        turns, bend = self.qd[:, :-1] * self.qd[:, 1:] < 0.0, _bends(q)
-        bend = np.where(turns, np.maximum(bend[:, :-1], bend[:, 1:]), 0.0)
+        turns, rise = self.qd[:, :-1] * self.qd[:, 1:] < 0.0, _rise_between_samples(q)
+        rise = np.where(turns, np.maximum(rise[:, :-1], rise[:, 1:]), 0.0)
         most, least = (f(q[:, :-1], q[:, 1:]) for f in (np.maximum, np.minimum))
-        beyond = np.stack(((most + bend - limits.max_position).max(axis=1),
-                           (limits.min_position - least + bend).max(axis=1)))
+        beyond = np.stack(((most + rise - limits.max_position).max(axis=1),
+                           (limits.min_position - least + rise).max(axis=1)))
         return np.where(beyond > JOINT_ROUNDING, beyond, 0.0)
 
     def excess(self) -> tuple[Array, Array]:
         """
-        Return by how much velocities and torques exceed limits near each point.
+        Return by how much velocities and torques exceed their limits near each point.
 
         Returns
         -------
@@ -125,18 +128,18 @@ class DenseCheck:
 
 def near_points(x: Array, limit: Array, checks: int, reach: int) -> Array:
     """
-    Return by how much magnitudes, seen in the order of time, exceed a limit near each point.
+    Return by how much densely sampled magnitudes exceed a limit near each point.
 
     Parameters
     ----------
     x : ndarray, shape (N, 2 n checks + 1, K)
-        Magnitudes.
+        Magnitudes, in the order of time.
     limit : ndarray, shape (K,)
         Infinite where there is none.
     checks : int
-        Between two of a segment's 2 n + 1 points.
+        Samples between two of a segment's 2 n + 1 points.
     reach : int
-        How many of them to both sides are near a point.
+        Number of samples on either side that count as near a point.
 
     Returns
     -------
@@ -144,7 +147,7 @@ def near_points(x: Array, limit: Array, checks: int, reach: int) -> Array:
         Nodes, then the middles between them.
 
     """
-    peaks = x + _bends(x)
+    peaks = x + _rise_between_samples(x)
     excess = np.where(peaks > limit, peaks - limit * (1.0 - ROUNDING), 0.0)
     padded = np.pad(excess, ((0, 0), (reach, reach), (0, 0)), mode='edge')
     width = x.shape[1] - 1
@@ -153,23 +156,23 @@ def near_points(x: Array, limit: Array, checks: int, reach: int) -> Array:
 
 
 def _near_points(x: Array, limit: Array) -> Array:
-    """Return the same, what is near a segment's first point told of the points beside it too."""
+    """Return the same; excess near a segment's first point also counts for both points beside."""
     near, n = near_points(x, limit, CHECKS, CHECKS // 2), (x.shape[1] - 1) // (2 * CHECKS)
     near[:-1, n] = np.maximum(near[:-1, n], near[1:, 0])
     near[:, n + 1] = np.maximum(near[:, n + 1], near[:, 0])
     return near
 
 
-def _bends(x: Array) -> Array:
-    """Return what a smooth quantity rises by between two checks: an eighth of its bend."""
-    bend = np.abs(np.diff(x, 2, axis=1)) / 8.0
-    near = np.pad(bend, ((0, 0), (2, 2), (0, 0)), mode='edge')
+def _rise_between_samples(x: Array) -> Array:
+    """Return the rise of a smooth quantity between samples: 1/8 of its second difference."""
+    rise = np.abs(np.diff(x, 2, axis=1)) / 8.0
+    near = np.pad(rise, ((0, 0), (2, 2), (0, 0)), mode='edge')
     return np.asarray(np.max([near[:, k:k + x.shape[1]] for k in range(3)], axis=0))
 
 
 @lru_cache(maxsize=64)
 def _matrices(n: int, cruise: float) -> tuple[Array, Array, Array, Array]:
-    """Return times over h, and matrices as a Grid's, of n ramps at all checks."""
+    """Return times / h, and the matrices q, qd, qdd of a `Grid` of n ramps, at all samples."""
     per_ramp, one = 2 * CHECKS, np.eye(n + 1)
     s = np.arange(per_ramp)[:, np.newaxis] / per_ramp
     way, speed, part, _ = RampShape(cruise)(s)

@@ -13,11 +13,13 @@
 # limitations under the License.
 
 """
-A way in joint space, between two poses, along which the motors can hold the arm.
+A statically feasible path in joint space: the motors can hold the arm everywhere along it.
 
-Gravity's torques depend on joints 2 and 3 alone: the way is the shortest of those on a grid in
-their plane, where what gravity takes of the torque makes it longer, with as many corners left out
-as can be. If there is a way that leaves room for a cell of the grid, it is found.
+Gravity's torques depend on joints 2 and 3 alone. The path is the shortest one on a grid in their
+plane (Dijkstra; Cormen et al., Introduction to Algorithms, chapter on single-source shortest
+paths), with lengths weighted by the torque that gravity leaves, then shortened by leaving out
+corners (shortcuts: Geraerts & Overmars, Creating high-quality paths for motion planning, IJRR 26,
+2007). A feasible path that is wider than a cell of the grid is found.
 """
 
 from __future__ import annotations
@@ -31,12 +33,12 @@ from rrr_traj_planner.planners.request import JointTask
 from scipy import sparse
 from scipy.sparse import csgraph
 
-HOLDING_ROOM = 1e-6     # of the effort limits that gravity must leave along the way
-RANGE_ROOM = 4e-10      # rad, for the rounding of points at the end of a range
-CELLS = (48, 400)       # of each of the two joints; the finer where the coarser finds no way
-LOOKS = 40              # at a leg, for whether the arm can be held
-ROOM_KEPT = (0.7, 0.3, 0.0)  # of the room along corners that are left out
-NEIGHBOURS = ((1, 0), (0, 1), (1, 1), (1, -1))
+HOLDING_MARGIN = 1e-6   # part of the effort limits that gravity must leave along the path
+RANGE_MARGIN = 4e-10    # rad, for the rounding of points at the end of a range
+CELLS = (48, 400)       # of each of the two joints; the finer grid where the coarser has no path
+SAMPLES = 40            # of a leg, at which gravity's torque is checked
+RETAINED_MARGINS = (0.7, 0.3, 0.0)  # part of the torque margin that a shortcut must retain
+NEIGHBOURS = ((1, 0), (0, 1), (1, 1), (1, -1))  # of a cell, by rows and columns: half of all eight
 
 
 def gravity_share(model: RobotModel, limits: JointLimits, q: Array) -> Array:
@@ -59,14 +61,15 @@ def gravity_share(model: RobotModel, limits: JointLimits, q: Array) -> Array:
 
     """
     share = (np.abs(gravity_torque(model, q)) / limits.max_effort).max(axis=-1)
-    inside = ((q >= limits.min_position - RANGE_ROOM)
-              & (q <= limits.max_position + RANGE_ROOM)).all(axis=-1)
+    inside = ((q >= limits.min_position - RANGE_MARGIN)
+              & (q <= limits.max_position + RANGE_MARGIN)).all(axis=-1)
     return np.where(inside, share, np.inf)
 
 
-def holdable_way(task: JointTask, start: Array, end: Array, most_legs: int) -> Array | None:
+def statically_feasible_path(task: JointTask, start: Array, end: Array,
+                             most_legs: int) -> Array | None:
     """
-    Return the corners of a way along which the motors can hold the arm.
+    Return the corners of a path, straight between them, along which the motors can hold the arm.
 
     Parameters
     ----------
@@ -75,29 +78,29 @@ def holdable_way(task: JointTask, start: Array, end: Array, most_legs: int) -> A
     start, end : ndarray, shape (3,)
         Poses that can be held [rad].
     most_legs : int
-        Straight parts that the way may have.
+        Greatest number of straight legs.
 
     Returns
     -------
     ndarray, shape (legs + 1, 3), or None
-        From start to end; None where no such way is found.
+        From start to end; None where no such path is found.
 
     """
     for cells in CELLS:
-        way = _on_grid(task, start, end, cells)
-        if way is None:
+        path = _grid_path(task, start, end, cells)
+        if path is None:
             continue
-        for kept in ROOM_KEPT:
-            corners = _without_corners(task, way, kept)
+        for retained in RETAINED_MARGINS:
+            corners = _shortcut(task, path, retained)
             if corners is not None and len(corners) <= most_legs + 1:
-                return way[corners]
+                return path[corners]
     return None
 
 
-def _on_grid(task: JointTask, start: Array, end: Array, cells: int) -> Array | None:
-    """Return the shortest way on a grid that both poses are points of, (m, 3)."""
+def _grid_path(task: JointTask, start: Array, end: Array, cells: int) -> Array | None:
+    """Return the shortest path on a grid that has both poses as nodes, (m, 3)."""
     if (start[1:] == end[1:]).all():
-        return np.stack((start, end))  # gravity does not know joint 1
+        return np.stack((start, end))  # gravity's torque does not depend on joint 1
     limits = task.limits
     axes = [np.unique(np.concatenate((np.linspace(
         limits.min_position[j], limits.max_position[j], cells), [start[j], end[j]])))
@@ -116,19 +119,19 @@ def _on_grid(task: JointTask, start: Array, end: Array, cells: int) -> Array | N
     nodes = [last]
     while nodes[-1] != first:
         nodes.append(int(before[nodes[-1]]))
-    way = q.reshape(-1, 3)[nodes[::-1]]
-    gone = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(way, axis=0)).max(axis=1))))
-    part = gone / gone[-1] if gone[-1] > 0.0 else np.linspace(0.0, 1.0, len(way))
-    way[:, 0] = start[0] + part * (end[0] - start[0])
-    way[0], way[-1] = start, end
-    return way
+    path = q.reshape(-1, 3)[nodes[::-1]]
+    length = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(path, axis=0)).max(axis=1))))
+    part = length / length[-1] if length[-1] > 0.0 else np.linspace(0.0, 1.0, len(path))
+    path[:, 0] = start[0] + part * (end[0] - start[0])
+    path[0], path[-1] = start, end
+    return path
 
 
 def _graph(q: Array, share: Array) -> sparse.csr_array:
-    """Return the lengths between neighbours that can be held, longer where little room is left."""
+    """Return weighted lengths between neighbours that can be held, larger at small margins."""
     number = np.arange(share.size).reshape(share.shape)
-    weight = 1.0 / np.sqrt(np.maximum(1.0 - share, HOLDING_ROOM))
-    open_ = share < 1.0 - HOLDING_ROOM
+    weight = 1.0 / np.sqrt(np.maximum(1.0 - share, HOLDING_MARGIN))
+    open_ = share < 1.0 - HOLDING_MARGIN
     ends, lengths = [], []
     for rows, columns in NEIGHBOURS:
         here, there = _pairs(share.shape, rows, columns)
@@ -142,7 +145,7 @@ def _graph(q: Array, share: Array) -> sparse.csr_array:
 
 def _pairs(shape: tuple[int, ...], rows: int, columns: int) -> tuple[
         tuple[slice, slice], tuple[slice, slice]]:
-    """Return where pairs of neighbours begin and end in a grid."""
+    """Return the slices of a grid with the first and the second nodes of neighbours."""
     n, m = shape
     down, up = slice(0, n - rows), slice(rows, n)
     if columns < 0:
@@ -150,18 +153,18 @@ def _pairs(shape: tuple[int, ...], rows: int, columns: int) -> tuple[
     return (down, slice(0, m - columns)), (up, slice(columns, m))
 
 
-def _without_corners(task: JointTask, way: Array, kept: float) -> IntArray | None:
-    """Return which corners remain if legs as long as can be held take their place."""
-    share = gravity_share(task.model, task.limits, way)
+def _shortcut(task: JointTask, path: Array, retained: float) -> IntArray | None:
+    """Return the corners that remain after greedy shortcuts by the longest feasible legs."""
+    share = gravity_share(task.model, task.limits, path)
     corners = [0]
-    while corners[-1] < len(way) - 1:
+    while corners[-1] < len(path) - 1:
         here = corners[-1]
-        ahead = np.arange(here + 1, len(way))
-        legs = way[here] + np.linspace(0.0, 1.0, LOOKS)[:, np.newaxis, np.newaxis] * (
-            way[ahead] - way[here])
+        ahead = np.arange(here + 1, len(path))
+        legs = path[here] + np.linspace(0.0, 1.0, SAMPLES)[:, np.newaxis, np.newaxis] * (
+            path[ahead] - path[here])
         most = gravity_share(task.model, task.limits, legs).max(axis=0)
         along = np.maximum.accumulate(np.maximum(share[here], share[ahead]))
-        good = np.flatnonzero(most < 1.0 - np.maximum(kept * (1.0 - along), HOLDING_ROOM))
+        good = np.flatnonzero(most < 1.0 - np.maximum(retained * (1.0 - along), HOLDING_MARGIN))
         if len(good) == 0:
             return None
         corners.append(int(ahead[good[-1]]))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The fastest motion of all joints, solved again from the best so far until it is the optimum."""
+"""The fastest motion of all joints, solved again from the best so far until it has converged."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled
 
-POOR = 1e-2              # relative gap of what is solved again
-RESTARTS = 8             # from the best that was found, where it is not the optimum
-SLOWER = (1e-6, 0.02)    # than it, first by just enough to be within its limits
+POOR = 1e-2              # gap, as a part of the time, above which it is solved again
+RESTARTS = 8             # at most, each from the best motion so far
+SLOWER = (1e-6, 0.02)    # part by which a restart is slower than it: first just strictly feasible
 
 
 def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved | None:
     """
     Return the fastest motion.
 
-    Where every joint has an acceleration limit the problem is solved without torque first, which
-    makes the joints independent but for time; often the motion then keeps the torque limits too.
+    Where every joint has an acceleration limit the problem is first solved without torque limits,
+    so that the joints are coupled through the durations only; often the result keeps them too.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved |
     Returns
     -------
     Solved or None
-        None where no way is found along which the motors can hold the arm.
+        None where no path is found along which the motors can hold the arm.
 
     """
     whole = JointProblem(task, grid, DurationConstraints.all_free(len(task.points) - 1, 3), floor)
@@ -69,7 +69,7 @@ def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved |
 
 
 def _refined(problem: JointProblem, solved: Solved) -> Solved:
-    """Return what is found by solving again from the best so far, until it is the optimum."""
+    """Return the best motion of repeated solutions, each from the best so far, until converged."""
     tries = list(SLOWER)
     for _ in range(RESTARTS):
         if not tries or solved.gap < POOR * solved.cost or problem.task.should_stop():
@@ -83,10 +83,10 @@ def _refined(problem: JointProblem, solved: Solved) -> Solved:
 
 def _solved_from(problem: JointProblem, solved: Solved, slower: float) -> Solved | None:
     """
-    Return what is found from a motion that keeps every limit, run through a part slower.
+    Return the solution that starts from a motion within every limit, slowed by a part.
 
-    It may keep margins that a motion with stops at the via points cannot: at the ends of ranges,
-    and between two points that are close together.
+    Such a start can satisfy margins that a start with stops at the via points cannot: near the
+    ends of ranges, and between via points that are close together.
     """
     factor = (1.0 + slower) * solved.cost / problem.durations.cost(solved.motion.T)
     start = time_scaled(solved.motion, factor)

@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-Constraint margins: how far within its limits a motion is to stay at the points of the problem.
+Constraint margins: by how much limits are tightened at the points of the problem.
 
-A motion that keeps its limits at the points exceeds them a little between. There, and nowhere
-else, margins at the points beside are made as large as what was exceeded, and the problem is
-solved again.
+A motion that keeps its limits at the points may exceed them slightly between. At the points beside
+such a place, and nowhere else, margins are enlarged by the excess, and the problem is solved
+again.
 """
 
 from __future__ import annotations
@@ -31,23 +31,23 @@ from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
-LARGER = 1.2             # than what was exceeded
+LARGER = 1.2                # enlargement of a margin, over the excess
 MOST_VELOCITY_MARGIN = 0.1  # part of a velocity limit
 
 
 class Margins(NamedTuple):
     """Margins at every point of every segment."""
 
-    positions: Array   # above and below, (2, N, 2 n + 1, 3)
-    velocities: Array  # (N, 2 n + 1, 3)
-    efforts: Array     # (N, 2 n + 1, 3)
-    spare: Array       # half of what gravity leaves on a slow motion, likewise
-    at_rest: BoolArray   # via velocities that stay zero, (N - 1, 3)
+    positions: Array   # upper and lower [rad], (2, N, 2 n + 1, 3)
+    velocities: Array  # [rad/s], (N, 2 n + 1, 3)
+    efforts: Array     # [N m], (N, 2 n + 1, 3)
+    gravity_margins: Array  # half the torque that gravity leaves to a slow motion [N m], likewise
+    at_rest: BoolArray  # whether a via velocity is fixed to zero, (N - 1, 3)
 
     @classmethod
     def none(cls, grid: Grid, segments: int) -> Margins:
         """
-        Return none at all.
+        Return zero margins.
 
         Parameters
         ----------
@@ -67,17 +67,17 @@ class Margins(NamedTuple):
 
     def part(self, part: float) -> Margins:
         """
-        Return a part of them.
+        Return the margins scaled down.
 
         Parameters
         ----------
         part : float
-            1 for all of them.
+            The factor, at most 1.
 
         Returns
         -------
         Margins
-            Of the same at_rest joints.
+            With the same joints at rest.
 
         """
         return self._replace(positions=part * self.positions, velocities=part * self.velocities,
@@ -85,12 +85,12 @@ class Margins(NamedTuple):
 
     def is_same(self, other: Margins) -> bool:
         """
-        Return whether others are the same.
+        Return whether other margins are equal.
 
         Parameters
         ----------
         other : Margins
-            Of the same motions.
+            For the same problem.
 
         Returns
         -------
@@ -102,19 +102,19 @@ class Margins(NamedTuple):
 
     def of_slow_motion(self) -> Margins:
         """
-        Return as much of them as a slow motion can keep.
+        Return the margins limited to those that a slow motion can satisfy.
 
         Returns
         -------
         Margins
-            Of efforts at most half of what gravity leaves.
+            For efforts at most half of the torque that gravity leaves.
 
         """
-        return self._replace(efforts=np.minimum(self.efforts, self.spare))
+        return self._replace(efforts=np.minimum(self.efforts, self.gravity_margins))
 
     def widened(self, task: JointTask, grid: Grid, slow: Variables, check: DenseCheck) -> Margins:
         """
-        Return larger ones where a motion breaks limits.
+        Return margins enlarged where a motion exceeds limits.
 
         Parameters
         ----------
@@ -123,32 +123,34 @@ class Margins(NamedTuple):
         grid : Grid
             The family of motions.
         slow : Variables
-            With stops at the via points; margins of positions are at most half of its own.
+            With stops at the via points; margins of positions are at most half its distance to
+            the ends of the ranges.
         check : DenseCheck
-            Of a motion that breaks limits.
+            Of a motion that exceeds limits.
 
         Returns
         -------
         Margins
-            As it was where no limit is broken.
+            Unchanged where no limit is exceeded.
 
         """
         q = grid.states(task.points, slow).q
         positions, at_rest = self._positions(task, q, check.beyond_range)
-        spare = task.limits.max_effort - np.abs(gravity_torque(task.model, q))
+        gravity_margins = task.limits.max_effort - np.abs(gravity_torque(task.model, q))
         velocity, effort = check.excess()
         return Margins(
             positions, np.minimum(self.velocities + LARGER * velocity,
                                   MOST_VELOCITY_MARGIN * task.limits.max_velocity),
-            self.efforts + LARGER * effort, 0.5 * np.maximum(spare, 0.0), at_rest)
+            self.efforts + LARGER * effort, 0.5 * np.maximum(gravity_margins, 0.0), at_rest)
 
     def _positions(self, task: JointTask, q: Array, beyond: Array) -> tuple[Array, BoolArray]:
-        """Keep joints further inside their range; at via points too near its end, at rest."""
-        room = np.stack((task.limits.max_position - q, q - task.limits.min_position))
-        most = self.positions.max(axis=2) + LARGER * beyond
-        wanted = np.where((beyond > 0.0)[:, :, np.newaxis], most[:, :, np.newaxis], self.positions)
-        positions = np.minimum(wanted, np.maximum(0.5 * room, 0.0))
+        """Return margins of positions, and which joints rest at via points near a range's end."""
+        distance = np.stack((task.limits.max_position - q, q - task.limits.min_position))
+        needed = self.positions.max(axis=2) + LARGER * beyond
+        target = np.where((beyond > 0.0)[:, :, np.newaxis], needed[:, :, np.newaxis],
+                          self.positions)
+        positions = np.minimum(target, np.maximum(0.5 * distance, 0.0))
         ends = np.stack((task.points[:-1], task.points[1:]))
-        room = np.stack((task.limits.max_position - ends, ends - task.limits.min_position))
-        at_start, at_end = ((beyond > 0.0) & (room[:, k] <= 2.0 * most) for k in (0, 1))
+        distance = np.stack((task.limits.max_position - ends, ends - task.limits.min_position))
+        at_start, at_end = ((beyond > 0.0) & (distance[:, k] <= 2.0 * needed) for k in (0, 1))
         return positions, self.at_rest | (at_end[:, :-1] | at_start[:, 1:]).any(axis=0)

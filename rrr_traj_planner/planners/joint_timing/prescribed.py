@@ -32,20 +32,21 @@ from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
 
-DURATION_TOLERANCE = 1e-7  # relative: a stretch of prescribed durations that counts as none
-LEAST_STRETCH = 0.2         # of prescribed durations: shorter than that need not be found out
-FREE_WEIGHT = 1e-3         # of free durations while it is found out whether the others can be kept
-GENTLER = 1.02             # how near the least peak of acceleration is looked for
-GENTLENESS_ROUNDS = 12
-ROOM = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)  # of durations that are offered instead
+# Without unit.
+DURATION_TOLERANCE = 1e-7  # part by which a motion may last longer than prescribed
+LEAST_SCALING = 0.2        # of prescribed durations, down to which the problem is solved
+FREE_WEIGHT = 1e-3         # of free durations while the scaling of the prescribed is minimised
+GENTLER = 1.02             # ratio of peak accelerations at which their reduction ends
+GENTLENESS_ROUNDS = 12     # of that reduction, at most
+OFFER_MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)  # tried on top of the least durations
 
 
 def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
     """
     Return a motion of prescribed durations.
 
-    Where all are, the gentlest: the peak of acceleration over its limit is the least. Where some
-    are free, the fastest.
+    If all durations are prescribed, the motion of least peak acceleration, relative to the limits;
+    if some are free, the fastest.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
     Returns
     -------
     Solved or None
-        None where no way is found along which the motors can hold the arm.
+        None where no path is found along which the motors can hold the arm.
 
     Raises
     ------
@@ -67,47 +68,48 @@ def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
         If the durations are too short; with feasible ones.
 
     """
-    kept = _kept(task, grid, durations)
-    if kept is None:
+    solved = _least_scaled(task, grid, durations)
+    if solved is None:
         return None
-    if _stretch(kept, durations) > 1.0 + DURATION_TOLERANCE:
+    if _scaling(solved, durations) > 1.0 + DURATION_TOLERANCE:
         raise _too_short(task, grid, durations)
     if np.isnan(durations).any():
-        return _fastest_of_free(task, grid, durations, kept)
-    return _gentlest(task, grid, durations, kept)
+        return _fastest_of_free(task, grid, durations, solved)
+    return _gentlest(task, grid, durations, solved)
 
 
-def _kept(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
-    """Return the motion that stretches prescribed durations, as a whole, least."""
+def _least_scaled(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
+    """Return the motion with the least common factor on the prescribed durations."""
     free = np.isnan(durations)
-    tie = np.where(free, 0.0, durations)
+    proportions = np.where(free, 0.0, durations)
     weights = np.where(free, FREE_WEIGHT, 1.0 / np.where(free, 1.0, durations) / (~free).sum())
 
-    def begin(planned: JointTask, constraints: JointConstraints) -> Variables | None:
+    def initial_motion(planned: JointTask, constraints: JointConstraints) -> Variables | None:
         m = rest_to_rest(planned, constraints)
         if m is None:
             return None
-        stretch = float((m.T / durations)[~free].max())
-        return with_durations(m, np.where(free, m.T, stretch * tie))
+        scaling = float((m.T / durations)[~free].max())
+        return with_durations(m, np.where(free, m.T, scaling * proportions))
 
-    constraints = DurationConstraints(free, tie, weights, _no_stops(durations))
-    return tightened(JointProblem(task, grid, constraints, LEAST_STRETCH * tie), begin)
+    constraints = DurationConstraints(free, proportions, weights, _no_stops(durations))
+    return tightened(JointProblem(task, grid, constraints, LEAST_SCALING * proportions),
+                     initial_motion)
 
 
-def _stretch(solved: Solved, durations: Array) -> float:
-    """Return by how much a motion stretches the prescribed durations."""
+def _scaling(solved: Solved, durations: Array) -> float:
+    """Return the largest ratio of a motion's durations to the prescribed ones."""
     return float(np.nanmax(np.diff(solved.trajectory.via_times) / durations))
 
 
 def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved]) -> Solved | None:
     """
-    Return the first of some motions that keeps its limits when slowed to its durations exactly.
+    Return the first of several motions that keeps its limits when slowed to the exact durations.
 
-    A motion may pass a pose that the motors cannot hold, but no more slowly. Where all do, the
-    motion that stops at every via point is taken, which the motors can hold everywhere.
+    A motion may pass fast through a pose that the motors cannot hold, but not more slowly. If all
+    do, the motion that stops at every via point is returned: its path is statically feasible.
     """
     for solved in found:
-        slower = solved.trajectory.stretched(1.0 / _stretch(solved, durations))
+        slower = solved.trajectory.stretched(1.0 / _scaling(solved, durations))
         if torque_fits(task, slower):
             return solved._replace(trajectory=slower)
     segments = len(durations)
@@ -122,43 +124,43 @@ def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved])
                   float(T.sum()), np.inf)
 
 
-def _gentlest(task: JointTask, grid: Grid, durations: Array, kept: Solved) -> Solved | None:
+def _gentlest(task: JointTask, grid: Grid, durations: Array, solved: Solved) -> Solved | None:
     """
     Return the motion of least peak acceleration over its limit.
 
-    A motion with time to spare, slowed to its durations, keeps lower acceleration limits; under
-    these there is less time to spare, until there is none.
+    A motion that is faster than prescribed, slowed to its durations, satisfies lower acceleration
+    limits; the problem is solved again under those until the durations are just met.
     """
-    limit = np.minimum(task.limits.max_acceleration, kept.trajectory.peaks().acceleration.max())
-    found = [kept]  # gentlest first
+    limit = np.minimum(task.limits.max_acceleration, solved.trajectory.peaks().acceleration.max())
+    found = [solved]  # gentlest first
     for _ in range(GENTLENESS_ROUNDS):
         task.should_stop()
-        z = _stretch(kept, durations)
+        z = _scaling(solved, durations)
         if z ** 2 > 1.0 / GENTLER:
             break
         limit = limit * z ** 2
         gentler = replace(task, limits=replace(task.limits, max_acceleration=limit))
-        again = _kept(gentler, grid, durations)
-        if again is None or _stretch(again, durations) > 1.0 + DURATION_TOLERANCE:
+        again = _least_scaled(gentler, grid, durations)
+        if again is None or _scaling(again, durations) > 1.0 + DURATION_TOLERANCE:
             break
-        kept = again
-        found.insert(0, kept)
+        solved = again
+        found.insert(0, solved)
     return _in_time(task, grid, durations, found)
 
 
 def _fastest_of_free(task: JointTask, grid: Grid, durations: Array,
-                     kept: Solved) -> Solved | None:
-    """Return the motion whose free durations are least, the others as prescribed."""
-    free, z = np.isnan(durations), _stretch(kept, durations)
-    m = kept.motion
+                     solved: Solved) -> Solved | None:
+    """Return the motion with the least sum of free durations, the others as prescribed."""
+    free, z = np.isnan(durations), _scaling(solved, durations)
+    m = solved.motion
     z = float(np.nanmax(m.T / durations))
     start = restored(grid, task.points, Variables(
         m.inner * z ** 2, m.v * z, m.a * z ** 2, np.where(free, m.T / z, durations)))
     constraints = DurationConstraints(free, np.zeros(len(free)), free.astype(float),
                                       _no_stops(durations))
     found = tightened(JointProblem(task, grid, constraints), lambda planned, _: start)
-    if found is None or _stretch(found, durations) > 1.0 + DURATION_TOLERANCE:
-        return _in_time(task, grid, durations, [kept])
+    if found is None or _scaling(found, durations) > 1.0 + DURATION_TOLERANCE:
+        return _in_time(task, grid, durations, [solved])
     return found
 
 
@@ -171,16 +173,16 @@ def _too_short(task: JointTask, grid: Grid, durations: Array) -> TimingError:
     floor = np.nan_to_num(durations)
     found = fastest(task, grid, floor)
     least = np.maximum(np.diff(found.trajectory.via_times), floor) if found else floor
-    for room in ROOM:
-        feasible = np.ceil(least * (1.0 + room) * 1e6) / 1e6
-        kept = _kept(task, grid, feasible)
-        if kept is not None and _stretch(kept, feasible) <= 1.0 + DURATION_TOLERANCE:
+    for margin in OFFER_MARGINS:
+        feasible = np.ceil(least * (1.0 + margin) * 1e6) / 1e6
+        solved = _least_scaled(task, grid, feasible)
+        if solved is not None and _scaling(solved, feasible) <= 1.0 + DURATION_TOLERANCE:
             break
     return _error(durations, feasible)
 
 
 def _error(durations: Array, feasible: Array) -> TimingError:
     """Return the error of durations that are too short, with feasible ones."""
-    asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
-    return TimingError(f'segment_durations {asked} s are too short: the least feasible are '
-                       f'{offered} s', tuple(offered))
+    given, least = ([round(float(d), 9) for d in v] for v in (durations, feasible))
+    return TimingError(f'segment_durations {given} s are too short: the least feasible are '
+                       f'{least} s', tuple(least))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The least-time problem of joint motions, and motions that keep every limit of it."""
+"""The least-time problem of joint motions, and its solutions fitted to every limit."""
 
 from __future__ import annotations
 
@@ -33,23 +33,23 @@ from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.solver.timing_problem import Workspace
 
-# Gives a motion to start from, strictly within constraints, or None.
-Begin = Callable[[JointTask, JointConstraints], Variables | None]
+# Returns a motion strictly within constraints, to start from, or None.
+InitialMotion = Callable[[JointTask, JointConstraints], Variables | None]
 
 
 class Solved(NamedTuple):
-    """A motion that keeps every limit."""
+    """A motion within every limit."""
 
     trajectory: PiecewiseTrajectory
-    motion: Variables  # of which the trajectory is a little slower, where it had to be
-    cost: float        # its weighted durations [s]
-    gap: float         # what a better motion could save of them at most
+    motion: Variables  # the solver's; the trajectory is this motion, slowed where necessary
+    cost: float        # the trajectory's weighted sum of durations [s]
+    gap: float         # bound on the cost that the optimum saves [s]
 
 
 @dataclass(frozen=True, eq=False)
 class JointProblem(ReadOnlyArrays):
     """
-    Via points and limits, the family of motions, and what durations may do.
+    Via points and limits, the family of motions, and the constraints on durations.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class JointProblem(ReadOnlyArrays):
         Parameters
         ----------
         margins : Margins
-            How far within its limits a motion is to stay at its points.
+            By which limits are tightened at the points.
 
         Returns
         -------
@@ -98,13 +98,13 @@ class JointProblem(ReadOnlyArrays):
         Parameters
         ----------
         constraints : JointConstraints
-            Of the margins.
+            With these margins.
         margins : Margins
-            They say which joints stay at rest at a via point, too.
+            For the joints that rest at a via point.
         start : Centre
             Strictly within the constraints.
         least_barrier : float
-            The method ends at its centre.
+            The barrier parameter at which the method ends.
 
         Returns
         -------
@@ -118,12 +118,12 @@ class JointProblem(ReadOnlyArrays):
 
     def fitting(self, outcome: Outcome, motion: Variables) -> Solved | None:
         """
-        Return a motion slowed until it keeps every limit, between its points too.
+        Return a motion slowed until it keeps every limit, between the points too.
 
         Parameters
         ----------
         outcome : Outcome
-            What it was found with.
+            The solver's result, for the gap.
         motion : Variables
             One of its motions.
 
@@ -134,9 +134,9 @@ class JointProblem(ReadOnlyArrays):
 
         """
         durations = self.durations
-        may_stretch = bool((durations.free | (durations.proportions > 0.0)).all())
+        may_scale = bool((durations.free | (durations.proportions > 0.0)).all())
         trajectory = fitted(self.task, self.grid.trajectory(self.task.points, motion),
-                            may_stretch)
+                            may_scale)
         if trajectory is None:
             return None
         cost = durations.cost(np.diff(trajectory.via_times))

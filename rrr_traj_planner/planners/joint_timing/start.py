@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A feasible motion to begin with: rest at every via point, slowed until everything fits."""
+"""A feasible first iterate: a motion with stops at every via point, as slow as limits require."""
 
 from __future__ import annotations
 
@@ -23,42 +23,42 @@ from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.feasible_path import (
     gravity_share,
-    holdable_way,
-    HOLDING_ROOM,
+    HOLDING_MARGIN,
+    statically_feasible_path,
 )
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
 from rrr_traj_planner.planners.via_points import torque_texts
 
 LEAST_RAMPS = 4         # of a motion from rest to rest
-ROOM = 1.02             # durations over the least that fit
+DURATION_MARGIN = 1.02  # durations / least durations: the start is strictly within its limits
 LEAST_DURATION = 1e-4   # s
-SLOW = 3.0              # torque makes a straight way so much slower: another is looked for
-STRAIGHT_LOOKS = 100    # at a straight way, for the error of one that is blocked
+SLOW = 3.0              # factor by which torque slows a straight path before another is sought
+STRAIGHT_SAMPLES = 100  # of a straight path that is blocked, for the error's torque
 
 
 def rest_to_rest(task: JointTask, constraints: JointConstraints) -> Variables | None:
     """
     Return a motion with a stop at every via point, strictly within all limits.
 
-    Straight in joint space, or with further stops on a way along which gravity leaves more
-    torque, where that is the faster.
+    Straight in joint space, or with further stops along a path on which gravity leaves more
+    torque, where that is faster.
 
     Parameters
     ----------
     task : JointTask
         The arm, its limits and the via points.
     constraints : JointConstraints
-        The same as the method sees them.
+        The same limits, less margins.
 
     Returns
     -------
     Variables or None
-        None where no way is found along which the motors can hold the arm.
+        None where no path is found along which the motors can hold the arm.
 
     """
     grid = constraints.grid
-    nodes, T = _fastest_ways(task, constraints)
+    nodes, T = _fastest_paths(task, constraints)
     if np.isinf(T).any():
         return None
     rest = np.zeros((len(nodes) - 1, 3))
@@ -66,56 +66,56 @@ def rest_to_rest(task: JointTask, constraints: JointConstraints) -> Variables | 
     return restored(grid, task.points, with_durations(m, T))
 
 
-def _fastest_ways(task: JointTask, constraints: JointConstraints) -> tuple[Array, Array]:
+def _fastest_paths(task: JointTask, constraints: JointConstraints) -> tuple[Array, Array]:
     """Return node accelerations for durations of 1 s, and least durations, of all segments."""
     grid = constraints.grid
     nodes = rest_to_rest_shapes(grid, task.points)
     T, without_torque = _least_durations(task, constraints, nodes)
     for k in np.flatnonzero(T > SLOW * without_torque):
         task.should_stop()
-        corners = holdable_way(task, task.points[k], task.points[k + 1],
-                               grid.n // LEAST_RAMPS)
+        corners = statically_feasible_path(task, task.points[k], task.points[k + 1],
+                                           grid.n // LEAST_RAMPS)
         if corners is None:
             continue
-        around = nodes.copy()
-        around[k] = rest_to_rest_legs(grid, corners)
-        duration = _least_durations(task, constraints, around)[0][k]
+        detoured = nodes.copy()
+        detoured[k] = rest_to_rest_legs(grid, corners)
+        duration = _least_durations(task, constraints, detoured)[0][k]
         if duration < T[k]:
-            nodes[k], T[k] = around[k], duration
+            nodes[k], T[k] = detoured[k], duration
     return nodes, T
 
 
 def _least_durations(task: JointTask, constraints: JointConstraints,
                      nodes: Array) -> tuple[Array, Array]:
     """
-    Return durations that fit all limits, and those that fit all but torque's, each (N,).
+    Return the least durations by all limits, and by all but torque's, each (N,), plus a margin.
 
-    Infinite where gravity blocks the way. The node accelerations are those of 1 s a segment.
+    Infinite where gravity blocks the path. Node accelerations are those of segments of 1 s.
     """
     limits, grid, rest = task.limits, constraints.grid, np.zeros((len(nodes) - 1, 3))
     at = grid.states(task.points, Variables(nodes[:, 1:-1], rest, rest, np.ones(len(nodes))))
     T = np.max([(np.abs(at.qd) / limits.max_velocity).max(axis=(1, 2)),
                 np.sqrt((np.abs(at.qdd) / limits.max_acceleration).max(axis=(1, 2))),
                 np.cbrt((np.abs(at.jerk) / limits.max_jerk).max(axis=(1, 2)))], axis=0)
-    T = np.maximum(ROOM * T, LEAST_DURATION)
+    T = np.maximum(DURATION_MARGIN * T, LEAST_DURATION)
     if constraints.floor is not None:
-        T = np.maximum(T, ROOM * constraints.floor)
+        T = np.maximum(T, DURATION_MARGIN * constraints.floor)
     if not constraints.with_torque:
         return T, T
     gravity = gravity_torque(task.model, at.q)
     moving = inverse_dynamics(task.model, at.q, at.qd, at.qdd) - gravity
-    room = constraints.effort - (np.sign(moving) * gravity)[:, 1:]
+    margin = constraints.effort - (np.sign(moving) * gravity)[:, 1:]
     with np.errstate(divide='ignore', invalid='ignore'):
-        by_torque = np.sqrt((np.abs(moving[:, 1:]) / room).max(axis=(1, 2)))
-    blocked = (gravity_share(task.model, limits, at.q) >= 1.0 - HOLDING_ROOM)[:, 1:-1]
-    blocked_by_margin = (room <= 0.0).any(axis=(1, 2))
+        by_torque = np.sqrt((np.abs(moving[:, 1:]) / margin).max(axis=(1, 2)))
+    blocked = (gravity_share(task.model, limits, at.q) >= 1.0 - HOLDING_MARGIN)[:, 1:-1]
+    blocked_by_margin = (margin <= 0.0).any(axis=(1, 2))
     by_torque[blocked.any(axis=1) | blocked_by_margin] = np.inf
-    return np.maximum(T, ROOM * by_torque), T
+    return np.maximum(T, DURATION_MARGIN * by_torque), T
 
 
 def rest_to_rest_shapes(grid: Grid, points: Array) -> Array:
     """
-    Return node accelerations of straight motions of 1 s with a stop at every point.
+    Return node accelerations, a full sine, of straight motions of 1 s from rest to rest.
 
     Parameters
     ----------
@@ -137,14 +137,14 @@ def rest_to_rest_shapes(grid: Grid, points: Array) -> Array:
 
 def rest_to_rest_legs(grid: Grid, points: Array) -> Array:
     """
-    Return node accelerations of a segment of 1 s that stops at points on its way.
+    Return node accelerations of a segment of 1 s that stops at the corners of its path.
 
     Parameters
     ----------
     grid : Grid
         The family of motions.
     points : ndarray, shape (legs + 1, 3)
-        Where it begins, stops and ends [rad]; longer legs have more of the n ramps.
+        The start, the corners and the end [rad]; longer legs have more of the n ramps.
 
     Returns
     -------
@@ -166,7 +166,7 @@ def rest_to_rest_legs(grid: Grid, points: Array) -> Array:
 
 def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
     """
-    Return the error of a segment on whose way the motors cannot hold the arm.
+    Return the error of a segment without a path along which the motors can hold the arm.
 
     Parameters
     ----------
@@ -178,14 +178,14 @@ def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
     Returns
     -------
     LimitViolationError
-        With the first such segment, and the torque of its straight way.
+        With the first such segment, and the torque along its straight path.
 
     """
-    ways = zip(task.points[:-1], task.points[1:])
-    straight = np.array([np.linspace(start, end, STRAIGHT_LOOKS) for start, end in ways])
+    ends = zip(task.points[:-1], task.points[1:])
+    straight = np.array([np.linspace(start, end, STRAIGHT_SAMPLES) for start, end in ends])
     needs = np.abs(gravity_torque(task.model, straight)).max(axis=1)
     blocked = (k for k, (start, end) in enumerate(zip(task.points[:-1], task.points[1:]))
-               if holdable_way(task, start, end, grid.n // LEAST_RAMPS) is None)
+               if statically_feasible_path(task, start, end, grid.n // LEAST_RAMPS) is None)
     k = next(blocked, int((needs / task.limits.max_effort).max(axis=1).argmax()))
     torque = needs[k]
     joint = int((torque / task.limits.max_effort).argmax())

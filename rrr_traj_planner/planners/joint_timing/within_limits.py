@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Whether chains of ramps keep their limits everywhere, not only at the points looked at."""
+"""Motions of ramps fitted to their limits exactly, by peaks in closed form instead of samples."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import peak_torque
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import torque_stretch
+from rrr_traj_planner.planners.transitions.motion_law import torque_time_scaling
 
-ROUNDING = 1e-7         # relative
+ROUNDING = 1e-7  # part of a limit up to which exceeding it is rounding
 
 
 def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
-           may_stretch: bool) -> PiecewiseTrajectory | None:
+           may_scale: bool) -> PiecewiseTrajectory | None:
     """
     Return a motion slowed as a whole until it keeps every limit.
 
@@ -38,31 +38,32 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
         The arm and its limits.
     trajectory : PiecewiseTrajectory
         The motion.
-    may_stretch : bool
+    may_scale : bool
         Whether it may be slowed at all.
 
     Returns
     -------
     PiecewiseTrajectory or None
-        None where slowing does not help: a joint leaves its range, or the motion hurries past a
-        pose that the motors cannot hold.
+        None where slowing does not help: a joint leaves its range, or the motion passes fast
+        through a pose that the motors cannot hold.
 
     """
     if beyond_range(task, trajectory).any():
         return None
-    by_torque, factor = torque_stretch(task, trajectory), stretch_of_rates(task, trajectory)
-    # a motion may pass, but not slowly, where gravity alone would be too much
-    hurries = np.isinf(by_torque)
-    if hurries and not torque_fits(task, trajectory):
+    by_torque = torque_time_scaling(task, trajectory)
+    factor = kinematic_time_scaling(task, trajectory)
+    # a motion may pass fast, but not slowly, where gravity alone exceeds a limit
+    dynamic = np.isinf(by_torque)
+    if dynamic and not torque_fits(task, trajectory):
         return None
-    if not hurries:
+    if not dynamic:
         factor = max(factor, by_torque)
     if factor <= 1.0 + ROUNDING:
-        return trajectory.stretched(factor) if factor > 1.0 and may_stretch else trajectory
-    if not may_stretch:
+        return trajectory.stretched(factor) if factor > 1.0 and may_scale else trajectory
+    if not may_scale:
         return None
     slowed = trajectory.stretched(factor)
-    return None if hurries and not torque_fits(task, slowed) else slowed
+    return None if dynamic and not torque_fits(task, slowed) else slowed
 
 
 def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
@@ -79,14 +80,14 @@ def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
     Returns
     -------
     ndarray, shape (2, N, 3)
-        Above and below [rad]; 0 within.
+        Beyond the upper and the lower end [rad]; 0 within.
 
     """
     beyond = np.zeros((2, len(task.points) - 1, 3))
     starts = trajectory.via_times[1:-1] - 1e-12
     limits = task.limits
     for j, profile in enumerate(trajectory.profiles):
-        # no piece leads further from where it begins than at peak velocity
+        # a piece moves at most its peak velocity times its duration
         reach = profile.peak_velocity * profile.pieces.duration
         begins = profile.begins
         if ((begins + reach <= limits.max_position[j])
@@ -99,9 +100,9 @@ def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
     return np.where(beyond > JOINT_ROUNDING, beyond, 0.0)
 
 
-def stretch_of_rates(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
+def kinematic_time_scaling(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
     """
-    Return by how much a motion must be slowed for its velocities, accelerations and jerk.
+    Return the least factor on all times by velocity, acceleration and jerk limits.
 
     Parameters
     ----------
@@ -113,7 +114,7 @@ def stretch_of_rates(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
     Returns
     -------
     float
-        At most 1 where they fit as they are.
+        At most 1 where they hold as it is.
 
     """
     limits, profiles = task.limits, trajectory.profiles
@@ -126,7 +127,7 @@ def stretch_of_rates(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
 
 def torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:
     """
-    Return whether a motion, as fast as it is, keeps the torque limits.
+    Return whether a motion keeps the torque limits at its own speed.
 
     Parameters
     ----------
@@ -138,7 +139,7 @@ def torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:
     Returns
     -------
     bool
-        True where there are none.
+        True also where there are none.
 
     """
     effort = task.limits.max_effort

@@ -13,11 +13,12 @@
 # limitations under the License.
 
 """
-`cycloid_approach_a`: the thesis's own: in every segment a transition, then a cruise (4.2, a).
+`cycloid_approach_a`: in every segment a transition, then a cruise (thesis 4.2, approach a).
 
 Each via point is left at the cruise velocity of the segment before it; a last transition brings
-the arm to rest. Durations are all there is to choose: they determine the velocities one after the
-other. A beam search chooses them, a descent by coordinates refines them.
+the arm to rest. The durations determine the velocities one after the other; they are chosen by
+beam search (Bisiani, in Encyclopedia of Artificial Intelligence, 1987) and refined by coordinate
+descent (Nocedal & Wright, Numerical Optimization, 9.3).
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
-from rrr_traj_planner.planners.prescribed_by_search import kept_or_refused, within_torque
+from rrr_traj_planner.planners.prescribed_by_search import motion_or_error, within_torque
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, via_problem_of
@@ -43,26 +44,27 @@ from rrr_traj_planner.planners.transitions.transition_cruise import (
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
-BEAM = 24
-# Durations tried, over the least one from rest to rest: fine near it, on to very slow.
+# Without unit.
+BEAM = 24                  # partial solutions that are retained
+# Durations tried, over the least one from rest to rest: finely spaced near it, up to very slow.
 GRID = np.concatenate((np.geomspace(0.4, 2.5, 36), np.geomspace(2.8, 60.0, 12)))
-REFINED_SEGMENTS = 12      # with more, the beam's answer stands
-REFINING_PASSES = 16
-REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])
-FIRST_STEP = 0.08          # relative
-STEP_REDUCTION = 0.5
-STRETCHES = np.geomspace(1.0, 30.0, 40)  # of what the search finds, tried in turn
+REFINED_SEGMENTS = 12      # at most: beyond, the beam search's result is not refined
+REFINING_PASSES = 16       # of coordinate descent, at most
+REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])  # over the pass's step
+FIRST_STEP = 0.08          # of the first pass, as a part of a duration
+STEP_REDUCTION = 0.5       # factor on it from pass to pass
+SCALINGS = np.geomspace(1.0, 30.0, 40)  # of the durations, tried in turn until feasible
 
 
 @register('cycloid_approach_a')
 def plan(task: JointTask) -> Trajectory:
     """
-    Return the fastest motion of approach (a) that is found, or one of prescribed durations.
+    Return the fastest motion of approach (a) that the search finds, or one of given durations.
 
     Parameters
     ----------
     task : JointTask
-        What is asked.
+        Via points, the arm and its limits.
 
     Returns
     -------
@@ -81,7 +83,7 @@ def plan(task: JointTask) -> Trajectory:
     """
     problem = via_problem_of(task)
     if task.durations is not None:
-        return kept_or_refused(lambda durations: within_torque(
+        return motion_or_error(lambda durations: within_torque(
             task, problem.law, lambda law: _motion(task, problem, law, durations)), task.durations)
     motion = _motion(task, problem, problem.law, _fastest(task, problem))
     if motion is None:
@@ -90,11 +92,11 @@ def plan(task: JointTask) -> Trajectory:
 
 
 def _fastest(task: JointTask, problem: ViaProblem) -> Array:
-    """Return durations of least total time, as good as the search finds them, shape (n,)."""
+    """Return the durations of least total time that the search finds, shape (n,)."""
     durations = _beam_search(problem, task.should_stop)
     if len(durations) <= REFINED_SEGMENTS:
         durations = _refined(problem, durations, task.should_stop)
-    for factor in STRETCHES:
+    for factor in SCALINGS:
         task.should_stop()
         if _motion(task, problem, problem.law, factor * durations) is not None:
             return np.asarray(factor * durations)
@@ -104,7 +106,7 @@ def _fastest(task: JointTask, problem: ViaProblem) -> Array:
 
 
 def _beam_search(problem: ViaProblem, should_stop: ShouldStop) -> Array:
-    """Return durations chosen one after the other; where that ends, very long ones."""
+    """Return durations by beam search; the longest of the grid where no beam is left."""
     D, law, limit = problem.displacements, problem.law, problem.max_velocity
     grids = np.maximum(problem.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
     v, elapsed, chosen = np.zeros((1, 3)), np.zeros(1), np.zeros((1, 0))
@@ -128,7 +130,7 @@ def _beam_search(problem: ViaProblem, should_stop: ShouldStop) -> Array:
 
 def _best(law: TransitionLaw, limit: Array, v: Array, elapsed: Array, D: Array,
           grid: Array) -> IntArray:
-    """Return which beams can come to rest first at the end of the next segment."""
+    """Return the beams that can come to rest earliest at the end of the next segment."""
     low, high = stopping_bracket(law, limit, v, D, grid)
     near = np.arange(len(v))
     if len(v) > BEAM:  # others than these cannot be among them
@@ -138,7 +140,7 @@ def _best(law: TransitionLaw, limit: Array, v: Array, elapsed: Array, D: Array,
 
 
 def _refined(problem: ViaProblem, durations: Array, should_stop: ShouldStop) -> Array:
-    """Return better durations, each varied in turn by smaller and smaller steps."""
+    """Return durations improved by coordinate descent with decreasing steps."""
     best, step = _total(problem, durations[np.newaxis])[0], FIRST_STEP
     for _ in range(REFINING_PASSES):
         if should_stop():
@@ -169,7 +171,7 @@ def _total(problem: ViaProblem, durations: Array) -> Array:
 
 def _motion(task: JointTask, problem: ViaProblem, law: TransitionLaw,
             durations: Array) -> PiecewiseTrajectory | None:
-    """Return the motion of given durations, None if it breaks a limit other than torque's."""
+    """Return the motion of given durations, None if it exceeds a limit other than torque's."""
     D, T = problem.displacements, durations[:, np.newaxis]
     v = np.zeros((len(D) + 1, 3))
     for k in range(len(D) - 1):
@@ -185,6 +187,6 @@ def _motion(task: JointTask, problem: ViaProblem, law: TransitionLaw,
         part[-1:] = last
     motion = trajectory(task.points, v[:-1], v[1:], T, parts)
     peaks, limits = motion.peaks(), task.limits
-    kept = (peaks.min_position >= limits.min_position - JOINT_ROUNDING).all() and (
+    in_range = (peaks.min_position >= limits.min_position - JOINT_ROUNDING).all() and (
         peaks.max_position <= limits.max_position + JOINT_ROUNDING).all()
-    return motion if kept else None
+    return motion if in_range else None

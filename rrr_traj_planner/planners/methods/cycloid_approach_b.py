@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-`cycloid_approach_b`: Paul's: every via point straddled by a transition (4.2, b; figure 4.4).
+`cycloid_approach_b`: blends around the via points, after Paul (thesis 4.2, b; figure 4.4).
 
 Via points between the first and the last are missed: the arm cuts the corners of the lines between
 them in joint space. Transitions are full-period cycloids, common to all joints, as short as the
-limits allow: shorter ones miss by less.
+limits allow: the shorter, the less they miss by.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.blends.blend_motion import (
-    is_kept,
+    BlendTimes,
+    is_within_limits,
     shortest_transitions,
-    Straddling,
     trajectory,
 )
 from rrr_traj_planner.planners.blends.blend_timing import fastest
 from rrr_traj_planner.planners.prescribed_by_search import (
-    fastest_beside_stays,
-    kept_or_refused,
+    fastest_durations_between_stays,
+    motion_or_error,
     within_torque,
 )
 from rrr_traj_planner.planners.registry import register
@@ -48,7 +48,7 @@ from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, 
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
-NEWTON_STEPS = 60
+NEWTON_STEPS = 60  # at most: convergence is quadratic, slower near a double root
 
 
 @register('cycloid_approach_b', misses_via_points=True, passing=Passing('blend'))
@@ -59,7 +59,7 @@ def plan(task: JointTask) -> Trajectory:
     Parameters
     ----------
     task : JointTask
-        What is asked.
+        Via points, the arm and its limits.
 
     Returns
     -------
@@ -73,16 +73,16 @@ def plan(task: JointTask) -> Trajectory:
     TimingError
         If prescribed durations are too short; with feasible ones.
     LimitViolationError
-        If gravity alone exceeds an effort limit on the way.
+        If gravity alone exceeds an effort limit along the path.
 
     """
     problem = via_problem_of(task, CYCLOID)
     if task.durations is None:
         return _fastest(task, problem)
-    return kept_or_refused(
+    return motion_or_error(
         lambda durations: within_torque(
             task, problem.law, lambda law: _motion_in(task, problem, law, durations)),
-        task.durations, lambda: fastest_beside_stays(task, lambda points: plan(
+        task.durations, lambda: fastest_durations_between_stays(task, lambda points: plan(
             replace(task, points=points, durations=None))))
 
 
@@ -94,21 +94,21 @@ def _fastest(task: JointTask, problem: ViaProblem) -> Trajectory:
 
 def _motion_in(task: JointTask, problem: ViaProblem, law: TransitionLaw,
                durations: Array) -> PiecewiseTrajectory | None:
-    """Return the motion of given durations, None if it breaks a limit other than torque's."""
+    """Return the motion of given durations, None if it exceeds a limit other than torque's."""
     lines = _lines(law, problem.displacements, durations)
     if lines is None:
         return None
-    timing = Straddling(lines, shortest_transitions(law, problem.displacements, lines))
-    return trajectory(task.points, timing, CYCLOID) if is_kept(problem, timing) else None
+    timing = BlendTimes(lines, shortest_transitions(law, problem.displacements, lines))
+    return trajectory(task.points, timing, CYCLOID) if is_within_limits(problem, timing) else None
 
 
 def _lines(law: TransitionLaw, D: Array, durations: Array) -> Array | None:
     """
-    Return the times of the lines, None where the first or the last transition has no room.
+    Return the times of the lines, None where the first or the last transition does not fit.
 
     The first duration is that of half the first transition and the first line, the last one
-    likewise: T + share t(D / T) = duration. The left side is convex: Newton from above meets the
-    greater solution.
+    likewise: T + share t(D / T) = duration. The left side is convex: Newton's method from above
+    converges to the greater solution.
     """
     share = np.zeros(len(D))
     share[0] += 0.5
@@ -118,7 +118,7 @@ def _lines(law: TransitionLaw, D: Array, durations: Array) -> Array | None:
         for _ in range(NEWTON_STEPS):
             each = law.least_time(D[k] / T[k])
             j = int(each.argmax())
-            rate = law.slope[j] * abs(D[k, j]) / T[k]  # of acceleration's rule; jerk's has half
+            rate = law.slope[j] * abs(D[k, j]) / T[k]  # t by the acceleration limit
             power = 1.0 if rate >= each[j] else 0.5
             above = T[k] + share[k] * each[j] - durations[k]
             fall = 1.0 - share[k] * power * each[j] / T[k]

@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-`cycloid_approach_c`: every segment lifts off, cruises and sets down (4.2, c; after Lin).
+`cycloid_approach_c`: lift-off, cruise, set-down in every segment (thesis 4.2, c; after Lin).
 
-Lift-off is a transition from rest and set-down one to rest, full-period cycloids both: the arm
-stops at every via point. With velocities at the via points left free, the same three parts make
-`cycloid`; with Lin's own polynomials they are `poly_434`.
+Lift-off is a transition from rest and set-down one to rest, both full-period cycloids: the arm
+stops at every via point. `cycloid` has the same three parts with free via velocities, `poly_434`
+has them with Lin's polynomials.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.stops.stops_at_via_points import quick_durations, stopping_motion
+from rrr_traj_planner.planners.stops.stops_at_via_points import (
+    kinematic_durations,
+    stopping_motion,
+)
 from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
 
@@ -43,7 +46,7 @@ def plan(task: JointTask) -> Trajectory:
     Parameters
     ----------
     task : JointTask
-        What is asked; durations that are NaN are free.
+        Via points, the arm and its limits; durations that are NaN are free.
 
     Returns
     -------
@@ -61,7 +64,7 @@ def plan(task: JointTask) -> Trajectory:
 
     """
     problem = via_problem_of(task, CYCLOID)
-    quick = quick_durations(task, problem.rest_to_rest_times())
+    quick = kinematic_durations(task, problem.rest_to_rest_times())
     rest = np.zeros_like(problem.displacements)
     parts = quick_parts(problem.law, rest, rest, quick[:, np.newaxis], problem.displacements)
 

@@ -15,7 +15,7 @@
 """
 `gauss`: as `cycloid`, with Gauss's function for the acceleration of transitions (3.1, A.1-A.9).
 
-Acceleration is continuous, jerk is not: it steps where a transition begins or ends.
+Acceleration is continuous; jerk steps where a transition begins or ends.
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ def plan(task: CartesianTask) -> Trajectory:
     Parameters
     ----------
     task : CartesianTask
-        What is asked.
+        Via points, the arm and its limits.
 
     Returns
     -------

@@ -13,12 +13,12 @@
 # limitations under the License.
 
 """
-`poly_414`: lines in joint space, quartics around the via points (6.1-6.8, after Paul).
+`poly_414`: lines in joint space, blended by quartics around the via points (6.1-6.8, after Paul).
 
-Every transition lasts 2 t_acc, half of it before and half of it after the time at which two lines
-meet in their via point, which is missed. Lines take the least times that the limits and the
-transitions allow, none less than 2 t_acc. Where that asks for more torque than there is, the whole
-motion is slowed, t_acc with it. Jerk steps where a quartic begins or ends.
+Every transition lasts 2 t_acc, centred on the time at which two lines meet in their via point,
+which is missed. Lines have the least durations that the limits and the transitions allow, none
+less than 2 t_acc. Where torque exceeds its limits, the whole motion is slowed, t_acc with it. Jerk
+steps where a quartic begins or ends.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
-from rrr_traj_planner.planners.blends.blend_motion import is_kept, Straddling, trajectory
+from rrr_traj_planner.planners.blends.blend_motion import BlendTimes, is_within_limits, trajectory
 from rrr_traj_planner.planners.blends.blend_timing import fastest, total_time
 from rrr_traj_planner.planners.prescribed_by_search import (
-    fastest_beside_stays,
-    kept_or_refused,
+    fastest_durations_between_stays,
+    motion_or_error,
     TORQUE_TOLERANCE,
 )
 from rrr_traj_planner.planners.registry import register
@@ -42,7 +42,7 @@ from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import (
     cannot_hold,
     slowed_for_torque,
-    torque_stretch,
+    torque_time_scaling,
     via_problem_of,
 )
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
@@ -56,7 +56,7 @@ def plan(task: JointTask) -> Trajectory:
     Parameters
     ----------
     task : JointTask
-        What is asked.
+        Via points, the arm and its limits.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def plan(task: JointTask) -> Trajectory:
     TimingError
         If prescribed durations are too short; with feasible ones.
     LimitViolationError
-        If gravity alone exceeds an effort limit on the way.
+        If gravity alone exceeds an effort limit along the path.
 
     """
     return planned(task, task.half_transition)
@@ -80,14 +80,14 @@ def planned(task: JointTask, t_acc: float) -> Trajectory:
     """
     Return the motion for a given t_acc.
 
-    It is shorter at a via point beside a segment that could be gone from rest to rest within
-    2 t_acc: half that time, if the motion is then faster. With prescribed durations it is shorter
-    where they leave no room for it.
+    At a via point beside a segment whose least time from rest to rest is below 2 t_acc, the
+    transition lasts that time instead, if the motion is then faster. With prescribed durations a
+    transition is shorter where they are too short for it.
 
     Parameters
     ----------
     task : JointTask
-        What is asked.
+        Via points, the arm and its limits.
     t_acc : float
         Half the length of a transition [s].
 
@@ -104,9 +104,9 @@ def planned(task: JointTask, t_acc: float) -> Trajectory:
     """
     problem = via_problem_of(task, QUARTIC)
     if task.durations is not None:
-        return kept_or_refused(
+        return motion_or_error(
             lambda durations: _motion_in(task, problem, t_acc, durations), task.durations,
-            lambda: fastest_beside_stays(task, lambda points: planned(
+            lambda: fastest_durations_between_stays(task, lambda points: planned(
                 replace(task, points=points, durations=None), t_acc)))
     return _fastest(task, problem, t_acc)
 
@@ -122,7 +122,7 @@ def _fastest(task: JointTask, problem: ViaProblem, t_acc: float) -> Trajectory:
 
 
 def _beside(transitions: Array, bounds: Array) -> Array:
-    """Return transitions that are no longer than the bound of either segment beside them."""
+    """Return transitions limited to the bounds of both segments beside them."""
     inner = np.minimum(np.append(bounds, np.inf), np.append(np.inf, bounds))
     return np.asarray(np.minimum(transitions, inner))
 
@@ -130,25 +130,25 @@ def _beside(transitions: Array, bounds: Array) -> Array:
 def _motion_in(task: JointTask, problem: ViaProblem, t_acc: float,
                durations: Array) -> PiecewiseTrajectory | None:
     """
-    Return the motion of given durations, None if it breaks a limit.
+    Return the motion of given durations, None if it exceeds a limit.
 
-    A segment holds half of both its transitions, the first and the last segment all of the
+    A segment contains half of both its transitions, the first and the last segment all of the
     motion's first and last transition.
     """
-    room = durations.copy()
-    if len(room) == 1:
-        room *= 0.5
+    longest = durations.copy()
+    if len(longest) == 1:
+        longest *= 0.5
     else:
-        room[[0, -1]] /= 1.5
-    transitions = _beside(np.full(len(room) + 1, 2.0 * t_acc), room)
+        longest[[0, -1]] /= 1.5
+    transitions = _beside(np.full(len(longest) + 1, 2.0 * t_acc), longest)
     lines = durations.copy()
     lines[0] -= 0.5 * transitions[0]
     lines[-1] -= 0.5 * transitions[-1]
-    timing = Straddling(lines, transitions)
-    if not is_kept(problem, timing):
+    timing = BlendTimes(lines, transitions)
+    if not is_within_limits(problem, timing):
         return None
     motion = trajectory(task.points, timing, QUARTIC)
-    stretch = torque_stretch(task, motion)
-    if np.isinf(stretch):
+    scaling = torque_time_scaling(task, motion)
+    if np.isinf(scaling):
         raise cannot_hold(task, motion)
-    return motion if stretch <= 1.0 + TORQUE_TOLERANCE else None
+    return motion if scaling <= 1.0 + TORQUE_TOLERANCE else None

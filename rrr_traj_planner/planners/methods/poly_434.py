@@ -15,12 +15,13 @@
 """
 `poly_434`: Lin's 4-3-4: in every segment a quartic lift-off, a cubic cruise, a quartic set-down.
 
-Approach (c) of section 4.2: "each subtrajectory is composed of three segments, namely; lift-off,
-cruise and set down", of polynomials as section 2.2.2 describes them. The thesis's visiting points
-bound the subtrajectories: they are where a lift-off begins and a set-down ends, at rest, and not
-Lin's points between these, which are free. All joints follow one law, so the arm moves straight in
-joint space. The law is the symmetric one of least time (`symmetric_434`); where torque asks for
-more time, the best that `torque_434` finds. Jerk steps at the joins and at the via points.
+Approach (c) of thesis section 4.2: "each subtrajectory is composed of three segments, namely;
+lift-off, cruise and set down", of polynomials as section 2.2.2 describes them. The thesis's
+visiting points bound the subtrajectories: a lift-off begins and a set-down ends there, at rest;
+Lin's lift-off and set-down points in between are free. All joints follow one law, so the arm moves
+along straight lines in joint space. The law is the symmetric one of least time (`symmetric_434`);
+where torque limits are active, the best that `torque_434` finds. Jerk steps at the joins and at
+the via points.
 """
 
 from __future__ import annotations
@@ -35,18 +36,18 @@ from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.stops.stops_at_via_points import (
+    kinematic_durations,
     may_lack_torque,
-    quick_durations,
     stopping_motion,
 )
 from rrr_traj_planner.planners.stops.symmetric_434 import (
+    displacement_ratios,
+    DisplacementRatios,
     fastest_symmetric,
     least_time,
-    Loads,
-    loads_of,
 )
 from rrr_traj_planner.planners.stops.torque_434 import law_for_torque, Segment, STARTS
-from rrr_traj_planner.planners.transitions.motion_law import torque_stretch, via_problem_of
+from rrr_traj_planner.planners.transitions.motion_law import torque_time_scaling, via_problem_of
 from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
 
 
@@ -59,7 +60,7 @@ def plan(task: JointTask) -> Trajectory:
     Parameters
     ----------
     task : JointTask
-        What is asked; durations that are NaN are free.
+        Via points, the arm and its limits; durations that are NaN are free.
 
     Returns
     -------
@@ -76,15 +77,15 @@ def plan(task: JointTask) -> Trajectory:
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    loads = loads_of(via_problem_of(task, QUARTIC))
-    symmetric = fastest_symmetric(loads)
-    floors = quick_durations(task, least_time(symmetric, loads))
+    ratios = displacement_ratios(via_problem_of(task, QUARTIC))
+    symmetric = fastest_symmetric(ratios)
+    floors = kinematic_durations(task, least_time(symmetric, ratios))
     lacking = may_lack_torque(task, _motion(task.points, symmetric, floors))
-    found = [_for_torque(task, k, Loads(*(load[k] for load in loads)), _nth(symmetric, k),
-                         float(floors[k])) if lacking[k] else (_nth(symmetric, k), True)
-             for k in range(len(floors))]
+    found = [_for_torque(task, k, DisplacementRatios(*(ratio[k] for ratio in ratios)),
+                         _nth(symmetric, k), float(floors[k])) if lacking[k]
+             else (_nth(symmetric, k), True) for k in range(len(floors))]
     laws = Law434(*(np.array(field) for field in zip(*(law for law, _ in found))))
-    quick = np.maximum(floors, quick_durations(task, least_time(laws, loads)))
+    quick = np.maximum(floors, kinematic_durations(task, least_time(laws, ratios)))
     note = _note([task.segment_number(k) for k, (_, whole) in enumerate(found) if not whole])
     return stopping_motion(task, quick, lambda own, durations: _motion(
         task.points[own.start:own.stop + 1], Law434(*(field[own] for field in laws)), durations,
@@ -104,28 +105,29 @@ def _motion(points: Array, laws: Law434, durations: Array, note: str = '') -> Pi
         joint_profiles(pieces), np.concatenate(([0.0], np.cumsum(durations))), note)
 
 
-def _for_torque(task: JointTask, k: int, loads: Loads, law: Law434,
+def _for_torque(task: JointTask, k: int, ratios: DisplacementRatios, law: Law434,
                 floor: float) -> tuple[Law434, bool]:
     """
-    Return the law by which a segment takes least time, and whether the search was whole.
+    Return a segment's law of least time, and whether the search was completed.
 
-    It is the one given where torque allows that in least time, or in the time prescribed.
+    The given law is returned where it keeps torque limits in its least or prescribed time.
     """
     points = task.points[k:k + 2]
     task.should_stop()
 
     def total(law: Law434) -> float:
-        """Return the duration that a law needs, torque included."""
-        quick = max(floor, float(quick_durations(task, least_time(law, loads))))
+        """Return the least duration of a law by all limits."""
+        quick = max(floor, float(kinematic_durations(task, least_time(law, ratios))))
         each = Law434(*(np.array([field]) for field in law))
-        return quick * max(1.0, torque_stretch(task, _motion(points, each, np.array([quick]))))
+        motion = _motion(points, each, np.array([quick]))
+        return quick * max(1.0, torque_time_scaling(task, motion))
 
     least = total(law)
     enough = floor if task.durations is None or np.isnan(task.durations[k]) else max(
         floor, float(task.durations[k]))
     if least <= enough or np.isinf(least):
         return law, True
-    segment = Segment(task.model, task.limits, points[0], points[1] - points[0], loads)
+    segment = Segment(task.model, task.limits, points[0], points[1] - points[0], ratios)
     for start in (law, *STARTS):
         if task.should_stop():
             return law, False
@@ -137,7 +139,7 @@ def _for_torque(task: JointTask, k: int, loads: Loads, law: Law434,
 
 
 def _note(segments: list[int]) -> str:
-    """Return what is to be said where planning ended before every law was found."""
+    """Return the note on segments whose search was cancelled."""
     if not segments:
         return ''
     return ('planning time was over before the fastest 4-3-4 law within torque was found for '

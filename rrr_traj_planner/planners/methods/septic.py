@@ -15,7 +15,7 @@
 """
 `septic`: as `cycloid`, with transitions of the seventh order (C.1-C.11).
 
-As with the cycloid, jerk is zero where a transition begins and ends.
+Jerk is zero where a transition begins and ends, as with the cycloid.
 """
 
 from __future__ import annotations

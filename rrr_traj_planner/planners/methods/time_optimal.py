@@ -15,10 +15,10 @@
 """
 `time_optimal`: as fast as velocity, acceleration, jerk and torque allow, with continuous jerk.
 
-The acceleration is a sequence of the thesis's half-period ramps, whose jerk cruises at its peak
-where a limit on jerk shapes them (`core.motion_laws.ramps`); node accelerations, via velocities
-and durations are optimised together, from rest at every via point on, by an interior-point method
-whose every iterate is a valid motion.
+The acceleration is a sequence of the thesis's half-period ramps (6.3), with constant jerk around
+the middle where the jerk limit is active (`core.motion_laws.ramps`). Node accelerations, via
+velocities and durations are optimised together (direct transcription) by a feasible interior-point
+method (`solver.interior_point`), starting from a motion with stops at every via point.
 """
 
 from __future__ import annotations
@@ -38,13 +38,12 @@ from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, fo
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.solver.ramps import grid_of
 
-RAMPS = 20            # in a segment
-RAMPS_ALONE = 32      # in a motion's only segment, which has to speed up and to slow down
-MOST_RAMPS = 40      # where neither jerk nor sampling shapes them
-SHAPED = 0.1          # part of a segment above which a full swing of acceleration shapes ramps
-SAMPLES_PER_RAMP = 1.0
-
-MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps last a tenth of it or so
+RAMPS = 20              # in a segment
+RAMPS_ALONE = 32        # in a motion's only segment, with both acceleration and deceleration
+MOST_RAMPS = 40         # in a segment where the jerk limit allows short ramps
+SHAPED = 0.1            # acceleration reversal / segment, by duration: RAMPS suffice above it
+SAMPLES_PER_RAMP = 1.0  # at least
+MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps are about a tenth of it
 
 
 @register('time_optimal', some_durations=True,
@@ -56,12 +55,12 @@ def plan(task: JointTask) -> Trajectory:
     Parameters
     ----------
     task : JointTask
-        What is asked; durations that are NaN are free.
+        Via points, the arm and its limits; durations that are NaN are free.
 
     Returns
     -------
     Trajectory
-        Within the limits; its note says where the method ended before it converged.
+        Within the limits; its note tells if the method ended before it converged.
 
     Raises
     ------
@@ -70,7 +69,7 @@ def plan(task: JointTask) -> Trajectory:
     TimingError
         If prescribed durations are too short; with feasible ones.
     LimitViolationError
-        If no way between two via points is found along which the motors can hold the arm.
+        If no path between two via points is found along which the motors can hold the arm.
 
     """
     limits, cruise = followable(task.model, task.limits, task.points, task.sample_period)
@@ -86,7 +85,7 @@ def plan(task: JointTask) -> Trajectory:
 
 
 def _ramps(task: JointTask) -> int:
-    """Return how many ramps a segment has: more where jerk leaves room for shorter ones."""
+    """Return the number of ramps of a segment: more where the jerk limit allows short ones."""
     scale = acceleration_scale(task.model, task.limits, task.points)
     D = np.abs(np.diff(task.points, axis=0))
     T = float(np.median(np.maximum(2.0 * np.sqrt(D / scale),

@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-Approach (c) of section 4.2: every segment by itself lifts off, cruises and sets down.
+Motions that stop at every via point: approach (c) of thesis section 4.2.
 
-The arm rests at every via point, so the segments have nothing to do with each other: each takes
-its own least time, torque slows those alone that lack it, and any duration that is not shorter may
-be prescribed. Planners differ in the motion of a segment.
+The segments are independent of each other: each takes its own least time, is slowed by itself as
+its torques require, and may be prescribed any longer duration. Planners differ in the motion of a
+segment.
 """
 
 from __future__ import annotations
@@ -30,19 +30,20 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import torque_sweep
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_stretch
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scaling
 
-ROOM = 1e-6                # durations are longer than the least by this part
-PLENTY = 0.8                # of the speed, up to which torque is not looked at more closely
-DURATION_TOLERANCE = 1e-7  # relative, by which prescribed durations may fall short
+# Without unit.
+DURATION_MARGIN = 1e-6     # part added to the least durations
+SPEED_CHECKED = 0.8        # time scaling above which a segment's torque peaks are located exactly
+DURATION_TOLERANCE = 1e-7  # part by which prescribed durations may fall short
 
-# Returns the motion of some of the segments, one after the other, in given durations.
+# Returns the motion of consecutive segments in given durations.
 SegmentMotion = Callable[[slice, Array], PiecewiseTrajectory]
 
 
-def quick_durations(task: JointTask, least: Array) -> Array:
+def kinematic_durations(task: JointTask, least: Array) -> Array:
     """
-    Return durations in which segments are gone through, but for torque.
+    Return positive durations of segments from their least ones, torque not considered.
 
     Parameters
     ----------
@@ -54,10 +55,10 @@ def quick_durations(task: JointTask, least: Array) -> Array:
     Returns
     -------
     ndarray, shape (n,)
-        [s], positive: where nothing moves, any will do.
+        [s], with DURATION_MARGIN; a millionth of the sample period where nothing moves.
 
     """
-    return np.maximum(least * (1.0 + ROOM), task.sample_period * ROOM)
+    return np.maximum(least * (1.0 + DURATION_MARGIN), task.sample_period * DURATION_MARGIN)
 
 
 def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> PiecewiseTrajectory:
@@ -67,7 +68,7 @@ def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> Pie
     Parameters
     ----------
     task : JointTask
-        What is asked; durations that are NaN are free.
+        Via points, the arm and its limits; durations that are NaN are free.
     quick : ndarray, shape (n,)
         Durations within all limits but torque's [s].
     motion : callable
@@ -88,13 +89,13 @@ def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> Pie
 
     """
     everywhere = slice(0, len(quick))
-    stretches = np.ones(len(quick))
+    scalings = np.ones(len(quick))
     for k in np.flatnonzero(may_lack_torque(task, motion(everywhere, quick))).tolist():
         task.should_stop()
-        stretches[k] = max(1.0, torque_stretch(task, motion(slice(k, k + 1), quick[k:k + 1])))
-    if np.isinf(stretches).any():
+        scalings[k] = max(1.0, torque_time_scaling(task, motion(slice(k, k + 1), quick[k:k + 1])))
+    if np.isinf(scalings).any():
         raise cannot_hold(task, motion(everywhere, quick))
-    least = quick * stretches
+    least = quick * scalings
     durations = least if task.durations is None else np.where(
         np.isnan(task.durations), least, task.durations)
     short = durations < least * (1.0 - DURATION_TOLERANCE)
@@ -105,7 +106,7 @@ def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> Pie
 
 def may_lack_torque(task: JointTask, motion: PiecewiseTrajectory) -> BoolArray:
     """
-    Return which segments are to be looked at closely: others have torque to spare, and plenty.
+    Return which segments may exceed torque limits, by samples: the others are well within.
 
     Parameters
     ----------
@@ -117,7 +118,7 @@ def may_lack_torque(task: JointTask, motion: PiecewiseTrajectory) -> BoolArray:
     Returns
     -------
     ndarray of bool, shape (n,)
-        Segments on which torque at many points asks for more than PLENTY of the speed.
+        Segments whose sampled torque requires a time scaling of more than SPEED_CHECKED.
 
     """
     sweep = torque_sweep(task.model, motion)
@@ -125,14 +126,14 @@ def may_lack_torque(task: JointTask, motion: PiecewiseTrajectory) -> BoolArray:
     worst = np.zeros(len(motion.via_times) - 1)
     np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='right'), squared)
     np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='left'), squared)
-    return np.asarray(~(worst < PLENTY ** 2))
+    return np.asarray(~(worst < SPEED_CHECKED ** 2))
 
 
 def _too_short(task: JointTask, durations: Array, least: Array, short: list[int]) -> TimingError:
     """Return the error of prescribed durations that are too short, with the least feasible."""
     numbers = [str(task.segment_number(k)) for k in short]
     feasible = np.maximum(durations, np.ceil(least * 1e6) / 1e6)
-    asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
+    given, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
     return TimingError(
-        f'segment_durations {asked} s are too short for segment{"s" * (len(short) > 1)} '
+        f'segment_durations {given} s are too short for segment{"s" * (len(short) > 1)} '
         f'{", ".join(numbers)}: the least feasible are {offered} s', tuple(offered))

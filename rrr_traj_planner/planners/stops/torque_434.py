@@ -13,15 +13,16 @@
 # limitations under the License.
 
 """
-4-3-4 laws for segments that torque makes longer: joins' times and accelerations of least time.
+4-3-4 laws of least time for segments whose torque limits are active.
 
-Where gravity helps to start and hinders to stop, or inertia changes on the way, the best law is
-not symmetric. A segment's problem has five variables: the logarithm of its duration, of the parts
-that lift-off and set-down take, and the accelerations at the joins. Lift-off only speeds up and
-set-down only slows down; velocity does not become negative; the peaks keep their limits, and so do
-torques at points all along the segment. SciPy's SLSQP solves it from several starts. What it finds
-need not be the best, nor even keep the limits: the planner measures every law that it gets from
-here, beside the one that it has.
+Where gravity's torque or the inertia changes along a segment, the law of least time is not
+symmetric. A segment's problem has five variables: the logarithms of its duration and of the parts
+of lift-off and set-down, and the accelerations at the joins. Lift-off only accelerates, set-down
+only decelerates, velocity is not negative; peaks are within their limits, and so are torques at
+sampled points. SciPy's SLSQP (sequential quadratic programming: Nocedal & Wright, Numerical
+Optimization, chapter 18) solves it from several starts. Its result need not be the optimum, nor
+feasible between the samples: the planner computes the exact duration of every law, and keeps the
+shortest.
 """
 
 from __future__ import annotations
@@ -34,71 +35,71 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.motion_laws.lin_434 import Law434
-from rrr_traj_planner.planners.stops.symmetric_434 import least_time, Loads
+from rrr_traj_planner.planners.stops.symmetric_434 import DisplacementRatios, least_time
 from scipy.optimize import minimize
 
 # Starts beside the symmetric law: constant jerk, and either end longer than the other.
 STARTS = (Law434(0.25, 0.25, 8.0, -8.0), Law434(0.2, 0.45, 5.0, -0.1),
           Law434(0.45, 0.2, 0.1, -5.0))
-POINTS = np.linspace(0.0, 1.0, 9)  # of lift-off, cruise and set-down each, for torque
-LEAST_CRUISE = 0.02                # of the duration
-PARTS = (np.log(1e-5), np.log(0.97))
-MOST_ACCELERATION = 60.0
-STEPS = 60
-TOLERANCE = 1e-9
-BACKWARDS = 1e-10  # velocity that rounding may leave, of displacement / duration
+POINTS = np.linspace(0.0, 1.0, 9)  # samples of torque in lift-off, cruise and set-down each
+LEAST_CRUISE = 0.02                # part of the duration
+PARTS = (np.log(1e-5), np.log(0.97))  # bounds on the logarithm of lift-off's and set-down's part
+MOST_ACCELERATION = 60.0   # bound, over displacement / duration^2; the symmetric law's peak is 6
+STEPS = 60                 # of SLSQP, at most
+TOLERANCE = 1e-9           # of the logarithm of the duration
+NEGATIVE_VELOCITY = 1e-10  # due to rounding, over displacement / duration
 
-DIFFERENCE = 1e-6
+DIFFERENCE = 1e-6          # step of the central differences in all five variables
 AROUND = np.concatenate((np.zeros((1, 5)), DIFFERENCE * np.eye(5), -DIFFERENCE * np.eye(5)))
 
 
 class Segment(NamedTuple):
-    """A segment, and what limits its motion."""
+    """A segment and its limits."""
 
     model: RobotModel
     limits: JointLimits
     start: Array         # joint positions [rad], shape (3,)
     displacement: Array  # [rad], shape (3,)
-    loads: Loads         # of this segment, shape ()
+    ratios: DisplacementRatios         # of this segment, shape ()
 
 
 def law_for_torque(segment: Segment, start: Law434, duration: float,
                    floor: float) -> Law434 | None:
     """
-    Return where SLSQP comes to from a start.
+    Return the result of SLSQP from a start.
 
     Parameters
     ----------
     segment : Segment
-        Where and within which limits.
+        The segment and its limits.
     start : Law434
         Fields of shape ().
     duration : float
-        What is to be improved on [s].
+        The shortest duration so far [s].
     floor : float
-        A duration [s] below which none is sought.
+        Lower bound on the duration [s].
 
     Returns
     -------
     Law434 or None
-        Fields of shape (); None where that is no law, or its velocity becomes negative.
+        Fields of shape (); None where it is not a valid law, or its velocity becomes negative.
 
     """
-    duration = max(duration, float(least_time(start, segment.loads)))
+    duration = max(duration, float(least_time(start, segment.ratios)))
     x0 = np.array([0.0, np.log(start.first), np.log(start.last), start.a1, start.a2])
     x0[1:3] = np.clip(x0[1:3], *PARTS)
     bounds = [(np.log(floor / duration), None), PARTS, PARTS,
               (0.0, MOST_ACCELERATION), (-MOST_ACCELERATION, 0.0)]
-    rooms: dict[bytes, tuple[Array, Array]] = {}
+    cache: dict[bytes, tuple[Array, Array]] = {}
 
     def at(x: Array) -> tuple[Array, Array]:
         key = x.tobytes()
-        if key not in rooms:  # values and their gradients are asked for in turn
-            around = _rooms(segment, duration, x + AROUND)
-            rooms.clear()
-            rooms[key] = (around[:, 0],
+        if key not in cache:  # SLSQP calls for values and gradients one after the other
+            around = _margins(segment, duration, x + AROUND)
+            cache.clear()
+            cache[key] = (around[:, 0],
                           (around[:, 1:6] - around[:, 6:]) / (2.0 * DIFFERENCE))
-        return rooms[key]
+        return cache[key]
 
     gradient = np.eye(5)[0]
     with np.errstate(all='ignore'):  # a step may try a law without a cruise
@@ -109,24 +110,24 @@ def law_for_torque(segment: Segment, start: Law434, duration: float,
     if not np.isfinite(x).all():
         return None
     law = Law434(*np.exp(x[1:3]), *x[3:])
-    sound = law.cruise >= 0.5 * LEAST_CRUISE and law.velocities().min() >= -BACKWARDS
+    sound = law.cruise >= 0.5 * LEAST_CRUISE and law.velocities().min() >= -NEGATIVE_VELOCITY
     return law if sound else None
 
 
-def _rooms(segment: Segment, duration: float, x: Array) -> Array:
-    """Return what is left to each limit, of it, shape (constraints, m); x has shape (m, 5)."""
+def _margins(segment: Segment, duration: float, x: Array) -> Array:
+    """Return the relative margin of each limit, shape (constraints, m); x has shape (m, 5)."""
     T = duration * np.exp(x[:, 0])
     law = Law434(np.exp(x[:, 1]), np.exp(x[:, 2]), x[:, 3], x[:, 4])
-    velocity, loads = law.velocities(), segment.loads
-    shares = np.concatenate((law.accelerations() * loads.acceleration / T ** 2,
-                             law.jerks() * loads.jerk / T ** 3,
+    velocity, ratios = law.velocities(), segment.ratios
+    shares = np.concatenate((law.accelerations() * ratios.acceleration / T ** 2,
+                             law.jerks() * ratios.jerk / T ** 3,
                              _torque_shares(segment, law, T)))
     return np.concatenate(([law.cruise - LEAST_CRUISE], velocity,
-                           1.0 - velocity * loads.velocity / T, 1.0 - shares, 1.0 + shares))
+                           1.0 - velocity * ratios.velocity / T, 1.0 - shares, 1.0 + shares))
 
 
 def _torque_shares(segment: Segment, law: Law434, T: Array) -> Array:
-    """Return torques all along a segment, of their limits, shape (points, m)."""
+    """Return sampled torques over their limits, shape (points, m)."""
     limited = np.isfinite(segment.limits.max_effort)
     columns = Law434(*(field[:, np.newaxis] for field in law))
     s, sd, sdd = (np.concatenate(each, axis=1)[..., np.newaxis] for each in zip(*(

@@ -16,8 +16,8 @@
 The fastest motion through consecutive segments.
 
 Durations and via velocities are optimised together under the velocity, acceleration and jerk
-limits; where the torque of the motion is too much, the segments that ask for it are given more
-time.
+limits; segments whose torque exceeds its limits are then lengthened, and the others optimised
+again.
 """
 
 from __future__ import annotations
@@ -29,23 +29,24 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion import (
+    motion_slowed_for_torque,
     motion_with_floor,
     quickest_motion,
-    segment_stretch,
-    stretched_for_torque,
+    segment_time_scaling,
     TimedMotion,
 )
 from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
 
-STRAIGHTENING_ROUNDS = 5   # of lowering via velocities of a path that gravity blocks
-SLOWING_ROUNDS = 8         # of giving more time to the segments that lack torque
-BACKWARD = 1.0, 0.5        # powers, each tried, of what it asks of segments that last too long
-OVERSHOOT_ROUNDS = 8       # of lowering via velocities that overshoot a joint's range
+# Numbers of rounds, at most:
+STRAIGHTENING_ROUNDS = 5   # of reducing via velocities where gravity blocks the path
+SLOWING_ROUNDS = 8         # of lengthening the segments that lack torque
+OVERSHOOT_ROUNDS = 8       # of reducing via velocities where a joint overshoots its range
+BACKWARD = 1.0, 0.5        # exponents, each tried, of the factor that shortens a segment again
 
 
 def fastest(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedMotion:
     """
-    Return the motion of least total time, slowed where torque asks for it.
+    Return the motion of least total time, slowed as its torques require.
 
     Parameters
     ----------
@@ -67,12 +68,12 @@ def fastest(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedM
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    problem, motion, stretch = _holdable_motion(task, problem, floor)
-    candidates = [(motion, stretch)]
+    problem, motion, scaling = _statically_feasible_motion(task, problem, floor)
+    candidates = [(motion, scaling)]
     for backward in BACKWARD:
-        candidates += _slowed(task, problem, floor, motion, stretch, backward)
+        candidates += _slowed(task, problem, floor, motion, scaling, backward)
     totals = [m.durations.sum() * max(1.0, s.max()) for m, s in candidates]
-    return stretched_for_torque(task, candidates[int(np.argmin(totals))][0])
+    return motion_slowed_for_torque(task, candidates[int(np.argmin(totals))][0])
 
 
 def fastest_with_stops(task: JointTask, problem: ViaProblem, floor: Array) -> TimedMotion:
@@ -100,47 +101,47 @@ def fastest_with_stops(task: JointTask, problem: ViaProblem, floor: Array) -> Ti
 
     """
     stops = at_rest(problem)
-    return stretched_for_torque(task, _least_time_motion(task, stops, floor))
+    return motion_slowed_for_torque(task, _least_time_motion(task, stops, floor))
 
 
 def _slowed(task: JointTask, problem: ViaProblem, floor: Array | None, motion: TimedMotion,
-            stretch: Array, backward: float) -> Iterator[tuple[TimedMotion, Array]]:
+            scaling: Array, backward: float) -> Iterator[tuple[TimedMotion, Array]]:
     """
-    Give motions, and their stretch, whose segments last as long as torque asks of the one before.
+    Yield motions and their time scaling, each lengthened as the torques of the one before require.
 
-    Where it asks for less than before, durations go back by a power of it.
+    A segment that has been lengthened too much is shortened by a power of its time scaling.
     """
-    lacking = np.zeros(len(stretch), dtype=bool)
+    lacking = np.zeros(len(scaling), dtype=bool)
     for _ in range(SLOWING_ROUNDS):
-        lacking |= stretch > 1.0
-        if not lacking.any() or np.isinf(stretch).any() or task.should_stop():
+        lacking |= scaling > 1.0
+        if not lacking.any() or np.isinf(scaling).any() or task.should_stop():
             return
-        change = np.where(stretch > 1.0, stretch, stretch ** backward)
+        change = np.where(scaling > 1.0, scaling, scaling ** backward)
         slow = np.where(lacking, motion.durations * change, 0.0)
         slow = slow if floor is None else np.maximum(slow, floor)
         motion = _least_time_motion(task, problem, slow)
-        stretch = segment_stretch(task, motion)
-        yield motion, stretch
+        scaling = segment_time_scaling(task, motion)
+        yield motion, scaling
 
 
-def _holdable_motion(task: JointTask, problem: ViaProblem,
-                     floor: Array | None) -> tuple[ViaProblem, TimedMotion, Array]:
+def _statically_feasible_motion(task: JointTask, problem: ViaProblem,
+                                floor: Array | None) -> tuple[ViaProblem, TimedMotion, Array]:
     """
-    Return the motion of least time whose path can be held against gravity, and torque's stretch.
+    Return the fastest motion whose path is statically feasible, and its segments' time scaling.
 
-    Lower via velocities straighten the path; if gravity is too much even from rest to rest, the
-    stretch says so by being infinite.
+    Lower via velocities straighten the path; the time scaling is infinite where gravity exceeds a
+    limit even between stops.
     """
     for _ in range(STRAIGHTENING_ROUNDS):
         task.should_stop()
         motion = _least_time_motion(task, problem, floor)
-        stretch = segment_stretch(task, motion)
-        blocked = np.isinf(stretch)
+        scaling = segment_time_scaling(task, motion)
+        blocked = np.isinf(scaling)
         if not blocked.any():
-            return problem, motion, stretch
+            return problem, motion, scaling
         problem = slower_at(problem, np.tile(blocked[:, np.newaxis], 3))
     motion = _least_time_motion(task, at_rest(problem), floor)
-    return at_rest(problem), motion, segment_stretch(task, motion)
+    return at_rest(problem), motion, segment_time_scaling(task, motion)
 
 
 def _least_time_motion(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedMotion:

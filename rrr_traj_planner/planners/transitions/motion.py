@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A motion through consecutive segments of given durations, and what slows it down."""
+"""Motions through consecutive segments of given or least durations, slowed as torque requires."""
 
 from __future__ import annotations
 
@@ -26,15 +26,14 @@ from rrr_traj_planner.core.trajectory.torque import torque_sweep
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.transitions import segment_motion
-from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_stretch
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scaling
 from rrr_traj_planner.planners.transitions.via_problem import rests_everywhere, ViaProblem
-from rrr_traj_planner.planners.transitions.via_velocities import least_stretch, least_time
+from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scaling
 
-STRETCH_TOLERANCE = 3e-7   # of prescribed durations: jerk then keeps its limit to 1e-6
-TORQUE_TOLERANCE = 5e-7    # of the stretch that torque asks for
-
-# Durations are longer than the least by this part, so that they can be prescribed again.
-DURATION_ROOM = 1e-6
+# Without unit: parts of a duration.
+SCALING_TOLERANCE = 3e-7   # by which prescribed durations may fall short: jerk is then within 1e-6
+TORQUE_TOLERANCE = 5e-7    # by which a motion may be faster than its torques allow
+DURATION_MARGIN = 1e-6     # added to the least durations, so that these can be prescribed again
 
 
 class TimedMotion(NamedTuple):
@@ -49,7 +48,8 @@ def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
     """
     Return a motion of given durations, and which segments overshoot a joint's range.
 
-    Time to spare makes it gentle, or else slows the fastest motion of the same proportions.
+    If the durations are longer than necessary, the motion has lower accelerations, or is the
+    fastest one of the same proportions, slowed.
 
     Parameters
     ----------
@@ -60,25 +60,25 @@ def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
     durations : ndarray, shape (n,)
         [s].
     gently : bool
-        Whether time to spare makes it gentle.
+        Whether to choose low accelerations.
 
     Returns
     -------
     tuple of TimedMotion and ndarray of bool, shape (n, 3)
-        None where it overshoots, or the kinematic limits leave no such motion.
+        None where it overshoots, or no motion satisfies the kinematic limits.
 
     """
     if rests_everywhere(problem):
         factor = float((problem.rest_to_rest_times() / durations).max())
         v, T = np.zeros_like(problem.highest), durations * factor
     else:
-        factor, solution = least_stretch(problem, durations)
+        factor, solution = least_time_scaling(problem, durations)
         v, T = solution.velocities, solution.durations
-    if factor > 1.0 + STRETCH_TOLERANCE:
+    if factor > 1.0 + SCALING_TOLERANCE:
         return None, np.zeros_like(problem.displacements, dtype=bool)
     if factor <= 1.0 and gently:
         v, T, factor = v * factor, durations, 1.0
-    motion, overshoot = _moved(task, problem, v, T, durations)
+    motion, overshoot = _motion_of(task, problem, v, T, durations)
     if motion is not None and factor != 1.0:
         motion = motion._replace(trajectory=motion.trajectory.stretched(1.0 / factor))
     return motion, overshoot
@@ -96,7 +96,7 @@ def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion |
     Returns
     -------
     tuple of TimedMotion and ndarray of bool, shape (n, 3)
-        None where it overshoots. Its note says where planning was stopped before it converged.
+        None where it overshoots. Its note tells if planning was stopped before it converged.
 
     """
     stops = problem.rest_to_rest_times()
@@ -106,8 +106,8 @@ def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion |
         gap = found.gap - float(max(found.durations.sum() - stops.sum(), 0.0))
         if found.durations.sum() <= stops.sum():  # it was not stopped early
             v, T = found.velocities, found.durations
-    slower = 1.0 + DURATION_ROOM
-    motion, overshoot = _moved(task, problem, v / slower, T * slower, T * slower)
+    slower = 1.0 + DURATION_MARGIN
+    motion, overshoot = _motion_of(task, problem, v / slower, T * slower, T * slower)
     if motion is not None:
         motion.trajectory.note = unconverged_note(gap, motion.trajectory.duration)
     return motion, overshoot
@@ -116,10 +116,9 @@ def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion |
 def motion_with_floor(task: JointTask, problem: ViaProblem,
                       floor: Array) -> tuple[TimedMotion | None, BoolArray]:
     """
-    Return the motion of least total time whose segments last long enough, and what overshoots.
+    Return the motion of least total time with lower bounds on durations, and what overshoots.
 
-    Its via velocities are those of the least stretch: where a floor leaves time to spare, they
-    leave most room to slow down or hurry.
+    Its via velocities are those for which these durations could be scaled down most.
 
     Parameters
     ----------
@@ -136,12 +135,12 @@ def motion_with_floor(task: JointTask, problem: ViaProblem,
     """
     durations = (np.maximum(problem.rest_to_rest_times(), floor) if rests_everywhere(problem)
                  else least_time(problem, floor, task.should_stop).durations)
-    return timed_motion(task, problem, durations * (1.0 + DURATION_ROOM))
+    return timed_motion(task, problem, durations * (1.0 + DURATION_MARGIN))
 
 
-def segment_stretch(task: JointTask, motion: TimedMotion) -> Array:
+def segment_time_scaling(task: JointTask, motion: TimedMotion) -> Array:
     """
-    Return by how much torque asks each segment to be stretched.
+    Return the least factor on each segment's times with which torque limits hold.
 
     Parameters
     ----------
@@ -153,7 +152,7 @@ def segment_stretch(task: JointTask, motion: TimedMotion) -> Array:
     Returns
     -------
     ndarray, shape (n,)
-        Below 1 where there is torque to spare, infinite where gravity alone is too much.
+        Below 1 where torque is below its limits, infinite where gravity alone exceeds one.
 
     """
     if np.isinf(task.limits.max_effort).all():
@@ -166,9 +165,9 @@ def segment_stretch(task: JointTask, motion: TimedMotion) -> Array:
     return np.sqrt(worst)
 
 
-def stretched_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotion:
+def motion_slowed_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotion:
     """
-    Return the motion slowed as a whole, just enough for its torques.
+    Return the motion slowed as a whole until its torques are within their limits.
 
     Parameters
     ----------
@@ -185,10 +184,10 @@ def stretched_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotion:
     Raises
     ------
     LimitViolationError
-        If gravity alone exceeds an effort limit on the way.
+        If gravity alone exceeds an effort limit along the path.
 
     """
-    factor = torque_stretch(task, motion.trajectory)
+    factor = torque_time_scaling(task, motion.trajectory)
     if np.isinf(factor):
         raise cannot_hold(task, motion.trajectory)
     if factor <= 1.0 + TORQUE_TOLERANCE:
@@ -196,8 +195,8 @@ def stretched_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotion:
     return TimedMotion(motion.trajectory.stretched(factor), motion.durations * factor)
 
 
-def _moved(task: JointTask, problem: ViaProblem, v: Array, T: Array,
-           durations: Array) -> tuple[TimedMotion | None, BoolArray]:
+def _motion_of(task: JointTask, problem: ViaProblem, v: Array, T: Array,
+               durations: Array) -> tuple[TimedMotion | None, BoolArray]:
     """Return the motion of given velocities and durations; none where it overshoots a range."""
     rest = np.zeros((1, 3))
     v0, v1 = np.concatenate((rest, v)), np.concatenate((v, rest))
@@ -214,10 +213,10 @@ def _moved(task: JointTask, problem: ViaProblem, v: Array, T: Array,
 def _overshoot(task: JointTask, problem: ViaProblem, v0: Array, v1: Array,
                parts: segment_motion.Parts) -> BoolArray:
     """
-    Return in which segments which joints leave their range, shape (n, 3).
+    Return which joints leave their range in which segments, shape (n, 3).
 
-    Via points lie within it, and between them position has an extreme only where a transition
-    leads to a velocity of the other sign. It is less than velocity times duration away.
+    Via points are within it, and between them position has an extreme only where velocity changes
+    sign in a transition, at a distance below velocity times duration.
     """
     limits, cruise = task.limits, parts.cruise
     least, most = limits.min_position, limits.max_position

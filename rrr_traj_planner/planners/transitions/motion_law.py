@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The via-point problem of a task: transition law, velocity bounds, distance to the ranges."""
+"""The via-point problem of a task, and the slowing of its motions as torque requires."""
 
 from __future__ import annotations
 
@@ -27,21 +27,24 @@ from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import LEAST_VELOCITY, ViaProblem
 from rrr_traj_planner.planners.via_points import holding_error
 
-# A transition at full acceleration lasts at least so many samples, so that the quintic through
-# them keeps the limits: it is a limit on jerk, of a cycloid's pi / 5 of acceleration / period.
+# Number of samples that a transition at full acceleration lasts at least, so that a controller's
+# quintics through them keep the limits: a limit on jerk, for cycloids pi / 5 acceleration /
+# period.
 SAMPLES_PER_TRANSITION = 5.0
 
 
 def via_problem_of(task: JointTask, function: TransitionFunction = CYCLOID) -> ViaProblem:
     """
-    Return the optimisation problem of a task; the joints' ranges bound the via velocities.
+    Return the via-point problem of a task.
+
+    A via velocity is bounded so that the joint can stop before the end of its range.
 
     Parameters
     ----------
     task : JointTask
-        What is asked.
+        Via points, the arm and its limits.
     function : TransitionFunction
-        What transitions are made of.
+        The velocity function of transitions.
 
     Returns
     -------
@@ -66,17 +69,18 @@ def via_problem_of(task: JointTask, function: TransitionFunction = CYCLOID) -> V
     law = TransitionLaw(function.peak_acceleration / limits.max_acceleration,
                         np.sqrt(function.peak_jerk / jerk))
     D = np.diff(task.points, axis=0)
-    fastest = np.sqrt(2.0 * np.abs(D).sum(axis=0) / law.slope) + 1.0  # no motion is faster
+    fastest = np.sqrt(2.0 * np.abs(D).sum(axis=0) / law.slope) + 1.0  # above any motion's
     velocity = np.minimum(limits.max_velocity, fastest)
     inner = task.points[1:-1]
-    room = np.minimum(inner - limits.min_position, limits.max_position - inner)
-    highest = np.clip(np.sqrt(2.0 * np.maximum(room, 0.0) / law.slope), LEAST_VELOCITY, velocity)
+    distance = np.minimum(inner - limits.min_position, limits.max_position - inner)
+    highest = np.clip(np.sqrt(2.0 * np.maximum(distance, 0.0) / law.slope), LEAST_VELOCITY,
+                      velocity)
     return ViaProblem(D, law, velocity, -highest, highest, function)
 
 
-def torque_stretch(task: JointTask, trajectory: Trajectory) -> float:
+def torque_time_scaling(task: JointTask, trajectory: Trajectory) -> float:
     """
-    Return by how much torque asks the whole motion to be slowed down; at most 1: not at all.
+    Return the least factor on all times with which torque limits hold; at most 1: as it is.
 
     Parameters
     ----------
@@ -88,7 +92,7 @@ def torque_stretch(task: JointTask, trajectory: Trajectory) -> float:
     Returns
     -------
     float
-        Infinite where gravity alone is too much.
+        Infinite where gravity alone exceeds a limit.
 
     """
     return float(stretch_for_torque(task.model, task.limits, trajectory).value.max())
@@ -96,7 +100,7 @@ def torque_stretch(task: JointTask, trajectory: Trajectory) -> float:
 
 def slowed_for_torque(task: JointTask, trajectory: Trajectory) -> Trajectory:
     """
-    Return the motion run through as a whole just as slowly as its torques ask for.
+    Return the motion slowed as a whole until its torques are within their limits.
 
     Parameters
     ----------
@@ -108,23 +112,23 @@ def slowed_for_torque(task: JointTask, trajectory: Trajectory) -> Trajectory:
     Returns
     -------
     Trajectory
-        The same where there is torque enough.
+        The same where they are already.
 
     Raises
     ------
     LimitViolationError
-        If gravity alone exceeds an effort limit on the way.
+        If gravity alone exceeds an effort limit along the path.
 
     """
-    stretch = torque_stretch(task, trajectory)
-    if np.isinf(stretch):
+    factor = torque_time_scaling(task, trajectory)
+    if np.isinf(factor):
         raise cannot_hold(task, trajectory)
-    return trajectory.stretched(stretch) if stretch > 1.0 else trajectory
+    return trajectory.stretched(factor) if factor > 1.0 else trajectory
 
 
 def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:
     """
-    Return the error of a path on which gravity takes more than a motor has.
+    Return the error of a path along which gravity's torque exceeds an effort limit.
 
     Parameters
     ----------

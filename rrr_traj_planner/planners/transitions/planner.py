@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Transition, cruise, transition in every segment, via velocities free: of any function."""
+"""The planner of transition, cruise, transition in every segment, for any transition function."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from rrr_traj_planner.planners.transitions.prescribed import prescribed
 
 def planner_with(function: TransitionFunction) -> JointPlanner:
     """
-    Return the planner of this structure whose transitions are made of a function.
+    Return the planner whose transitions have a given velocity function (thesis 4.2.3).
 
     Parameters
     ----------
     function : TransitionFunction
-        What transitions are made of.
+        The velocity function of transitions.
 
     Returns
     -------
     callable
-        See its own text.
+        The planner, of free via velocities.
 
     """
     def plan(task: JointTask) -> Trajectory:
@@ -47,7 +47,7 @@ def planner_with(function: TransitionFunction) -> JointPlanner:
         Parameters
         ----------
         task : JointTask
-            What is asked.
+            Via points, the arm and its limits.
 
         Returns
         -------

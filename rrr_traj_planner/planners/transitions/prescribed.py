@@ -27,17 +27,17 @@ from rrr_traj_planner.planners.transitions.fastest import (
     STRAIGHTENING_ROUNDS,
 )
 from rrr_traj_planner.planners.transitions.motion import (
-    DURATION_ROOM,
-    segment_stretch,
-    STRETCH_TOLERANCE,
+    DURATION_MARGIN,
+    SCALING_TOLERANCE,
+    segment_time_scaling,
     timed_motion,
     TimedMotion,
     TORQUE_TOLERANCE,
 )
-from rrr_traj_planner.planners.transitions.motion_law import torque_stretch
+from rrr_traj_planner.planners.transitions.motion_law import torque_time_scaling
 from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
 
-DURATION_TOLERANCE = 1e-9  # s, to which prescribed durations are kept
+DURATION_TOLERANCE = 1e-9  # s, between prescribed durations and those of the motion
 
 
 def prescribed(task: JointTask, problem: ViaProblem, durations: Array) -> TimedMotion:
@@ -56,7 +56,7 @@ def prescribed(task: JointTask, problem: ViaProblem, durations: Array) -> TimedM
     Returns
     -------
     TimedMotion
-        Within all limits; the gentlest where there is time to spare.
+        Within all limits; with lower accelerations where durations are longer than necessary.
 
     Raises
     ------
@@ -76,8 +76,8 @@ def _within_limits(task: JointTask, problem: ViaProblem, durations: Array) -> Ti
     """
     Return a motion of given durations within all limits; None if none is found.
 
-    Where the gentle one lacks torque, the fastest of the same proportions may have it once it is
-    slowed to these durations; else lower via velocities may help.
+    Where the motion of low accelerations exceeds torque limits, the fastest one of the same
+    proportions, slowed to these durations, may keep them; else lower via velocities are tried.
     """
     for round_ in range(STRAIGHTENING_ROUNDS + 1):
         task.should_stop()
@@ -87,21 +87,21 @@ def _within_limits(task: JointTask, problem: ViaProblem, durations: Array) -> Ti
             motion = _with_durations(task, problem, durations, gently)
             if motion is None:
                 return None
-            stretch = segment_stretch(task, motion)
-            if torque_stretch(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
+            scaling = segment_time_scaling(task, motion)
+            if torque_time_scaling(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
                 return motion
-        lacking = stretch > 1.0
+        lacking = scaling > 1.0
         problem = slower_at(problem, np.tile(lacking[:, np.newaxis], 3))
     return None
 
 
 def _slowed_fastest(task: JointTask, problem: ViaProblem, durations: Array) -> TimedMotion | None:
-    """Return the fastest motion, slowed, if that gives the durations; else None."""
+    """Return the fastest motion, slowed, if that has the given durations; else None."""
     if (problem.displacements == 0.0).all(axis=1).any():
-        return None  # the fastest motion does not stay anywhere
+        return None  # the fastest motion has no segment without displacement
     quickest = fastest(task, problem, None)
     slower = float(np.mean(durations / quickest.durations))
-    if slower < 1.0 - STRETCH_TOLERANCE or (
+    if slower < 1.0 - SCALING_TOLERANCE or (
             np.abs(durations - slower * quickest.durations).max() > DURATION_TOLERANCE):
         return None
     return TimedMotion(quickest.trajectory.stretched(slower), durations)
@@ -124,20 +124,20 @@ def _with_durations(task: JointTask, problem: ViaProblem, durations: Array,
 def _too_short(task: JointTask, problem: ViaProblem, durations: Array) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
     feasible = _least_feasible(task, problem, durations)
-    asked, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
-    short = np.flatnonzero(durations * (1.0 + 2.0 * DURATION_ROOM) < feasible - 2e-6).tolist()
+    given, least = ([round(float(d), 9) for d in v] for v in (durations, feasible))
+    short = np.flatnonzero(durations * (1.0 + 2.0 * DURATION_MARGIN) < feasible - 2e-6).tolist()
     return TimingError(
-        f'segment_durations {asked} s are too short for segment'
+        f'segment_durations {given} s are too short for segment'
         f'{"s" * (len(short) > 1)} {", ".join(map(str, short))}: the least feasible are '
-        f'{offered} s', tuple(offered))
+        f'{least} s', tuple(least))
 
 
 def _least_feasible(task: JointTask, problem: ViaProblem, durations: Array) -> Array:
-    """Return feasible durations in whole microseconds, none shorter than asked for."""
+    """Return feasible durations in whole microseconds, none shorter than the given ones."""
     for candidate in (fastest(task, problem, durations), fastest_with_stops(
             task, problem, durations)):
-        for room in (0.0, 1e-6, 1e-5, 1e-4, 1e-3):
-            feasible = np.ceil(candidate.durations * (1.0 + room) * 1e6) / 1e6
+        for margin in (0.0, 1e-6, 1e-5, 1e-4, 1e-3):
+            feasible = np.ceil(candidate.durations * (1.0 + margin) * 1e6) / 1e6
             if _within_limits(task, problem, feasible) is not None:
                 return np.asarray(feasible)
     raise ConvergenceError(

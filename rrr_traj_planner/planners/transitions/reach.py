@@ -13,10 +13,10 @@
 # limitations under the License.
 
 """
-How far a transition, a cruise and a transition lead in a given time, for many joints at once.
+The largest displacement of a transition, a cruise and a transition in a given time (thesis 4.2.3).
 
-Of all motions of a segment between given velocities the one comes furthest whose cruise is the
-fastest that leaves both transitions their least durations.
+Of all motions of a segment between given velocities, the one with the largest displacement has
+shortest transitions and the fastest cruise that these allow.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Derivatives(NamedTuple):
 def largest_cruise(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
                    T: Array) -> Array:
     """
-    Return the cruise that takes furthest in a given time between given velocities.
+    Return the cruise velocity of largest displacement in a given time between given velocities.
 
     Parameters
     ----------
@@ -87,9 +87,9 @@ def derivatives(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
     """
     Return the largest displacement and its derivatives.
 
-    With t_k how long the transition at end k lasts, i_k the inverse slope of t(u) there and m_k =
-    (t_k + u_k / i_k) / (2 t_k), a change of velocity by u costs m t: m is 1 where acceleration
-    bounds a transition, 3 / 4 where jerk does.
+    The transition at end k changes velocity by u_k and lasts t_k = t(u_k). With i_k = 1 / t'(u_k)
+    and m_k = (t_k + u_k / i_k) / (2 t_k), the derivative of its displacement u t / 2 by u is m t:
+    m is 1 where the acceleration limit is active, 3 / 4 where the jerk limit is.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def derivatives(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
     Returns
     -------
     Derivatives
-        One-sided where two laws or a limit meet.
+        One-sided where the active limit changes.
 
     """
     return Derivatives(*_evaluated(law, max_velocity, v0, v1, T, derivatives=True)[1:])
@@ -107,7 +107,7 @@ def derivatives(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
 
 def _evaluated(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array,
                derivatives: bool) -> tuple[Array, Array, Array, Array]:
-    """Return cruise, distance and, where they are wanted, its derivatives."""
+    """Return cruise velocity and distance, and the distance's derivatives if requested."""
     three = np.zeros(3)
     shape = np.broadcast_shapes(np.shape(v0), np.shape(v1), np.shape(T), three.shape)
     law_and_limit = [contiguous(x + three) for x in (*law, max_velocity)]

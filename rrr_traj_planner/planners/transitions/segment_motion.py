@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The transitions and the cruise that fill a segment, once its ends and duration are known."""
+"""The transitions and the cruise of a segment, from end velocities, displacement and duration."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
 from rrr_traj_planner.planners.transitions.reach import largest_cruise
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
-BISECTIONS = 60
+BISECTIONS = 60  # of a cruise velocity: to the last digit
 
 
 class Parts(NamedTuple):
@@ -42,11 +42,10 @@ class Parts(NamedTuple):
 def gentle_parts(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array,
                  D: Array) -> Parts:
     """
-    Return parts that cover a displacement in a given time, gently where there is time to spare.
+    Return parts that cover a displacement in a given time, with long transitions where possible.
 
-    Two transitions of half the segment each where the limits allow; else a last (or first)
-    transition as long as the other's limits leave; else both as short as the limits allow and a
-    cruise between them.
+    Two transitions of half the segment each where the limits allow; else one at its limits and the
+    other in the time that is left; else both as short as the limits allow, with a cruise between.
 
     Parameters
     ----------
@@ -88,7 +87,7 @@ def quick_parts(law: TransitionLaw, v0: Array, v1: Array, T: Array, D: Array) ->
     Returns
     -------
     Parts
-        The thesis's own way to slow a joint: full acceleration, a lower cruise.
+        As in the thesis a joint is slowed: at full acceleration, with a lower cruise velocity.
 
     """
     unlimited = np.full(3, np.inf)
@@ -98,7 +97,7 @@ def quick_parts(law: TransitionLaw, v0: Array, v1: Array, T: Array, D: Array) ->
 def trajectory(points: Array, v0: Array, v1: Array, T: Array, parts: Parts,
                function: TransitionFunction = CYCLOID) -> PiecewiseTrajectory:
     """
-    Return the motion that the parts of all segments make.
+    Return the motion composed of the parts of all segments.
 
     Parameters
     ----------
@@ -111,7 +110,7 @@ def trajectory(points: Array, v0: Array, v1: Array, T: Array, parts: Parts,
     parts : Parts
         Of each segment.
     function : TransitionFunction
-        What transitions are made of.
+        The velocity function of transitions.
 
     Returns
     -------
@@ -131,13 +130,13 @@ def trajectory(points: Array, v0: Array, v1: Array, T: Array, parts: Parts,
 
 def joint_profiles(pieces: Sequence[Pieces]) -> list[JointProfile]:
     """
-    Return the profiles of joints whose every segment consists of the same kinds of pieces.
+    Return the profiles of joints whose segments all consist of the same kinds of pieces.
 
     Parameters
     ----------
     pieces : sequence of Pieces
-        In order of time; values of shape (n, 3), for each segment and joint. Those of no duration
-        are left out, whatever their values are.
+        In order of time; values of shape (n, 3), for each segment and joint. Those of zero
+        duration are ignored.
 
     Returns
     -------
@@ -154,10 +153,9 @@ def joint_profiles(pieces: Sequence[Pieces]) -> list[JointProfile]:
 def _mirrored(parts: Callable[[Array, Array, Array], Parts], v0: Array, v1: Array, T: Array,
               D: Array) -> Parts:
     """
-    Return parts of every case from those for a motion that speeds up and is ahead of its mean.
+    Return parts for every case from a function for v0 <= v1 and D at least the mean velocity's.
 
-    Motions behind the mean of their end velocities are mirrored in position, those that slow
-    down are reversed in time.
+    Cases of smaller displacement are mirrored in position, those with v0 > v1 reversed in time.
     """
     sign = np.where(D >= 0.5 * (v0 + v1) * T, 1.0, -1.0)
     a, b = sign * v0, sign * v1
@@ -174,20 +172,20 @@ def _split(share: Array, a: Array, b: Array, T: Array, D: Array) -> Parts:
 
 
 def _share_left(law: TransitionLaw, a: Array, b: Array, T: Array, D: Array) -> Array:
-    """Return the largest share that the first transition, at its acceleration limit, leaves."""
+    """Return the largest share of the last transition, the first at its acceleration limit."""
     excess = 2.0 * (D / T - 0.5 * (a + b))
     with np.errstate(divide='ignore', invalid='ignore'):
         share = 1.0 - excess / (T / law.slope - (b - a))
     return np.where(np.isfinite(share), np.clip(share, 0.0, 0.5), 0.5)
 
 
-def _where_allowed(law: TransitionLaw, max_velocity: Array, wanted: Parts, otherwise: Parts,
+def _where_allowed(law: TransitionLaw, max_velocity: Array, preferred: Parts, otherwise: Parts,
                    a: Array, b: Array) -> Parts:
-    """Return the wanted parts where they keep the limits."""
-    allowed = ((law.least_time(wanted.cruise - a) <= wanted.first)
-               & (law.least_time(wanted.cruise - b) <= wanted.last)
-               & (np.abs(wanted.cruise) <= max_velocity) & (wanted.last > 0.0))
-    return Parts(*(np.where(allowed, w, o) for w, o in zip(wanted, otherwise)))
+    """Return the preferred parts where they keep the limits, else the others."""
+    allowed = ((law.least_time(preferred.cruise - a) <= preferred.first)
+               & (law.least_time(preferred.cruise - b) <= preferred.last)
+               & (np.abs(preferred.cruise) <= max_velocity) & (preferred.last > 0.0))
+    return Parts(*(np.where(allowed, p, o) for p, o in zip(preferred, otherwise)))
 
 
 def _limited(law: TransitionLaw, max_velocity: Array, a: Array, b: Array, T: Array,
@@ -195,23 +193,23 @@ def _limited(law: TransitionLaw, max_velocity: Array, a: Array, b: Array, T: Arr
     """
     Return parts at the limits, for a <= b and D at least the mean velocity's displacement.
 
-    A cruise above both ends, with shortest transitions; or, where D asks for less than that of
-    the least such cruise, a single transition, stretched.
+    A cruise above both end velocities, with shortest transitions; or, where D is less than that of
+    a cruise at b, a single transition that lasts longer than the shortest one.
     """
     low = b
     high = np.maximum(largest_cruise(law, max_velocity, a, b, T), b)
     high = _cruise_covering(law, low, high, a, b, T, D)
     first, last = law.least_time(high - a), law.least_time(high - b)
     with np.errstate(divide='ignore', invalid='ignore'):
-        stretched = np.clip(2.0 * (b * T - D) / (b - a), 0.0, T)
+        longer = np.clip(2.0 * (b * T - D) / (b - a), 0.0, T)
     single = _displacement(law, b, a, b, T) >= D
-    return Parts(np.where(single, np.where(b > a, stretched, 0.0), first),
+    return Parts(np.where(single, np.where(b > a, longer, 0.0), first),
                  np.where(single, b, high), np.where(single, 0.0, last))
 
 
 def _cruise_covering(law: TransitionLaw, low: Array, high: Array, a: Array, b: Array, T: Array,
                      D: Array) -> Array:
-    """Return the lowest cruise of a range that covers a displacement with shortest transitions."""
+    """Return the least cruise velocity, shortest transitions given, that covers a displacement."""
     given = [contiguous(x) for x in (*law, low, a, b, T, D)]
     found = high.copy()
     KERNELS.cruise_covering(len(T), BISECTIONS, *(x.ctypes.data for x in (*given, found)))

@@ -21,9 +21,9 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.transitions.reach import reach
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
-NEWTON_STEPS = 12
-ROUNDING = 1e-11  # relative, of a displacement
-BISECTIONS = 26
+NEWTON_STEPS = 12  # at most: convergence is quadratic
+ROUNDING = 1e-11   # part of a displacement
+BISECTIONS = 26    # of a duration: to 1.5e-8 of the bracket
 
 
 def cruise_velocity(law: TransitionLaw, max_velocity: Array, v0: Array, T: Array,
@@ -53,7 +53,7 @@ def cruise_velocity(law: TransitionLaw, max_velocity: Array, v0: Array, T: Array
         [rad/s], NaN where none fits.
 
     """
-    ahead = D - v0 * T  # what the transition must add to the velocity at the start
+    ahead = D - v0 * T  # displacement beyond that at the start's velocity
     change = _change(law, np.abs(ahead), T)
     v = v0 + np.sign(ahead) * change
     with np.errstate(invalid='ignore'):
@@ -64,14 +64,14 @@ def _change(law: TransitionLaw, ahead: Array, T: Array) -> Array:
     """Return u >= 0 with u T - u t(u) / 2 = ahead and t(u) <= T, NaN where there is none."""
     with np.errstate(invalid='ignore', divide='ignore'):
         u = 2.0 * ahead / (T + np.sqrt(T ** 2 - 2.0 * law.slope * ahead))
-        jerky = law.root * np.sqrt(u) > law.slope * u
-        if jerky.any():  # concave and rising: Newton from below never passes the solution
+        jerk_limited = law.root * np.sqrt(u) > law.slope * u
+        if jerk_limited.any():  # concave and increasing: Newton from below stays below the root
             x = ahead / T
             for _ in range(NEWTON_STEPS):
                 t = law.root * np.sqrt(x)
                 x = x + np.maximum(ahead - x * T + 0.5 * x * t, 0.0) / (T - 0.75 * t)
             fits = np.abs(x * T - 0.5 * x * law.least_time(x) - ahead) <= ROUNDING * ahead
-            u = np.where(jerky | np.isnan(u), np.where(fits, x, np.nan), u)
+            u = np.where(jerk_limited | np.isnan(u), np.where(fits, x, np.nan), u)
         u = np.where(ahead > 0.0, u, 0.0)
         return np.where(law.least_time(u) <= T, u, np.nan)
 
@@ -112,12 +112,12 @@ def stopping_time(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array,
     D : ndarray, shape (3,)
         Displacement [rad].
     grid : ndarray
-        Increasing durations to look through [s]; the answer is refined between them.
+        Increasing durations to try [s]; the result is refined between them by bisection.
 
     Returns
     -------
     ndarray, shape (n,)
-        [s], infinite where no duration of the grid will do.
+        [s], infinite where no duration of the grid is feasible.
 
     """
     return bisected(law, max_velocity, v0, D, *stopping_bracket(law, max_velocity, v0, D, grid))
@@ -126,7 +126,7 @@ def stopping_time(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array,
 def stopping_bracket(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array,
                      grid: Array) -> tuple[Array, Array]:
     """
-    Return durations of a last segment, to rest: one that is too short, and one that will do.
+    Return durations of a last segment, to rest: one that is too short, and a feasible one.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def stopping_bracket(law: TransitionLaw, max_velocity: Array, v0: Array, D: Arra
     Returns
     -------
     tuple of ndarray, shape (n,)
-        [s], infinite where no duration of the grid will do.
+        [s], infinite where no duration of the grid is feasible.
 
     """
     fits = can_stop(law, max_velocity, v0[:, np.newaxis], grid[:, np.newaxis], D)
@@ -149,7 +149,7 @@ def stopping_bracket(law: TransitionLaw, max_velocity: Array, v0: Array, D: Arra
 def bisected(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array, low: Array,
              high: Array) -> Array:
     """
-    Return the least durations of a last segment that are in brackets.
+    Return the least durations of a last segment within brackets, by bisection.
 
     Parameters
     ----------

@@ -13,11 +13,12 @@
 # limitations under the License.
 
 """
-One segment: transition, cruise, transition, between via velocities, for many joints at once.
+The least duration of a transition between two velocities, by acceleration and jerk limits (4.10).
 
-A transition that changes velocity by D lasts at least t(D) = max(slope D, root sqrt(D)): the first
-by the acceleration limit, the second by the jerk limit. By symmetry of its acceleration it covers
-(v0 + v1) t / 2. Everything about a segment follows from these two facts, whatever the function.
+A transition that changes velocity by u lasts at least t(u) = max(slope u, root sqrt(u)): the first
+by the acceleration limit, the second by the jerk limit. Its acceleration is symmetric in time, so
+its displacement is (v0 + v1) t / 2. Whatever the transition function, these two properties
+determine a segment.
 """
 
 from __future__ import annotations
@@ -30,10 +31,10 @@ from rrr_traj_planner.core.arrays import Array
 
 class TransitionLaw(NamedTuple):
     """
-    How long a transition must last; fields broadcast with joints, shape (3,).
+    The coefficients of the least duration; fields broadcast with joints, shape (3,).
 
-    For a function whose peak acceleration is A D / t and whose peak jerk is B D / t^2, the slope
-    is A / max_acceleration and the root is sqrt(B / max_jerk), 0 without a jerk limit.
+    For a function with peak acceleration A u / t and peak jerk B u / t^2, the slope is
+    A / max_acceleration and the root is sqrt(B / max_jerk), 0 without a jerk limit.
     """
 
     slope: Array  # [s^2/rad]
@@ -78,7 +79,7 @@ class TransitionLaw(NamedTuple):
 
     def change_rate(self, duration: Array) -> Array:
         """
-        Return by how much the largest change of velocity grows with the duration.
+        Return the derivative of the largest change of velocity by the duration.
 
         Parameters
         ----------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The via points of consecutive segments, and what bounds the motion through them."""
+"""The via-point problem: displacements between via points, and the limits of the motion."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
-LEAST_VELOCITY = 1e-9  # rad/s: bounds of a via velocity that must be zero
-OVERSHOOT_REDUCTION = 0.5
+LEAST_VELOCITY = 1e-9      # rad/s, bound of a via velocity that must be zero
+OVERSHOOT_REDUCTION = 0.5  # factor on the bounds of via velocities in each round
 
 
 @dataclass(frozen=True, eq=False)
 class ViaProblem(ReadOnlyArrays):
     """
-    Via points of all joints, and what bounds the motion through them.
+    The displacements between via points, and the limits of the motion.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class ViaProblem(ReadOnlyArrays):
     lowest, highest : ndarray, shape (n - 1, 3)
         Bounds of the velocities at the via points [rad/s], around 0.
     function : TransitionFunction
-        What transitions are made of.
+        The velocity function of transitions.
 
     """
 
@@ -70,7 +70,7 @@ class ViaProblem(ReadOnlyArrays):
 
 def slower_at(problem: ViaProblem, segments: BoolArray) -> ViaProblem:
     """
-    Return the problem with lower velocities at the ends of some segments.
+    Return the problem with tighter bounds on velocities at the ends of some segments.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def slower_at(problem: ViaProblem, segments: BoolArray) -> ViaProblem:
     Returns
     -------
     ViaProblem
-        Bounds of the via velocities halved there.
+        With the bounds of the via velocities halved there.
 
     """
     at_ends = segments[:-1] | segments[1:]
@@ -93,7 +93,7 @@ def slower_at(problem: ViaProblem, segments: BoolArray) -> ViaProblem:
 
 def at_rest(problem: ViaProblem) -> ViaProblem:
     """
-    Return the problem with a stop at every via point: its motions never overshoot.
+    Return the problem with a stop at every via point: its motions do not overshoot.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def at_rest(problem: ViaProblem) -> ViaProblem:
     Returns
     -------
     ViaProblem
-        Via velocities bounded to next to nothing; see `rests_everywhere`.
+        With via velocities bounded by LEAST_VELOCITY; see `rests_everywhere`.
 
     """
     still = np.full_like(problem.highest, LEAST_VELOCITY)
@@ -112,10 +112,10 @@ def at_rest(problem: ViaProblem) -> ViaProblem:
 
 def rests_everywhere(problem: ViaProblem) -> bool:
     """
-    Return whether every via velocity is to be zero: its times are then known in closed form.
+    Return whether every via velocity is to be zero: its times then have a closed form.
 
-    A search within bounds of next to nothing would leave velocities of that size, and in a long
-    transition even they overshoot a range.
+    The barrier method would leave velocities below the bound, and in a long transition even those
+    overshoot a range.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def rests_everywhere(problem: ViaProblem) -> bool:
     Returns
     -------
     bool
-        Also where there are no via points between the first and the last.
+        True also where there are no via points between the first and the last.
 
     """
     return bool((np.maximum(-problem.lowest, problem.highest) <= LEAST_VELOCITY).all())

@@ -15,10 +15,10 @@
 """
 Velocities at the via points and durations of the segments that take least total time.
 
-For one joint the time that a segment takes between given velocities is bounded below by a
-second-order cone, so the problem is convex but for the bound from above (a joint must not be too
-fast for the others). A step of the method factors nine diagonals: its cost is linear in the number
-of via points.
+For one joint, the least time of a segment as a function of its end velocities is bounded by a
+second-order cone, so the problem is convex except for the bound on the other side (a joint that
+could be faster must last as long as the others). A Newton step solves a banded system: its cost is
+linear in the number of via points. Method: `solver.barrier_method`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from rrr_traj_planner.planners.solver.barrier_method import minimise, Solution
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
-START_ROOM = 1.3  # the start's durations over the least ones from rest to rest
+START_MARGIN = 1.3  # the start's durations over the least ones from rest to rest
 
 
 def least_time(problem: ViaProblem, floor: Array | None = None,
@@ -47,25 +47,26 @@ def least_time(problem: ViaProblem, floor: Array | None = None,
     floor : ndarray, shape (n,), optional
         Durations [s] that no segment may fall below.
     should_stop : callable
-        Asked before every step; True ends the search with what it has.
+        Cancellation callback, called before every step; True ends the method with its iterate.
 
     Returns
     -------
     Solution
-        Where the problem is convex and nothing stops it, within a relative 2e-7 of the least
-        total time.
+        Within a relative 2e-7 of the least total time, where the problem is convex and it is not
+        cancelled.
 
     """
     n = len(problem.displacements)
     T = problem.rest_to_rest_times()
     if floor is not None:
         T = np.maximum(T, floor)
-    return minimise(ViaBarrier(problem, np.zeros((n - 1, 3)), START_ROOM * T, floor), should_stop)
+    barrier = ViaBarrier(problem, np.zeros((n - 1, 3)), START_MARGIN * T, floor)
+    return minimise(barrier, should_stop)
 
 
-def least_stretch(problem: ViaProblem, durations: Array) -> tuple[float, Solution]:
+def least_time_scaling(problem: ViaProblem, durations: Array) -> tuple[float, Solution]:
     """
-    Return by how much prescribed durations must be stretched to be feasible.
+    Return the least factor with which prescribed durations are feasible.
 
     Parameters
     ----------
@@ -77,11 +78,12 @@ def least_stretch(problem: ViaProblem, durations: Array) -> tuple[float, Solutio
     Returns
     -------
     tuple of float and Solution
-        The least common factor, below 1 where there is time to spare, and the stretched motion.
+        The factor, below 1 where the durations are longer than necessary, and the motion of the
+        scaled durations.
 
     """
     n = len(problem.displacements)
-    factor = START_ROOM * max(float((problem.rest_to_rest_times() / durations).max()), 1e-6)
+    factor = START_MARGIN * max(float((problem.rest_to_rest_times() / durations).max()), 1e-6)
     solution = minimise(ViaBarrier(problem, np.zeros((n - 1, 3)), factor * durations,
                                    proportions=durations), never)
     return float(solution.durations[0] / durations[0]), solution

@@ -20,7 +20,10 @@ from functools import cache
 from helpers.ramp_cases import ARM, blocked_task, is_connected, LIMITS, NONE, share_of
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.joint_timing.feasible_path import gravity_share, holdable_way
+from rrr_traj_planner.planners.joint_timing.feasible_path import (
+    gravity_share,
+    statically_feasible_path,
+)
 from rrr_traj_planner.planners.request import JointTask
 
 SEEDS = range(48)
@@ -37,7 +40,7 @@ LONGER = 1.082 / np.sqrt(0.7)
 def found(seed, most_legs=LEGS):
     """Return a task whose straight way is blocked, and the way that is found."""
     task = blocked_task(seed)
-    return task, holdable_way(task, *task.points, most_legs)
+    return task, statically_feasible_path(task, *task.points, most_legs)
 
 
 def dense(corners, looks=1001):
@@ -85,7 +88,7 @@ def test_ways_can_be_held_all_along_within_the_ranges_from_end_to_end(seed, most
 @pytest.mark.parametrize('seed', SEEDS)
 def test_there_is_a_way_back_where_there_is_one_there(seed):
     task, way = found(seed, 40)
-    back = holdable_way(task, *task.points[::-1], 40)
+    back = statically_feasible_path(task, *task.points[::-1], 40)
     assert (back is None) == (way is None)
 
 
@@ -95,8 +98,8 @@ def test_joint_1_goes_evenly_and_its_range_does_not_matter(seed):
     aside = np.array([2.5, 0.0, 0.0])
     limits = replace(task.limits, min_position=task.limits.min_position + aside,
                      max_position=task.limits.max_position + aside)
-    other = holdable_way(replace(task, limits=limits, points=task.points + aside),
-                         *(task.points + aside), LEGS)
+    other = statically_feasible_path(replace(task, limits=limits, points=task.points + aside),
+                                     *(task.points + aside), LEGS)
     if way is None:
         assert other is None
         return
@@ -106,15 +109,16 @@ def test_joint_1_goes_evenly_and_its_range_does_not_matter(seed):
 
 def test_where_joint_1_moves_alone_the_way_is_straight():
     q = np.array([[0.2, 1.4, 0.1], [1.2, 1.4, 0.1]])
-    assert holdable_way(JointTask(ARM, LIMITS, q, None, 0.01), *q, LEGS) == pytest.approx(q)
+    task = JointTask(ARM, LIMITS, q, None, 0.01)
+    assert statically_feasible_path(task, *q, LEGS) == pytest.approx(q)
 
 
 @pytest.mark.parametrize('seed', SEEDS[::3])
 def test_one_leg_is_enough_where_gravity_does_not_matter_and_only_there(seed):
     task, _ = found(seed)
-    assert holdable_way(task, *task.points, 1) is None
+    assert statically_feasible_path(task, *task.points, 1) is None
     free = replace(task, limits=replace(task.limits, max_effort=NONE))
-    assert (holdable_way(free, *free.points, LEGS) == free.points).all()
+    assert (statically_feasible_path(free, *free.points, LEGS) == free.points).all()
 
 
 def test_ways_are_hardly_longer_than_others_weighted_by_the_room_that_they_leave():

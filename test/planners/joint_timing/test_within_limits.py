@@ -24,7 +24,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.planners.joint_timing.within_limits import (
     beyond_range,
     fitted,
-    stretch_of_rates,
+    kinematic_time_scaling,
     torque_fits,
 )
 from rrr_traj_planner.planners.request import JointTask
@@ -75,7 +75,8 @@ def test_stretch_is_the_root_of_what_is_exceeded(seed, limit, values, power):
     case = Case(seed)
     for part in (0.5, 0.9, 1.3):
         limits = np.append(part, [2.0, 2.0]) * case.largest(values)
-        assert stretch_of_rates(case.task(**{limit: limits}), case.trajectory) == pytest.approx(
+        task = case.task(**{limit: limits})
+        assert kinematic_time_scaling(task, case.trajectory) == pytest.approx(
             part ** (-1.0 / power), rel=BETWEEN)
 
 
@@ -87,7 +88,7 @@ def test_motions_that_keep_their_limits_are_returned_as_they_are(seed):
                      max_effort=more * case.largest('torque'),
                      max_acceleration=more * case.largest('qdd'))
     assert torque_fits(task, case.trajectory)
-    assert fitted(task, case.trajectory, may_stretch=False) is case.trajectory
+    assert fitted(task, case.trajectory, may_scale=False) is case.trajectory
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -97,7 +98,7 @@ def test_others_are_slowed_as_a_whole_until_they_do_and_no_further(seed, part):
     strong = np.maximum(case.largest('torque'),
                         1.05 * share_of(case.task(max_effort=[1.0] * 3), case.q).max())
     task = case.task(max_velocity=part * case.largest('qd'), max_effort=strong)
-    slowed = fitted(task, case.trajectory, may_stretch=True)
+    slowed = fitted(task, case.trajectory, may_scale=True)
     assert within(task, slowed, 1.0 + BETWEEN)
     factor = slowed.duration / case.trajectory.duration
     assert slowed.via_times == pytest.approx(factor * case.trajectory.via_times)
@@ -105,7 +106,7 @@ def test_others_are_slowed_as_a_whole_until_they_do_and_no_further(seed, part):
     assert slowed(s * slowed.duration)[0] == pytest.approx(
         case.trajectory(s * case.trajectory.duration)[0], abs=1e-9)
     assert not within(task, case.trajectory.stretched(factor * (1.0 - 1e-3)))
-    assert fitted(task, case.trajectory, may_stretch=False) is None
+    assert fitted(task, case.trajectory, may_scale=False) is None
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -114,7 +115,7 @@ def test_torque_that_is_exceeded_is_slowed_where_gravity_leaves_room_else_refuse
     case = Case(seed)
     task = case.task(max_effort=part * case.largest('torque'))
     assert not torque_fits(task, case.trajectory)
-    slowed = fitted(task, case.trajectory, may_stretch=True)
+    slowed = fitted(task, case.trajectory, may_scale=True)
     share = share_of(task, case.q).max()
     if slowed is None:
         assert share > 1.0 - 1e-3
@@ -147,12 +148,12 @@ def hurried():
 
 def test_a_motion_may_hurry_past_a_pose_that_cannot_be_held_but_not_be_slowed_there():
     case, task = hurried()
-    assert fitted(task, case.trajectory, may_stretch=True) is case.trajectory
+    assert fitted(task, case.trajectory, may_scale=True) is case.trajectory
     slower = replace(task, limits=replace(task.limits, max_velocity=0.5 * case.largest('qd')))
-    assert fitted(slower, case.trajectory, may_stretch=True) is None
+    assert fitted(slower, case.trajectory, may_scale=True) is None
     weaker = replace(task, limits=replace(task.limits, max_effort=0.98 * task.limits.max_effort))
     assert not torque_fits(weaker, case.trajectory)
-    assert fitted(weaker, case.trajectory, may_stretch=True) is None
+    assert fitted(weaker, case.trajectory, may_scale=True) is None
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -177,9 +178,9 @@ def test_motions_that_leave_a_range_are_not_mended_by_slowing(seed, side):
         sign, edge = (1.0, case.q.min(axis=0)) if side == 'min_position' else (
             -1.0, case.q.max(axis=0))
         ends[side][j] = edge[j] + sign * 1e-3
-        assert fitted(case.task(**ends), case.trajectory, may_stretch=True) is None
+        assert fitted(case.task(**ends), case.trajectory, may_scale=True) is None
         ends[side][j] = edge[j] - sign * RANGE
-        assert fitted(case.task(**ends), case.trajectory, may_stretch=True) is case.trajectory
+        assert fitted(case.task(**ends), case.trajectory, may_scale=True) is case.trajectory
 
 
 def test_without_torque_limits_every_motion_fits_them():

@@ -19,34 +19,39 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.motion_laws.lin_434 import Law434
-from rrr_traj_planner.planners.stops.symmetric_434 import fastest_symmetric, least_time, Loads
+from rrr_traj_planner.planners.stops.symmetric_434 import (
+    DisplacementRatios,
+    fastest_symmetric,
+    least_time,
+)
 from rrr_traj_planner.planners.stops.torque_434 import law_for_torque, Segment
 
 RNG = np.random.default_rng(621)
-FREE = 1e-9  # a load that never binds
+FREE = 1e-9  # a ratio that never binds
 
 # Of way / limit for velocity, acceleration and jerk; a third each without velocity or jerk limits.
 WAYS = np.exp(RNG.uniform(-4.0, 2.0, 36))
-LOADS = Loads(WAYS / np.exp(RNG.uniform(-1.0, 1.5, 36)), WAYS / np.exp(RNG.uniform(-1.0, 1.5, 36)),
-              WAYS / np.exp(RNG.uniform(1.0, 4.0, 36)))
-LOADS.velocity[::3] = FREE
-LOADS.jerk[1::3] = 1e-3 * WAYS[1::3]
+RATIOS = DisplacementRatios(
+    WAYS / np.exp(RNG.uniform(-1.0, 1.5, 36)), WAYS / np.exp(RNG.uniform(-1.0, 1.5, 36)),
+    WAYS / np.exp(RNG.uniform(1.0, 4.0, 36)))
+RATIOS.velocity[::3] = FREE
+RATIOS.jerk[1::3] = 1e-3 * WAYS[1::3]
 
 SYMMETRY_COSTS = 0.011  # of time, at most; see `symmetric_434`
 BRUTE_PARTS = np.geomspace(1e-4, 0.49, 400)
 BRUTE_BULGES = np.linspace(0.0, 1.0, 401)
 
 
-def fastest(*loads):
-    return fastest_symmetric(Loads(*(np.array([load]) for load in loads)))
+def fastest(*ratios):
+    return fastest_symmetric(DisplacementRatios(*(np.array([ratio]) for ratio in ratios)))
 
 
-def time_of(law, *loads):
-    return least_time(law, Loads(*loads)).item()
+def time_of(law, *ratios):
+    return least_time(law, DisplacementRatios(*ratios)).item()
 
 
-def nth(loads, k):
-    return Loads(*(load[k] for load in loads))
+def nth(ratios, k):
+    return DisplacementRatios(*(ratio[k] for ratio in ratios))
 
 
 def test_least_time_is_the_largest_that_a_limit_asks_for():
@@ -98,8 +103,8 @@ def test_no_symmetric_law_of_a_fine_grid_is_faster():
     p, share = BRUTE_PARTS[:, np.newaxis], BRUTE_BULGES
     m = 6.0 / (1.0 - p)
     tried = Law434(p + 0.0 * share, p + 0.0 * share, m * (1.0 - share), m * (share - 1.0))
-    ours = least_time(fastest_symmetric(LOADS), LOADS)
-    brute = np.array([least_time(tried, nth(LOADS, k)).min() for k in range(len(WAYS))])
+    ours = least_time(fastest_symmetric(RATIOS), RATIOS)
+    brute = np.array([least_time(tried, nth(RATIOS, k)).min() for k in range(len(WAYS))])
     assert (ours <= brute * (1.0 + 1e-7)).all()
     assert ours == pytest.approx(brute, rel=5e-3)  # the grid's step
 
@@ -117,17 +122,17 @@ def test_mean_of_a_law_and_its_reverse_has_no_higher_peaks_where_the_ends_are_eq
 def test_laws_with_unequal_ends_are_hardly_faster():
     # A second method, without torque: SLSQP over all four numbers of the law.
     limits = JointLimits(max_effort=[np.inf] * 3)
-    laws, gains = fastest_symmetric(LOADS), []
+    laws, gains = fastest_symmetric(RATIOS), []
     for k in range(len(WAYS)):
-        segment = Segment(RobotModel(), limits, np.zeros(3), np.ones(3), nth(LOADS, k))
-        symmetric = time_of(Law434(*(field[k] for field in laws)), *segment.loads)
+        segment = Segment(RobotModel(), limits, np.zeros(3), np.ones(3), nth(RATIOS, k))
+        symmetric = time_of(Law434(*(field[k] for field in laws)), *segment.ratios)
         starts = (Law434(0.3, 0.3, 5.0, -5.0), Law434(0.1, 0.45, 5.0, -0.1))
         found = [law_for_torque(segment, start, symmetric, 0.5 * symmetric) for start in starts]
-        gains.append(1.0 - min(time_of(law, *segment.loads) for law in found) / symmetric)
+        gains.append(1.0 - min(time_of(law, *segment.ratios) for law in found) / symmetric)
     assert max(gains) <= SYMMETRY_COSTS
     assert max(gains) >= 0.5 * SYMMETRY_COSTS  # it does find laws with unequal ends
 
 
 def test_what_does_not_move_has_a_law_too():
-    laws = fastest_symmetric(Loads(*np.array([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]])))
+    laws = fastest_symmetric(DisplacementRatios(*np.array([[0.0, 1.0], [0.0, 1.0], [0.0, 1.0]])))
     assert np.isfinite(np.array(laws)).all()

@@ -20,18 +20,18 @@ from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
 from rrr_traj_planner.planners.blends.blend_motion import (
+    BlendTimes,
     changes_of_velocity,
     excess,
-    is_kept,
+    is_within_limits,
     shortest_transitions,
-    Straddling,
     trajectory,
 )
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 POINTS = np.array([[0.0, 0.2, 1.0], [0.6, 0.5, 0.4], [0.3, 0.9, 0.5], [1.0, 0.9, 0.1]])
-TIMING = Straddling(np.array([1.1, 1.3, 1.2]), np.array([0.8, 1.0, 1.2, 0.5]))
+TIMING = BlendTimes(np.array([1.1, 1.3, 1.2]), np.array([0.8, 1.0, 1.2, 0.5]))
 ROUNDING = 1e-12
 
 # How far the middle of a transition is from the corner, of change of velocity times duration: the
@@ -115,14 +115,14 @@ def test_excess_is_that_of_velocity_change_and_room():
     assert found[1] == pytest.approx(
         (2.0 * np.abs(changes) / TIMING.transitions[:, np.newaxis]).max())
     assert found[2] == pytest.approx(max(0.9 / 1.1, 1.1 / 1.3, 0.85 / 1.2))
-    assert not is_kept(chain, TIMING)
-    assert is_kept(via_problem_of(TransitionLaw(np.full(3, 0.2), np.zeros(3))), TIMING)
+    assert not is_within_limits(chain, TIMING)
+    assert is_within_limits(via_problem_of(TransitionLaw(np.full(3, 0.2), np.zeros(3))), TIMING)
 
 
 def test_transitions_of_no_length_leave_the_line_alone():
     # Three points on a line at one speed: nothing changes at the middle one.
     points = np.array([[0.0, 0.0, 0.0], [0.5, 0.2, -0.1], [1.0, 0.4, -0.2]])
-    motion = trajectory(points, Straddling(np.array([1.0, 1.0]), np.array([0.8, 0.0, 0.8])),
+    motion = trajectory(points, BlendTimes(np.array([1.0, 1.0]), np.array([0.8, 0.0, 0.8])),
                         QUARTIC)
     assert motion(motion.via_times)[0] == pytest.approx(points, abs=ROUNDING)
     assert motion.duration == pytest.approx(2.8)

@@ -22,7 +22,7 @@ from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 SEEDS = range(12)
-KEPT = 1.0 + 1e-9
+ROUNDING = 1.0 + 1e-9
 GRID = 400            # times of each line that the search looks at, at steps of 1 %
 
 
@@ -81,7 +81,7 @@ def test_limits_are_kept(n, given):
     for seed in range(5):
         chain = random_chain(30 + seed, n)
         transitions = np.full(n + 1, 0.7) if given else None
-        assert (excess(chain, fastest(chain, transitions, never)) <= KEPT).all()
+        assert (excess(chain, fastest(chain, transitions, never)) <= ROUNDING).all()
 
 
 def test_one_line_takes_two_transitions_from_rest_to_rest():
@@ -100,5 +100,5 @@ def test_never_slower_than_stops_at_every_via_point():
 def test_a_search_that_is_stopped_at_once_keeps_the_limits_all_the_same():
     chain = random_chain(5, 4)
     stopped, free = fastest(chain, None, lambda: True), fastest(chain, None, never)
-    assert (excess(chain, stopped) <= KEPT).all()
+    assert (excess(chain, stopped) <= ROUNDING).all()
     assert total_time(stopped) > total_time(free)
