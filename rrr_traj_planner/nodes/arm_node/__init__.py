@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node `simulated_arm`."""
+"""The node `simulated_arm`: topics and services, simulated time, diagnostics, log, markers."""

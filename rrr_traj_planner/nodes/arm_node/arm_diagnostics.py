@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the arm's node says of itself once a second: strain, tracking error, how its time runs."""
+"""Diagnostics of the arm node: saturation, stops, tracking error, real-time factor."""
 
 from __future__ import annotations
 
@@ -28,25 +28,22 @@ from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, LATE, OwnClock
 from rrr_traj_planner.nodes.output.diagnostics import diagnostics, PERIOD
 
-# The arm does not do what it is told where a joint is further than this off [rad].
-LARGE_ERROR = 0.02
-
-# What counts as outside a range [rad].
-OUTSIDE = 1e-6
+LARGE_ERROR = 0.02  # rad, tracking error of a joint that is reported as a warning
+OUTSIDE = 1e-6      # rad, distance outside a range that is reported; less is rounding
 
 
 class ArmDiagnostics:
     """
-    Publishes `diagnostics` of the arm: what has been since the last message.
+    Publishes `diagnostics` of the arm for the time since the last message.
 
     Parameters
     ----------
     node : Node
-        The arm's.
+        The arm node.
     arm : ControlledArm
         The arm.
     time : FollowedClock or OwnClock
-        Its time.
+        The arm's time.
 
     """
 
@@ -54,16 +51,16 @@ class ArmDiagnostics:
         self._node, self._arm, self._time = node, arm, time
         self._publish = node.create_publisher(DiagnosticArray, 'diagnostics', 10).publish
         self._begin()
-        node.create_timer(PERIOD, self._tell, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        node.create_timer(PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def look(self, condition: Condition) -> None:
+    def update(self, condition: Condition) -> None:
         """
-        Take note of how the arm is.
+        Record the arm's condition and its present tracking error.
 
         Parameters
         ----------
         condition : Condition
-            What has strained it since the last call.
+            Saturation and contact with stops since the last call.
 
         """
         if condition is not SOUND:
@@ -75,8 +72,8 @@ class ArmDiagnostics:
         self._condition, self._errors = SOUND, [0.0, 0.0, 0.0]
         self._since, self._steps, self._reached = monotonic_ns(), self._arm.steps, self._arm.now
 
-    def _tell(self) -> None:
-        """Publish what has been since the last message, and begin anew."""
+    def _report(self) -> None:
+        """Publish what was recorded since the last message, and clear it."""
         arm, names = self._arm, self._arm.settings.model.joint_names
         shares = [n / max(arm.steps - self._steps, 1) for n in self._condition.saturated]
         outside = [_outside(*x) for x in zip(
@@ -98,7 +95,7 @@ class ArmDiagnostics:
         self._begin()
 
     def _wrong(self, shares: list[float], outside: list[float]) -> list[str]:
-        """Return what is wrong, in words."""
+        """Return a text for each warning."""
         arm, names = self._arm, self._arm.settings.model.joint_names
         wrong = [f'{name} saturated {100.0 * share:.3g} % of the time'
                  for name, share in zip(names, shares) if share > 0.0]

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the arm's node logs: a line for what happens once, one in a while for what goes on."""
+"""Log messages of the arm node, throttled by kind and joint."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ from rrr_traj_planner.core.control.trajectory_limits import Excess
 from rrr_traj_planner.core.simulation.condition import Condition, SOUND
 from rrr_traj_planner.nodes.output.throttle import Throttle
 
-# A number in a text, but for those in names.
+# A number in a text, except in names such as joint_1.
 NUMBER = re.compile(r'(?<![\w.])-?\d[\d.]*(?:e[-+]?\d+)?')
 
 
 class ArmLog:
     """
-    Writes the arm's lines to the node's log, each kind once in a while for each joint.
+    Logs the arm's events; repeated ones at most once per period for each kind and joint.
 
     Parameters
     ----------
     node : Node
-        The arm's.
+        The arm node.
     joint_names : sequence of str
-        The joints.
+        Names of the joints.
 
     """
 
@@ -48,14 +48,14 @@ class ArmLog:
 
     def followed(self, points: int, seconds: float) -> None:
         """
-        Say that a trajectory has been taken over.
+        Log that a trajectory has been accepted.
 
         Parameters
         ----------
         points : int
-            How many it has.
+            Number of its points.
         seconds : float
-            How long it goes on [s].
+            Time until its end [s].
 
         """
         if self._throttle.passes('followed'):
@@ -64,12 +64,12 @@ class ArmLog:
 
     def refused(self, text: str) -> None:
         """
-        Say why a message has been refused.
+        Log why a message has been refused.
 
         Parameters
         ----------
         text : str
-            The reason; reasons that differ in numbers alone are of one kind.
+            The reason; reasons that differ only in numbers are of one kind.
 
         """
         kind = NUMBER.sub('#', text)
@@ -78,12 +78,12 @@ class ArmLog:
 
     def exceeded(self, excesses: Sequence[Excess]) -> None:
         """
-        Warn of a trajectory that leaves ranges or limits.
+        Warn of a trajectory that exceeds ranges or limits.
 
         Parameters
         ----------
         excesses : sequence of Excess
-            Which.
+            The exceeded ranges and limits.
 
         """
         if excesses and self._throttle.passes(*(e[:2] for e in excesses)):
@@ -92,14 +92,14 @@ class ArmLog:
 
     def strained(self, condition: Condition, limits: JointLimits) -> None:
         """
-        Warn of motors that were saturated and stops that were hit or pressed.
+        Warn of saturated motors and of contact with stops.
 
         Parameters
         ----------
         condition : Condition
-            What strained the arm.
+            Saturation and contact since the last call.
         limits : JointLimits
-            The arm's.
+            The arm's limits.
 
         """
         if condition is not SOUND:
@@ -109,6 +109,6 @@ class ArmLog:
                     self._log.warning(text)
 
     def _before(self, kind: str, what: str) -> str:
-        """Return what has happened since the last line of a kind."""
+        """Return the number of messages of a kind that were held back, as text."""
         held = self._throttle.held(kind)
         return f' (before, {held} more {what})' if held else ''

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Between ROS messages and the arm's own values."""
+"""Conversion between ROS messages and the arm's values."""
 
 from __future__ import annotations
 
@@ -26,26 +26,25 @@ from rrr_traj_planner.core.nanoseconds import SECOND
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
-# No disturbance is larger: more only serves to blow up the simulation [N m].
-LARGEST_DISTURBANCE = 1e5
+MAX_DISTURBANCE = 1e5  # N m, far above any motor's torque; more would make the simulation diverge
 
 
 def disturbance_torque(message: JointState,
                        joint_names: Sequence[str]) -> tuple[float, float, float]:
     """
-    Return the torques that a message puts on the joints, in the arm's order.
+    Return the disturbance torques of a message in the order of the arm's joints.
 
     Parameters
     ----------
     message : JointState
-        Names and efforts, nothing else; joints that are not named have no disturbance.
+        Names and efforts only; joints that are not named have no disturbance.
     joint_names : sequence of str
-        The arm's joints.
+        Names of the arm's joints.
 
     Returns
     -------
     tuple of 3 floats
-        [N m].
+        Torques [N m].
 
     Raises
     ------
@@ -64,8 +63,8 @@ def disturbance_torque(message: JointState,
         if name not in torque or name in message.name[:i]:
             raise InvalidInputError(f"a disturbance names joint '{name}', must name distinct "
                                     f'joints of {", ".join(joint_names)}')
-        if not abs(effort) <= LARGEST_DISTURBANCE:
-            shown, low, high = told_apart(effort, -LARGEST_DISTURBANCE, LARGEST_DISTURBANCE)
+        if not abs(effort) <= MAX_DISTURBANCE:
+            shown, low, high = told_apart(effort, -MAX_DISTURBANCE, MAX_DISTURBANCE)
             raise InvalidInputError(f'the disturbance of {name} is {shown} N m, must be in '
                                     f'[{low}, {high}] N m')
         torque[name] = float(effort)
@@ -75,7 +74,7 @@ def disturbance_torque(message: JointState,
 
 def incoming_trajectory(message: JointTrajectory) -> IncomingTrajectory:
     """
-    Return the content of a message, nothing checked.
+    Return the content of a trajectory message, unchecked.
 
     Parameters
     ----------
@@ -85,7 +84,7 @@ def incoming_trajectory(message: JointTrajectory) -> IncomingTrajectory:
     Returns
     -------
     IncomingTrajectory
-        Its names, stamp and points.
+        Joint names, stamp and points.
 
     """
     return IncomingTrajectory(
@@ -106,7 +105,7 @@ def nanoseconds(time: Time | Duration) -> int:
     Returns
     -------
     int
-        [ns].
+        Nanoseconds.
 
     """
     return int(time.sec) * SECOND + int(time.nanosec)
@@ -114,12 +113,12 @@ def nanoseconds(time: Time | Duration) -> int:
 
 class JointStateMessage:
     """
-    A joint state message, made once and filled again for each publication.
+    A joint state message that is created once and reused for each publication.
 
     Parameters
     ----------
     joint_names : sequence of str
-        The joints.
+        Names of the joints.
 
     """
 
@@ -134,9 +133,9 @@ class JointStateMessage:
         Parameters
         ----------
         stamp : int
-            When the joints were like this [ns].
+            Time of the state [ns].
         position, velocity, effort : sequence of float
-            [rad], [rad/s], [N m]; an effort may be left out.
+            State of the joints [rad], [rad/s], [N m]; effort may be empty.
 
         Returns
         -------

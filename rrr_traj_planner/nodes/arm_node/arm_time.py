@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What time the arm's node lives in: a clock's that it follows, or its own."""
+"""Time of the arm's simulation: it follows the node's clock, or is itself the clock (/clock)."""
 
 from __future__ import annotations
 
@@ -25,38 +25,38 @@ from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.core.simulation.simulated_clock import Pace, Schedule
 
-# A tick simulates for at most so long, so that services are answered meanwhile [ns]; steps between
-# two looks at how long it has taken.
-LONGEST_TICK, MOST_STEPS = SECOND // 50, 100
+# Largest wall time of a tick [ns], so that services are answered in time, and number of steps
+# between two checks of it.
+MAX_TICK, STEPS_PER_CHECK = SECOND // 50, 100
 
-# Further behind than this the node says so [ns], and so often [s].
+# Delay of simulated time that is reported [ns], and period of that warning [s].
 LATE, WARNING_PERIOD = SECOND // 10, 2.0
 
-# The clock itself has jumped when it is so far behind or ahead of the arm [ns].
+# Differences between clock and arm that count as a jump of the clock [ns].
 JUMP_BACK, JUMP_AHEAD = SECOND // 10, 10 * SECOND
 
-# Ticks come, and /clock is published, at least so often, however seldom states are [Hz].
-LEAST_RATE = 100.0
+# Least rate of ticks and of /clock, for any publish_rate [Hz].
+MIN_RATE = 100.0
 
-# Wall time between ticks where the arm is the clock [s].
-SHORTEST_PERIOD, LONGEST_PERIOD = 0.001, 0.02
+# Bounds on the wall time between ticks if the arm is the clock [s].
+MIN_PERIOD, MAX_PERIOD = 0.001, 0.02
 
 QUEUE_DEPTH = 10
 
 
 class FollowedClock:
     """
-    The node's clock: at every tick the arm runs up to now, in whole steps.
+    Time of the node's clock: every tick simulates up to the present, in whole steps.
 
     Parameters
     ----------
     node : Node
-        The arm's; it may use simulated time.
+        The arm node; it may use simulated time.
     arm : ControlledArm
         The arm.
     publish : callable
-        Called at the first step at or after every instant at which states are due; where the
-        clock has gone on by more instants than the topics' queues hold, after the last ones.
+        Publishes the arm's state; called at the first step at or after each instant of
+        publish_rate. If more are due at once than the topics' queues hold, only for the last ones.
 
     """
 
@@ -66,7 +66,7 @@ class FollowedClock:
         self._node, self._arm, self._publish = node, arm, publish
         self.epoch = self.now()  # when the arm's own time began [ns]
         self.behind = 0          # how far the arm is behind after a tick [ns]
-        self._states = Schedule(LEAST_RATE, arm.now)
+        self._states = Schedule(MIN_RATE, arm.now)
 
     def now(self) -> int:
         """Return the node's clock [ns]."""
@@ -77,13 +77,13 @@ class FollowedClock:
         return self.epoch + self._arm.now
 
     def period(self, publish_rate: float, _: float) -> float:
-        """Put a rate in force, and return the wall time between ticks [s]."""
+        """Set the rate of publication, and return the wall time between ticks [s]."""
         if publish_rate != self._states.rate:
             self._states = Schedule(publish_rate, self._arm.now)
-        return 1.0 / max(publish_rate, LEAST_RATE)
+        return 1.0 / max(publish_rate, MIN_RATE)
 
     def tick(self) -> None:
-        """Bring the arm up to now in whole steps, and publish on the way; but not for long."""
+        """Simulate up to the present in whole steps, and publish states; at most `MAX_TICK`."""
         behind = self.now() - self.reached()
         if not -JUMP_BACK <= behind <= JUMP_AHEAD:
             self._node.get_logger().warning(
@@ -103,36 +103,37 @@ class FollowedClock:
     catch_up = tick
 
     def _advance(self, due: int) -> None:
-        """Simulate up to a time of the arm's [ns], or as long as a tick may take."""
+        """Simulate up to a time of the arm's [ns], at most for `MAX_TICK`."""
         arm, step, begun = self._arm, self._arm.settings.step_ns, monotonic_ns()
-        unheard = QUEUE_DEPTH * SECOND / self._states.rate
+        queued = QUEUE_DEPTH * SECOND / self._states.rate  # ns, that the topics' queues hold
         while True:
-            if self._states.passed(arm.now) and due - arm.now < unheard:
+            if self._states.passed(arm.now) and due - arm.now < queued:
                 self._publish()
-            steps = min((due - arm.now) // step, _steps(arm, self._states.next), MOST_STEPS)
-            if steps <= 0 or monotonic_ns() - begun > LONGEST_TICK:
+            steps = min((due - arm.now) // step, _steps(arm, self._states.next), STEPS_PER_CHECK)
+            if steps <= 0 or monotonic_ns() - begun > MAX_TICK:
                 return
             arm.advance(steps)
 
 
 class OwnClock:
     """
-    The arm's own time, from 0 on, published on /clock: at a rate, as fast as can be, or standing.
+    Time of the arm itself, from 0 on, published on /clock; it can be paused.
 
     Parameters
     ----------
     node : Node
-        The arm's.
+        The arm node.
     arm : ControlledArm
         The arm.
     publish : callable
-        Called at the first step at or after every instant at which states are due.
+        Publishes the arm's state; called at the first step at or after each instant of
+        publish_rate.
     factor : float
-        Simulated time to wall time; 0: as fast as can be.
+        Simulated time per wall time; 0: as fast as possible.
 
     Notes
     -----
-    No state is published of a time that has not been on /clock.
+    The time of a state is on /clock before the state is published.
 
     """
 
@@ -140,7 +141,7 @@ class OwnClock:
                  factor: float) -> None:
         self._node, self._arm, self._publish = node, arm, publish
         self.epoch = self.behind = 0
-        self._states = self._clock = Schedule(LEAST_RATE, arm.now)
+        self._states = self._clock = Schedule(MIN_RATE, arm.now)
         self.pace = Pace(factor, monotonic_ns())
         self._publish_clock = node.create_publisher(Clock, '/clock', QUEUE_DEPTH).publish
 
@@ -151,21 +152,21 @@ class OwnClock:
     reached = now
 
     def period(self, publish_rate: float, factor: float) -> float:
-        """Put rates in force, and return the wall time between ticks [s]."""
+        """Set the rates, and return the wall time between ticks [s]."""
         if publish_rate != self._states.rate:
             self._states = Schedule(publish_rate, self.now())
-            self._clock = Schedule(max(publish_rate, LEAST_RATE), self.now())
+            self._clock = Schedule(max(publish_rate, MIN_RATE), self.now())
         if factor != self.pace.factor:
             self.pace.restart(monotonic_ns(), self.now(), factor=factor)
         if factor == 0.0:
-            return SHORTEST_PERIOD
-        return min(max(1.0 / (self._clock.rate * factor), SHORTEST_PERIOD), LONGEST_PERIOD)
+            return MIN_PERIOD
+        return min(max(1.0 / (self._clock.rate * factor), MIN_PERIOD), MAX_PERIOD)
 
     def tick(self) -> None:
-        """Simulate what is due, from instant to instant; but not for long."""
+        """Simulate the steps that are due, and publish; at most for `MAX_TICK`."""
         begun, step = monotonic_ns(), self._arm.settings.step_ns
         due = self.pace.due(begun, self.now(), SECOND)
-        while monotonic_ns() - begun <= LONGEST_TICK:
+        while monotonic_ns() - begun <= MAX_TICK:
             steps = _steps(self._arm, min(self._states.next, self._clock.next))
             if self.now() + steps * step > due:
                 break
@@ -189,7 +190,7 @@ class OwnClock:
         """Do nothing: no time passes between ticks."""
 
     def _advance(self, steps: int) -> None:
-        """Simulate some steps, and publish time."""
+        """Simulate some steps, and publish the time."""
         self._arm.advance(steps)
         self._clock.passed(self.now())
         message = Clock()
@@ -198,5 +199,5 @@ class OwnClock:
 
 
 def _steps(arm: ControlledArm, instant: int) -> int:
-    """Return how many steps lead to the first one at or after an instant [ns]."""
+    """Return the number of steps to the first one at or after an instant [ns]."""
     return max(-((arm.now - instant) // arm.settings.step_ns), 0)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the arm's node publishes to be looked at: its description and its markers."""
+"""Visualization of the arm: its URDF on `robot_description`, and its markers."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ from visualization_msgs.msg import MarkerArray
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
-# The tip's trail: steps, and what counts as moved, are parts of the arm's reach.
-# More points would hold up the node: rclpy takes some 10 us for each.
-TRAIL_STEP, TRAIL_POINTS, MOVED = 1.0 / 80.0, 200, 1e-6
+TRAIL_STEP = 1.0 / 80.0  # distance of the trail's points, as a fraction of the arm's reach
+TRAIL_POINTS = 200       # largest number of the trail's points; rclpy takes some 10 us for each
+MOVED = 1e-6             # least motion that causes new markers, as a fraction of the arm's reach
 
 SECOND = 1_000_000_000  # ns
-STILL_PERIOD = 1.0      # s, between messages while nothing moves
+STILL_PERIOD = 1.0      # s between markers while the arm stands still
 
 
 def description(config: ArmConfig) -> str:
@@ -49,7 +49,7 @@ def description(config: ArmConfig) -> str:
     Parameters
     ----------
     config : ArmConfig
-        The arm; a payload is no part of it.
+        The arm; the payload is left out.
 
     Returns
     -------
@@ -63,21 +63,21 @@ def description(config: ArmConfig) -> str:
 
 class ArmView:
     """
-    Publishes `robot_description` when it changes, and `markers` again and again.
+    Publishes `robot_description` when it changes, and `markers` periodically.
 
     Parameters
     ----------
     node : Node
-        The arm's.
+        The arm node.
     config : ArmConfig
         The arm.
     q : sequence of 3 floats
-        Where it is [rad].
+        Its joint positions [rad].
 
     Notes
     -----
-    Both topics are transient local: who subscribes late gets the last message. Markers go out
-    on steady time: `marker_rate` times a second, but once a second while nothing moves.
+    Both topics are transient local: late subscribers get the last message. Markers are published
+    in steady time, at `marker_rate`, or once a second while the arm stands still.
 
     """
 
@@ -99,12 +99,12 @@ class ArmView:
 
     def moved(self, q: Sequence[float]) -> None:
         """
-        Take note of where the arm is.
+        Record the arm's position.
 
         Parameters
         ----------
         q : sequence of 3 floats
-            [rad].
+            Joint positions [rad].
 
         """
         if self._rate > 0.0:
@@ -112,18 +112,18 @@ class ArmView:
             self._trail.add(self._joints[-1])
 
     def restart(self) -> None:
-        """Forget where the tip has been."""
+        """Clear the trail."""
         self._trail.clear()
         self._shown = None
 
     def configure(self, config: ArmConfig) -> None:
         """
-        Put changed parameters in force.
+        Apply changed parameters.
 
         Parameters
         ----------
         config : ArmConfig
-            The arm; model and frames are the old ones.
+            The arm; its model and frames must be unchanged.
 
         """
         text = description(config)
@@ -138,7 +138,7 @@ class ArmView:
                 self._timer.reset()
 
     def _show(self) -> None:
-        """Publish the markers, unless they are nearly the last ones, and those are not old."""
+        """Publish the markers, unless the arm has not moved and the last ones are recent."""
         if self._shown is not None and monotonic() - self._shown_at < STILL_PERIOD and all(
                 dist(a, b) <= self._moved for a, b in zip(self._shown, self._joints)):
             return

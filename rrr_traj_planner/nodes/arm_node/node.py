@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node `simulated_arm`: the arm and its controller against the clock, on ROS topics."""
+"""The node `simulated_arm`: topics and services of the simulated arm and its controller."""
 
 from __future__ import annotations
 
@@ -51,8 +51,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 QUEUE_DEPTH = 10
 
-# The same kind of warning is logged no more often than this [s].
-WARNING_PERIOD = 1.0
+WARNING_PERIOD = 1.0  # s between warnings of stops
 
 MOVING_END_HINT = (
     '; a stream of points that end while moving needs '
@@ -63,24 +62,24 @@ NOT_THE_CLOCK = 'the arm follows a clock; only with publish_clock is it one that
 
 class SimulatedArm(ServiceNode):
     """
-    An arm that follows trajectories as joint_trajectory_controller would have it.
+    An arm that follows trajectories by the rules of joint_trajectory_controller.
 
-    Simulated time is the node's clock, or with `publish_clock` the arm's own (`arm_time.py`):
-    physics and control run in whole steps, and what is published carries the time of the last.
+    Simulated time is the node's clock, or with `publish_clock` the arm's own (`arm_time.py`).
+    Physics and control advance in whole steps; published states have the time of the last step.
 
     Parameters
     ----------
     **kwargs
-        For `rclpy.node.Node`, such as context and parameter_overrides.
+        Arguments of `rclpy.node.Node`, such as context and parameter_overrides.
 
     Notes
     -----
-    Subscribes `joint_trajectory` and `disturbance` (names and efforts, held until the next one);
-    publishes `joint_states` (position and velocity as the encoders tell them, the motors'
-    torque), `desired_joint_states` (what the controller follows) and `~/tracking_error` (the
-    second less the first), all three with the same stamp; `diagnostics` once a second;
-    `robot_description` and `markers` (the arm and where its tip has been), transient local;
-    serves `~/reset`, `~/hold`, `~/pause` and `~/step`. Parameters: see `parameters.table`.
+    Subscribes to `joint_trajectory` and `disturbance` (names and efforts, held until the next
+    message). Publishes `joint_states` (measured position and velocity, motor torque),
+    `desired_joint_states` (the controller's reference) and `~/tracking_error` (reference minus
+    measurement), all three with the same stamp; `diagnostics` once a second; `robot_description`
+    and `markers` (the arm and its tip's past path), transient local. Serves `~/reset`, `~/hold`,
+    `~/pause` and `~/step`. Parameters: see `parameters.table`.
 
     """
 
@@ -108,7 +107,7 @@ class SimulatedArm(ServiceNode):
             self, self._arm, self._publish, config.real_time_factor
         ) if config.publish_clock else FollowedClock(self, self._arm, self._publish)
         self._diagnostics = ArmDiagnostics(self, self._arm, self._time)
-        # The timer runs on steady time, whatever the clock does.
+        # The timer uses steady time: it also runs while simulated time stands still.
         self._timer = self.create_timer(
             self._period(config), self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._start = NodeStart(
@@ -116,11 +115,11 @@ class SimulatedArm(ServiceNode):
             f'follows {self.resolve_topic_name("joint_trajectory")}', kwargs.get('cli_args'))
 
     def _tick(self) -> None:
-        """Let time go on, and say what has gone wrong meanwhile."""
+        """Simulate up to the present, and log warnings."""
         self._time.tick()
         self._view.moved(self._arm.seen[:3])
         condition = self._arm.monitor.take()
-        self._diagnostics.look(condition)
+        self._diagnostics.update(condition)
         self._log.strained(condition, self._arm.settings.limits)
         if self._arm.violation:
             log = self.get_logger()
@@ -133,18 +132,18 @@ class SimulatedArm(ServiceNode):
             self._arm.stop_warnings = ()
 
     def _publish(self) -> None:
-        """Publish how the arm is."""
+        """Publish measured state, reference and tracking error."""
         stamp, arm = self._time.reached(), self._arm
-        q, w = arm.seen[:3], arm.seen[3:]
+        q, qd = arm.seen[:3], arm.seen[3:]
         self._view.moved(q)
         desired = arm.desired
-        fields = ((q, w, arm.torque), (desired[:3], desired[3:6]), (
-            [a - b for a, b in zip(desired, q)], [a - b for a, b in zip(desired[3:6], w)]))
+        fields = ((q, qd, arm.torque), (desired[:3], desired[3:6]), (
+            [a - b for a, b in zip(desired, q)], [a - b for a, b in zip(desired[3:6], qd)]))
         for (message, publish), values in zip(self._publishers_of_states, fields):
             publish(message.filled(stamp, *values))
 
     def _follow(self, message: JointTrajectory) -> None:
-        """Take over a trajectory, or say why not and go on as before."""
+        """Accept a trajectory, or log why it is refused and continue as before."""
         self._time.catch_up()
         trajectory, arm = incoming_trajectory(message), self._arm
         try:
@@ -162,7 +161,7 @@ class SimulatedArm(ServiceNode):
         self._log.followed(len(trajectory.points), arm.motion.end - arm.time)
 
     def _disturb(self, message: JointState) -> None:
-        """Put torques on the joints, or say why not."""
+        """Apply disturbance torques, or log why they are refused."""
         self._time.catch_up()
         try:
             self._arm.disturbance = disturbance_torque(message, self._joint_names)
@@ -170,7 +169,7 @@ class SimulatedArm(ServiceNode):
             self._log.refused(str(error))
 
     def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Put the arm back to its initial positions, at rest."""
+        """Set the arm to its initial positions, at rest."""
         self._time.catch_up()
         q = self._parameters_declared.config.initial_positions
         self._arm.reset(q)
@@ -190,7 +189,7 @@ class SimulatedArm(ServiceNode):
         return response
 
     def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        """Let time stand, or go on."""
+        """Pause or resume simulated time."""
         pace = self._time.pace
         if pace is None:
             response.success, response.message = False, NOT_THE_CLOCK
@@ -202,7 +201,7 @@ class SimulatedArm(ServiceNode):
         return response
 
     def _single_step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Simulate one step while time stands."""
+        """Simulate one step while time is paused."""
         if isinstance(self._time, OwnClock) and self._time.pace.paused:
             self._time.single_step()
             response.success = True
@@ -214,13 +213,13 @@ class SimulatedArm(ServiceNode):
         return response
 
     def _configure(self, config: ArmConfig) -> None:
-        """Put changed parameters in force."""
+        """Apply changed parameters."""
         self._arm.configure(config.settings)
         self._view.configure(config)
         self._timer.timer_period_ns = round(SECOND * self._period(config))
 
     def _period(self, config: ArmConfig) -> float:
-        """Put rates in force, and return the wall time between ticks [s]."""
+        """Set the rates, and return the wall time between ticks [s]."""
         step, rate = config.settings.step, config.publish_rate
         if rate * step > 1.0 + 1e-9:
             self.get_logger().warning(
@@ -229,7 +228,7 @@ class SimulatedArm(ServiceNode):
         return self._time.period(rate, config.real_time_factor)
 
     def destroy_node(self) -> None:
-        """Leave the node's name to others."""
+        """Release the node's name."""
         self._start.end()
         super().destroy_node()
 
