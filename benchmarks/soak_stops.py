@@ -39,7 +39,7 @@ from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
-from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
@@ -87,11 +87,11 @@ def random_plan(rng: np.random.Generator, planner_id: str):
             continue
 
 
-def points_of(answer) -> MotionPoints:
+def points_of(answer) -> CommandedPoints:
     """Return a plan's points, as they arrive at the arm."""
     p = answer.points
     known = np.ones(len(p.times), dtype=bool)
-    return MotionPoints(p.times, p.positions, p.velocities, p.accelerations, known, known)
+    return CommandedPoints(p.times, p.positions, p.velocities, p.accelerations, known, known)
 
 
 class Judge:
@@ -103,7 +103,8 @@ class Judge:
         self.durations: list[float] = []
         self.measured: list[float] = []
 
-    def stop(self, label: str, points: MotionPoints, limits: JointLimits, instant: float) -> None:
+    def stop(self, label: str, points: CommandedPoints, limits: JointLimits,
+             instant: float) -> None:
         """Follow a motion, stop it, and see."""
         arm = ControlledArm(ArmSettings(MODEL, limits, ControllerGains()), points.positions[0])
         arm.follow(points, 0)

@@ -42,7 +42,7 @@ from rrr_traj_planner.core.trajectory.sampling import (
     SampleTimes,
     STEP_SHARE,
 )
-from rrr_traj_planner.core.trajectory.torque import stretch_for_torque
+from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.request import PlanningRequest
 
@@ -106,14 +106,14 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
             return AnswerPoints(trajectory, spline.points, excess.effort, stretch, _note(
                 model, limits, request.sample_period, excess.jerk.max(axis=0), stretch))
         cannot_be_slower = request.segment_durations is not None or np.isinf(
-            stretch_for_torque(model, limits, trajectory).value).any()
+            time_scale_for_torque(model, limits, trajectory).value).any()
         if cannot_be_slower or np.isinf(factor):
             if gap == closest:
                 break
             gap = closest
             continue
         factor = min(factor, MOST_STRETCH)
-        trajectory, stretch = trajectory.stretched(factor), stretch * factor
+        trajectory, stretch = trajectory.time_scaled(factor), stretch * factor
     if request.segment_durations is not None:
         raise TimingError(
             f'sample_period {request.sample_period} s is too long for segment_durations '

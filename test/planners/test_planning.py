@@ -283,7 +283,7 @@ def test_every_planner_is_found_by_its_id():
 
 
 def test_a_planner_that_breaks_a_limit_is_caught(monkeypatch):
-    quick = plan(ARM, LIMITS, table('6.1')).trajectory.stretched(0.9)
+    quick = plan(ARM, LIMITS, table('6.1')).trajectory.time_scaled(0.9)
     monkeypatch.setattr(planning, 'planner', lambda _: Registered(lambda task: quick, False))
     tight = replace(LIMITS, max_jerk=[1.0, 1.0, 1.0], max_acceleration=[9.0] * 3,
                     max_velocity=[9.0] * 3)

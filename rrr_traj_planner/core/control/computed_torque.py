@@ -86,12 +86,12 @@ def computed_torque(t: Terms, stiffness: float, damping: float, state: State,
         Joint torques [N m].
 
     """
-    q1, q2, q3, w1, w2, w3 = state
+    q1, q2, q3, qd1, qd2, qd3 = state
     p1, p2, p3, v1, v2, v3, a1, a2, a3 = desired
-    return torques(t, w1, w2, w3,
-                   a1 + damping * (v1 - w1) + stiffness * (p1 - q1),
-                   a2 + damping * (v2 - w2) + stiffness * (p2 - q2),
-                   a3 + damping * (v3 - w3) + stiffness * (p3 - q3))
+    return torques(t, qd1, qd2, qd3,
+                   a1 + damping * (v1 - qd1) + stiffness * (p1 - q1),
+                   a2 + damping * (v2 - qd2) + stiffness * (p2 - q2),
+                   a3 + damping * (v3 - qd3) + stiffness * (p3 - q3))
 
 
 def saturated(torque: Triple, limit: Triple) -> Triple:

@@ -42,8 +42,12 @@ from rrr_traj_planner.core.stopping.point_to_point import moved_on
 from rrr_traj_planner.core.stopping.stop import Stop, stop
 from rrr_traj_planner.core.stopping.task import from_state
 from rrr_traj_planner.core.trajectory.interpolation import hermite
-from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion, through
-from rrr_traj_planner.core.trajectory.trajectory_points import led_in, MotionPoints, segment_orders
+from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
+from rrr_traj_planner.core.trajectory.trajectory_points import (
+    CommandedPoints,
+    segment_orders,
+    with_start_state,
+)
 
 # A command this near to a trajectory is on it [rad], [rad/s].
 POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
@@ -77,7 +81,7 @@ class Takeover:
         Kept where a trajectory has to be joined.
     model : RobotModel
         The arm.
-    running : DesiredMotion, optional
+    running : ReferenceTrajectory, optional
         What would have to stop now (`what_moves`); None: only the command is known.
 
     """
@@ -86,7 +90,7 @@ class Takeover:
     command: Desired
     limits: JointLimits
     model: RobotModel
-    running: DesiredMotion | None = None
+    running: ReferenceTrajectory | None = None
 
     @property
     def states(self) -> tuple[Array, Array, Array]:
@@ -101,18 +105,18 @@ class Replacement(NamedTuple):
 
     Attributes
     ----------
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         Starting from the command, or already under way where the command is on it.
     warnings : tuple of str
         What a stop on the way could not keep.
 
     """
 
-    motion: DesiredMotion
+    motion: ReferenceTrajectory
     warnings: tuple[str, ...] = ()
 
 
-def replacement(takeover: Takeover, points: MotionPoints, origin_ns: int,
+def replacement(takeover: Takeover, points: CommandedPoints, origin_ns: int,
                 least_lead: float) -> Replacement:
     """
     Return what the arm follows from now on.
@@ -121,7 +125,7 @@ def replacement(takeover: Takeover, points: MotionPoints, origin_ns: int,
     ----------
     takeover : Takeover
         The present.
-    points : MotionPoints
+    points : CommandedPoints
         The new trajectory.
     origin_ns : int
         What the points' times are counted from [ns].
@@ -136,7 +140,7 @@ def replacement(takeover: Takeover, points: MotionPoints, origin_ns: int,
     """
     motion = through(points, origin_ns)
     if motion.start > takeover.now + least_lead:
-        whole = led_in(points, takeover.now - motion.origin, takeover.states)
+        whole = with_start_state(points, takeover.now - motion.origin, takeover.states)
         if _lead_keeps_limits(takeover, whole):
             return Replacement(through(whole, origin_ns))
     elif _is_on(takeover, motion, points):
@@ -145,7 +149,7 @@ def replacement(takeover: Takeover, points: MotionPoints, origin_ns: int,
     return Replacement(_joined(takeover, motion, i)) if i >= 0 else _gone_to(takeover, motion)
 
 
-def _lead_keeps_limits(takeover: Takeover, whole: MotionPoints) -> bool:
+def _lead_keeps_limits(takeover: Takeover, whole: CommandedPoints) -> bool:
     """
     Return whether the segment that leads in does.
 
@@ -163,7 +167,7 @@ def _lead_keeps_limits(takeover: Takeover, whole: MotionPoints) -> bool:
     return bool(_within_limits(takeover, T, tuple(x[1:2] for x in ends))[0])
 
 
-def _is_on(takeover: Takeover, motion: DesiredMotion, points: MotionPoints) -> bool:
+def _is_on(takeover: Takeover, motion: ReferenceTrajectory, points: CommandedPoints) -> bool:
     """Return whether the command is on the motion now; on a line, its velocity may differ."""
     state = motion.end_state if motion.end <= takeover.now else motion(takeover.now)
     gap = np.abs(np.subtract(state, takeover.command))
@@ -175,7 +179,7 @@ def _is_on(takeover: Takeover, motion: DesiredMotion, points: MotionPoints) -> b
     return linear or bool(gap[3:6].max() <= VELOCITY_TOLERANCE)
 
 
-def _first_in_reach(takeover: Takeover, motion: DesiredMotion) -> int:
+def _first_in_reach(takeover: Takeover, motion: ReferenceTrajectory) -> int:
     """Return the index of the earliest later knot that can be met on schedule, or -1."""
     time = takeover.now - motion.origin
     states = motion.states()
@@ -231,18 +235,18 @@ def _bounds(takeover: Takeover, ends: tuple[Array, ...]) -> list[tuple[Array, Ar
     return bounds
 
 
-def _joined(takeover: Takeover, motion: DesiredMotion, i: int) -> DesiredMotion:
+def _joined(takeover: Takeover, motion: ReferenceTrajectory, i: int) -> ReferenceTrajectory:
     """Return a quintic from the command to knot i, and the motion from there."""
     time = takeover.now - motion.origin
     join = hermite(float(motion.knots[i]) - time, takeover.states,
                    tuple(s[i] for s in motion.states()))
-    return DesiredMotion(
+    return ReferenceTrajectory(
         np.append(time, motion.knots[i:]),
         np.concatenate((np.stack(join, axis=-1)[np.newaxis], motion.coefficients[i:])),
         motion.final, motion.origin_ns, motion.final_velocity, motion.final_acceleration)
 
 
-def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
+def _gone_to(takeover: Takeover, motion: ReferenceTrajectory) -> Replacement:
     """
     Return a quintic to the motion's end, later than on schedule, or a stop and a move there.
 
@@ -264,8 +268,8 @@ def _gone_to(takeover: Takeover, motion: DesiredMotion) -> Replacement:
     met &= ~(_outside(takeover, q) | _outside(takeover, rest)).any(axis=1)
     if met.any():
         i = int(np.argmax(met))
-        late = DesiredMotion(T[i:i + 1], np.zeros((0, 3, 6)), q[i], nanoseconds(takeover.now),
-                             qd, qdd)
+        late = ReferenceTrajectory(T[i:i + 1], np.zeros((0, 3, 6)), q[i],
+                                   nanoseconds(takeover.now), qd, qdd)
         return Replacement(_joined(takeover, late, 0))
     stopped, warnings = _stopped(takeover)
     moved, torque = moved_on(stopped, motion.final, takeover.limits, takeover.model)
@@ -283,7 +287,7 @@ def _stopped(takeover: Takeover) -> Stop:
     return stop(running, takeover.now, takeover.limits, takeover.model)
 
 
-def _ends_outside(takeover: Takeover, motion: DesiredMotion) -> tuple[str, ...]:
+def _ends_outside(takeover: Takeover, motion: ReferenceTrajectory) -> tuple[str, ...]:
     """Return a sentence for each joint that a motion leaves outside its range."""
     low, high = takeover.limits.min_position, takeover.limits.max_position
     return tuple(

@@ -32,8 +32,8 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion, through
-from rrr_traj_planner.core.trajectory.trajectory_points import led_in, MotionPoints
+from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
+from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints, with_start_state
 
 # What is beyond a range by no more than this part of its end, or of 1 rad, or beyond a limit by no
 # more than this part of it, is not worth a word: positions are rounded to four digits, and the
@@ -80,7 +80,7 @@ class Excess(NamedTuple):
                 + (HINT if self.in_degrees else ''))
 
 
-def excesses(points: MotionPoints, limits: JointLimits, time: float = np.inf,
+def excesses(points: CommandedPoints, limits: JointLimits, time: float = np.inf,
              command: ArrayLike = ()) -> list[Excess]:
     """
     Return the ranges and limits that a trajectory leaves: position, velocity, acceleration.
@@ -91,7 +91,7 @@ def excesses(points: MotionPoints, limits: JointLimits, time: float = np.inf,
 
     Parameters
     ----------
-    points : MotionPoints
+    points : CommandedPoints
         The trajectory as it was received.
     limits : JointLimits
         Ranges and limits.
@@ -109,7 +109,7 @@ def excesses(points: MotionPoints, limits: JointLimits, time: float = np.inf,
     forms = list(_bernstein_forms(through(points)))
     if time < points.times[0]:
         q, qd, qdd = np.reshape(command, (3, 3))
-        forms[:2] = _bernstein_forms(through(led_in(points, time, (q, qd, qdd))))[:2]
+        forms[:2] = _bernstein_forms(through(with_start_state(points, time, (q, qd, qdd))))[:2]
     sent = (points.positions, points.velocities[points.has_velocity],
             points.accelerations[points.has_acceleration])
     found: list[Excess] = []
@@ -125,7 +125,7 @@ def excesses(points: MotionPoints, limits: JointLimits, time: float = np.inf,
     return found
 
 
-def _bernstein_forms(motion: DesiredMotion) -> tuple[Array, Array, Array]:
+def _bernstein_forms(motion: ReferenceTrajectory) -> tuple[Array, Array, Array]:
     """Return Bernstein coefficients of position, velocity, acceleration, (n, 3, 6 to 4)."""
     T = np.diff(motion.knots)[:, np.newaxis, np.newaxis]
     q = (motion.coefficients * T ** np.arange(6.0)) @ BERNSTEIN

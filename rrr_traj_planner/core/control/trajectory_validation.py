@@ -30,7 +30,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.nanoseconds import SECOND
-from rrr_traj_planner.core.trajectory.trajectory_points import FLOAT_EPSILON, MotionPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints, FLOAT_EPSILON
 
 # Larger values only serve to make numbers overflow [rad], [rad/s], [rad/s^2].
 LARGEST = 1e6
@@ -103,8 +103,8 @@ def check_trajectory(trajectory: IncomingTrajectory, joint_names: Sequence[str],
         before = point.time
 
 
-def motion_points(trajectory: IncomingTrajectory, joint_names: Sequence[str],
-                  held: Sequence[float] = (0.0, 0.0, 0.0)) -> MotionPoints:
+def commanded_points(trajectory: IncomingTrajectory, joint_names: Sequence[str],
+                     held: Sequence[float] = (0.0, 0.0, 0.0)) -> CommandedPoints:
     """
     Return the points of an accepted trajectory, joints in the arm's order.
 
@@ -119,13 +119,13 @@ def motion_points(trajectory: IncomingTrajectory, joint_names: Sequence[str],
 
     Returns
     -------
-    MotionPoints
+    CommandedPoints
         Times from the trajectory's start [s].
 
     """
     columns = [list(joint_names).index(name) for name in trajectory.joint_names]
     points, still = trajectory.points, (0.0,) * len(joint_names)
-    return MotionPoints(
+    return CommandedPoints(
         np.array([p.time / SECOND for p in points]),
         _rows([p.positions for p in points], columns, held),
         _rows([p.velocities for p in points], columns, still),

@@ -15,8 +15,9 @@
 """
 The thesis's equations of motion, corrected, written once for floats and for arrays.
 
-tau = H(q) qdd + h(q, qd) + g(q), equation 5.39. Every function takes joint values one by one;
-they may be floats (the simulation's inner loop) or arrays of one shape (whole trajectories).
+tau = M(q) qdd + C(q, qd) qd + g(q), equation 5.39, where the thesis writes H for the inertia
+matrix M and h for the Coriolis and centrifugal torques C qd. Every function takes joint values one
+by one: floats (the simulation's inner loop) or arrays of one shape (whole trajectories).
 """
 
 from __future__ import annotations
@@ -35,30 +36,30 @@ class Constants(NamedTuple):
     l3: float
     m3: float
     base_inertia: float      # I1y + I2x + I3z
-    upper_inertia: float     # I2y + m2 l2^2 - I2x, times c2^2 in H11
-    fore_inertia: float      # I3x - I3z, times s23^2 in H11
-    shoulder_inertia: float  # H22 without its s3 term
-    elbow_inertia: float     # H33
+    upper_inertia: float     # I2y + m2 l2^2 - I2x, times c2^2 in M11
+    fore_inertia: float      # I3x - I3z, times s23^2 in M11
+    shoulder_inertia: float  # M22 without its s3 term
+    elbow_inertia: float     # M33
     coupling: float          # m3 a2 l3
     upper_weight: float      # (m2 l2 + m3 a2) g
     fore_weight: float       # m3 l3 g
 
 
 class Terms(NamedTuple):
-    """What H, h and g are made of, at one pose (floats) or many (arrays)."""
+    """Elements and derivatives of M, and g, at one pose (floats) or many (arrays)."""
 
-    H11: Any
-    H22: Any
-    H23: Any
-    H33: Any
-    D2: Any   # dH11 / dtheta2
-    D3: Any   # dH11 / dtheta3
-    bc3: Any  # m3 a2 l3 c3
+    M11: Any
+    M22: Any
+    M23: Any
+    M33: Any
+    dM11_dq2: Any
+    dM11_dq3: Any
+    dM23_dq3: Any  # m3 a2 l3 c3, half of dM22 / dq3
     g2: Any
     g3: Any
 
 
-@lru_cache(maxsize=16)  # they take as long as all else of one state; a model never changes
+@lru_cache(maxsize=16)  # as costly as the rest of one evaluation; a model never changes
 def constants(model: RobotModel) -> Constants:
     """
     Return the constants of an arm's equations of motion.
@@ -91,7 +92,7 @@ def constants(model: RobotModel) -> Constants:
 def terms(k: Constants, q2: Any, q3: Any, sin: Callable[[Any], Any],
           cos: Callable[[Any], Any]) -> Terms:
     """
-    Return the terms of H, h and g (5.40-5.54 in their corrected form).
+    Return the terms of M, C and g (5.40-5.54 in their corrected form).
 
     Parameters
     ----------
@@ -114,54 +115,54 @@ def terms(k: Constants, q2: Any, q3: Any, sin: Callable[[Any], Any],
     r = k.l3 * s23 + k.a2 * c2  # distance of link 3's centre of mass from joint axis 1
     m3r = k.m3 * r
     fore = k.fore_inertia * s23
-    half_D3 = (fore + m3r * k.l3) * c23
-    bs3 = k.coupling * s3
-    H11 = k.base_inertia + k.upper_inertia * c2 * c2 + fore * s23 + m3r * r
-    H22 = k.shoulder_inertia + 2.0 * bs3
-    H23 = k.elbow_inertia + bs3
-    D2 = 2.0 * (half_D3 - (k.upper_inertia * c2 + m3r * k.a2) * s2)
-    bc3 = k.coupling * c3
+    half_dM11_dq3 = (fore + m3r * k.l3) * c23
+    coupling_s3 = k.coupling * s3
+    M11 = k.base_inertia + k.upper_inertia * c2 * c2 + fore * s23 + m3r * r
+    M22 = k.shoulder_inertia + 2.0 * coupling_s3
+    M23 = k.elbow_inertia + coupling_s3
+    dM11_dq2 = 2.0 * (half_dM11_dq3 - (k.upper_inertia * c2 + m3r * k.a2) * s2)
+    dM23_dq3 = k.coupling * c3
     g3 = k.fore_weight * s23
     g2 = k.upper_weight * c2 + g3
-    # In the order of the fields: their names would add two fifths to the time of all this.
-    return Terms(H11, H22, H23, k.elbow_inertia, D2, 2.0 * half_D3, bc3, g2, g3)
+    # By position: keyword arguments would add two fifths to the time of this function.
+    return Terms(M11, M22, M23, k.elbow_inertia, dM11_dq2, 2.0 * half_dM11_dq3, dM23_dq3, g2, g3)
 
 
-def velocity_torques(t: Terms, w1: Any, w2: Any, w3: Any) -> tuple[Any, Any, Any]:
+def coriolis_torques(t: Terms, qd1: Any, qd2: Any, qd3: Any) -> tuple[Any, Any, Any]:
     """
-    Return h, the Coriolis and centrifugal torques (5.49-5.51 corrected).
+    Return C(q, qd) qd, the Coriolis and centrifugal torques (5.49-5.51 corrected).
 
     Parameters
     ----------
     t : Terms
         At the pose.
-    w1, w2, w3 : float or ndarray
+    qd1, qd2, qd3 : float or ndarray
         Joint velocities [rad/s].
 
     Returns
     -------
     tuple
-        h1, h2, h3 [N m].
+        Of the three joints [N m].
 
     """
-    half_w1_squared = 0.5 * w1 * w1
-    return ((t.D2 * w2 + t.D3 * w3) * w1,
-            t.bc3 * w3 * (w3 + 2.0 * w2) - t.D2 * half_w1_squared,
-            -t.D3 * half_w1_squared - t.bc3 * w2 * w2)
+    half_qd1_squared = 0.5 * qd1 * qd1
+    return ((t.dM11_dq2 * qd2 + t.dM11_dq3 * qd3) * qd1,
+            t.dM23_dq3 * qd3 * (qd3 + 2.0 * qd2) - t.dM11_dq2 * half_qd1_squared,
+            -t.dM11_dq3 * half_qd1_squared - t.dM23_dq3 * qd2 * qd2)
 
 
-def torques(t: Terms, w1: Any, w2: Any, w3: Any, a1: Any, a2: Any,
-            a3: Any) -> tuple[Any, Any, Any]:
+def torques(t: Terms, qd1: Any, qd2: Any, qd3: Any, qdd1: Any, qdd2: Any,
+            qdd3: Any) -> tuple[Any, Any, Any]:
     """
-    Return the joint torques of a motion (5.39).
+    Return the joint torques of a motion: inverse dynamics (5.39).
 
     Parameters
     ----------
     t : Terms
         At the pose.
-    w1, w2, w3 : float or ndarray
+    qd1, qd2, qd3 : float or ndarray
         Joint velocities [rad/s].
-    a1, a2, a3 : float or ndarray
+    qdd1, qdd2, qdd3 : float or ndarray
         Joint accelerations [rad/s^2].
 
     Returns
@@ -170,22 +171,22 @@ def torques(t: Terms, w1: Any, w2: Any, w3: Any, a1: Any, a2: Any,
         tau1, tau2, tau3 [N m].
 
     """
-    h1, h2, h3 = velocity_torques(t, w1, w2, w3)
-    return (t.H11 * a1 + h1,
-            t.H22 * a2 + t.H23 * a3 + h2 + t.g2,
-            t.H23 * a2 + t.H33 * a3 + h3 + t.g3)
+    C1, C2, C3 = coriolis_torques(t, qd1, qd2, qd3)
+    return (t.M11 * qdd1 + C1,
+            t.M22 * qdd2 + t.M23 * qdd3 + C2 + t.g2,
+            t.M23 * qdd2 + t.M33 * qdd3 + C3 + t.g3)
 
 
-def accelerations(t: Terms, w1: Any, w2: Any, w3: Any, tau1: Any, tau2: Any,
+def accelerations(t: Terms, qd1: Any, qd2: Any, qd3: Any, tau1: Any, tau2: Any,
                   tau3: Any) -> tuple[Any, Any, Any]:
     """
-    Return the joint accelerations that torques cause (5.39 solved for qdd).
+    Return the joint accelerations that torques cause: forward dynamics (5.39 solved for qdd).
 
     Parameters
     ----------
     t : Terms
         At the pose.
-    w1, w2, w3 : float or ndarray
+    qd1, qd2, qd3 : float or ndarray
         Joint velocities [rad/s].
     tau1, tau2, tau3 : float or ndarray
         Joint torques [N m].
@@ -196,9 +197,9 @@ def accelerations(t: Terms, w1: Any, w2: Any, w3: Any, tau1: Any, tau2: Any,
         Accelerations of the three joints [rad/s^2].
 
     """
-    h1, h2, h3 = velocity_torques(t, w1, w2, w3)
-    b2, b3 = tau2 - h2 - t.g2, tau3 - h3 - t.g3
-    det = t.H22 * t.H33 - t.H23 * t.H23
-    return ((tau1 - h1) / t.H11,
-            (t.H33 * b2 - t.H23 * b3) / det,
-            (t.H22 * b3 - t.H23 * b2) / det)
+    C1, C2, C3 = coriolis_torques(t, qd1, qd2, qd3)
+    b2, b3 = tau2 - C2 - t.g2, tau3 - C3 - t.g3
+    det = t.M22 * t.M33 - t.M23 * t.M23
+    return ((tau1 - C1) / t.M11,
+            (t.M33 * b2 - t.M23 * b3) / det,
+            (t.M22 * b3 - t.M23 * b2) / det)

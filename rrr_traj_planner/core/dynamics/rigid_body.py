@@ -15,7 +15,7 @@
 """
 Dynamics of the arm for one state (shape (3,)) or many (shape (..., 3)).
 
-One state is computed in floats: NumPy takes ten times as long for numbers one by one.
+One state is computed with Python floats, ten times as fast as NumPy with single numbers.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from rrr_traj_planner.core.dynamics import equations
 
 def inertia_matrix(model: RobotModel, q: ArrayLike) -> Array:
     """
-    Return the joint-space inertia matrix H (5.40-5.48 corrected).
+    Return the joint-space inertia matrix M (5.40-5.48 corrected).
 
     Parameters
     ----------
@@ -53,17 +53,17 @@ def inertia_matrix(model: RobotModel, q: ArrayLike) -> Array:
 
     """
     t = _terms(model, *_split(q=q))
-    H = np.zeros(np.shape(q) + (3,))
-    H[..., 0, 0] = t.H11
-    H[..., 1, 1] = t.H22
-    H[..., 1, 2] = H[..., 2, 1] = t.H23
-    H[..., 2, 2] = t.H33
-    return H
+    M = np.zeros(np.shape(q) + (3,))
+    M[..., 0, 0] = t.M11
+    M[..., 1, 1] = t.M22
+    M[..., 1, 2] = M[..., 2, 1] = t.M23
+    M[..., 2, 2] = t.M33
+    return M
 
 
 def coriolis_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
     """
-    Return h, the Coriolis and centrifugal torques (5.49-5.51 corrected).
+    Return C(q, qd) qd, the Coriolis and centrifugal torques (5.49-5.51 corrected).
 
     Parameters
     ----------
@@ -84,12 +84,12 @@ def coriolis_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
 
     """
     at, rates = _split(q=q, qd=qd)
-    return _joined(*equations.velocity_torques(_terms(model, at), *rates))
+    return _joined(*equations.coriolis_torques(_terms(model, at), *rates))
 
 
 def gravity_torque(model: RobotModel, q: ArrayLike) -> Array:
     """
-    Return g, the torques that hold the arm still (5.52-5.54 corrected).
+    Return g(q), the torques that hold the arm against gravity (5.52-5.54 corrected).
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def gravity_torque(model: RobotModel, q: ArrayLike) -> Array:
 
 def inverse_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
     """
-    Return the joint torques that produce a motion (5.39).
+    Return the joint torques that produce a motion: M qdd + C qd + g (5.39).
 
     Parameters
     ----------
@@ -187,10 +187,10 @@ def kinetic_energy(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
         If a shape is wrong, or a value not finite.
 
     """
-    at, (w1, w2, w3) = _split(q=q, qd=qd)
+    at, (qd1, qd2, qd3) = _split(q=q, qd=qd)
     t = _terms(model, at)
-    return np.asarray(0.5 * (t.H11 * (w1 * w1) + t.H22 * (w2 * w2) + t.H33 * (w3 * w3))
-                      + t.H23 * w2 * w3)
+    return np.asarray(0.5 * (t.M11 * (qd1 * qd1) + t.M22 * (qd2 * qd2) + t.M33 * (qd3 * qd3))
+                      + t.M23 * qd2 * qd3)
 
 
 def potential_energy(model: RobotModel, q: ArrayLike) -> Array:
@@ -230,14 +230,14 @@ def _split(**values: ArrayLike) -> list[tuple[Any, Any, Any]]:
         if not math.isfinite(x1 + x2 + x3):
             break
         found.append((x1, x2, x3))
-    else:  # one state, checked by itself: it is what a control loop asks
+    else:  # one state, checked without NumPy: the case of a control loop
         return found
     return [tuple(array.tolist()) if array.ndim == 1 else (
         array[..., 0], array[..., 1], array[..., 2]) for array in joint_states(**values)]
 
 
 def _joined(a: Any, b: Any, c: Any) -> Array:
-    """Return floats, or arrays of shapes that go together, as one array."""
+    """Return the values of three joints, floats or arrays that broadcast, as one array."""
     if type(a) is type(b) is type(c) is float:
         return np.array((a, b, c))
     a, b, c = np.broadcast_arrays(a, b, c)

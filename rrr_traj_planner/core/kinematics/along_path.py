@@ -68,11 +68,11 @@ def unlimited_joint_path(model: RobotModel, points: PathPoints, posture: Posture
         Joint positions and derivatives.
 
     """
-    found = joint_path_but_turns(model, points, posture)
+    found = joint_path_modulo_turns(model, points, posture)
     return found._replace(q=np.unwrap(found.q, axis=0))
 
 
-def joint_path_but_turns(model: RobotModel, points: PathPoints, posture: Posture) -> JointPath:
+def joint_path_modulo_turns(model: RobotModel, points: PathPoints, posture: Posture) -> JointPath:
     """
     Return joint positions along a path, of each as many whole turns as it happens.
 

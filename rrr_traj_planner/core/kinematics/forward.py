@@ -129,14 +129,15 @@ def jacobian_rate(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
     """
     q, qd = np.broadcast_arrays(*joint_states(q=q, qd=qd))
     s1, c1 = np.sin(q[..., 0]), np.cos(q[..., 0])
-    w1, w2, w23 = qd[..., 0], qd[..., 1], qd[..., 1] + qd[..., 2]
+    qd1, qd2, qd23 = qd[..., 0], qd[..., 1], qd[..., 1] + qd[..., 2]
     Z1, Z2, Z3, Z4 = _z_terms(model, q)
-    Z1_rate, Z2_rate = -Z2 * w23, Z1 * w23
-    Z3_rate = Z2_rate - model.a2 * np.sin(q[..., 1]) * w2
-    Z4_rate = -Z2 * w23 - model.a2 * np.cos(q[..., 1]) * w2
+    Z1_rate, Z2_rate = -Z2 * qd23, Z1 * qd23
+    Z3_rate = Z2_rate - model.a2 * np.sin(q[..., 1]) * qd2
+    Z4_rate = -Z2 * qd23 - model.a2 * np.cos(q[..., 1]) * qd2
     return matrix(
-        (-Z3_rate * s1 - Z3 * c1 * w1, Z4_rate * c1 - Z4 * s1 * w1, Z1_rate * c1 - Z1 * s1 * w1),
-        (Z3_rate * c1 - Z3 * s1 * w1, Z4_rate * s1 + Z4 * c1 * w1, Z1_rate * s1 + Z1 * c1 * w1),
+        (-Z3_rate * s1 - Z3 * c1 * qd1, Z4_rate * c1 - Z4 * s1 * qd1,
+         Z1_rate * c1 - Z1 * s1 * qd1),
+        (Z3_rate * c1 - Z3 * s1 * qd1, Z4_rate * s1 + Z4 * c1 * qd1, Z1_rate * s1 + Z1 * c1 * qd1),
         (np.zeros_like(s1), Z3_rate, Z2_rate))
 
 

@@ -101,16 +101,16 @@ def _rotations(q: Array) -> Array:
 
 def _angular_motion(q: Array, qd: Array, qdd: Array) -> tuple[Array, Array]:
     """Return angular velocities (5.13-5.15) and accelerations (5.19-5.23), each in frame i."""
-    w1, w2, w23 = qd[..., 0], qd[..., 1], qd[..., 1] + qd[..., 2]
-    a1, a2, a23 = qdd[..., 0], qdd[..., 1], qdd[..., 1] + qdd[..., 2]
+    qd1, qd2, qd23 = qd[..., 0], qd[..., 1], qd[..., 1] + qd[..., 2]
+    qdd1, qdd2, qdd23 = qdd[..., 0], qdd[..., 1], qdd[..., 1] + qdd[..., 2]
     c2, s2 = np.cos(q[..., 1]), np.sin(q[..., 1])
     c23, s23 = np.cos(q[..., 1] + q[..., 2]), np.sin(q[..., 1] + q[..., 2])
-    zero = np.zeros_like(w1)
-    velocity = matrix((zero, w1, zero), (s2 * w1, c2 * w1, w2), (s23 * w1, w23, -c23 * w1))
+    zero = np.zeros_like(qd1)
+    velocity = matrix((zero, qd1, zero), (s2 * qd1, c2 * qd1, qd2), (s23 * qd1, qd23, -c23 * qd1))
     acceleration = matrix(
-        (zero, a1, zero),
-        (s2 * a1 + c2 * w1 * w2, c2 * a1 - s2 * w1 * w2, a2),
-        (s23 * a1 + c23 * w1 * w23, a23, -c23 * a1 + s23 * w1 * w23))
+        (zero, qdd1, zero),
+        (s2 * qdd1 + c2 * qd1 * qd2, c2 * qdd1 - s2 * qd1 * qd2, qdd2),
+        (s23 * qdd1 + c23 * qd1 * qd23, qdd23, -c23 * qdd1 + s23 * qd1 * qd23))
     return velocity, acceleration
 
 

@@ -90,7 +90,7 @@ class CycloidPiece(NamedTuple):
         """
         return CycloidPiece(*arrays)
 
-    def stretched(self, factor: float) -> CycloidPiece:
+    def time_scaled(self, factor: float) -> CycloidPiece:
         """
         Return the same positions run through at another rate; see `Pieces`.
 

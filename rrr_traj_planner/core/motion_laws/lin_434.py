@@ -39,7 +39,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
 
 
-class Law434(NamedTuple):
+class Lin434(NamedTuple):
     """
     One law, or several at once; times in durations, positions in displacements.
 
@@ -91,9 +91,9 @@ class Law434(NamedTuple):
         return self.last * (6.0 * self.v2 + self.last * self.a2) / 12.0
 
     @property
-    def backwards(self) -> Law434:
+    def backwards(self) -> Lin434:
         """Return the same law, run through from its end to its start."""
-        return Law434(self.last, self.first, -self.a2, -self.a1)
+        return Lin434(self.last, self.first, -self.a2, -self.a1)
 
     def velocities(self) -> Array:
         """

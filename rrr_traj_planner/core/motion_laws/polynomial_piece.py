@@ -75,7 +75,7 @@ class PolynomialPiece(NamedTuple):
         """
         return PolynomialPiece(*arrays)
 
-    def stretched(self, factor: float) -> PolynomialPiece:
+    def time_scaled(self, factor: float) -> PolynomialPiece:
         """
         Return the same positions run through at another rate; see `Pieces`.
 

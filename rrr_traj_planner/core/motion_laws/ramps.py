@@ -174,7 +174,7 @@ class Ramps(NamedTuple):
         duration, position, velocity, acceleration, rise = arrays
         return Ramps(duration, position, velocity, acceleration, rise, self.shape)
 
-    def stretched(self, factor: float) -> Ramps:
+    def time_scaled(self, factor: float) -> Ramps:
         """
         Return the same positions run through at another rate; see `Pieces`.
 

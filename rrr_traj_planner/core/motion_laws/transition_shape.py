@@ -134,7 +134,7 @@ class ShapedPiece(NamedTuple):
         duration, position, velocity, change = arrays
         return ShapedPiece(duration, position, velocity, change, self.shape)
 
-    def stretched(self, factor: float) -> ShapedPiece:
+    def time_scaled(self, factor: float) -> ShapedPiece:
         """
         Return the same positions run through at another rate; see `Pieces`.
 

@@ -27,7 +27,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray, parameter_values
 from rrr_traj_planner.core.kinematics.along_path import (
-    joint_path_but_turns,
+    joint_path_modulo_turns,
     JointPath,
     unlimited_joint_path,
 )
@@ -40,7 +40,7 @@ from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory.maximum import maximum_over_time
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory.trajectory import (
-    ending_exactly,
+    ending_at_duration,
     Peaks,
     times_within,
     Trajectory,
@@ -112,7 +112,7 @@ class ArmPath(ReadOnlyArrays):
             Of shape (m, 3) each.
 
         """
-        found = joint_path_but_turns(
+        found = joint_path_modulo_turns(
             self.model, self.planes.points(self.path, s, left), self.posture)
         places, known = self._turning
         near = np.stack([np.interp(s, places, known[:, j]) for j in range(3)], axis=1)
@@ -170,7 +170,7 @@ class PathTrajectory(Trajectory):
                  join_times: Array, note: str = '') -> None:
         self.arm_path, self.progress, self.note = arm_path, progress, note
         self.duration = progress.duration
-        self.via_times = ending_exactly(via_times, self.duration)
+        self.via_times = ending_at_duration(via_times, self.duration)
         self.join_times = _at_knots(progress, join_times)
         make_read_only((self.via_times, self.join_times))
 
@@ -237,10 +237,10 @@ class PathTrajectory(Trajectory):
             velocity=velocity, acceleration=acceleration, jerk=jerk,
             min_position=FAR - least, max_position=most - FAR), float(speed))
 
-    def stretched(self, factor: float) -> PathTrajectory:
+    def time_scaled(self, factor: float) -> PathTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""
         factor = positive('factor', factor)
-        slower = PathTrajectory(self.arm_path, self.progress.stretched(factor),
+        slower = PathTrajectory(self.arm_path, self.progress.time_scaled(factor),
                                 self.via_times * factor, self.join_times * factor, self.note)
         self.pass_cache(slower, factor)
         return slower

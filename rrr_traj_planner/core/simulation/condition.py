@@ -190,7 +190,8 @@ class ConditionMonitor:
             What acted on the joints besides [N m].
 
         """
-        hit = [side and not was and -side * w > HIT for side, was, w in zip(at, before, velocity)]
+        hit = [side and not was and -side * qd > HIT
+               for side, was, qd in zip(at, before, velocity)]
         least = [max(PRESSED * (limit if limit < inf else abs(x)), LEAST_PRESSURE)
                  for limit, x in zip(self.max_effort, torque)]
         pressed = [side and was and side * x > y

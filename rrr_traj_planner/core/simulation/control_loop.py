@@ -27,7 +27,7 @@ from rrr_traj_planner.core.simulation.encoder import Encoder
 from rrr_traj_planner.core.simulation.energy import EnergyLedger, work
 from rrr_traj_planner.core.simulation.physics import ArmPhysics
 from rrr_traj_planner.core.states import Desired, State, Triple
-from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
+from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
 NO_DISTURBANCE = (0.0, 0.0, 0.0)
 
@@ -133,13 +133,13 @@ class ControlLoop:
         self._plain = settings.encoder.is_true and (
             settings.payload.known_to_controller or settings.payload.mass == 0.0)
 
-    def advance_plainly(self, motion: DesiredMotion, steps: int) -> None:
+    def advance_plainly(self, motion: ReferenceTrajectory, steps: int) -> None:
         """
         Simulate an arm that is plain.
 
         Parameters
         ----------
-        motion : DesiredMotion
+        motion : ReferenceTrajectory
             What to follow.
         steps : int
             How many steps.

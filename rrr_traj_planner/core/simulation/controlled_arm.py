@@ -25,8 +25,8 @@ from rrr_traj_planner.core.simulation.control_loop import ControlLoop
 from rrr_traj_planner.core.states import Desired
 from rrr_traj_planner.core.stopping.stop import Stop, stop
 from rrr_traj_planner.core.stopping.task import MeasuredState, time_inside, what_moves
-from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion, holding
-from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
+from rrr_traj_planner.core.trajectory.reference_trajectory import holding, ReferenceTrajectory
+from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
 
 OUTSIDE_NEW_RANGES = 'The motion leaves the new joint ranges: stopping'
 
@@ -44,7 +44,7 @@ class ControlledArm(ControlLoop):
 
     Attributes
     ----------
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         What is followed.
     violation : tuple of str
         What was wrong when a tolerance was last exceeded; empty where none was.
@@ -55,7 +55,7 @@ class ControlledArm(ControlLoop):
 
     def __init__(self, settings: ArmSettings, q: ArrayLike) -> None:
         super().__init__(settings, q)
-        self.motion: DesiredMotion = holding(q)
+        self.motion: ReferenceTrajectory = holding(q)
         self.stop_warnings: tuple[str, ...] = ()
         self.reset(q)
 
@@ -111,13 +111,13 @@ class ControlledArm(ControlLoop):
         self.violation: tuple[str, ...] = ()
         self.torque = self.control(self.desired)
 
-    def follow(self, points: MotionPoints, origin_ns: int) -> None:
+    def follow(self, points: CommandedPoints, origin_ns: int) -> None:
         """
         Take over a new trajectory, without a jump in what is commanded.
 
         Parameters
         ----------
-        points : MotionPoints
+        points : CommandedPoints
             The trajectory.
         origin_ns : int
             What its times are counted from, on the arm's own time [ns].
@@ -186,21 +186,21 @@ class ControlledArm(ControlLoop):
             self._stop(self._what_moves())
             self.stop_warnings = (OUTSIDE_NEW_RANGES, *self.stop_warnings)
 
-    def _what_moves(self) -> DesiredMotion:
+    def _what_moves(self) -> ReferenceTrajectory:
         """Return what would have to stop now."""
         return what_moves(self.motion, self.now, self.seen, self.settings.limits)
 
-    def _stop(self, motion: DesiredMotion) -> None:
+    def _stop(self, motion: ReferenceTrajectory) -> None:
         """Stop what is a motion now."""
         stopped, warnings = self._stopped(motion, self.time)
         self._stay(stopped)
         self.stop_warnings = warnings
 
-    def _stopped(self, motion: DesiredMotion, time: float) -> Stop:
+    def _stopped(self, motion: ReferenceTrajectory, time: float) -> Stop:
         """Return a stop from a motion at a time."""
         return stop(motion, time, self.settings.limits, self.settings.controller_model)
 
-    def _stay(self, motion: DesiredMotion) -> None:
+    def _stay(self, motion: ReferenceTrajectory) -> None:
         """Follow a motion that is no trajectory: nothing is watched."""
         self.motion = motion
         self._watched = self._first_check = False

@@ -137,8 +137,8 @@ class Encoder:
             self._tracked[i] = expected + self._position_gain * surprise
             velocities[i] += self._velocity_gain * surprise
             readings.append(reading)
-        (q1, q2, q3), (w1, w2, w3) = readings, velocities
-        self.seen = (q1, q2, q3, w1, w2, w3)
+        (q1, q2, q3), (qd1, qd2, qd3) = readings, velocities
+        self.seen = (q1, q2, q3, qd1, qd2, qd3)
         return self.seen
 
     def _reading(self, q: float) -> float:

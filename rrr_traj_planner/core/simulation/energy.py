@@ -65,7 +65,7 @@ class EnergyLedger:
             setattr(self, entry.name, 0.0)
 
 
-def kinetic(t: Terms, w: tuple[float, ...]) -> float:
+def kinetic(t: Terms, qd: tuple[float, ...]) -> float:
     """
     Return the kinetic energy.
 
@@ -73,7 +73,7 @@ def kinetic(t: Terms, w: tuple[float, ...]) -> float:
     ----------
     t : Terms
         The equations' terms at the pose.
-    w : tuple of 3 floats
+    qd : tuple of 3 floats
         Joint velocities [rad/s].
 
     Returns
@@ -82,9 +82,9 @@ def kinetic(t: Terms, w: tuple[float, ...]) -> float:
         [J].
 
     """
-    w1, w2, w3 = w
-    energy: float = (0.5 * (t.H11 * w1 * w1 + t.H22 * w2 * w2 + t.H33 * w3 * w3)
-                     + t.H23 * w2 * w3)
+    qd1, qd2, qd3 = qd
+    energy: float = (0.5 * (t.M11 * qd1 * qd1 + t.M22 * qd2 * qd2 + t.M33 * qd3 * qd3)
+                     + t.M23 * qd2 * qd3)
     return energy
 
 

@@ -30,7 +30,7 @@ from typing import NamedTuple
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.dynamics.equations import Constants, Terms
 from rrr_traj_planner.core.simulation.energy import EnergyLedger, kinetic
-from rrr_traj_planner.core.simulation.friction_step import Load, Lost, rates, resisted_step
+from rrr_traj_planner.core.simulation.friction_step import friction_step, Load, Lost, rates
 from rrr_traj_planner.core.simulation.joint_stops import Contact, contact, FREE, held, permitted
 from rrr_traj_planner.core.simulation.root_finding import event, PAST
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
@@ -51,7 +51,7 @@ class Bounds(NamedTuple):
     high: Triple
 
 
-class ResistedMotion:
+class FrictionDynamics:
     """
     What torques do to an arm with friction and bumpers.
 
@@ -112,8 +112,8 @@ class ResistedMotion:
         if left > 0.0:
             state = self._waited(t, state, torque, left, hard)
             t = self._terms(state)
-        w = self._after_impact(t, state[3:], contact(state, *hard))
-        return state[:3] + _at_rest(w, self._coulomb)
+        qd = self._after_impact(t, state[3:], contact(state, *hard))
+        return state[:3] + _at_rest(qd, self._coulomb)
 
     def _hard_stops(self, state: State) -> Bounds:
         """Return where the arm may be: one beyond a stop (it was moved) may not go further."""
@@ -122,43 +122,44 @@ class ResistedMotion:
         return Bounds((min(l1 - x, q1), min(l2 - x, q2), min(l3 - x, q3)),
                       (max(u1 + x, q1), max(u2 + x, q2), max(u3 + x, q3)))
 
-    def _after_impact(self, t: Terms, w: Triple, at: Contact) -> Triple:
+    def _after_impact(self, t: Terms, qd: Triple, at: Contact) -> Triple:
         """Return the velocities that hard stops permit, and enter what that takes."""
         if at == FREE:
-            return w
-        after = permitted(t, w, at)
-        self._ledger.stops += kinetic(t, w) - kinetic(t, after)
+            return qd
+        after = permitted(t, qd, at)
+        self._ledger.stops += kinetic(t, qd) - kinetic(t, after)
         return after
 
     def _settled(self, t: Terms, state: State, torque: Triple, hard: Bounds,
                  shortest: float) -> tuple[State, Load, Contact]:
         """Return the state after impacts, what acts from there on, and which joints slide."""
         at = contact(state, *hard)
-        w = _at_rest(self._after_impact(t, state[3:], at), self._coulomb)
-        (w1, w2, w3), (c1, c2, c3) = w, self._coulomb
+        qd = _at_rest(self._after_impact(t, state[3:], at), self._coulomb)
+        (qd1, qd2, qd3), (c1, c2, c3) = qd, self._coulomb
         q, lock = state[:3], FREE
-        slip = _signs(w, self._coulomb)
+        slip = _signs(qd, self._coulomb)
         load = self._load(state, torque, slip)
-        if at != FREE or 0.0 in w:
-            x, _ = rates(load, t, q, w)
-            ranges = (_range(c1, w1, x[0], at[0], shortest), _range(c2, w2, x[1], at[1], shortest),
-                      _range(c3, w3, x[2], at[2], shortest))
+        if at != FREE or 0.0 in qd:
+            x, _ = rates(load, t, q, qd)
+            ranges = (_range(c1, qd1, x[0], at[0], shortest),
+                      _range(c2, qd2, x[1], at[1], shortest),
+                      _range(c3, qd3, x[2], at[2], shortest))
             a = resting_accelerations(t, x, ranges)
             lock = (_locked(a[0], ranges[0]), _locked(a[1], ranges[1]), _locked(a[2], ranges[2]))
-            w, lock = self._brought_to_rest(t, w, lock, at)
-            slip = _signs((w[0] or a[0], w[1] or a[1], w[2] or a[2]), self._coulomb)
+            qd, lock = self._brought_to_rest(t, qd, lock, at)
+            slip = _signs((qd[0] or a[0], qd[1] or a[1], qd[2] or a[2]), self._coulomb)
             load = self._load(state, torque, slip)._replace(lock=lock)
-        return q + w, load, slip
+        return q + qd, load, slip
 
-    def _brought_to_rest(self, t: Terms, w: Triple, lock: Contact,
+    def _brought_to_rest(self, t: Terms, qd: Triple, lock: Contact,
                          at: Contact) -> tuple[Triple, Contact]:
         """Return velocities with the joints that rest at rest, and those joints."""
-        after = held(t, w, lock)
+        after = held(t, qd, lock)
         if (at[1] and at[1] * after[1] < 0.0) or (at[2] and at[2] * after[2] < 0.0):
             # stopping one joint has thrown the other into its stop
             lock, after = (lock[0], 1, 1), (after[0], 0.0, 0.0)
-        if after != w:
-            self._ledger.stops += kinetic(t, w) - kinetic(t, after)
+        if after != qd:
+            self._ledger.stops += kinetic(t, qd) - kinetic(t, after)
         return after, lock
 
     def _load(self, state: State, torque: Triple, slip: Contact) -> Load:
@@ -177,7 +178,7 @@ class ResistedMotion:
                      hard: Bounds) -> tuple[float, State]:
         """Return the time until something changes, or h, and the state then."""
         def trial(x: float) -> tuple[State, Lost]:
-            return resisted_step(self._constants, t, state, load, x)
+            return friction_step(self._constants, t, state, load, x)
 
         taken, (after, lost) = h, trial(h)
         room = self._room(after, load, slip, hard)
@@ -190,7 +191,7 @@ class ResistedMotion:
 
     def _room(self, state: State, load: Load, slip: Contact, hard: Bounds) -> float:
         """Return how far the arm is from the next event [rad], [rad/s]; negative past it."""
-        room = min(s * w if s else inf for s, w in zip(slip, state[3:]))
+        room = min(s * qd if s else inf for s, qd in zip(slip, state[3:]))
         for i, q in enumerate(state[:3]):
             if load.lock[i]:
                 continue
@@ -206,13 +207,14 @@ class ResistedMotion:
     def _waited(self, t: Terms, state: State, torque: Triple, h: float, hard: Bounds) -> State:
         """Return the state after a time in which all that touches or rests stays still."""
         at = contact(state, *hard)
-        c, w = self._coulomb, state[3:]
-        lock = (int(at[0] or c[0] and abs(w[0]) <= PAST), int(at[1] or c[1] and abs(w[1]) <= PAST),
-                int(at[2] or c[2] and abs(w[2]) <= PAST))
-        before = state[:3] + self._brought_to_rest(t, w, lock, FREE)[0]
+        c, qd = self._coulomb, state[3:]
+        lock = (int(at[0] or c[0] and abs(qd[0]) <= PAST),
+                int(at[1] or c[1] and abs(qd[1]) <= PAST),
+                int(at[2] or c[2] and abs(qd[2]) <= PAST))
+        before = state[:3] + self._brought_to_rest(t, qd, lock, FREE)[0]
         slip = _signs(before[3:], c)
         load = self._load(before, torque, slip)._replace(lock=lock)
-        after, lost = resisted_step(self._constants, t, before, load, h)
+        after, lost = friction_step(self._constants, t, before, load, h)
         self._enter(lost, slip, before, after)
         return _inside(after, hard)
 
@@ -225,17 +227,18 @@ class ResistedMotion:
                            + c3 * s3 * (after[2] - before[2]))
 
 
-def _at_rest(w: Triple, coulomb: Triple) -> Triple:
+def _at_rest(qd: Triple, coulomb: Triple) -> Triple:
     """Return velocities, exactly zero where they are next to it and friction can hold them."""
-    (w1, w2, w3), (c1, c2, c3) = w, coulomb
-    return (0.0 if c1 and -PAST <= w1 <= PAST else w1, 0.0 if c2 and -PAST <= w2 <= PAST else w2,
-            0.0 if c3 and -PAST <= w3 <= PAST else w3)
+    (qd1, qd2, qd3), (c1, c2, c3) = qd, coulomb
+    return (0.0 if c1 and -PAST <= qd1 <= PAST else qd1,
+            0.0 if c2 and -PAST <= qd2 <= PAST else qd2,
+            0.0 if c3 and -PAST <= qd3 <= PAST else qd3)
 
 
-def _range(coulomb: float, w: float, x: float, side: int, shortest: float) -> Range:
+def _range(coulomb: float, qd: float, x: float, side: int, shortest: float) -> Range:
     """Return the reactions that friction and a hard stop can give a joint [N m]."""
-    friction = coulomb if w == 0.0 else 0.0
-    if w != 0.0 and side * w > -side * x * 0.5 * shortest:  # it is leaving its stop
+    friction = coulomb if qd == 0.0 else 0.0
+    if qd != 0.0 and side * qd > -side * x * 0.5 * shortest:  # it is leaving its stop
         side = 0
     return (-inf if side < 0 else -friction, inf if side > 0 else friction)
 
@@ -244,11 +247,11 @@ def _locked(a: float, limits: Range) -> int:
     return int(a == 0.0 and limits[0] < limits[1])
 
 
-def _signs(w: Triple, coulomb: Triple) -> Contact:
+def _signs(qd: Triple, coulomb: Triple) -> Contact:
     """Return the directions in which joints with Coulomb friction slide."""
-    return ((w[0] > 0.0) - (w[0] < 0.0) if coulomb[0] else 0,
-            (w[1] > 0.0) - (w[1] < 0.0) if coulomb[1] else 0,
-            (w[2] > 0.0) - (w[2] < 0.0) if coulomb[2] else 0)
+    return ((qd[0] > 0.0) - (qd[0] < 0.0) if coulomb[0] else 0,
+            (qd[1] > 0.0) - (qd[1] < 0.0) if coulomb[1] else 0,
+            (qd[2] > 0.0) - (qd[2] < 0.0) if coulomb[2] else 0)
 
 
 def _inside(state: State, hard: Bounds) -> State:

@@ -48,7 +48,7 @@ class Lost(NamedTuple):
     bumpers: float
 
 
-def rates(load: Load, t: Terms, q: Triple, w: Triple) -> tuple[Triple, Lost]:
+def rates(load: Load, t: Terms, q: Triple, qd: Triple) -> tuple[Triple, Lost]:
     """
     Return accelerations and losses at a state.
 
@@ -58,7 +58,7 @@ def rates(load: Load, t: Terms, q: Triple, w: Triple) -> tuple[Triple, Lost]:
         What acts on the joints.
     t : Terms
         The equations' terms at the pose.
-    q, w : tuple of 3 floats
+    q, qd : tuple of 3 floats
         Positions [rad] and velocities [rad/s].
 
     Returns
@@ -69,24 +69,24 @@ def rates(load: Load, t: Terms, q: Triple, w: Triple) -> tuple[Triple, Lost]:
         [W].
 
     """
-    (n1, n2, n3), (v1, v2, v3), (w1, w2, w3) = load.torque, load.viscous, w
-    n = (n1 - v1 * w1, n2 - v2 * w2, n3 - v3 * w3)
+    (n1, n2, n3), (v1, v2, v3), (qd1, qd2, qd3) = load.torque, load.viscous, qd
+    n = (n1 - v1 * qd1, n2 - v2 * qd2, n3 - v3 * qd3)
     lost = 0.0
     if load.sides != FREE:
         pushes = [0.0, 0.0, 0.0]
         for i, side in enumerate(load.sides):
             if side:
-                push, heat = load.bumper.push(side * (load.edges[i] - q[i]), -side * w[i])
+                push, heat = load.bumper.push(side * (load.edges[i] - q[i]), -side * qd[i])
                 pushes[i] = side * push
                 lost += heat
         n = (n[0] + pushes[0], n[1] + pushes[1], n[2] + pushes[2])
-    a = accelerations(t, w1, w2, w3, *n)
+    a = accelerations(t, qd1, qd2, qd3, *n)
     if load.lock != FREE:
         a = held(t, a, load.lock)
-    return a, Lost(v1 * w1 * w1 + v2 * w2 * w2 + v3 * w3 * w3, lost)
+    return a, Lost(v1 * qd1 * qd1 + v2 * qd2 * qd2 + v3 * qd3 * qd3, lost)
 
 
-def resisted_step(k: Constants, t: Terms, state: State, load: Load,
+def friction_step(k: Constants, t: Terms, state: State, load: Load,
                   h: float) -> tuple[State, Lost]:
     """
     Return the state after a time step, and what was lost on the way.
@@ -114,18 +114,18 @@ def resisted_step(k: Constants, t: Terms, state: State, load: Load,
     """
     if all(load.lock):
         return state, Lost(0.0, 0.0)
-    q, w, half = state[:3], state[3:], 0.5 * h
-    a, lost_a = rates(load, t, q, w)
-    middle = _along(q, half, _along(w, 0.5 * half, a))
+    q, qd, half = state[:3], state[3:], 0.5 * h
+    a, lost_a = rates(load, t, q, qd)
+    middle = _along(q, half, _along(qd, 0.5 * half, a))
     t = terms(k, middle[1], middle[2], sin, cos)
-    b, lost_b = rates(load, t, middle, _along(w, half, a))
-    c, lost_c = rates(load, t, middle, _along(w, half, b))
-    end = _along(q, h, _along(w, half, c))
-    d, lost_d = rates(load, terms(k, end[1], end[2], sin, cos), end, _along(w, h, c))
+    b, lost_b = rates(load, t, middle, _along(qd, half, a))
+    c, lost_c = rates(load, t, middle, _along(qd, half, b))
+    end = _along(q, h, _along(qd, half, c))
+    d, lost_d = rates(load, terms(k, end[1], end[2], sin, cos), end, _along(qd, h, c))
     sixth = h / 6.0
     (a1, a2, a3), (b1, b2, b3), (c1, c2, c3), (d1, d2, d3) = a, b, c, d
-    mean = _along(w, sixth, (a1 + b1 + c1, a2 + b2 + c2, a3 + b3 + c3))
-    return _along(q, h, mean) + _along(w, sixth, (
+    mean = _along(qd, sixth, (a1 + b1 + c1, a2 + b2 + c2, a3 + b3 + c3))
+    return _along(q, h, mean) + _along(qd, sixth, (
         a1 + 2.0 * (b1 + c1) + d1, a2 + 2.0 * (b2 + c2) + d2, a3 + 2.0 * (b3 + c3) + d3)), Lost(
         *(sixth * (l1 + 2.0 * (l2 + l3) + l4)
           for l1, l2, l3, l4 in zip(lost_a, lost_b, lost_c, lost_d)))

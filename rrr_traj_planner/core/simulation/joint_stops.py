@@ -58,8 +58,8 @@ def permitted(t: Terms, x: Triple, at: Contact) -> Triple:
     """
     Return the permitted joint rates nearest to the free ones.
 
-    Minimises (y - x)' H (y - x) over y that moves no joint further into its stop. Joint 1 is
-    inertially uncoupled (H12 = H13 = 0).
+    Minimises (y - x)' M (y - x) over y that moves no joint further into its stop. Joint 1 is
+    inertially uncoupled (M12 = M13 = 0).
 
     Parameters
     ----------
@@ -83,11 +83,11 @@ def permitted(t: Terms, x: Triple, at: Contact) -> Triple:
     if not (stopped_2 or stopped_3):
         return x1, x2, x3
     if stopped_2:
-        other = x3 + t.H23 / t.H33 * x2  # the rate that joint 3's own momentum keeps
+        other = x3 + t.M23 / t.M33 * x2  # the rate that joint 3's own momentum keeps
         if s3 * other >= 0.0:
             return x1, 0.0, other
     if stopped_3:
-        other = x2 + t.H23 / t.H22 * x3
+        other = x2 + t.M23 / t.M22 * x3
         if s2 * other >= 0.0:
             return x1, other, 0.0
     return x1, 0.0, 0.0
@@ -118,9 +118,9 @@ def held(t: Terms, x: Triple, lock: Contact) -> Triple:
     if s2 and s3:
         return x1, 0.0, 0.0
     if s2:
-        return x1, 0.0, x3 + t.H23 / t.H33 * x2
+        return x1, 0.0, x3 + t.M23 / t.M33 * x2
     if s3:
-        return x1, x2 + t.H23 / t.H22 * x3, 0.0
+        return x1, x2 + t.M23 / t.M22 * x3, 0.0
     return x1, x2, x3
 
 

@@ -34,7 +34,7 @@ from rrr_traj_planner.core.dynamics.equations import (
 )
 from rrr_traj_planner.core.simulation.condition import ConditionMonitor
 from rrr_traj_planner.core.simulation.energy import EnergyLedger, kinetic
-from rrr_traj_planner.core.simulation.friction_dynamics import Bounds, ResistedMotion
+from rrr_traj_planner.core.simulation.friction_dynamics import Bounds, FrictionDynamics
 from rrr_traj_planner.core.simulation.joint_stops import Contact, contact, FREE, held, permitted
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.time_step import free_step, held_step
@@ -86,7 +86,7 @@ class ArmPhysics:
         self._constants = constants(model)
         self._bumper, friction = soft_stops or SoftStops(), friction or Friction()
         self._viscous, self._coulomb = friction.viscous.tolist(), friction.coulomb.tolist()
-        self._resisted = None if friction.is_none and not self._bumper.width else ResistedMotion(
+        self._resisted = None if friction.is_none and not self._bumper.width else FrictionDynamics(
             self._constants, self.terms, Bounds(low, high), friction, self._bumper, self.ledger)
 
     def bumper_energy(self, state: State) -> float:
@@ -157,13 +157,13 @@ class ArmPhysics:
 
     def _watched(self, t: Terms, state: State, after: State, torque: Triple, h: float) -> State:
         """Tell the monitor of stops that are touched after a step, and return the state then."""
-        (q1, q2, q3, w1, w2, w3), low, high = state, self.low, self.high
-        freely = (q1 + h * w1, q2 + h * w2, q3 + h * w3, w1, w2, w3)
+        (q1, q2, q3, qd1, qd2, qd3), low, high = state, self.low, self.high
+        freely = (q1 + h * qd1, q2 + h * qd2, q3 + h * qd3, qd1, qd2, qd3)
         a, b = contact(after, low, high), contact(freely, low, high)  # b: it may have left again
         if a != FREE or b != FREE:
             at = (a[0] or b[0], a[1] or b[1], a[2] or b[2])
             v1, v2, v3 = after[3:]
-            net = torques(t, w1, w2, w3, (v1 - w1) / h, (v2 - w2) / h, (v3 - w3) / h)
+            net = torques(t, qd1, qd2, qd3, (v1 - qd1) / h, (v2 - qd2) / h, (v3 - qd3) / h)
             r1, r2, r3 = (
                 _beyond(total - own + viscous * v, coulomb) for total, own, v, viscous, coulomb in
                 zip(net, torque, after[3:], self._viscous, self._coulomb))
@@ -180,9 +180,9 @@ class ArmPhysics:
         left = h
         for _ in range(MOST_IMPACTS):
             t, at = self.terms(state), contact(state, low, high)
-            w = state[3:]
+            qd = state[3:]
             state, lock = _after_impact(t, state, torque, at, SHORTEST_REBOUND * h)
-            self._enter_impact(t, w, state[3:])
+            self._enter_impact(t, qd, state[3:])
             taken, state = self._until_impact(t, state, torque, left, lock, low, high)
             left -= taken
             if left <= 0.0:
@@ -190,14 +190,14 @@ class ArmPhysics:
         at = contact(state, low, high)
         t = self.terms(state)
         if left > 0.0:
-            w = held(t, state[3:], at)
-            self._enter_impact(t, state[3:], w)
-            state = held_step(self._constants, t, state[:3] + w, torque, left, at)
+            qd = held(t, state[3:], at)
+            self._enter_impact(t, state[3:], qd)
+            state = held_step(self._constants, t, state[:3] + qd, torque, left, at)
             state = _within(state, low, high)
             t, at = self.terms(state), contact(state, low, high)
-        w = permitted(t, state[3:], at)
-        self._enter_impact(t, state[3:], w)
-        return state[:3] + w
+        qd = permitted(t, state[3:], at)
+        self._enter_impact(t, state[3:], qd)
+        return state[:3] + qd
 
     def _enter_impact(self, t: Terms, before: Triple, after: Triple) -> None:
         """Enter the energy that stops have taken."""
@@ -232,19 +232,19 @@ def _after_impact(t: Terms, state: State, torque: Triple, at: Contact,
     """
     if at == FREE:
         return state, FREE
-    w1, w2, w3 = permitted(t, state[3:], at)
-    a1, a2, a3 = accelerations(t, w1, w2, w3, *torque)
+    qd1, qd2, qd3 = permitted(t, state[3:], at)
+    a1, a2, a3 = accelerations(t, qd1, qd2, qd3, *torque)
     s1, s2, s3 = at
     reach = 0.5 * shortest
-    slow = (s1 if s1 * w1 <= -s1 * a1 * reach else 0, s2 if s2 * w2 <= -s2 * a2 * reach else 0,
-            s3 if s3 * w3 <= -s3 * a3 * reach else 0)
+    slow = (s1 if s1 * qd1 <= -s1 * a1 * reach else 0, s2 if s2 * qd2 <= -s2 * a2 * reach else 0,
+            s3 if s3 * qd3 <= -s3 * a3 * reach else 0)
     pressed = permitted(t, (a1, a2, a3), slow)
     lock = (s1 if slow[0] and pressed[0] == 0.0 else 0, s2 if slow[1] and pressed[1] == 0.0 else 0,
             s3 if slow[2] and pressed[2] == 0.0 else 0)
-    w1, w2, w3 = held(t, (w1, w2, w3), lock)
-    if s2 * w2 < 0.0 or s3 * w3 < 0.0:  # stopping one joint has thrown the other into its stop
-        lock, w2, w3 = (lock[0], s2, s3), 0.0, 0.0
-    return state[:3] + (w1, w2, w3), lock
+    qd1, qd2, qd3 = held(t, (qd1, qd2, qd3), lock)
+    if s2 * qd2 < 0.0 or s3 * qd3 < 0.0:  # stopping one joint has thrown the other into its stop
+        lock, qd2, qd3 = (lock[0], s2, s3), 0.0, 0.0
+    return state[:3] + (qd1, qd2, qd3), lock
 
 
 def _beyond(torque: float, friction: float) -> float:

@@ -19,7 +19,7 @@ from __future__ import annotations
 from rrr_traj_planner.core.nanoseconds import SECOND
 
 
-class Pace:
+class SimulatedClock:
     """
     Simulated time against steady wall time: at a rate, as fast as can be, or standing.
 

@@ -39,7 +39,7 @@ def resting_accelerations(t: Terms, x: Triple, ranges: tuple[Range, Range, Range
     """
     Return the accelerations of an arm some of whose joints may stay at rest.
 
-    Finds a with r = H (a - x) such that a_i = 0 and r_i in its range, or a_i > 0 and r_i at the
+    Finds a with r = M (a - x) such that a_i = 0 and r_i in its range, or a_i > 0 and r_i at the
     lower end, or a_i < 0 and r_i at the upper one.
 
     Parameters
@@ -58,10 +58,10 @@ def resting_accelerations(t: Terms, x: Triple, ranges: tuple[Range, Range, Range
 
     """
     (x1, x2, x3), (range_1, range_2, range_3) = x, ranges
-    a1 = _single(t.H11, x1, range_1)
+    a1 = _single(t.M11, x1, range_1)
     if range_2 == range_3 == NO_REACTION:
         return a1, x2, x3
-    return a1, *_pair((t.H22, t.H23, t.H33), (x2, x3), range_2, range_3)
+    return a1, *_pair((t.M22, t.M23, t.M33), (x2, x3), range_2, range_3)
 
 
 def _single(inertia: float, x: float, limits: Range) -> float:
@@ -73,34 +73,34 @@ def _single(inertia: float, x: float, limits: Range) -> float:
     return x + high / inertia if reaction > high else 0.0
 
 
-def _pair(H: Triple, x: tuple[float, float], range_2: Range,
+def _pair(M: Triple, x: tuple[float, float], range_2: Range,
           range_3: Range) -> tuple[float, float]:
     """Return the accelerations of two coupled joints."""
-    (H22, H23, H33), (x2, x3) = H, x
-    if _within(-H22 * x2 - H23 * x3, range_2) and _within(-H23 * x2 - H33 * x3, range_3):
+    (M22, M23, M33), (x2, x3) = M, x
+    if _within(-M22 * x2 - M23 * x3, range_2) and _within(-M23 * x2 - M33 * x3, range_3):
         return 0.0, 0.0
     if range_2 != NO_REACTION:
-        a3 = _single(H33, x3 + H23 / H33 * x2, range_3)
-        if _within(H23 * (a3 - x3) - H22 * x2, range_2):
+        a3 = _single(M33, x3 + M23 / M33 * x2, range_3)
+        if _within(M23 * (a3 - x3) - M22 * x2, range_2):
             return 0.0, a3
     if range_3 != NO_REACTION:
-        a2 = _single(H22, x2 + H23 / H22 * x3, range_2)
-        if _within(H23 * (a2 - x2) - H33 * x3, range_3):
+        a2 = _single(M22, x2 + M23 / M22 * x3, range_2)
+        if _within(M23 * (a2 - x2) - M33 * x3, range_3):
             return a2, 0.0
-    return _both_moving(H, x, range_2, range_3)
+    return _both_moving(M, x, range_2, range_3)
 
 
-def _both_moving(H: Triple, x: tuple[float, float], range_2: Range,
+def _both_moving(M: Triple, x: tuple[float, float], range_2: Range,
                  range_3: Range) -> tuple[float, float]:
     """Return the case whose directions fit; on the edge between two, the one that fits best."""
-    H22, H23, H33 = H
-    det = H22 * H33 - H23 * H23
+    M22, M23, M33 = M
+    det = M22 * M33 - M23 * M23
     best, least = (0.0, 0.0), float('inf')
     for sign_2, r2 in zip((1.0, -1.0), range_2):
         for sign_3, r3 in zip((1.0, -1.0), range_3):
             if isinf(r2) or isinf(r3):
                 continue
-            a = (x[0] + (H33 * r2 - H23 * r3) / det, x[1] + (H22 * r3 - H23 * r2) / det)
+            a = (x[0] + (M33 * r2 - M23 * r3) / det, x[1] + (M22 * r3 - M23 * r2) / det)
             wrong = max(-sign_2 * a[0] if range_2 != NO_REACTION else 0.0,
                         -sign_3 * a[1] if range_3 != NO_REACTION else 0.0)
             if wrong < least:

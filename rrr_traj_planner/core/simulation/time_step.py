@@ -52,23 +52,23 @@ def free_step(k: Constants, t: Terms, state: State, torque: Triple, h: float) ->
         Positions [rad] and velocities [rad/s].
 
     """
-    q1, q2, q3, w1, w2, w3 = state
+    q1, q2, q3, qd1, qd2, qd3 = state
     n1, n2, n3 = torque
     half = 0.5 * h
     eighth = 0.5 * half * half
-    a1, a2, a3 = accelerations(t, w1, w2, w3, n1, n2, n3)
-    t = terms(k, q2 + half * w2 + eighth * a2, q3 + half * w3 + eighth * a3, sin, cos)
-    b1, b2, b3 = accelerations(t, w1 + half * a1, w2 + half * a2, w3 + half * a3, n1, n2, n3)
-    c1, c2, c3 = accelerations(t, w1 + half * b1, w2 + half * b2, w3 + half * b3, n1, n2, n3)
-    t = terms(k, q2 + h * (w2 + half * c2), q3 + h * (w3 + half * c3), sin, cos)
-    d1, d2, d3 = accelerations(t, w1 + h * c1, w2 + h * c2, w3 + h * c3, n1, n2, n3)
+    a1, a2, a3 = accelerations(t, qd1, qd2, qd3, n1, n2, n3)
+    t = terms(k, q2 + half * qd2 + eighth * a2, q3 + half * qd3 + eighth * a3, sin, cos)
+    b1, b2, b3 = accelerations(t, qd1 + half * a1, qd2 + half * a2, qd3 + half * a3, n1, n2, n3)
+    c1, c2, c3 = accelerations(t, qd1 + half * b1, qd2 + half * b2, qd3 + half * b3, n1, n2, n3)
+    t = terms(k, q2 + h * (qd2 + half * c2), q3 + h * (qd3 + half * c3), sin, cos)
+    d1, d2, d3 = accelerations(t, qd1 + h * c1, qd2 + h * c2, qd3 + h * c3, n1, n2, n3)
     sixth = h / 6.0
-    return (q1 + h * (w1 + sixth * (a1 + b1 + c1)),
-            q2 + h * (w2 + sixth * (a2 + b2 + c2)),
-            q3 + h * (w3 + sixth * (a3 + b3 + c3)),
-            w1 + sixth * (a1 + 2.0 * (b1 + c1) + d1),
-            w2 + sixth * (a2 + 2.0 * (b2 + c2) + d2),
-            w3 + sixth * (a3 + 2.0 * (b3 + c3) + d3))
+    return (q1 + h * (qd1 + sixth * (a1 + b1 + c1)),
+            q2 + h * (qd2 + sixth * (a2 + b2 + c2)),
+            q3 + h * (qd3 + sixth * (a3 + b3 + c3)),
+            qd1 + sixth * (a1 + 2.0 * (b1 + c1) + d1),
+            qd2 + sixth * (a2 + 2.0 * (b2 + c2) + d2),
+            qd3 + sixth * (a3 + 2.0 * (b3 + c3) + d3))
 
 
 def held_step(k: Constants, t: Terms, state: State, torque: Triple, h: float,
@@ -94,27 +94,27 @@ def held_step(k: Constants, t: Terms, state: State, torque: Triple, h: float,
     if lock == FREE:
         return free_step(k, t, state, torque, h)
 
-    def acceleration(at: Terms, w: Triple) -> Triple:
-        return held(at, accelerations(at, *w, *torque), lock)
+    def acceleration(at: Terms, qd: Triple) -> Triple:
+        return held(at, accelerations(at, *qd, *torque), lock)
 
-    q, w = state[:3], state[3:]
-    a = acceleration(t, w)
-    middle = _moved(q, w, a, 0.5 * h)
+    q, qd = state[:3], state[3:]
+    a = acceleration(t, qd)
+    middle = _moved(q, qd, a, 0.5 * h)
     t = terms(k, middle[1], middle[2], sin, cos)
-    b = acceleration(t, _added(w, a, 0.5 * h))
-    c = acceleration(t, _added(w, b, 0.5 * h))
-    end = _moved(q, w, c, h)
-    d = acceleration(terms(k, end[1], end[2], sin, cos), _added(w, c, h))
+    b = acceleration(t, _added(qd, a, 0.5 * h))
+    c = acceleration(t, _added(qd, b, 0.5 * h))
+    end = _moved(q, qd, c, h)
+    d = acceleration(terms(k, end[1], end[2], sin, cos), _added(qd, c, h))
     sixth = h / 6.0
-    return _moved(q, w, _added(_added(a, b, 1.0), c, 1.0), h, sixth) + _added(
-        w, _added(_added(a, d, 1.0), _added(b, c, 1.0), 2.0), sixth)
+    return _moved(q, qd, _added(_added(a, b, 1.0), c, 1.0), h, sixth) + _added(
+        qd, _added(_added(a, d, 1.0), _added(b, c, 1.0), 2.0), sixth)
 
 
-def _moved(q: Triple, w: Triple, a: Triple, h: float, share: float | None = None) -> Triple:
-    """Return q + h (w + share a); the share is h / 2 for a constant acceleration."""
+def _moved(q: Triple, qd: Triple, a: Triple, h: float, share: float | None = None) -> Triple:
+    """Return q + h (qd + share a); the share is h / 2 for a constant acceleration."""
     share = 0.5 * h if share is None else share
-    return (q[0] + h * (w[0] + share * a[0]), q[1] + h * (w[1] + share * a[1]),
-            q[2] + h * (w[2] + share * a[2]))
+    return (q[0] + h * (qd[0] + share * a[0]), q[1] + h * (qd[1] + share * a[1]),
+            q[2] + h * (qd[2] + share * a[2]))
 
 
 def _added(x: Triple, y: Triple, factor: float) -> Triple:

@@ -30,7 +30,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.stopping.joint_brake import joint_brake, JointBrake
 from rrr_traj_planner.core.stopping.task import POSITION_TOLERANCE, StopTask
 from rrr_traj_planner.core.trajectory.interpolation import hermite
-from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
+from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
 Indices = NDArray[np.int_]
 
@@ -110,7 +110,7 @@ class JointBrakes:
         worst = np.maximum(share.max(axis=(1, 2)), task.rest_share((q + way)[:, -1]))
         return np.where(outside, inf, worst)
 
-    def motion(self, i: int) -> DesiredMotion:
+    def motion(self, i: int) -> ReferenceTrajectory:
         """
         Return a candidate.
 
@@ -121,7 +121,7 @@ class JointBrakes:
 
         Returns
         -------
-        DesiredMotion
+        ReferenceTrajectory
             It includes what of the followed motion is still to come, and what has been.
 
         """
@@ -193,7 +193,7 @@ class Slowdowns:
         worst = np.stack(shares).max(axis=(0, 2, 3))
         return np.asarray(np.maximum(worst, self.task.rest_share(q[:, -1])))
 
-    def motion(self, i: int) -> DesiredMotion:
+    def motion(self, i: int) -> ReferenceTrajectory:
         """
         Return a candidate.
 
@@ -204,7 +204,7 @@ class Slowdowns:
 
         Returns
         -------
-        DesiredMotion
+        ReferenceTrajectory
             It includes what of the followed motion is still to come, and what has been.
 
         """
@@ -254,12 +254,12 @@ class Slowdowns:
 
 
 def _after(task: StopTask, delay: float, knots: Array, coefficients: Array,
-           final: Array) -> DesiredMotion:
+           final: Array) -> ReferenceTrajectory:
     """Return the motion that is followed for a while, then others."""
     motion = task.motion
     begin = task.now + delay - motion.origin
     n = int(np.searchsorted(motion.knots, begin)) if delay else 0
     before = motion.knots[:n]
-    return DesiredMotion(
+    return ReferenceTrajectory(
         np.concatenate((before, begin + knots)),
         np.concatenate((motion.coefficients[:n], coefficients)), final, motion.origin_ns)

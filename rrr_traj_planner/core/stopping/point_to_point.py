@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
 from rrr_traj_planner.core.trajectory.interpolation import hermite
-from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
+from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
 # Peaks of the quintic over distance d and time T: 1.875 d/T, 5.7735 d/T^2, 60 d/T^3.
 PEAK_VELOCITY, PEAK_ACCELERATION, PEAK_JERK = 15.0 / 8.0, 10.0 / 3.0 ** 0.5, 60.0
@@ -47,25 +47,25 @@ class Move(NamedTuple):
 
     Attributes
     ----------
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         The motion.
     peak_torque : ndarray, shape (3,)
         Of the move [N m]; beyond the limits where no duration keeps them.
 
     """
 
-    motion: DesiredMotion
+    motion: ReferenceTrajectory
     peak_torque: Array
 
 
-def moved_on(motion: DesiredMotion, target: Array, limits: JointLimits,
+def moved_on(motion: ReferenceTrajectory, target: Array, limits: JointLimits,
              model: RobotModel) -> Move:
     """
     Return a motion that ends at rest, and then a move to a target.
 
     Parameters
     ----------
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         It ends at rest.
     target : ndarray, shape (3,)
         Positions [rad].
@@ -86,9 +86,9 @@ def moved_on(motion: DesiredMotion, target: Array, limits: JointLimits,
         return Move(motion, zero)
     T, peak_torque = _duration(start, target, limits, model)
     move = np.stack(hermite(T, (start, zero, zero), (target, zero, zero)), axis=-1)
-    return Move(DesiredMotion(np.append(motion.knots, motion.knots[-1] + T),
-                              np.concatenate((motion.coefficients, move[np.newaxis])),
-                              target, motion.origin_ns), peak_torque)
+    return Move(ReferenceTrajectory(np.append(motion.knots, motion.knots[-1] + T),
+                                    np.concatenate((motion.coefficients, move[np.newaxis])),
+                                    target, motion.origin_ns), peak_torque)
 
 
 def quickest(share: Array) -> int:

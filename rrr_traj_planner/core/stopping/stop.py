@@ -36,7 +36,7 @@ from rrr_traj_planner.core.stopping.joint_brake import greatest_deceleration
 from rrr_traj_planner.core.stopping.point_to_point import moved_on, quickest
 from rrr_traj_planner.core.stopping.stop_warnings import harder, outside, torques_beyond
 from rrr_traj_planner.core.stopping.task import POSITION_TOLERANCE, StopTask, time_inside
-from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
+from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
 # Slower than this a joint is at rest where a motion ends [rad/s].
 REST = 1e-6
@@ -70,19 +70,19 @@ class Stop(NamedTuple):
 
     Attributes
     ----------
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         Starting now from the state, or already under way; at rest inside every range at last.
     warnings : tuple of str
         What could not be kept, a sentence for each joint; empty where all is well.
 
     """
 
-    motion: DesiredMotion
+    motion: ReferenceTrajectory
     warnings: tuple[str, ...] = ()
 
 
 # A motion to rest, and what it costs.
-Found = tuple[DesiredMotion, float]
+Found = tuple[ReferenceTrajectory, float]
 
 
 class Family(Protocol):
@@ -108,7 +108,7 @@ class Family(Protocol):
 
         """
 
-    def motion(self, i: int) -> DesiredMotion:
+    def motion(self, i: int) -> ReferenceTrajectory:
         """
         Return a candidate.
 
@@ -119,13 +119,13 @@ class Family(Protocol):
 
         Returns
         -------
-        DesiredMotion
+        ReferenceTrajectory
             A motion to rest.
 
         """
 
 
-def stop(motion: DesiredMotion, now: float, limits: JointLimits, model: RobotModel) -> Stop:
+def stop(motion: ReferenceTrajectory, now: float, limits: JointLimits, model: RobotModel) -> Stop:
     """
     Return the quickest way to rest that keeps every range and limit.
 
@@ -135,7 +135,7 @@ def stop(motion: DesiredMotion, now: float, limits: JointLimits, model: RobotMod
 
     Parameters
     ----------
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         What the arm follows; of a state alone, `from_state`.
     now : float
         When the stop begins [s].
@@ -159,11 +159,11 @@ def stop(motion: DesiredMotion, now: float, limits: JointLimits, model: RobotMod
     target = np.clip(found.final, limits.min_position, limits.max_position)
     if np.abs(target - found.final).max() > POSITION_TOLERANCE:
         found = moved_on(found, target, limits, model).motion
-    found = DesiredMotion(found.knots, found.coefficients, target, found.origin_ns)
+    found = ReferenceTrajectory(found.knots, found.coefficients, target, found.origin_ns)
     return Stop(found, tuple(told))
 
 
-def _within_limits(task: StopTask) -> DesiredMotion | None:
+def _within_limits(task: StopTask) -> ReferenceTrajectory | None:
     """Return the cheapest candidate that keeps ranges and limits, if there is one."""
     delays, states = _delays(task)
     brakes = _joint_brakes(task, delays, states)
@@ -222,7 +222,8 @@ def _delays(task: StopTask) -> tuple[Array, tuple[Array, Array, Array]]:
     return delays, (q, qd, qdd)
 
 
-def _end(motion: DesiredMotion, now: float, qd: Array, qdd: Array) -> tuple[Array, Array, Array]:
+def _end(motion: ReferenceTrajectory, now: float, qd: Array,
+         qdd: Array) -> tuple[Array, Array, Array]:
     """Return the state at a motion's end, at which its last polynomial has a velocity."""
     if motion.ends_moving:
         return motion.final, motion.final_velocity, motion.final_acceleration
@@ -230,7 +231,7 @@ def _end(motion: DesiredMotion, now: float, qd: Array, qdd: Array) -> tuple[Arra
     return (motion.final, np.zeros(3), np.zeros(3)) if rests else (motion.final, qd, qdd)
 
 
-def _as_hard_as_needed(task: StopTask) -> tuple[DesiredMotion, list[str]]:
+def _as_hard_as_needed(task: StopTask) -> tuple[ReferenceTrajectory, list[str]]:
     """Return a brake that ends inside the ranges, whatever it takes, and what that is."""
     q, qd, qdd = (x[0] for x in _delays(task)[1])
     low, high = task.ranges(q)

@@ -23,7 +23,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.stopping.task import MeasuredState, StopTask
-from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
+from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
 # What a joint slower than this does at the end of its range is not worth a word [rad/s], nor is
 # one so little outside its range [rad].
@@ -64,7 +64,7 @@ def harder(task: StopTask, q: Array, qd: Array, needed: Array) -> list[str]:
     return told
 
 
-def torques_beyond(task: StopTask, motion: DesiredMotion) -> list[str]:
+def torques_beyond(task: StopTask, motion: ReferenceTrajectory) -> list[str]:
     """
     Tell of joints whose motors cannot give what a stop asks for.
 
@@ -72,7 +72,7 @@ def torques_beyond(task: StopTask, motion: DesiredMotion) -> list[str]:
     ----------
     task : StopTask
         The task.
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         The stop.
 
     Returns

@@ -25,7 +25,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.states import Desired, State
-from rrr_traj_planner.core.trajectory.reference_trajectory import DesiredMotion
+from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
 # So far beyond a range is within it [rad]; a motion may touch its ends to the other.
 POSITION_TOLERANCE, TOUCH = 1e-9, 1e-6
@@ -44,7 +44,7 @@ class StopTask:
 
     Parameters
     ----------
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         What the arm follows; the stop may follow it a little longer.
     now : float
         When the stop begins [s].
@@ -55,7 +55,7 @@ class StopTask:
 
     """
 
-    motion: DesiredMotion
+    motion: ReferenceTrajectory
     now: float
     limits: JointLimits
     model: RobotModel
@@ -118,13 +118,13 @@ class StopTask:
                 np.where(q > high + POSITION_TOLERANCE, q + TOUCH, high))
 
 
-def time_inside(motion: DesiredMotion, now: float, limits: JointLimits) -> float:
+def time_inside(motion: ReferenceTrajectory, now: float, limits: JointLimits) -> float:
     """
     Return until when a motion stays inside the ranges.
 
     Parameters
     ----------
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         The motion.
     now : float
         From when on it is looked at [s].
@@ -146,7 +146,7 @@ def time_inside(motion: DesiredMotion, now: float, limits: JointLimits) -> float
     return float(looks[first - 1]) if first else -inf
 
 
-def from_state(state: Desired, now: int) -> DesiredMotion:
+def from_state(state: Desired, now: int) -> ReferenceTrajectory:
     """
     Return a motion that is over in the state in which it begins.
 
@@ -159,15 +159,15 @@ def from_state(state: Desired, now: int) -> DesiredMotion:
 
     Returns
     -------
-    DesiredMotion
+    ReferenceTrajectory
         Of one knot.
 
     """
     q, qd, qdd = np.reshape(state, (3, 3))
-    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), q, now, qd, qdd)
+    return ReferenceTrajectory(np.zeros(1), np.zeros((0, 3, 6)), q, now, qd, qdd)
 
 
-class MeasuredState(DesiredMotion):
+class MeasuredState(ReferenceTrajectory):
     """
     A measured state as a motion that is over, for `stop`.
 
@@ -179,7 +179,7 @@ class MeasuredState(DesiredMotion):
         Positions [rad] and velocities [rad/s].
     now : int
         The time [ns].
-    commanded : DesiredMotion
+    commanded : ReferenceTrajectory
         What was commanded then.
 
     Attributes
@@ -189,20 +189,20 @@ class MeasuredState(DesiredMotion):
 
     """
 
-    def __init__(self, seen: State, now: int, commanded: DesiredMotion) -> None:
+    def __init__(self, seen: State, now: int, commanded: ReferenceTrajectory) -> None:
         super().__init__(np.zeros(1), np.zeros((0, 3, 6)), np.array(seen[:3]), now,
                          np.array(seen[3:]), np.zeros(3))
         self.commanded_position = np.array(commanded.command(now)[:3])
 
 
-def what_moves(motion: DesiredMotion, now: int, seen: State,
-               limits: JointLimits) -> DesiredMotion:
+def what_moves(motion: ReferenceTrajectory, now: int, seen: State,
+               limits: JointLimits) -> ReferenceTrajectory:
     """
     Return what has to stop: a motion, or the state measured where that motion is far off.
 
     Parameters
     ----------
-    motion : DesiredMotion
+    motion : ReferenceTrajectory
         What is followed.
     now : int
         The time [ns].
@@ -213,7 +213,7 @@ def what_moves(motion: DesiredMotion, now: int, seen: State,
 
     Returns
     -------
-    DesiredMotion
+    ReferenceTrajectory
         For `stop`.
 
     """

@@ -31,7 +31,7 @@ from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant
-from rrr_traj_planner.core.trajectory.torque import squared_stretch
+from rrr_traj_planner.core.trajectory.torque import squared_time_scale
 
 # Limits are kept to this part, 0.1 %, less what the finest look may miss.
 SPLINE_TOLERANCE = 8e-4
@@ -127,7 +127,7 @@ def _looked_at(model: RobotModel, limits: JointLimits, spline: Interpolant,
         np.abs(qd) / limits.max_velocity, np.abs(qdd) / limits.max_acceleration,
         np.abs(tau) / limits.max_effort])
     factors = np.stack([ratios[0], np.sqrt(ratios[1]), np.sqrt(
-        squared_stretch(model, limits, q, qd, qdd))])
+        squared_time_scale(model, limits, q, qd, qdd))])
     peaks = ratios + _between(ratios)
     factors = np.where(ratios > 1.0 + SPLINE_TOLERANCE, factors, np.where(
         peaks > 1.0 + SPLINE_TOLERANCE, np.sqrt(peaks), 1.0)).max(axis=(0, 3))

@@ -68,7 +68,7 @@ class Pieces(Protocol):
 
         """
 
-    def stretched(self, factor: float) -> Pieces:
+    def time_scaled(self, factor: float) -> Pieces:
         """
         Return the same positions run through at another rate.
 

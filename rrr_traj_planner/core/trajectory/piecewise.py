@@ -27,7 +27,7 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory.pieces import Pieces
-from rrr_traj_planner.core.trajectory.trajectory import ending_exactly, Peaks, Trajectory
+from rrr_traj_planner.core.trajectory.trajectory import ending_at_duration, Peaks, Trajectory
 
 # Newton steps towards a zero of velocity, halvings of its bracket where they leave it. An error e
 # of the place in [0, 1] changes the position there by the order of e squared.
@@ -139,7 +139,7 @@ class JointProfile(ReadOnlyArrays):
                 break
         return np.asarray(self.knots[index] + s * piece.duration)
 
-    def stretched(self, factor: float) -> JointProfile:
+    def time_scaled(self, factor: float) -> JointProfile:
         """
         Return the same positions run through at another rate.
 
@@ -154,7 +154,7 @@ class JointProfile(ReadOnlyArrays):
             The slower or faster motion.
 
         """
-        return JointProfile(self.pieces.stretched(factor))
+        return JointProfile(self.pieces.time_scaled(factor))
 
     def _at(self, index: Any) -> Pieces:
         return self.pieces.made_of(f[index] for f in self.pieces.arrays().values())
@@ -204,7 +204,7 @@ class PiecewiseTrajectory(Trajectory):
                  note: str = '') -> None:
         self.profiles, self.note = tuple(profiles), note
         self.duration = self.profiles[0].duration
-        self.via_times = ending_exactly(
+        self.via_times = ending_at_duration(
             finite_array('via_times', via_times, (-1,)), self.duration)
         lengths = np.array([p.duration for p in self.profiles])
         if np.ptp(lengths) > 1e-9 * max(1.0, self.duration):
@@ -250,10 +250,10 @@ class PiecewiseTrajectory(Trajectory):
             acceleration=acceleration, jerk=jerk,
             min_position=ranges[:, 0], max_position=ranges[:, 1])
 
-    def stretched(self, factor: float) -> PiecewiseTrajectory:
+    def time_scaled(self, factor: float) -> PiecewiseTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""
         factor = positive('factor', factor)
-        slower = PiecewiseTrajectory([p.stretched(factor) for p in self.profiles],
+        slower = PiecewiseTrajectory([p.time_scaled(factor) for p in self.profiles],
                                      self.via_times * factor, self.note)
         self.pass_cache(slower, factor)
         return slower

@@ -24,14 +24,14 @@ from rrr_traj_planner.core.nanoseconds import nanoseconds, SECOND
 from rrr_traj_planner.core.states import Desired
 from rrr_traj_planner.core.trajectory.quintic_cursor import QuinticCursor
 from rrr_traj_planner.core.trajectory.trajectory_points import (
+    CommandedPoints,
     FLOAT_EPSILON,
-    MotionPoints,
     segment_coefficients,
     segment_orders,
 )
 
 
-class DesiredMotion:
+class ReferenceTrajectory:
     """
     A motion of polynomials, one after another.
 
@@ -110,9 +110,9 @@ class DesiredMotion:
     @property
     def end_state(self) -> Desired:
         """Position, velocity and acceleration with which it arrives at its last knot."""
-        q1, q2, q3, w1, w2, w3, a1, a2, a3 = np.concatenate(
+        q1, q2, q3, qd1, qd2, qd3, a1, a2, a3 = np.concatenate(
             (self.final, self.final_velocity, self.final_acceleration)).tolist()
-        return q1, q2, q3, w1, w2, w3, a1, a2, a3
+        return q1, q2, q3, qd1, qd2, qd3, a1, a2, a3
 
     def __call__(self, t: float) -> Desired:
         """
@@ -200,25 +200,25 @@ class DesiredMotion:
                 np.vstack((2.0 * c[:, :, 2], self.final_acceleration)))
 
 
-def through(points: MotionPoints, origin_ns: int = 0) -> DesiredMotion:
+def through(points: CommandedPoints, origin_ns: int = 0) -> ReferenceTrajectory:
     """
     Return the motion through points.
 
     Parameters
     ----------
-    points : MotionPoints
+    points : CommandedPoints
         The points.
     origin_ns : int
         What their times are counted from [ns].
 
     Returns
     -------
-    DesiredMotion
+    ReferenceTrajectory
         Lines, cubics and quintics between them.
 
     """
     coefficients = segment_coefficients(points, segment_orders(points))
-    motion = DesiredMotion(points.times, coefficients, points.positions[-1], origin_ns)
+    motion = ReferenceTrajectory(points.times, coefficients, points.positions[-1], origin_ns)
     moving = np.abs(points.velocities[-1]) > FLOAT_EPSILON
     if moving.any():  # joints without a velocity stand, as where all do
         acceleration = motion.at(motion.end)[2] if len(coefficients) else points.accelerations[-1]
@@ -227,7 +227,7 @@ def through(points: MotionPoints, origin_ns: int = 0) -> DesiredMotion:
     return motion
 
 
-def holding(q: ArrayLike, now: int = 0) -> DesiredMotion:
+def holding(q: ArrayLike, now: int = 0) -> ReferenceTrajectory:
     """
     Return the motion that stays where it is.
 
@@ -240,8 +240,8 @@ def holding(q: ArrayLike, now: int = 0) -> DesiredMotion:
 
     Returns
     -------
-    DesiredMotion
+    ReferenceTrajectory
         A motion of one knot.
 
     """
-    return DesiredMotion(np.zeros(1), np.zeros((0, 3, 6)), finite_array('q', q, (3,)), now)
+    return ReferenceTrajectory(np.zeros(1), np.zeros((0, 3, 6)), finite_array('q', q, (3,)), now)

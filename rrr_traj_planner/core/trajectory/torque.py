@@ -95,7 +95,7 @@ class TorqueSweep:
         Returns
         -------
         ndarray, shape (n, 3)
-            As `squared_stretch`.
+            As `squared_time_scale`.
 
         """
         return _squared_scaling(limits, self.gravity, self.torque)
@@ -178,7 +178,7 @@ def peak_torque(model: RobotModel, trajectory: Trajectory,
     trajectory : Trajectory
         The motion.
     limits : JointLimits, optional
-        Those for which `stretch_for_torque` is or will be asked: both are found together.
+        Those for which `time_scale_for_torque` is or will be asked: both are found together.
 
     Returns
     -------
@@ -210,7 +210,8 @@ def peak_holding_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
                              torque_grid(trajectory))
 
 
-def stretch_for_torque(model: RobotModel, limits: JointLimits, trajectory: Trajectory) -> Extreme:
+def time_scale_for_torque(model: RobotModel, limits: JointLimits,
+                          trajectory: Trajectory) -> Extreme:
     """
     Return by how much each joint's torque limit asks a motion to be slowed down.
 
@@ -235,8 +236,8 @@ def stretch_for_torque(model: RobotModel, limits: JointLimits, trajectory: Traje
     return torque_sweep(model, trajectory).peaks(limits, trajectory).scaling
 
 
-def squared_stretch(model: RobotModel, limits: JointLimits, q: Array, qd: Array,
-                    qdd: Array) -> Array:
+def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Array,
+                       qdd: Array) -> Array:
     """
     Return the square of the factor by which a motion must be slowed down, where it is so.
 
@@ -246,7 +247,7 @@ def squared_stretch(model: RobotModel, limits: JointLimits, q: Array, qd: Array,
     Parameters
     ----------
     model, limits
-        As in `stretch_for_torque`.
+        As in `time_scale_for_torque`.
     q, qd, qdd : ndarray, shape (..., 3)
         Positions, velocities and accelerations [rad, rad/s, rad/s^2].
 

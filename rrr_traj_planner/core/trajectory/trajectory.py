@@ -134,7 +134,7 @@ class Trajectory(ReadOnlyArrays, ABC):
         """Return the exact extremes over the continuous motion."""
 
     @abstractmethod
-    def stretched(self, factor: float) -> Trajectory:
+    def time_scaled(self, factor: float) -> Trajectory:
         """
         Return the same path run through at another rate.
 
@@ -151,7 +151,7 @@ class Trajectory(ReadOnlyArrays, ABC):
         """
 
 
-def ending_exactly(times: Array, duration: float) -> Array:
+def ending_at_duration(times: Array, duration: float) -> Array:
     """
     Return times of which those at the end of a motion are its duration exactly.
 

@@ -36,7 +36,7 @@ FLOAT_EPSILON = float(np.finfo(np.float32).eps)
 
 
 @dataclass(frozen=True, eq=False)
-class MotionPoints(ReadOnlyArrays):
+class CommandedPoints(ReadOnlyArrays):
     """
     Points to move through, each with a velocity and an acceleration or without.
 
@@ -75,13 +75,14 @@ class MotionPoints(ReadOnlyArrays):
             object.__setattr__(self, name, truth_array(name, getattr(self, name), (n,)))
 
 
-def led_in(points: MotionPoints, time: float, state: tuple[Array, Array, Array]) -> MotionPoints:
+def with_start_state(points: CommandedPoints, time: float,
+                     state: tuple[Array, Array, Array]) -> CommandedPoints:
     """
     Return points with a state before them, from which a segment leads to the first one.
 
     Parameters
     ----------
-    points : MotionPoints
+    points : CommandedPoints
         The points.
     time : float
         When the state is, on the points' time; before the first of them [s].
@@ -90,18 +91,18 @@ def led_in(points: MotionPoints, time: float, state: tuple[Array, Array, Array])
 
     Returns
     -------
-    MotionPoints
+    CommandedPoints
         One point more; the first has velocity and acceleration.
 
     """
     q, qd, qdd = state
-    return MotionPoints(
+    return CommandedPoints(
         np.append(time, points.times), np.vstack((q, points.positions)),
         np.vstack((qd, points.velocities)), np.vstack((qdd, points.accelerations)),
         np.append(True, points.has_velocity), np.append(True, points.has_acceleration))
 
 
-def segment_orders(points: MotionPoints) -> NDArray[np.int_]:
+def segment_orders(points: CommandedPoints) -> NDArray[np.int_]:
     """
     Return the order of the polynomial between each two points.
 
@@ -110,7 +111,7 @@ def segment_orders(points: MotionPoints) -> NDArray[np.int_]:
 
     Parameters
     ----------
-    points : MotionPoints
+    points : CommandedPoints
         The points.
 
     Returns
@@ -125,13 +126,13 @@ def segment_orders(points: MotionPoints) -> NDArray[np.int_]:
     return orders
 
 
-def segment_coefficients(points: MotionPoints, orders: NDArray[np.int_]) -> Array:
+def segment_coefficients(points: CommandedPoints, orders: NDArray[np.int_]) -> Array:
     """
     Return the polynomials between points.
 
     Parameters
     ----------
-    points : MotionPoints
+    points : CommandedPoints
         The points.
     orders : ndarray of int, shape (n - 1,)
         As from `segment_orders`.

@@ -23,7 +23,7 @@ from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
-from rrr_traj_planner.core.simulation.simulated_clock import Pace, Schedule
+from rrr_traj_planner.core.simulation.simulated_clock import Schedule, SimulatedClock
 
 # Largest wall time of a tick [ns], so that services are answered in time, and number of steps
 # between two checks of it.
@@ -60,7 +60,7 @@ class FollowedClock:
 
     """
 
-    pace: Pace | None = None
+    pace: SimulatedClock | None = None
 
     def __init__(self, node: Node, arm: ControlledArm, publish: Callable[[], None]) -> None:
         self._node, self._arm, self._publish = node, arm, publish
@@ -142,7 +142,7 @@ class OwnClock:
         self._node, self._arm, self._publish = node, arm, publish
         self.epoch = self.behind = 0
         self._states = self._clock = Schedule(MIN_RATE, arm.now)
-        self.pace = Pace(factor, monotonic_ns())
+        self.pace = SimulatedClock(factor, monotonic_ns())
         self._publish_clock = node.create_publisher(Clock, '/clock', QUEUE_DEPTH).publish
 
     def now(self) -> int:

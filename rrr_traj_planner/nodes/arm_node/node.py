@@ -25,7 +25,7 @@ from rrr_traj_planner.core.control.tolerances import TIMED_OUT
 from rrr_traj_planner.core.control.trajectory_limits import excesses
 from rrr_traj_planner.core.control.trajectory_validation import (
     check_trajectory,
-    motion_points,
+    commanded_points,
     MovingEndError,
 )
 from rrr_traj_planner.core.errors import RrrPlannerError
@@ -149,7 +149,7 @@ class SimulatedArm(ServiceNode):
         try:
             check_trajectory(trajectory, self._joint_names, self._time.now(),
                              self._parameters_declared.config.rules)
-            points = motion_points(trajectory, self._joint_names, arm.desired[:3])
+            points = commanded_points(trajectory, self._joint_names, arm.desired[:3])
         except RrrPlannerError as error:
             self._log.refused(str(error) + (
                 MOVING_END_HINT if isinstance(error, MovingEndError) else ''))

@@ -109,7 +109,7 @@ def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved])
     do, the motion that stops at every via point is returned: its path is statically feasible.
     """
     for solved in found:
-        slower = solved.trajectory.stretched(1.0 / _scaling(solved, durations))
+        slower = solved.trajectory.time_scaled(1.0 / _scaling(solved, durations))
         if torque_fits(task, slower):
             return solved._replace(trajectory=slower)
     segments = len(durations)

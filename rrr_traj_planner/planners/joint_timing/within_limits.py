@@ -59,10 +59,10 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
     if not dynamic:
         factor = max(factor, by_torque)
     if factor <= 1.0 + ROUNDING:
-        return trajectory.stretched(factor) if factor > 1.0 and may_scale else trajectory
+        return trajectory.time_scaled(factor) if factor > 1.0 and may_scale else trajectory
     if not may_scale:
         return None
-    slowed = trajectory.stretched(factor)
+    slowed = trajectory.time_scaled(factor)
     return None if dynamic and not torque_fits(task, slowed) else slowed
 
 

@@ -29,7 +29,7 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.travel_time import Passing
-from rrr_traj_planner.core.motion_laws.lin_434 import Law434
+from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
@@ -84,29 +84,29 @@ def plan(task: JointTask) -> Trajectory:
     found = [_for_torque(task, k, DisplacementRatios(*(ratio[k] for ratio in ratios)),
                          _nth(symmetric, k), float(floors[k])) if lacking[k]
              else (_nth(symmetric, k), True) for k in range(len(floors))]
-    laws = Law434(*(np.array(field) for field in zip(*(law for law, _ in found))))
+    laws = Lin434(*(np.array(field) for field in zip(*(law for law, _ in found))))
     quick = np.maximum(floors, kinematic_durations(task, least_time(laws, ratios)))
     note = _note([task.segment_number(k) for k, (_, whole) in enumerate(found) if not whole])
     return stopping_motion(task, quick, lambda own, durations: _motion(
-        task.points[own.start:own.stop + 1], Law434(*(field[own] for field in laws)), durations,
+        task.points[own.start:own.stop + 1], Lin434(*(field[own] for field in laws)), durations,
         note))
 
 
-def _nth(laws: Law434, k: int) -> Law434:
+def _nth(laws: Lin434, k: int) -> Lin434:
     """Return one of several laws, fields of shape ()."""
-    return Law434(*(field[k] for field in laws))
+    return Lin434(*(field[k] for field in laws))
 
 
-def _motion(points: Array, laws: Law434, durations: Array, note: str = '') -> PiecewiseTrajectory:
+def _motion(points: Array, laws: Lin434, durations: Array, note: str = '') -> PiecewiseTrajectory:
     """Return the motion by given laws, each of shape (n,), in given durations."""
-    columns = Law434(*(field[:, np.newaxis] for field in laws))
+    columns = Lin434(*(field[:, np.newaxis] for field in laws))
     pieces = columns.pieces(durations[:, np.newaxis], points[:-1], np.diff(points, axis=0))
     return PiecewiseTrajectory(
         joint_profiles(pieces), np.concatenate(([0.0], np.cumsum(durations))), note)
 
 
-def _for_torque(task: JointTask, k: int, ratios: DisplacementRatios, law: Law434,
-                floor: float) -> tuple[Law434, bool]:
+def _for_torque(task: JointTask, k: int, ratios: DisplacementRatios, law: Lin434,
+                floor: float) -> tuple[Lin434, bool]:
     """
     Return a segment's law of least time, and whether the search was completed.
 
@@ -115,10 +115,10 @@ def _for_torque(task: JointTask, k: int, ratios: DisplacementRatios, law: Law434
     points = task.points[k:k + 2]
     task.should_stop()
 
-    def total(law: Law434) -> float:
+    def total(law: Lin434) -> float:
         """Return the least duration of a law by all limits."""
         quick = max(floor, float(kinematic_durations(task, least_time(law, ratios))))
-        each = Law434(*(np.array([field]) for field in law))
+        each = Lin434(*(np.array([field]) for field in law))
         motion = _motion(points, each, np.array([quick]))
         return quick * max(1.0, torque_time_scaling(task, motion))
 

@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import place_on_path
-from rrr_traj_planner.core.trajectory.torque import stretch_for_torque
+from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.planners.path_timing.constraints import (
     all_bounds,
     PathConstraints,
@@ -194,7 +194,8 @@ def kept(task: PathTask, timed: Timed) -> Timed:
     """
     task.should_stop()
     factor = _exact_stretch(task, timed.trajectory)
-    return timed._replace(trajectory=timed.trajectory.stretched(factor)) if factor > 1.0 else timed
+    return timed if factor <= 1.0 else timed._replace(
+        trajectory=timed.trajectory.time_scaled(factor))
 
 
 def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
@@ -254,7 +255,7 @@ def _exact_stretch(task: PathTask, trajectory: PathTrajectory) -> float:
     """Return by how much a motion must be slowed, by its own values."""
     limits = task.limits
     peaks, speed = trajectory.peaks(), trajectory.peak_speed
-    torque = stretch_for_torque(task.arm_path.model, limits, trajectory).value
+    torque = time_scale_for_torque(task.arm_path.model, limits, trajectory).value
     return float(max((peaks.velocity / limits.max_velocity).max(), speed / task.max_tip_speed,
                      np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
                      np.cbrt((peaks.jerk / limits.max_jerk).max()), torque.max()))

@@ -47,7 +47,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.motion_laws.lin_434 import Law434
+from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 # Without unit; parts are of the duration.
@@ -93,13 +93,13 @@ def displacement_ratios(problem: ViaProblem) -> DisplacementRatios:
                               (D * law.root ** 2 / function.peak_jerk).max(axis=1))
 
 
-def least_time(law: Law434, ratios: DisplacementRatios) -> Array:
+def least_time(law: Lin434, ratios: DisplacementRatios) -> Array:
     """
     Return the least durations of laws.
 
     Parameters
     ----------
-    law : Law434
+    law : Lin434
         One or more.
     ratios : DisplacementRatios
         Of displacement to limits; broadcasts with the law.
@@ -116,7 +116,7 @@ def least_time(law: Law434, ratios: DisplacementRatios) -> Array:
         np.cbrt(ratios.jerk * np.abs(law.jerks()).max(axis=0)))))
 
 
-def fastest_symmetric(ratios: DisplacementRatios) -> Law434:
+def fastest_symmetric(ratios: DisplacementRatios) -> Lin434:
     """
     Return the symmetric law of least time of each segment.
 
@@ -127,7 +127,7 @@ def fastest_symmetric(ratios: DisplacementRatios) -> Law434:
 
     Returns
     -------
-    Law434
+    Lin434
         Fields of shape (n,).
 
     """
@@ -142,10 +142,10 @@ def fastest_symmetric(ratios: DisplacementRatios) -> Law434:
             1.0 + PREFERENCE * (grid - np.log(USUAL_PART)) ** 2)).argmin(axis=1)
         low = grid[rows, np.maximum(best - 1, 0)]
         high = grid[rows, np.minimum(best + 1, len(GRID) - 1)]
-    return Law434(*(field[rows, best] for field in laws))
+    return Lin434(*(field[rows, best] for field in laws))
 
 
-def _with_best_b(part: Array, ratios: DisplacementRatios) -> Law434:
+def _with_best_b(part: Array, ratios: DisplacementRatios) -> Lin434:
     """Return the laws of given parts p with the b of least time."""
     most = 6.0 / (1.0 - part)
     least_acceleration = most * part / (1.0 - part)
@@ -163,4 +163,4 @@ def _with_best_b(part: Array, ratios: DisplacementRatios) -> Law434:
                             np.where(falls, 0.0, acceleration))
         low, high = np.where(falling > rising, b, low), np.where(falling > rising, high, b)
     b = 0.5 * (low + high)
-    return Law434(part, part, most - b, b - most)
+    return Lin434(part, part, most - b, b - most)

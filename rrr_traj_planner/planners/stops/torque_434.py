@@ -34,13 +34,13 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
-from rrr_traj_planner.core.motion_laws.lin_434 import Law434
+from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.planners.stops.symmetric_434 import DisplacementRatios, least_time
 from scipy.optimize import minimize
 
 # Starts beside the symmetric law: constant jerk, and either end longer than the other.
-STARTS = (Law434(0.25, 0.25, 8.0, -8.0), Law434(0.2, 0.45, 5.0, -0.1),
-          Law434(0.45, 0.2, 0.1, -5.0))
+STARTS = (Lin434(0.25, 0.25, 8.0, -8.0), Lin434(0.2, 0.45, 5.0, -0.1),
+          Lin434(0.45, 0.2, 0.1, -5.0))
 POINTS = np.linspace(0.0, 1.0, 9)  # samples of torque in lift-off, cruise and set-down each
 LEAST_CRUISE = 0.02                # part of the duration
 PARTS = (np.log(1e-5), np.log(0.97))  # bounds on the logarithm of lift-off's and set-down's part
@@ -63,8 +63,8 @@ class Segment(NamedTuple):
     ratios: DisplacementRatios         # of this segment, shape ()
 
 
-def law_for_torque(segment: Segment, start: Law434, duration: float,
-                   floor: float) -> Law434 | None:
+def law_for_torque(segment: Segment, start: Lin434, duration: float,
+                   floor: float) -> Lin434 | None:
     """
     Return the result of SLSQP from a start.
 
@@ -72,7 +72,7 @@ def law_for_torque(segment: Segment, start: Law434, duration: float,
     ----------
     segment : Segment
         The segment and its limits.
-    start : Law434
+    start : Lin434
         Fields of shape ().
     duration : float
         The shortest duration so far [s].
@@ -81,7 +81,7 @@ def law_for_torque(segment: Segment, start: Law434, duration: float,
 
     Returns
     -------
-    Law434 or None
+    Lin434 or None
         Fields of shape (); None where it is not a valid law, or its velocity becomes negative.
 
     """
@@ -109,7 +109,7 @@ def law_for_torque(segment: Segment, start: Law434, duration: float,
             options={'maxiter': STEPS, 'ftol': TOLERANCE}).x
     if not np.isfinite(x).all():
         return None
-    law = Law434(*np.exp(x[1:3]), *x[3:])
+    law = Lin434(*np.exp(x[1:3]), *x[3:])
     sound = law.cruise >= 0.5 * LEAST_CRUISE and law.velocities().min() >= -NEGATIVE_VELOCITY
     return law if sound else None
 
@@ -117,7 +117,7 @@ def law_for_torque(segment: Segment, start: Law434, duration: float,
 def _margins(segment: Segment, duration: float, x: Array) -> Array:
     """Return the relative margin of each limit, shape (constraints, m); x has shape (m, 5)."""
     T = duration * np.exp(x[:, 0])
-    law = Law434(np.exp(x[:, 1]), np.exp(x[:, 2]), x[:, 3], x[:, 4])
+    law = Lin434(np.exp(x[:, 1]), np.exp(x[:, 2]), x[:, 3], x[:, 4])
     velocity, ratios = law.velocities(), segment.ratios
     shares = np.concatenate((law.accelerations() * ratios.acceleration / T ** 2,
                              law.jerks() * ratios.jerk / T ** 3,
@@ -126,10 +126,10 @@ def _margins(segment: Segment, duration: float, x: Array) -> Array:
                            1.0 - velocity * ratios.velocity / T, 1.0 - shares, 1.0 + shares))
 
 
-def _torque_shares(segment: Segment, law: Law434, T: Array) -> Array:
+def _torque_shares(segment: Segment, law: Lin434, T: Array) -> Array:
     """Return sampled torques over their limits, shape (points, m)."""
     limited = np.isfinite(segment.limits.max_effort)
-    columns = Law434(*(field[:, np.newaxis] for field in law))
+    columns = Lin434(*(field[:, np.newaxis] for field in law))
     s, sd, sdd = (np.concatenate(each, axis=1)[..., np.newaxis] for each in zip(*(
         piece.at(POINTS)[:3] for piece in columns.pieces(T[:, np.newaxis], 0.0, 1.0))))
     D = segment.displacement

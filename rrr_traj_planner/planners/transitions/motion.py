@@ -80,7 +80,7 @@ def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
         v, T, factor = v * factor, durations, 1.0
     motion, overshoot = _motion_of(task, problem, v, T, durations)
     if motion is not None and factor != 1.0:
-        motion = motion._replace(trajectory=motion.trajectory.stretched(1.0 / factor))
+        motion = motion._replace(trajectory=motion.trajectory.time_scaled(1.0 / factor))
     return motion, overshoot
 
 
@@ -192,7 +192,7 @@ def motion_slowed_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotio
         raise cannot_hold(task, motion.trajectory)
     if factor <= 1.0 + TORQUE_TOLERANCE:
         return motion
-    return TimedMotion(motion.trajectory.stretched(factor), motion.durations * factor)
+    return TimedMotion(motion.trajectory.time_scaled(factor), motion.durations * factor)
 
 
 def _motion_of(task: JointTask, problem: ViaProblem, v: Array, T: Array,

@@ -20,7 +20,7 @@ import numpy as np
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
-from rrr_traj_planner.core.trajectory.torque import peak_holding_torque, stretch_for_torque
+from rrr_traj_planner.core.trajectory.torque import peak_holding_torque, time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
@@ -95,7 +95,7 @@ def torque_time_scaling(task: JointTask, trajectory: Trajectory) -> float:
         Infinite where gravity alone exceeds a limit.
 
     """
-    return float(stretch_for_torque(task.model, task.limits, trajectory).value.max())
+    return float(time_scale_for_torque(task.model, task.limits, trajectory).value.max())
 
 
 def slowed_for_torque(task: JointTask, trajectory: Trajectory) -> Trajectory:
@@ -123,7 +123,7 @@ def slowed_for_torque(task: JointTask, trajectory: Trajectory) -> Trajectory:
     factor = torque_time_scaling(task, trajectory)
     if np.isinf(factor):
         raise cannot_hold(task, trajectory)
-    return trajectory.stretched(factor) if factor > 1.0 else trajectory
+    return trajectory.time_scaled(factor) if factor > 1.0 else trajectory
 
 
 def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:

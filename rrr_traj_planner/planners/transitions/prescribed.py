@@ -104,7 +104,7 @@ def _slowed_fastest(task: JointTask, problem: ViaProblem, durations: Array) -> T
     if slower < 1.0 - SCALING_TOLERANCE or (
             np.abs(durations - slower * quickest.durations).max() > DURATION_TOLERANCE):
         return None
-    return TimedMotion(quickest.trajectory.stretched(slower), durations)
+    return TimedMotion(quickest.trajectory.time_scaled(slower), durations)
 
 
 def _with_durations(task: JointTask, problem: ViaProblem, durations: Array,

@@ -23,9 +23,9 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.control.trajectory_validation import (
     check_trajectory,
+    commanded_points,
     IncomingPoint,
     IncomingTrajectory,
-    motion_points,
     Rules,
 )
 from rrr_traj_planner.core.errors import InvalidInputError
@@ -129,7 +129,7 @@ def test_partial_goal_is_taken_where_it_is_allowed_and_the_rest_held():
     with pytest.raises(InvalidInputError, match="Joints on incoming trajectory don't match"):
         check_trajectory(incoming, NAMES, NOW)
     check_trajectory(incoming, NAMES, NOW, PARTIAL)
-    points = motion_points(incoming, NAMES, held=(7.0, 8.0, 9.0))
+    points = commanded_points(incoming, NAMES, held=(7.0, 8.0, 9.0))
     np.testing.assert_array_equal(points.positions, ((1.0, 8.0, 3.0), (4.0, 8.0, 6.0)))
     np.testing.assert_array_equal(points.velocities, ((0.1, 0.0, 0.3), ZERO))
     assert points.has_velocity.tolist() == [True, False]
@@ -159,7 +159,7 @@ def test_joints_come_out_in_the_arm_s_order():
         point(0.5, (3.0, 1.0, 2.0), velocities=(0.3, 0.1, 0.2)), point(1.0, (6.0, 4.0, 5.0)),
         names=('joint_3', 'joint_1', 'joint_2'))
     check_trajectory(incoming, NAMES, NOW)
-    points = motion_points(incoming, NAMES)
+    points = commanded_points(incoming, NAMES)
     np.testing.assert_array_equal(points.times, (0.5, 1.0))
     np.testing.assert_array_equal(points.positions, ((1.0, 2.0, 3.0), (4.0, 5.0, 6.0)))
     np.testing.assert_array_equal(points.velocities, ((0.1, 0.2, 0.3), ZERO))
@@ -171,4 +171,4 @@ def test_arrays_of_a_message_are_read():
     incoming = trajectory(point(0.5, array('d', Q), velocities=array('d')),
                           point(1.0, array('d', Q), velocities=array('d', ZERO)))
     check_trajectory(incoming, list(NAMES), NOW)
-    assert motion_points(incoming, list(NAMES)).has_velocity.tolist() == [False, True]
+    assert commanded_points(incoming, list(NAMES)).has_velocity.tolist() == [False, True]

@@ -21,7 +21,7 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.control.trajectory_limits import ACCURACY, excesses
 from rrr_traj_planner.core.trajectory.reference_trajectory import through
-from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
 
 LIMITS = JointLimits()  # ranges [0, pi/2], [0, pi], [-pi, 2 pi]; 1 rad/s, 1 rad/s^2
 WIDE = JointLimits(max_velocity=[100.0] * 3, max_acceleration=[1000.0] * 3)
@@ -30,7 +30,7 @@ Q = np.array([0.5, 1.0, 0.2])
 
 
 def single(q, time=100.0):
-    return MotionPoints([time], [q], *np.zeros((2, 1, 3)), [False], [False])
+    return CommandedPoints([time], [q], *np.zeros((2, 1, 3)), [False], [False])
 
 
 def two(start, end, T, v=0.0, a=0.0, order=5):
@@ -39,7 +39,7 @@ def two(start, end, T, v=0.0, a=0.0, order=5):
     q[:, 0] = start, end
     qd, qdd = np.zeros((2, 2, 3))
     qd[0, 0], qdd[0, 0] = v, a
-    return MotionPoints([0.0, T], q, qd, qdd, [order > 1] * 2, [order > 3] * 2)
+    return CommandedPoints([0.0, T], q, qd, qdd, [order > 1] * 2, [order > 3] * 2)
 
 
 def texts(*arguments):
@@ -68,8 +68,8 @@ def test_degrees_are_asked_about_where_they_explain_the_numbers(q, hints):
 
 
 def test_all_numbers_of_a_joint_have_to_be_explained():
-    points = MotionPoints([1.0, 2.0], [(34.0, 1.0, 0.2), (-34.0, 1.0, 0.2)], *np.zeros((2, 2, 3)),
-                          [False] * 2, [False] * 2)
+    points = CommandedPoints([1.0, 2.0], [(34.0, 1.0, 0.2), (-34.0, 1.0, 0.2)],
+                             *np.zeros((2, 2, 3)), [False] * 2, [False] * 2)
     assert not any(x.in_degrees for x in excesses(points, WIDE))
 
 
@@ -122,8 +122,8 @@ def test_extremes_equal_those_of_dense_samples():
     for _ in range(30):
         n = int(rng.integers(2, 6))
         times = np.cumsum(rng.uniform(0.1, 1.0, n))
-        points = MotionPoints(times, *rng.uniform(-1.0, 1.0, (3, n, 3)), rng.random(n) < 0.8,
-                              rng.random(n) < 0.8)
+        points = CommandedPoints(times, *rng.uniform(-1.0, 1.0, (3, n, 3)), rng.random(n) < 0.8,
+                                 rng.random(n) < 0.8)
         motion = through(points)
         states = np.array([motion(t) for a, b in zip(times, times[1:])
                            for t in np.linspace(a, b - 2e-9, 1000)]).reshape(-1, 3, 3)
@@ -140,6 +140,6 @@ def test_extremes_equal_those_of_dense_samples():
 def test_many_points_take_no_time():
     s = np.linspace(0.0, 50.0, 5000)
     wave = np.sin(40.0 * s)[:, np.newaxis] * np.ones(3)
-    points = MotionPoints(s, 1.0 + wave, np.cos(40.0 * s)[:, np.newaxis] * np.full(3, 40.0),
-                          -1600.0 * wave, np.ones(5000, bool), np.ones(5000, bool))
+    points = CommandedPoints(s, 1.0 + wave, np.cos(40.0 * s)[:, np.newaxis] * np.full(3, 40.0),
+                             -1600.0 * wave, np.ones(5000, bool), np.ones(5000, bool))
     assert [x.quantity for x in excesses(points, LIMITS)][:1] == ['position']

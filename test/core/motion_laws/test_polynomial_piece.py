@@ -82,7 +82,7 @@ def test_position_range_of_a_profile_is_that_of_dense_samples():
 
 def test_stretched_piece_passes_the_same_positions_more_slowly():
     piece = PolynomialPiece(1.7, 0.3, -0.4, 0.9, -2.0, 5.0)
-    slow = piece.stretched(2.5)
+    slow = piece.time_scaled(2.5)
     assert slow.duration == 1.7 * 2.5
     for order, (ours, theirs) in enumerate(zip(slow.at(S), piece.at(S))):
         assert ours == pytest.approx(theirs / 2.5 ** order, abs=1e-12)

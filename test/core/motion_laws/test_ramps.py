@@ -127,7 +127,7 @@ def test_velocity_turns_at_the_zero_of_acceleration_else_at_an_end(seed, cruise)
 @each_cruise
 def test_stretching_runs_through_the_same_positions(cruise):
     ramps, s = random_ramps(0, cruise), 0.3
-    slower = ramps.stretched(2.0)
+    slower = ramps.time_scaled(2.0)
     assert (slower.duration == 2.0 * ramps.duration).all()
     for order, (value, before) in enumerate(zip(slower.at(s), ramps.at(s))):
         assert value == pytest.approx(before / 2.0 ** order, **EXACT)

@@ -146,7 +146,7 @@ def test_position_turns_where_a_transition_changes_the_velocity_s_sign(function)
 
 def test_stretched_motion_passes_the_same_positions_more_slowly(function):
     profile = chain(function, np.random.default_rng(540))
-    slow = profile.stretched(2.5)
+    slow = profile.time_scaled(2.5)
     t = np.linspace(0.0, profile.duration, 101)
     for order, (ours, theirs) in enumerate(zip(slow(2.5 * t), profile(t))):
         assert ours == pytest.approx(theirs / 2.5 ** order, abs=1e-9)

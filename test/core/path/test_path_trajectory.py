@@ -156,7 +156,7 @@ def test_peaks_are_those_of_a_dense_grid(seed):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_slower_by_k_has_velocity_acceleration_and_jerk_less_by_powers_of_k(seed):
     motion, k = random_motion(seed), 1.7
-    slow, t = motion.stretched(k), np.linspace(0.01, 0.99, 97) * motion.duration
+    slow, t = motion.time_scaled(k), np.linspace(0.01, 0.99, 97) * motion.duration
     assert slow.duration == pytest.approx(k * motion.duration, rel=1e-14)
     assert slow.via_times == pytest.approx(k * motion.via_times, rel=1e-14)
     for order, (ours, theirs) in enumerate(zip(slow(k * t), motion(t))):
@@ -185,14 +185,14 @@ def test_note_is_all_that_noting_changes():
     t = np.linspace(0.0, motion.duration, 11)
     for ours, theirs in zip(noted(t), motion(t)):
         assert ours.tolist() == theirs.tolist()
-    assert noted.stretched(2.0).note == 'as asked'
+    assert noted.time_scaled(2.0).note == 'as asked'
 
 
 @pytest.mark.parametrize('seed', SEEDS[::4])
 def test_the_last_via_point_is_passed_at_the_end_exactly_however_long_the_motion(seed):
     # In 10^6 s, sums of pieces round by a nanosecond or so, by which two stamps would differ.
     for factor in np.random.default_rng(seed).uniform(1e5, 1e7, 20):
-        slower = random_motion(seed).stretched(factor)
+        slower = random_motion(seed).time_scaled(factor)
         assert slower.via_times[-1] == slower.duration
         points = sample(slower, slower.duration / 7.0)
         assert np.diff(points.times).min() > 1e-3 * slower.duration / 7.0

@@ -25,7 +25,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.root_finding import event, PAST
-from rrr_traj_planner.core.simulation.simulated_clock import Pace, Schedule
+from rrr_traj_planner.core.simulation.simulated_clock import Schedule, SimulatedClock
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.step_stability import check_step
 
@@ -95,22 +95,22 @@ def test_event_is_found_just_past(room, first, when):
     assert -PAST <= room(time) < 0.0
 
 
-# Pace
+# SimulatedClock
 
 
 def test_time_runs_at_its_factor_from_where_it_was_changed():
-    pace = Pace(2.0, 5 * SECOND)
+    pace = SimulatedClock(2.0, 5 * SECOND)
     assert pace.due(6 * SECOND, 0, SECOND) == 2 * SECOND
     pace.restart(6 * SECOND, 2 * SECOND, factor=10.0)
     assert pace.due(7 * SECOND, 2 * SECOND, SECOND) == 12 * SECOND
 
 
 def test_as_fast_as_can_be_there_is_always_more_due():
-    assert Pace(0.0, 0).due(0, 7 * SECOND, SECOND) == 8 * SECOND
+    assert SimulatedClock(0.0, 0).due(0, 7 * SECOND, SECOND) == 8 * SECOND
 
 
 def test_pause_is_not_made_up_for():
-    pace = Pace(1.0, 0)
+    pace = SimulatedClock(1.0, 0)
     pace.restart(3 * SECOND, 3 * SECOND, paused=True)
     assert pace.due(50 * SECOND, 3 * SECOND, SECOND) == 3 * SECOND
     pace.restart(60 * SECOND, 3 * SECOND, paused=False)

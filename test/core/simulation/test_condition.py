@@ -30,7 +30,7 @@ from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.condition import Condition, ConditionMonitor, SOUND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
-from rrr_traj_planner.core.trajectory.trajectory_points import MotionPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
 
 MODEL, NAMES = RobotModel(), ('joint_1', 'joint_2', 'joint_3')
 SETTINGS = ArmSettings(MODEL, JointLimits(), ControllerGains())
@@ -40,7 +40,7 @@ Q = np.array([0.5, 1.1, 0.2])
 def quintic(start, end, duration, n=301):
     s = np.linspace(0.0, 1.0, n)
     d = np.subtract(end, start)
-    return MotionPoints(
+    return CommandedPoints(
         duration * s, start + np.outer(10 * s ** 3 - 15 * s ** 4 + 6 * s ** 5, d),
         np.outer(30 * s ** 2 - 60 * s ** 3 + 30 * s ** 4, d) / duration,
         np.outer(60 * s - 180 * s ** 2 + 120 * s ** 3, d) / duration ** 2,
@@ -83,7 +83,7 @@ def test_saturated_steps_are_counted_with_what_was_wanted(friction):
 
 
 def test_stop_is_pressed_with_what_the_controller_gives_for_the_error():
-    """Held d beyond the stop, joint_1 pushes with H11 wn^2 d; gravity does not act on it."""
+    """Held d beyond the stop, joint_1 pushes with M11 wn^2 d; gravity does not act on it."""
     start = np.array([0.0, 1.1, 0.2])
     for side, wall in ((-1.0, 0.0), (1.0, np.pi / 2)):
         start[0] = wall

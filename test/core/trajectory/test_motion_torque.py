@@ -26,7 +26,7 @@ from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTr
 from rrr_traj_planner.core.trajectory.torque import (
     peak_holding_torque,
     peak_torque,
-    stretch_for_torque,
+    time_scale_for_torque,
 )
 
 # What the package promises for peaks, relative.
@@ -102,22 +102,22 @@ def test_motion_slowed_down_by_the_factor_brings_the_peak_to_the_limit_exactly(a
     hold = peak_holding_torque(arm, trajectory).value
     effort = hold + rng.uniform(0.05, 1.0, 3) * (peak_torque(arm, trajectory).value - hold + 1.0)
     limits = limits_of(effort)
-    factors = stretch_for_torque(arm, limits, trajectory).value
+    factors = time_scale_for_torque(arm, limits, trajectory).value
     moving = np.flatnonzero(factors)
     assert len(moving) >= 2  # a joint may rest by chance
     for j in moving:
-        slowed = peak_torque(arm, trajectory.stretched(factors[j])).value
+        slowed = peak_torque(arm, trajectory.time_scaled(factors[j])).value
         assert slowed[j] == pytest.approx(effort[j], rel=1e-9)
-    all_fit = peak_torque(arm, trajectory.stretched(factors.max())).value
+    all_fit = peak_torque(arm, trajectory.time_scaled(factors.max())).value
     assert (all_fit <= effort * (1.0 + 1e-9)).all()
 
 
 def test_factor_below_one_tells_what_speed_is_left():
     trajectory = trajectory_of(3)
     effort = 4.0 * peak_torque(RobotModel(), trajectory).value
-    factors = stretch_for_torque(RobotModel(), limits_of(effort), trajectory).value
+    factors = time_scale_for_torque(RobotModel(), limits_of(effort), trajectory).value
     assert (factors < 1.0).all()
-    faster = peak_torque(RobotModel(), trajectory.stretched(factors.max())).value
+    faster = peak_torque(RobotModel(), trajectory.time_scaled(factors.max())).value
     assert (faster / effort).max() == pytest.approx(1.0, rel=1e-9)
 
 
@@ -125,7 +125,7 @@ def test_factor_of_a_weightless_arm_is_the_root_of_the_excess():
     # Without gravity torque falls with the square of the factor.
     arm, trajectory = RobotModel(gravity=0.0), trajectory_of(4)
     effort = peak_torque(arm, trajectory).value / (4.0, 9.0, 0.25)
-    factors = stretch_for_torque(arm, limits_of(effort), trajectory).value
+    factors = time_scale_for_torque(arm, limits_of(effort), trajectory).value
     assert factors == pytest.approx([2.0, 3.0, 0.5], rel=1e-9)
 
 
@@ -133,9 +133,9 @@ def test_factor_s_time_is_where_the_slowed_motion_meets_its_limit():
     trajectory = trajectory_of(5)
     hold = peak_holding_torque(RobotModel(), trajectory).value
     effort = hold + 20.0
-    factors = stretch_for_torque(RobotModel(), limits_of(effort), trajectory)
+    factors = time_scale_for_torque(RobotModel(), limits_of(effort), trajectory)
     for j in range(3):
-        slowed = trajectory.stretched(factors.value[j])
+        slowed = trajectory.time_scaled(factors.value[j])
         torque = inverse_dynamics(
             RobotModel(), *slowed(factors.time[j] * factors.value[j])[:3])[j]
         assert abs(torque) == pytest.approx(effort[j], rel=1e-9)
@@ -143,11 +143,11 @@ def test_factor_s_time_is_where_the_slowed_motion_meets_its_limit():
 
 def test_joint_without_an_effort_limit_asks_for_nothing():
     trajectory = trajectory_of(6)
-    factors = stretch_for_torque(
+    factors = time_scale_for_torque(
         RobotModel(), limits_of((np.inf, 1000.0, np.inf)), trajectory).value
     assert factors[[0, 2]].tolist() == [0.0, 0.0]
     assert factors[1] > 0.0
-    none = stretch_for_torque(RobotModel(), limits_of((np.inf, np.inf, np.inf)), trajectory)
+    none = time_scale_for_torque(RobotModel(), limits_of((np.inf, np.inf, np.inf)), trajectory)
     assert none.value.tolist() == [0.0, 0.0, 0.0]
 
 
@@ -167,11 +167,11 @@ def moving_through(q2, change):
 def test_limit_below_what_gravity_takes_can_be_met_by_no_slowing_down(trajectory):
     limits = limits_of((1000.0, 90.0, 1000.0))
     assert peak_holding_torque(RobotModel(), trajectory).value[1] > 90.0
-    assert stretch_for_torque(RobotModel(), limits, trajectory).value[1] == np.inf
+    assert time_scale_for_torque(RobotModel(), limits, trajectory).value[1] == np.inf
 
 
 def test_resting_arm_whose_limits_hold_it_asks_for_nothing():
-    factors = stretch_for_torque(
+    factors = time_scale_for_torque(
         RobotModel(), limits_of((1.0, 250.0, 60.0)), at_rest((0.0, 0.0, np.pi / 2))).value
     assert factors.tolist() == [0.0, 0.0, 0.0]
 

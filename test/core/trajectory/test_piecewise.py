@@ -172,7 +172,7 @@ def test_a_joint_that_stands_still_has_no_peaks():
 def test_stretching_keeps_the_path_and_scales_its_derivatives(factor):
     for seed in range(10):
         trajectory = trajectory_of(seed)
-        stretched = trajectory.stretched(factor)
+        stretched = trajectory.time_scaled(factor)
         assert stretched.duration == pytest.approx(factor * trajectory.duration, rel=1e-14)
         assert stretched.via_times == pytest.approx(factor * trajectory.via_times, rel=1e-14)
         t = np.random.default_rng(seed).uniform(0.0, trajectory.duration, 100)
@@ -188,7 +188,7 @@ def test_stretching_keeps_the_path_and_scales_its_derivatives(factor):
 
 def test_via_points_are_passed_where_they_were_before_stretching():
     trajectory = trajectory_of(84)
-    stretched = trajectory.stretched(1.3)
+    stretched = trajectory.time_scaled(1.3)
     assert stretched(stretched.via_times)[0] == pytest.approx(
         trajectory(trajectory.via_times)[0], abs=ROUNDING)
 

@@ -36,7 +36,7 @@ class KnotsAlone(Trajectory):
     def peaks(self):
         raise NotImplementedError
 
-    def stretched(self, factor):
+    def time_scaled(self, factor):
         raise NotImplementedError
 
 

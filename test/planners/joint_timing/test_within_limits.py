@@ -105,7 +105,7 @@ def test_others_are_slowed_as_a_whole_until_they_do_and_no_further(seed, part):
     s = np.linspace(0.0, 1.0, 101)
     assert slowed(s * slowed.duration)[0] == pytest.approx(
         case.trajectory(s * case.trajectory.duration)[0], abs=1e-9)
-    assert not within(task, case.trajectory.stretched(factor * (1.0 - 1e-3)))
+    assert not within(task, case.trajectory.time_scaled(factor * (1.0 - 1e-3)))
     assert fitted(task, case.trajectory, may_scale=False) is None
 
 
@@ -123,7 +123,7 @@ def test_torque_that_is_exceeded_is_slowed_where_gravity_leaves_room_else_refuse
     assert share < 1.0
     assert within(task, slowed, 1.0 + BETWEEN)
     factor = slowed.duration / case.trajectory.duration
-    assert not within(task, case.trajectory.stretched(factor * (1.0 - 1e-2)))
+    assert not within(task, case.trajectory.time_scaled(factor * (1.0 - 1e-2)))
 
 
 def test_both_outcomes_of_torque_occur():

@@ -24,7 +24,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError, TimingError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.trajectory.torque import stretch_for_torque
+from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import times_within
 from rrr_traj_planner.planners.methods import poly_434
 from rrr_traj_planner.planners.planning import plan
@@ -123,7 +123,7 @@ def test_only_the_segments_that_lack_torque_are_slowed_and_use_all_of_it():
 def test_where_torque_is_short_the_law_is_faster_than_the_symmetric_one_slowed_down(limit):
     weak = replace(LIMITS, max_effort=[150.0, limit, 200.0])
     free, found = plan(ARM, FREE, table('6.1')), plan(ARM, weak, table('6.1'))
-    stretched = free.via_times[1] * stretch_for_torque(ARM, weak, free.trajectory).value.max()
+    stretched = free.via_times[1] * time_scale_for_torque(ARM, weak, free.trajectory).value.max()
     assert free.via_times[1] < found.via_times[1] < 0.95 * stretched
     assert found.effort[1] == pytest.approx(limit, rel=1e-6)
 

@@ -40,7 +40,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import (
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, TimingError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant
-from rrr_traj_planner.core.trajectory.torque import stretch_for_torque
+from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.planners.methods import time_optimal
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import JointTask, PlanningRequest
@@ -696,7 +696,7 @@ HURRIED_TIPS = [(0.46996464, -0.02130729, 0.88146230), (0.29513201, -0.10969616,
 def test_a_motion_that_hurries_past_a_pose_has_closer_points_instead_of_being_slowed():
     limits = WEAK_JOINT_3  # no slower motion on the same way keeps them
     found = plan(ARM, limits, PlanningRequest(HURRIED_TIPS, planner_id='time_optimal'))
-    assert np.isinf(stretch_for_torque(ARM, limits, found.trajectory).value[2])
+    assert np.isinf(time_scale_for_torque(ARM, limits, found.trajectory).value[2])
     assert np.diff(found.points.times).min() <= 0.0055 and 'slower' not in found.note
     t = np.linspace(0.0, found.points.times[-1], 20_001)
     q, qd, qdd = Interpolant(found.points)(t)

@@ -94,7 +94,7 @@ def test_tip_speed_is_kept_and_used(seed):
 def test_joins_are_passed_at_knots_exactly(seed):
     # To rounding, before a knot acceleration would have the value of the piece before it.
     case, _ = free_time(seed)
-    motion = case.timed(max_effort=NONE, max_jerk=NONE).stretched(1.37)
+    motion = case.timed(max_effort=NONE, max_jerk=NONE).time_scaled(1.37)
     assert np.isin(motion.join_times, motion.knots).all()
     found = motion.arm_path(motion.arm_path.path.joins)
     _, sd, sdd, _ = (f[:, np.newaxis] for f in motion.progress(motion.join_times))

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.motion_laws.lin_434 import Law434
+from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.planners.stops.symmetric_434 import (
     DisplacementRatios,
     fastest_symmetric,
@@ -55,7 +55,7 @@ def nth(ratios, k):
 
 
 def test_least_time_is_the_largest_that_a_limit_asks_for():
-    thirds = Law434(1.0 / 3.0, 1.0 / 3.0, 4.5, -4.5)  # peaks 15/8, 6 and 54
+    thirds = Lin434(1.0 / 3.0, 1.0 / 3.0, 4.5, -4.5)  # peaks 15/8, 6 and 54
     assert time_of(thirds, 2.0, FREE, FREE) == pytest.approx(3.75)
     assert time_of(thirds, FREE, 1.5, FREE) == pytest.approx(3.0)
     assert time_of(thirds, FREE, FREE, 0.5) == pytest.approx(3.0)
@@ -89,7 +89,7 @@ def test_peaks_of_symmetric_laws_are_those_of_the_docstring():
     p, share = RNG.uniform(0.02, 0.49, 50), RNG.uniform(0.0, 1.0, 50)
     m = 6.0 / (1.0 - p)
     b = share * m
-    law = Law434(p, p, m - b, b - m)
+    law = Lin434(p, p, m - b, b - m)
     assert p * law.k1 == pytest.approx(b, abs=1e-9)
     assert law.velocities().max(axis=0) == pytest.approx(1.5 / (1.0 - p) - b / 12.0)
     within = (m * p + b * (1.0 - p)) ** 2 / (4.0 * b * p)
@@ -102,7 +102,7 @@ def test_peaks_of_symmetric_laws_are_those_of_the_docstring():
 def test_no_symmetric_law_of_a_fine_grid_is_faster():
     p, share = BRUTE_PARTS[:, np.newaxis], BRUTE_BULGES
     m = 6.0 / (1.0 - p)
-    tried = Law434(p + 0.0 * share, p + 0.0 * share, m * (1.0 - share), m * (share - 1.0))
+    tried = Lin434(p + 0.0 * share, p + 0.0 * share, m * (1.0 - share), m * (share - 1.0))
     ours = least_time(fastest_symmetric(RATIOS), RATIOS)
     brute = np.array([least_time(tried, nth(RATIOS, k)).min() for k in range(len(WAYS))])
     assert (ours <= brute * (1.0 + 1e-7)).all()
@@ -111,8 +111,8 @@ def test_no_symmetric_law_of_a_fine_grid_is_faster():
 
 def test_mean_of_a_law_and_its_reverse_has_no_higher_peaks_where_the_ends_are_equally_long():
     for p in RNG.uniform(0.05, 0.48, 40):
-        law = Law434(p, p, *RNG.normal(0.0, 5.0, 2))
-        mean = Law434(p, p, *(0.5 * (a + b) for a, b in zip(law[2:], law.backwards[2:])))
+        law = Lin434(p, p, *RNG.normal(0.0, 5.0, 2))
+        mean = Lin434(p, p, *(0.5 * (a + b) for a, b in zip(law[2:], law.backwards[2:])))
         assert mean.a1 == -mean.a2
         for peaks, most in ((mean.velocities(), law.velocities()), (mean.jerks(), law.jerks()),
                             (mean.accelerations(), law.accelerations())):
@@ -125,8 +125,8 @@ def test_laws_with_unequal_ends_are_hardly_faster():
     laws, gains = fastest_symmetric(RATIOS), []
     for k in range(len(WAYS)):
         segment = Segment(RobotModel(), limits, np.zeros(3), np.ones(3), nth(RATIOS, k))
-        symmetric = time_of(Law434(*(field[k] for field in laws)), *segment.ratios)
-        starts = (Law434(0.3, 0.3, 5.0, -5.0), Law434(0.1, 0.45, 5.0, -0.1))
+        symmetric = time_of(Lin434(*(field[k] for field in laws)), *segment.ratios)
+        starts = (Lin434(0.3, 0.3, 5.0, -5.0), Lin434(0.1, 0.45, 5.0, -0.1))
         found = [law_for_torque(segment, start, symmetric, 0.5 * symmetric) for start in starts]
         gains.append(1.0 - min(time_of(law, *segment.ratios) for law in found) / symmetric)
     assert max(gains) <= SYMMETRY_COSTS

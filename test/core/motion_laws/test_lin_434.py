@@ -16,7 +16,7 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.motion_laws.lin_434 import Law434
+from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 
 RNG = np.random.default_rng(611)
@@ -69,7 +69,7 @@ def solved(times, points):
 @pytest.mark.parametrize('case', CASES)
 def test_law_is_the_solution_of_the_14_conditions_through_its_points(case):
     first, last, a1, a2, T, start, D = case
-    law = Law434(first, last, a1, a2)
+    law = Lin434(first, last, a1, a2)
     points = start + D * np.array([0.0, law.lift_off, 1.0 - law.set_down, 1.0])
     times = T * np.array([first, law.cruise, last])
     for piece, coefficients, t in zip(law.pieces(T, start, D), solved(times, points), times):
@@ -83,7 +83,7 @@ def test_law_is_the_solution_of_the_14_conditions_through_its_points(case):
 @pytest.mark.parametrize('case', CASES)
 def test_position_velocity_and_acceleration_are_continuous_from_rest_to_rest(case):
     *fields, T, start, D = case
-    pieces = Law434(*fields).pieces(T, start, D)
+    pieces = Lin434(*fields).pieces(T, start, D)
     for before, after in zip(pieces, pieces[1:]):
         assert before.at(1.0)[:3] == pytest.approx(after.at(0.0)[:3], abs=ROUNDING)
     assert pieces[0].at(0.0)[:3] == (start, 0.0, 0.0)
@@ -93,7 +93,7 @@ def test_position_velocity_and_acceleration_are_continuous_from_rest_to_rest(cas
 
 @pytest.mark.parametrize('case', CASES)
 def test_peaks_are_those_of_dense_samples(case):
-    law = Law434(*case[:4])
+    law = Lin434(*case[:4])
     dense = [np.abs(np.concatenate(values)).max() for values in zip(*(
         piece.at(S)[1:] for piece in law.pieces(1.0, 0.0, 1.0)))]
     exact = [np.abs(values).max() for values in (
@@ -104,14 +104,14 @@ def test_peaks_are_those_of_dense_samples(case):
 
 @pytest.mark.parametrize('case', CASES)
 def test_least_velocity_is_among_those_that_are_looked_at(case):
-    law = Law434(*case[:4])
+    law = Lin434(*case[:4])
     dense = min(piece.at(S)[1].min() for piece in law.pieces(1.0, 0.0, 1.0))
     assert min(law.velocities().min(), 0.0) == pytest.approx(dense, abs=1e-6)
 
 
 @pytest.mark.parametrize('case', CASES)
 def test_reversed_law_is_the_motion_backwards(case):
-    law = Law434(*case[:4])
+    law = Lin434(*case[:4])
     for forth, back in zip(law.pieces(1.0, 0.0, 1.0), law.backwards.pieces(1.0, 0.0, 1.0)[::-1]):
         q, qd, qdd, qddd = forth.at(S)
         p, pd, pdd, pddd = back.at(1.0 - S)
@@ -122,7 +122,7 @@ def test_reversed_law_is_the_motion_backwards(case):
 def test_equal_thirds_by_hand():
     # With k1 = 13.5 the acceleration 4.5 x + 13.5 x (1 - x) is 6 at x = 2/3 and 4.5 at x = 1; its
     # integral over 1/3 is 1.5, and 0.375 more to the middle of the cruise.
-    law = Law434(1.0 / 3.0, 1.0 / 3.0, 4.5, -4.5)
+    law = Lin434(1.0 / 3.0, 1.0 / 3.0, 4.5, -4.5)
     assert law.k1 == pytest.approx(13.5)
     assert law.v1 == law.v2 == pytest.approx(1.5)
     assert law.velocities() == pytest.approx([1.5, 1.875, 1.5])
@@ -132,14 +132,14 @@ def test_equal_thirds_by_hand():
 
 def test_quarters_of_constant_jerk_by_hand():
     # 32 / 4 = 8, 32 / 2 / 16 = 1, 32 / 6 / 64 = 1 / 12.
-    law = Law434(0.25, 0.25, 8.0, -8.0)
+    law = Lin434(0.25, 0.25, 8.0, -8.0)
     assert law.jerks() == pytest.approx([32.0, 32.0, -32.0, 32.0, 32.0])
     assert (law.v1, law.lift_off, law.set_down) == pytest.approx((1.0, 1.0 / 12.0, 1.0 / 12.0))
     assert law.velocities().max() == pytest.approx(2.0)
 
 
 def test_without_acceleration_at_the_joins_the_ends_are_paul_s_quartics():
-    lift, cruise, _ = Law434(0.2, 0.3, 0.0, 0.0).pieces(2.0, 0.1, 0.6)
+    lift, cruise, _ = Lin434(0.2, 0.3, 0.0, 0.0).pieces(2.0, 0.1, 0.6)
     speed = 0.6 / 2.0 / (0.1 + 0.5 + 0.15)
     paul = QUARTIC.transition(0.4, 0.1, 0.0, speed)
     for ours, theirs in zip(lift.at(S), paul.at(S)):
@@ -149,9 +149,9 @@ def test_without_acceleration_at_the_joins_the_ends_are_paul_s_quartics():
 
 def test_several_laws_are_each_of_them():
     fields = np.array([case[:4] for case in CASES]).T
-    together = Law434(*fields).pieces(1.5, np.arange(12.0), np.linspace(-1.0, 1.0, 12))
+    together = Lin434(*fields).pieces(1.5, np.arange(12.0), np.linspace(-1.0, 1.0, 12))
     for k, case in enumerate(CASES):
-        alone = Law434(*case[:4]).pieces(1.5, float(k), np.linspace(-1.0, 1.0, 12)[k])
+        alone = Lin434(*case[:4]).pieces(1.5, float(k), np.linspace(-1.0, 1.0, 12)[k])
         for ours, theirs in zip(together, alone):
             fields_of_k = [np.broadcast_to(field, 12)[k] for field in ours]
             assert fields_of_k == pytest.approx(list(theirs), rel=1e-12)

@@ -62,8 +62,8 @@ def test_accelerations_and_reactions_meet_their_conditions():
 
 def test_a_load_at_the_edge_of_friction_still_rests():
     t = terms(constants(MODEL), 0.7, 0.3, sin, cos)
-    x = (10.0 / t.H11, 0.0, 0.0)
-    edge = t.H11 * x[0]
+    x = (10.0 / t.M11, 0.0, 0.0)
+    edge = t.M11 * x[0]
     assert resting_accelerations(t, x, ((-edge, edge), NO_REACTION, NO_REACTION))[0] == 0.0
     less = edge * (1.0 - 1e-9)
     assert resting_accelerations(t, x, ((-less, less), NO_REACTION, NO_REACTION))[0] > 0.0
