@@ -15,7 +15,7 @@
 """
 How long a small request waits while others' long ones are planned, and what that costs these.
 
-    python benchmarks/bench_clients.py [--long N ...] [--points N] [--small N]
+    python benchmarks/bench_clients.py [--planner ID] [--long N ...] [--points N] [--small N]
 
 N clients ask for plans of many points again and again; another one asks for table 6.1's meanwhile.
 """
@@ -31,20 +31,20 @@ from time import perf_counter
 from measuring import setting
 import numpy as np
 from ros_processes import Client, node, plan_request
+from rrr_traj_planner.planners.registry import planner_ids
 from soak_deadlines import SHAPES
 from tasks import TIPS
 
 LONG = 0, 1, 2, 5, 10
-PLANNER_ID = 'time_optimal'
 
 
 class LongOnes:
     """Clients that ask for long plans until they are told to stop."""
 
-    def __init__(self, server, count: int, points: int) -> None:
+    def __init__(self, server, count: int, points: int, planner_id: str) -> None:
         self.took, self.refused = [], 0
         self._ended = Event()
-        self._request = plan_request(figure(points), planner_id=PLANNER_ID)
+        self._request = plan_request(figure(points), planner_id=planner_id)
         self._threads = [Thread(target=self._run, args=(server,)) for _ in range(count)]
 
     def __enter__(self) -> LongOnes:
@@ -77,6 +77,7 @@ def figure(points: int):
 def main() -> None:
     """Print latencies."""
     parser = argparse.ArgumentParser(description=__doc__.strip().partition('\n')[0])
+    parser.add_argument('--planner', choices=sorted(planner_ids()), default='time_optimal')
     parser.add_argument('--long', nargs='+', type=int, default=LONG)
     parser.add_argument('--points', type=int, default=1000)
     parser.add_argument('--small', type=int, default=40)
@@ -87,7 +88,7 @@ def main() -> None:
         ask = client.service(server, 'plan_trajectory')
         ask(small)
         for count in options.long:
-            with LongOnes(server, count, options.points) as long_ones:
+            with LongOnes(server, count, options.points, options.planner) as long_ones:
                 pause = Event()
                 beyond = []
                 while len(beyond) < options.small or count and not long_ones.took:

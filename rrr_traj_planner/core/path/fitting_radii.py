@@ -71,7 +71,8 @@ def fit_radii(points: Array, radii: Array, kind: ZoneKind,
     kind : ZoneKind
         The kind of zone.
     should_stop : callable
-        Asked in every step; once it answers True, radii no longer grow.
+        Asked in every step; once it answers True, radii no longer grow, and those that fit nearly
+        are shrunk no more than need be.
 
     Returns
     -------
@@ -87,6 +88,10 @@ def fit_radii(points: Array, radii: Array, kind: ZoneKind,
     lines, hindered = _tried(points, radii, kind, None)
     if not hindered.any():
         return Fitted(radii, lines)
+    if should_stop():  # not to grow from radii that are much smaller than need be
+        fitted = _shrunk(points, radii, LEAST * radii, kind, lines.direction, should_stop)
+        if fitted is not None:
+            return fitted
     smaller, accuracy = radii.copy(), ROUGH
     while (smaller > LEAST * radii).any():
         should_stop()
@@ -120,21 +125,20 @@ def _grown(points: Array, radii: Array, kind: ZoneKind, least: Fitted,
             touching = stuck & ~_free_alone(points, radii, kind, share, lines, stuck)
             growing &= ~(touching if touching.any() else _tightest(points, lines, stuck))
             factor[slower] = np.maximum(np.sqrt(factor[slower]), SLOWEST)
-    return _exactly(points, kind, Fitted(share * radii, lines), least, should_stop)
+    return _shrunk(points, share * radii, least.radii, kind, lines.direction,
+                   should_stop) or least
 
 
-def _exactly(points: Array, kind: ZoneKind, grown: Fitted, least: Fitted,
-             should_stop: ShouldStop) -> Fitted:
-    """Return grown radii with exact lines; smaller radii near lines that are not found."""
-    radii = grown.radii
+def _shrunk(points: Array, radii: Array, least: Array, kind: ZoneKind, near: Array,
+            should_stop: ShouldStop) -> Fitted | None:
+    """Return radii that fit with exact lines, shrunk little by little where they do not."""
     for part in SHRINKING:
-        lines, hindered = _tried(points, radii, kind, grown.lines.direction)
+        lines, hindered = _tried(points, radii, kind, near)
         if not hindered.any():
             return Fitted(radii, lines)
         should_stop()
-        near = _near(hindered, radii > least.radii)
-        radii = np.maximum(np.where(near, part * radii, radii), least.radii)
-    return least
+        radii = np.where(_near(hindered, radii > least), np.maximum(part * radii, least), radii)
+    return None
 
 
 def _tried(points: Array, radii: Array, kind: ZoneKind, near: Array | None,

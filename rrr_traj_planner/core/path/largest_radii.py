@@ -113,8 +113,13 @@ def _adjusted(family: Family, points: Array, radii: Array, most: Array, max_devi
               should_stop: ShouldStop) -> Iterator[CartesianPath]:
     """Yield the first path whose zones compete, then that whose radii use the deviation up."""
     power, before, equal_shares = np.ones(len(radii)), None, None
+    fitting, settled = radii, False
     for round_ in range(2 * ROUNDS):
         path = family(points, radii)
+        if before is not None and not settled and should_stop():
+            # Growth to these radii was cut short: the former ones fit, smaller where they must.
+            settled, radii = True, fitting
+            continue
         power = power if before is None else _power(before, path, power)
         before = path
         # What was shrunk stays so: from here it can only become smaller.
@@ -124,14 +129,15 @@ def _adjusted(family: Family, points: Array, radii: Array, most: Array, max_devi
         wanted = np.minimum(path.radii * np.clip(factor, 0.5, 2.0) ** (1.0 / power), most)
         kept = path.deviation <= max_deviation
         # Neighbours may rob each other of room: after some time radii only shrink.
-        settled = should_stop() or round_ >= ROUNDS
+        settled = settled or should_stop() or round_ >= ROUNDS
         if kept.all() and (settled or (wanted <= path.radii * (1.0 + TOLERANCE)).all()):
             yield path
             return
         if equal_shares is None and kept.all() and len(radii) > 1 and len(path.shrunk):
             equal_shares = path
             yield path
-        radii = np.where(kept, path.radii, wanted) if settled else wanted
+        fitting = np.where(kept, path.radii, np.minimum(wanted, path.radii))
+        radii = fitting if settled else wanted
     raise ConvergenceError(
         f'largest radii not found: deviation is {path.deviation.tolist()} m after {2 * ROUNDS} '
         f'rounds, {max_deviation:.6g} m wanted')

@@ -96,12 +96,16 @@ def _fastest(task: CartesianTask, design: Design, paths: list[CartesianPath],
              early: ShouldStop) -> PathTrajectory:
     """Return the fastest motion along one of some paths, or along one of smaller radii."""
     late = part_of(task.should_stop, AGAIN)
+    cut_short = len(paths[0].radii) > 0 and early()
     asked = _followed(task, design, paths[0], early)
     best = _Motion(asked, nearly_fastest_along(asked))
     for path in paths[1:]:
         if not late():
             best = min(best, _motion(task, path) or best, key=_Motion.duration)
-    while len(best.path.radii) and not late():
+    while len(best.path.radii):
+        if late():
+            cut_short = True
+            break
         # smaller ones bend more, but their way is another one: now and then the faster
         path = design(task.tips, SMALLER * best.path.radii)
         if (path.deviation > task.max_deviation).any():
@@ -111,7 +115,7 @@ def _fastest(task: CartesianTask, design: Design, paths: list[CartesianPath],
             break
         best = smaller
     timed = kept(best.asked, best.timed)
-    return timed.trajectory.noted(_note(task, timed))
+    return timed.trajectory.noted(_note(task, timed, cut_short))
 
 
 class _Motion(NamedTuple):
@@ -191,8 +195,8 @@ def _timing(task: CartesianTask, path: CartesianPath) -> PathTask:
         arm_path, limits, cruise, task.max_tip_speed, task.steady_zones, task.should_stop)
 
 
-def _note(task: CartesianTask, timed: Timed) -> str:
-    """Return what there is to be said of a motion along a path."""
+def _note(task: CartesianTask, timed: Timed, cut_short: bool) -> str:
+    """Return the note of a motion; no bound on its gain if not every path was tried."""
     notes = []
     most = timed.trajectory.acceleration_steps().max(axis=0, initial=0.0)
     if most.max() > STEP:
@@ -200,5 +204,6 @@ def _note(task: CartesianTask, timed: Timed) -> str:
             task.model.joint_names, most))
         notes.append(f'joint accelerations step where arcs begin and end, at most by {largest} '
                      'rad/s^2')
-    notes.append(unconverged_note(timed.gap, timed.trajectory.duration))
+    gap = np.inf if cut_short else timed.gap
+    notes.append(unconverged_note(gap, timed.trajectory.duration))
     return '; '.join(filter(None, notes))
