@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Pages with figures and tables of plans; what they show, without ROS and without a network."""
+"""Web pages with figures and tables of plans; they need neither ROS nor a network."""

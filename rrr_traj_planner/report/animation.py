@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm along its motions, all at one time that can be run, paused and set."""
+"""An animation of one or several motions of the arm, with play, pause and a time slider."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ from rrr_traj_planner.report.motion_samples import arm_points, limit_shares, sam
 from rrr_traj_planner.report.page import resource
 
 FRAMES_PER_SECOND = 60.0
-MOST_FRAMES = 1500
-DIGITS = 4  # 0.1 mm
+MAX_FRAMES = 1500  # of one motion, to bound the size of the page
+DIGITS = 4         # decimals of positions in metres: 0.1 mm
 
 CONTROLS = """<div class="controls"><button type="button" class="play">Play</button>
 <input type="range" class="time" min="0" max="1000" value="0" aria-label="time">
@@ -42,14 +42,14 @@ CONTROLS = """<div class="controls"><button type="button" class="play">Play</but
 @dataclass(frozen=True, eq=False)
 class Animation:
     """
-    The arm of several motions, in step.
+    An animation that shows several motions side by side, at the same time.
 
     Parameters
     ----------
     name, title, caption : str
-        As of a `Picture`.
+        As in `Picture`.
     plans : sequence of Planned
-        The motions, of one task.
+        The motions, all for one task.
 
     """
 
@@ -61,7 +61,7 @@ class Animation:
 
     def written(self, folder: Path) -> str:
         """
-        Return the animation; nothing is written beside the page.
+        Return the animation as HTML; it has no files.
 
         Parameters
         ----------
@@ -87,7 +87,7 @@ class Animation:
 
 def frames(plans: Sequence[Planned]) -> dict[str, Any]:
     """
-    Return what the script draws.
+    Return the data that `animation.js` draws.
 
     Parameters
     ----------
@@ -97,8 +97,8 @@ def frames(plans: Sequence[Planned]) -> dict[str, Any]:
     Returns
     -------
     dict
-        Via points, and for each motion its duration and, at equal steps of time, elbow and tip
-        [m], and of which limit most is used, and how much.
+        Via points; for each motion its duration and, at equal time steps, positions of elbow and
+        tip [m], the index of the limit that is used most, and its use as a fraction.
 
     """
     return {'shoulder': float(plans[0].task.model.d1),
@@ -108,7 +108,7 @@ def frames(plans: Sequence[Planned]) -> dict[str, Any]:
 
 def _motion(of: Planned) -> dict[str, Any]:
     trajectory, model = of.plan.trajectory, of.task.model
-    count = int(np.clip(trajectory.duration * FRAMES_PER_SECOND, 30, MOST_FRAMES))
+    count = int(np.clip(trajectory.duration * FRAMES_PER_SECOND, 30, MAX_FRAMES))
     t = np.linspace(0.0, trajectory.duration, count + 1)
     points = arm_points(model, trajectory(t)[0])
     s = sampled(model, trajectory)

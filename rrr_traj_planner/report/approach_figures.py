@@ -30,7 +30,7 @@ from rrr_traj_planner.report.motion_samples import drawing_times
 from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.theme import JOINTS, LIGHT
 
-JOINT = 1  # joint 2, whose way is the longest on table 6.1
+JOINT = 1  # index of joint 2, which moves furthest on table 6.1
 
 
 def figure_4_3(of: Planned) -> Picture:
@@ -79,7 +79,7 @@ def figure_4_4(of: Planned) -> Picture:
 
 def via_positions(of: Planned) -> Array:
     """
-    Return joint positions at the via points, on the branch of a motion.
+    Return the joint positions of the via points, on the branch of a motion.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def via_positions(of: Planned) -> Array:
     Returns
     -------
     ndarray, shape (n, 3)
-        [rad].
+        Joint positions [rad].
 
     """
     passed = of.plan.trajectory(of.plan.via_times)[0]
@@ -125,7 +125,7 @@ def _approach(of: Planned, name: str, title: str, caption: str, corners: bool) -
 
 
 def _corner_lines(axes: Any, of: Planned, profile: JointProfile) -> None:
-    """Draw the lines between the via points to the corners in which they meet."""
+    """Draw the straight lines between the via points, which the transitions round off."""
     first, last = np.diff(profile.knots)[[0, -1]]
     t = of.plan.via_times.copy()
     t[0] += 0.5 * first

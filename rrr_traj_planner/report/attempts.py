@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Plans to be shown, and the refusals of those that there are not."""
+"""Planning of a task by several planners: their plans, or the reasons of their refusals."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner.planners.request import PlanningRequest
 
-TIME_LIMIT = 10.0  # s, after which a planner that still improves its motion is to answer
+TIME_LIMIT = 10.0  # s, after which a planner stops with the best motion so far
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
     """
-    What is to be planned, by whichever planners.
+    An arm and a planning request.
 
     Parameters
     ----------
     name : str
-        What it is called.
+        Name for the page.
     model : RobotModel
         The arm.
     limits : JointLimits
         Its limits.
     request : PlanningRequest
-        The via points and all else that is asked; its planner id is replaced.
+        The request; its planner id is replaced.
 
     """
 
@@ -64,7 +64,7 @@ class Task:
 @dataclass(frozen=True, eq=False)
 class Attempt:
     """
-    What a planner made of a task.
+    The result of one planner for a task.
 
     Parameters
     ----------
@@ -73,11 +73,11 @@ class Attempt:
     planner_id : str
         The planner.
     plan : Plan, optional
-        Its plan; None where it refused.
+        Its plan; None if it refused the task.
     refusal : str
-        Why it did; else empty.
+        The reason of a refusal, else empty.
     planning_time : float
-        [s].
+        Planning time [s].
 
     """
 
@@ -91,7 +91,7 @@ class Attempt:
 @dataclass(frozen=True, eq=False)
 class Planned:
     """
-    A plan that there is, and what it is for.
+    A plan with its task and planner.
 
     Parameters
     ----------
@@ -110,27 +110,27 @@ class Planned:
 
     @property
     def follows_path(self) -> bool:
-        """Whether the tip was planned along a path, not the joints from point to point."""
+        """Return whether the planner is Cartesian: whether it plans the tip's path."""
         return planner(self.planner_id).plan_path is not None
 
 
 def attempts(task: Task, planner_ids: Sequence[str], repeats: int = 1) -> list[Attempt]:
     """
-    Return what planners make of a task.
+    Plan a task by several planners.
 
     Parameters
     ----------
     task : Task
         The task.
     planner_ids : sequence of str
-        The planners, each known.
+        The planners.
     repeats : int
-        How often each plans; the shortest time counts.
+        Number of times that each plans; the shortest planning time is kept.
 
     Returns
     -------
     list of Attempt
-        In the same order.
+        One for each planner, in the same order.
 
     Raises
     ------
@@ -156,7 +156,7 @@ def planned(found: Sequence[Attempt]) -> list[Planned]:
     Returns
     -------
     list of Planned
-        Those that were not refused.
+        The attempts that were not refused.
 
     """
     return [Planned(a.task, a.planner_id, a.plan) for a in found if a.plan is not None]

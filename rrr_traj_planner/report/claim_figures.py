@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The thesis's claims as figures: excitation, and total times against their limits."""
+"""Figures on the thesis's claims (6.5): excitation, and motion times relative to the least."""
 
 from __future__ import annotations
 
@@ -33,26 +33,26 @@ from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.tables import Table
 from rrr_traj_planner.report.theme import DASHES, SERIES
 
-FREQUENCIES = np.linspace(0.25, 10.0, 400)  # Hz
-MODES = np.linspace(3.0, 10.0, 281)         # Hz, of a joint's flexible mode
-HIGH = 2.0                                  # Hz: what is above it counts as excitation
-DURATION, CHANGE, POINTS = 2.0, 1.0, 4001   # s, rad/s: a transition to compare functions with
-FLOOR = 1e-6                                # rad/s, lowest in the figure
+FREQUENCIES = np.linspace(0.25, 10.0, 400)  # Hz, of the figures
+MODES = np.linspace(3.0, 10.0, 281)         # Hz, frequencies of a joint's flexible mode
+HIGH = 2.0                                  # Hz, above which energy counts as excitation
+DURATION, CHANGE, POINTS = 2.0, 1.0, 4001   # s, rad/s, samples of the transition in the figures
+FLOOR = 1e-6                                # rad/s, lower end of the logarithmic axis
 
-# Least total times through the points of tables 6.1 and 6.3 [s], by whatever motion; see
-# docs/claims.md. With velocity and acceleration limits; with jerk limits too.
+# Least times of any motion through the points of tables 6.1 and 6.3 [s], with limits of velocity
+# and acceleration, and with jerk limits too; see docs/claims.md.
 LIMIT_TIMES = {'velocity, acceleration': (2.015, 2.474), 'and jerk': (2.129, 2.581)}
 
 
 class Excitation(NamedTuple):
-    """How much a motion excites."""
+    """Excitation of a flexible structure by a motion."""
 
-    above: float  # part of the acceleration's energy above HIGH
-    swing: float  # largest that is left of a mode's swing, of all modes in MODES
+    above: float  # fraction of the acceleration's energy above HIGH
+    swing: float  # largest residual vibration of a mode in MODES, relative to its deflection
 
 
 def of_transitions() -> dict[str, Excitation]:
-    """Return each function's excitation, by a transition of the same duration and change."""
+    """Return the excitation by a transition of each function, with equal duration and change."""
     return {f.name: _excitation(*_transition(f)) for f in FUNCTIONS}
 
 
@@ -68,7 +68,7 @@ def of_plan(of: Planned) -> Excitation:
     Returns
     -------
     Excitation
-        Of the joint that excites most.
+        The largest values of the three joints.
 
     """
     each = [_excitation(*joint_acceleration(of.plan.trajectory, j)) for j in range(3)]
@@ -86,17 +86,17 @@ def spectra() -> Picture:
 
 
 def vibrations() -> Picture:
-    """Return the figure of what is left of a flexible mode's swing."""
+    """Return the figure of a flexible mode's residual vibration."""
     curves = {f.name: residual_vibration(*_transition(f), FREQUENCIES) for f in FUNCTIONS}
     return _by_frequency(
-        'claim_vibrations', 'Swing that a transition leaves behind',
-        'Of a mode damped by 1 % on the joint, against its deflection under the greatest '
+        'claim_vibrations', 'Residual vibration after a transition',
+        'Of a flexible mode with 1 % damping, relative to its deflection under the largest '
         'acceleration.', curves, "mode's frequency [Hz]", 'swing / deflection')
 
 
 def claims_table(plans: list[tuple[Planned, Planned]]) -> Table:
     """
-    Return the table of methods against limits and by excitation.
+    Return the table of the methods' motion times, relative to the least, and their excitation.
 
     Parameters
     ----------
@@ -121,8 +121,8 @@ def claims_table(plans: list[tuple[Planned, Planned]]) -> Table:
             f'{t / limit:.2f}' for limits in LIMIT_TIMES.values()
             for t, limit in zip(times, limits)), f'{100.0 * found.above:.2f}',
             f'{found.swing:.2f}'])
-    return Table('claims', 'Methods against the least times, and their excitation',
-                 'Of whole motions, of the joint that is worst.', heads, rows)
+    return Table('claims', 'Motion times relative to the least times, and excitation',
+                 'Of whole motions; excitation of the worst joint.', heads, rows)
 
 
 def _transition(function: Any) -> tuple[Array, Array]:

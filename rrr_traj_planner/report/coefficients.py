@@ -13,13 +13,13 @@
 # limitations under the License.
 
 """
-How many coefficients a motion is made of, as the thesis counts them (6.5 a).
+Number of coefficients of a motion, as the thesis counts them (6.5 a).
 
-A transition of the thesis's function has a, b, c, d and e (3.4-3.7), and so has a ramp: when its
-jerk cruises is the same for all ramps of a motion. One of seventh order has eight (C.1), one of
-fourth order five (6.1), Gauss's function mu, sigma and C0 to C2 (appendix A, closed form); a piece
-at constant velocity two (4.11), the cubic cruise of a 4-3-4 four. Of a motion along a path of the
-tip, the pieces of its progress are counted, not the geometry.
+A transition of the thesis's function has five: a, b, c, d and e (3.4-3.7). So has a ramp, since
+the fraction of constant jerk is common to all ramps. A seventh-order transition has eight (C.1), a
+fourth-order one five (6.1), Gauss's function five: mu, sigma and C0 to C2 (appendix A, closed
+form). A piece at constant velocity has two (4.11), the cubic cruise of a 4-3-4 four. For a motion
+along a path of the tip, the pieces of the path coordinate s(t) are counted, not the geometry.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ from rrr_traj_planner.core.trajectory.pieces import Pieces
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
-CRUISE = 2
-CUBIC_CRUISE = 4
+CRUISE = 2        # coefficients of a piece at constant velocity
+CUBIC_CRUISE = 4  # of the cubic cruise of a 4-3-4
 PER_TRANSITION = {'cycloid': 5, 'gauss': 5, 'quartic': 5, 'septic': 8}
 
 
 class Coefficients(NamedTuple):
-    """Numbers of pieces and of what they are made of."""
+    """Numbers of pieces, and of coefficients for each."""
 
     transitions: int     # over all joints
     cruises: int
@@ -58,7 +58,7 @@ class Coefficients(NamedTuple):
 
 def coefficients(trajectory: Trajectory) -> Coefficients:
     """
-    Return how many coefficients a motion has.
+    Return the number of a motion's coefficients.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def coefficients(trajectory: Trajectory) -> Coefficients:
     Returns
     -------
     Coefficients
-        Its pieces' number and theirs.
+        Numbers of pieces, and of coefficients for each.
 
     """
     profiles = profiles_of(trajectory)
@@ -80,7 +80,7 @@ def coefficients(trajectory: Trajectory) -> Coefficients:
 
 def profiles_of(trajectory: Trajectory) -> tuple[JointProfile, ...]:
     """
-    Return what a motion's pieces are pieces of.
+    Return the piecewise functions that describe a motion.
 
     Parameters
     ----------
@@ -90,12 +90,12 @@ def profiles_of(trajectory: Trajectory) -> tuple[JointProfile, ...]:
     Returns
     -------
     tuple of JointProfile
-        Of each joint, or of the progress along a path alone.
+        One for each joint, or one for the path coordinate s(t).
 
     Raises
     ------
     TypeError
-        If the motion is not made of pieces.
+        If the motion is not piecewise.
 
     """
     if isinstance(trajectory, PiecewiseTrajectory):
@@ -107,7 +107,7 @@ def profiles_of(trajectory: Trajectory) -> tuple[JointProfile, ...]:
 
 def is_transition(pieces: Pieces) -> BoolArray:
     """
-    Return which pieces are no cruises.
+    Return which pieces are transitions, not cruises.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def is_transition(pieces: Pieces) -> BoolArray:
     Returns
     -------
     ndarray of bool, shape (n,)
-        Whether velocity changes there; of a 4-3-4, whether it is a quartic.
+        Whether the velocity changes in the piece; for polynomials, whether it is a quartic.
 
     """
     if isinstance(pieces, PolynomialPiece):

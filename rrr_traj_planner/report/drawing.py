@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What several figures share: stacked axes, limits, via points, legends."""
+"""Elements of several figures: stacked axes, limits, via points, legends."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from rrr_traj_planner.report.theme import DASHES, JOINTS, LIGHT, LIMIT, VIA
 POSITION, VELOCITY = 'position [rad]', 'velocity [rad/s]'
 ACCELERATION, JERK, TORQUE = 'acceleration [rad/s²]', 'jerk [rad/s³]', 'torque [N m]'
 TIME = 'time [s]'
-ROW_HEIGHT = 1.35  # in
-LEGEND_GAP = 0.06  # in, between a legend and the axes below it
-MOST_LINES = 20  # for via points; more would hide what is drawn
-TICK = 0.06      # of the axes' height
-EDGE_HEIGHT = 0.75  # in, of legend and lowest labels
+ROW_HEIGHT = 1.35   # inches, of one of several stacked axes
+LEGEND_GAP = 0.06   # inches, between a legend and the axes below it
+MAX_LINES = 20      # via points that are marked by lines; more would hide the curves
+TICK = 0.06         # height of a via point's tick, as a fraction of the axes' height
+EDGE_HEIGHT = 0.75  # inches, for the legend and the labels of the lowest axis
 
 
 def stacked(figure: Any, labels: Sequence[str], x_label: str = TIME) -> list[Any]:
@@ -44,16 +44,16 @@ def stacked(figure: Any, labels: Sequence[str], x_label: str = TIME) -> list[Any
     Parameters
     ----------
     figure : Figure
-        Where they go.
+        The figure.
     labels : sequence of str
-        Of the vertical axes.
+        Labels of the vertical axes.
     x_label : str
-        Of the common horizontal axis.
+        Label of the common horizontal axis.
 
     Returns
     -------
     list of Axes
-        From the top.
+        From top to bottom.
 
     """
     axes = list(np.atleast_1d(figure.subplots(len(labels), 1, sharex=True)))
@@ -67,7 +67,7 @@ def stacked(figure: Any, labels: Sequence[str], x_label: str = TIME) -> list[Any
 
 def height_of(rows: int) -> float:
     """
-    Return how high a figure of stacked axes is.
+    Return the height of a figure of stacked axes.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def height_of(rows: int) -> float:
     Returns
     -------
     float
-        [in].
+        Height [inches].
 
     """
     return rows * ROW_HEIGHT + EDGE_HEIGHT
@@ -85,12 +85,12 @@ def height_of(rows: int) -> float:
 
 def joint_lines(axes: Any, x: Array, values: Array) -> None:
     """
-    Draw a quantity of all joints.
+    Draw a quantity for all joints.
 
     Parameters
     ----------
     axes : Axes
-        Where.
+        The axes.
     x : ndarray, shape (n,)
         Horizontal values.
     values : ndarray, shape (n, 3)
@@ -103,14 +103,14 @@ def joint_lines(axes: Any, x: Array, values: Array) -> None:
 
 def limit_band(axes: Any, limit: Array) -> None:
     """
-    Show limits: a band where all joints have the same, else lines in the joints' colours.
+    Draw limits: a band up to the largest, and lines, in the joints' colours if they differ.
 
     Parameters
     ----------
     axes : Axes
-        Where.
+        The axes.
     limit : ndarray, shape (3,)
-        Bounds on the magnitude; infinite: none.
+        Bounds on the magnitude; infinite ones are not drawn.
 
     """
     finite = limit[np.isfinite(limit)]
@@ -129,12 +129,12 @@ def limit_band(axes: Any, limit: Array) -> None:
 
 def range_lines(axes: Any, low: Array, high: Array) -> None:
     """
-    Show the ends of the joints' ranges, those that come near what is drawn.
+    Draw the ends of the joints' ranges that lie within the axes' limits.
 
     Parameters
     ----------
     axes : Axes
-        Where the positions are drawn already.
+        The axes, with the positions drawn.
     low, high : ndarray, shape (3,)
         Ends of the ranges.
 
@@ -148,17 +148,17 @@ def range_lines(axes: Any, low: Array, high: Array) -> None:
 
 def via_lines(axes: Sequence[Any], places: Array) -> None:
     """
-    Mark when, or where, via points are passed: by lines, by ticks where there are many.
+    Mark the via points by vertical lines, or by ticks if there are many.
 
     Parameters
     ----------
     axes : sequence of Axes
-        Where.
+        The axes.
     places : ndarray
-        Horizontal values.
+        Horizontal values: times or path lengths.
 
     """
-    height = 1.0 if len(places) <= MOST_LINES else TICK
+    height = 1.0 if len(places) <= MAX_LINES else TICK
     for one in axes:
         one.add_collection(LineCollection(
             [((x, 0.0), (x, height)) for x in places], transform=one.get_xaxis_transform(),
@@ -168,12 +168,12 @@ def via_lines(axes: Sequence[Any], places: Array) -> None:
 
 def joint_handles(names: Sequence[str]) -> list[Any]:
     """
-    Return what a legend says of the joints' lines.
+    Return the legend's handles for the joints.
 
     Parameters
     ----------
     names : sequence of str
-        The joints'.
+        Names of the joints.
 
     Returns
     -------
@@ -186,23 +186,23 @@ def joint_handles(names: Sequence[str]) -> list[Any]:
 
 
 def limit_handle() -> Any:
-    """Return what a legend says of limits."""
+    """Return the legend's handle for limits."""
     return Line2D([], [], **LIMIT, label='limit')
 
 
 def via_handle() -> Any:
-    """Return what a legend says of via points."""
+    """Return the legend's handle for via points."""
     return Line2D([], [], **VIA, label='via point')
 
 
 def shade_handle(label: str) -> Any:
     """
-    Return what a legend says of shaded times.
+    Return the legend's handle for shaded intervals.
 
     Parameters
     ----------
     label : str
-        What they are.
+        Its text.
 
     Returns
     -------
@@ -215,16 +215,16 @@ def shade_handle(label: str) -> Any:
 
 def legend(figure: Any, handles: Sequence[Any], columns: int = 3) -> None:
     """
-    Put a legend above all axes of a figure, where it covers nothing.
+    Put a legend above all axes of a figure, and shrink the axes to make space for it.
 
     Parameters
     ----------
     figure : Figure
-        Where.
+        The figure.
     handles : sequence
-        What it says.
+        Entries of the legend.
     columns : int
-        At most so many beside each other.
+        Largest number of columns.
 
     """
     found = figure.legend(handles=list(handles), loc='upper center',

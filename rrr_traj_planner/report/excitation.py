@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How much a motion excites a flexible structure: its spectrum, and the swing that is left."""
+"""Excitation of a flexible structure by a motion: amplitude spectrum and residual vibration."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
-POINTS = 4001  # of the quadrature over a motion: some hundred a period of what is asked
-DAMPING = 0.01  # of the flexible mode, as part of critical damping
+POINTS = 4001   # of the quadrature over a motion: some hundred per period of the frequencies here
+DAMPING = 0.01  # damping ratio of the flexible mode
 
 
 def amplitude_spectrum(t: Array, acceleration: Array, frequencies: Array) -> Array:
@@ -35,14 +35,14 @@ def amplitude_spectrum(t: Array, acceleration: Array, frequencies: Array) -> Arr
     t : ndarray, shape (n,)
         Equally spaced times [s]; before and after them the acceleration is zero.
     acceleration : ndarray, shape (n,)
-        [rad/s^2].
+        Acceleration [rad/s^2].
     frequencies : ndarray, shape (m,)
-        [Hz].
+        Frequencies [Hz].
 
     Returns
     -------
     ndarray, shape (m,)
-        [rad/s].
+        Magnitude [rad/s].
 
     """
     phase = np.exp(-2j * pi * np.outer(frequencies, t))
@@ -51,19 +51,19 @@ def amplitude_spectrum(t: Array, acceleration: Array, frequencies: Array) -> Arr
 
 def share_above(t: Array, acceleration: Array, frequency: float) -> float:
     """
-    Return the part of an acceleration's energy above a frequency.
+    Return the fraction of an acceleration's energy above a frequency.
 
     Parameters
     ----------
     t, acceleration
         As in `amplitude_spectrum`.
     frequency : float
-        [Hz].
+        The frequency [Hz].
 
     Returns
     -------
     float
-        From 0 to 1; by Parseval's theorem 1 minus the part below.
+        From 0 to 1; by Parseval's theorem, 1 minus the fraction below.
 
     """
     below = np.linspace(0.0, frequency, 400)
@@ -75,24 +75,25 @@ def share_above(t: Array, acceleration: Array, frequency: float) -> float:
 def residual_vibration(t: Array, acceleration: Array, frequencies: Array,
                        damping: float = DAMPING) -> Array:
     """
-    Return how far a flexible mode still swings when the motion has ended.
+    Return the residual vibration of a flexible mode after a motion.
 
-    The mode y'' + 2 z w y' + w^2 y = -acceleration starts at rest. At the end its swing's
-    amplitude is compared with its deflection under the greatest acceleration, held for ever.
+    The mode y'' + 2 z w y' + w^2 y = -acceleration starts at rest. Its amplitude at the end of
+    the motion is divided by its static deflection under the largest acceleration. The response
+    is Duhamel's integral (Clough & Penzien, Dynamics of Structures, chapter 6).
 
     Parameters
     ----------
     t, acceleration
         As in `amplitude_spectrum`.
     frequencies : ndarray, shape (m,)
-        The mode's, undamped [Hz].
+        Undamped natural frequencies of the mode [Hz].
     damping : float
-        z.
+        Damping ratio z.
 
     Returns
     -------
     ndarray, shape (m,)
-        1: as much as the deflection under the greatest acceleration.
+        Amplitude / static deflection.
 
     """
     w = 2.0 * pi * frequencies

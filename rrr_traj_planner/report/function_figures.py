@@ -33,10 +33,10 @@ from rrr_traj_planner.report.coefficients import is_transition
 from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.theme import DASHES, LIGHT, SERIES
 
-POINTS = 401
+POINTS = 401  # of each curve
 PARAMETERS_3_1 = ((0.5, 0.12), (0.5, 0.2), (0.35, 0.12))  # mu, sigma
-ORDERS_3_1 = (3, 6, 9)
-PARAMETERS_3_2 = ((1.0, 1.0, 1.0), (0.75, 1.0, 1.0), (1.0, 0.6, 1.0), (1.0, 1.0, 1.3))
+ORDERS_3_1 = (3, 6, 9)  # of the Maclaurin series
+PARAMETERS_3_2 = ((1.0, 1.0, 1.0), (0.75, 1.0, 1.0), (1.0, 0.6, 1.0), (1.0, 1.0, 1.3))  # a, b, c
 FUNCTIONS: tuple[TransitionFunction, ...] = (CYCLOID, GAUSS, SEPTIC, QUARTIC)
 LIMIT = 1.0    # rad/s^2 and rad/s, table 6.2
 JOURNEY = 1.8  # rad, of the hypothetical subtrajectory
@@ -62,7 +62,7 @@ def gauss_function(t: Array, mu: float, sigma: float) -> tuple[Array, Array]:
     t : ndarray
         Normalised times.
     mu, sigma : float
-        Where its peak is, and how wide it is.
+        Time and width of its peak.
 
     Returns
     -------
@@ -226,14 +226,14 @@ def subtrajectory(displacement: float, velocity: float) -> JointProfile:
     Parameters
     ----------
     displacement : float
-        [rad].
+        Displacement [rad].
     velocity : float
-        Between the transitions [rad/s].
+        Velocity between the transitions [rad/s].
 
     Returns
     -------
     JointProfile
-        Transition, cruise where there is room for one, transition.
+        Transition, cruise (which may have no duration), transition.
 
     """
     lasting = CYCLOID.peak_acceleration * velocity / LIMIT
@@ -247,12 +247,12 @@ def subtrajectory(displacement: float, velocity: float) -> JointProfile:
 
 def shade(axes: Any, profile: JointProfile) -> None:
     """
-    Shade the times of a motion's transitions.
+    Shade the intervals of a motion's transitions.
 
     Parameters
     ----------
     axes : Axes
-        Where.
+        The axes.
     profile : JointProfile
         The motion.
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a plan is judged by: time, peaks, jerk where pieces meet, via points, coefficients."""
+"""Measures of a plan: time, peaks, jerk at the ends of pieces, via-point error, coefficients."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.coefficients import Coefficients, coefficients
 
-BEFORE = 1e-9  # s before a knot, where what steps there still has its old value
+BEFORE = 1e-9  # s before a knot: the left-hand limit of quantities that step there
 
 
 class Measures(NamedTuple):
-    """The figures of a plan; arrays have a value for each joint."""
+    """Measures of a plan; arrays have a value for each joint."""
 
     total_time: float         # [s]
     velocity: Array           # peaks [rad/s]
@@ -47,7 +47,7 @@ class Measures(NamedTuple):
 
 def measures(of: Planned) -> Measures:
     """
-    Return the figures of a plan.
+    Return the measures of a plan.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def measures(of: Planned) -> Measures:
     Returns
     -------
     Measures
-        Its figures.
+        Its measures.
 
     """
     peaks = of.plan.peaks
@@ -70,7 +70,7 @@ def measures(of: Planned) -> Measures:
 
 def jerk_at_ends(trajectory: Trajectory) -> Array:
     """
-    Return the largest jerk of each joint where one of its pieces begins or ends.
+    Return the largest jerk of each joint at the ends of its pieces.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def jerk_at_ends(trajectory: Trajectory) -> Array:
     Returns
     -------
     ndarray, shape (3,)
-        [rad/s^3]. Along a path of the tip: where a piece of the progress does.
+        Jerk [rad/s^3]. For a path of the tip: at the ends of the pieces of s(t).
 
     """
     if isinstance(trajectory, PiecewiseTrajectory):
@@ -94,7 +94,7 @@ def jerk_at_ends(trajectory: Trajectory) -> Array:
 
 def via_errors(of: Planned) -> tuple[Array, Array]:
     """
-    Return how far a plan is from each via point at its time.
+    Return a plan's errors at the via points, at their times.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def via_errors(of: Planned) -> tuple[Array, Array]:
     Returns
     -------
     tuple of ndarray, shape (n,)
-        Of the joint that is furthest [rad], and of the tip [m].
+        Largest error of a joint [rad], and distance of the tip [m].
 
     """
     model = of.task.model
@@ -117,16 +117,16 @@ def via_errors(of: Planned) -> tuple[Array, Array]:
 
 def time_at_limit(shares: Array, times: Array, least: float) -> float:
     """
-    Return the part of a motion's time for which a share is at least so large.
+    Return the fraction of a motion's time in which the use of a limit is above a threshold.
 
     Parameters
     ----------
     shares : ndarray, shape (n,)
-        What is used of a limit, from 0 to 1.
+        Use of the limit, from 0 to 1.
     times : ndarray, shape (n,)
-        When, increasing [s].
+        Increasing times [s].
     least : float
-        The share in question.
+        The threshold.
 
     Returns
     -------
@@ -140,6 +140,6 @@ def time_at_limit(shares: Array, times: Array, least: float) -> float:
 
 
 def _end_jerk(profile: JointProfile) -> float:
-    """Return the largest jerk of one joint at the beginnings and ends of its pieces."""
+    """Return the largest jerk of one joint at both ends of its pieces."""
     pieces = profile.pieces
     return max(float(np.abs(pieces.at(s)[3]).max()) for s in (0.0, 1.0))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A motion sampled for drawing: both sides of every knot, torque, and what is used of limits."""
+"""A motion sampled for drawing, at both sides of every knot; torque and use of the limits."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 
-STEPS_PER_MOTION = 500
-STEPS_PER_PIECE = 4
-SHORTEST = 1e-5  # of the motion: a shorter piece would show as a spike that is none
-BEFORE = 1e-9  # s before a knot, where what steps there still has its old value
+STEPS_PER_MOTION = 500  # least number of samples
+STEPS_PER_PIECE = 4     # least number of samples in a piece
+SHORTEST = 1e-5  # of the motion's duration; shorter pieces would look like spikes: left out
+BEFORE = 1e-9    # s before a knot: the left-hand limit of quantities that step there
 
 
 class Samples(NamedTuple):
@@ -48,7 +48,7 @@ class Samples(NamedTuple):
 
 def sampled(model: RobotModel, trajectory: Trajectory) -> Samples:
     """
-    Return a motion as it is drawn.
+    Return the samples of a motion for drawing.
 
     Parameters
     ----------
@@ -60,7 +60,8 @@ def sampled(model: RobotModel, trajectory: Trajectory) -> Samples:
     Returns
     -------
     Samples
-        With two times at every knot, so that steps show as steps; the last one is before rest.
+        Two samples at every knot, so that steps are drawn as steps; the last is just before the
+        end.
 
     """
     t = drawing_times(trajectory)
@@ -71,7 +72,7 @@ def sampled(model: RobotModel, trajectory: Trajectory) -> Samples:
 
 def drawing_times(trajectory: Trajectory) -> Array:
     """
-    Return times that show all of a motion, steps included.
+    Return the times at which a motion is drawn.
 
     Parameters
     ----------
@@ -81,7 +82,7 @@ def drawing_times(trajectory: Trajectory) -> Array:
     Returns
     -------
     ndarray
-        Increasing [s]; none in pieces that are too short to be seen.
+        Increasing times [s], with both sides of every knot; none in pieces too short to be seen.
 
     """
     knots = trajectory.knots
@@ -93,7 +94,7 @@ def drawing_times(trajectory: Trajectory) -> Array:
 
 def limit_shares(samples: Samples, limits: JointLimits) -> dict[str, Array]:
     """
-    Return what a motion uses of every limit.
+    Return a motion's use of every limit.
 
     Parameters
     ----------
@@ -105,7 +106,7 @@ def limit_shares(samples: Samples, limits: JointLimits) -> dict[str, Array]:
     Returns
     -------
     dict of str to ndarray, shape (n, 3)
-        By the quantity's name, 1 where a limit is used to the full; 0 where there is none.
+        Magnitude / limit by the quantity's name; 0 if there is no limit.
 
     """
     return {
@@ -117,17 +118,17 @@ def limit_shares(samples: Samples, limits: JointLimits) -> dict[str, Array]:
 
 def tightest(shares: dict[str, Array]) -> Array:
     """
-    Return the share of whichever limit is used most, of any joint.
+    Return the largest use of any limit of any joint at each time.
 
     Parameters
     ----------
     shares : dict
-        As from `limit_shares`.
+        From `limit_shares`.
 
     Returns
     -------
     ndarray, shape (n,)
-        At each time.
+        Magnitude / limit.
 
     """
     return np.asarray(np.stack(list(shares.values())).max(axis=(0, 2)))
@@ -135,7 +136,7 @@ def tightest(shares: dict[str, Array]) -> Array:
 
 def path_lengths(trajectory: PathTrajectory, t: Array) -> Array:
     """
-    Return the length of path behind the tip.
+    Return the path coordinate s at given times.
 
     Parameters
     ----------
@@ -147,7 +148,7 @@ def path_lengths(trajectory: PathTrajectory, t: Array) -> Array:
     Returns
     -------
     ndarray, shape (n,)
-        [m].
+        Length along the path [m].
 
     """
     return np.asarray(trajectory.progress(t)[0])
@@ -155,7 +156,7 @@ def path_lengths(trajectory: PathTrajectory, t: Array) -> Array:
 
 def arm_points(model: RobotModel, q: Array) -> Array:
     """
-    Return where the arm's joints and its tip are.
+    Return the positions of the arm's joints and tip.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""One page that stands alone: sections with pictures, tables and animations, styles inside."""
+"""Writes a self-contained web page: sections with pictures, tables and animations."""
 
 from __future__ import annotations
 
@@ -28,32 +28,32 @@ from rrr_traj_planner.report.theme import DARK, LIGHT, variables
 
 
 class Content(Protocol):
-    """What a section shows, and what is written beside the page for it."""
+    """An element of a section: a picture, a table or an animation."""
 
     @property
     def name(self) -> str:
-        """Its place in the page."""
+        """Return its id in the page."""
 
     @property
     def title(self) -> str:
-        """Return what it is."""
+        """Return its title."""
 
     @property
     def caption(self) -> str:
-        """Return what there is to see."""
+        """Return its caption."""
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Return the names of what is written beside the page."""
+        """Return the names of its files beside the page."""
 
     def written(self, folder: Path) -> str:
         """
-        Write its files.
+        Write its files and return its HTML.
 
         Parameters
         ----------
         folder : Path
-            Where they go.
+            Folder of the files.
 
         Returns
         -------
@@ -71,9 +71,9 @@ class Section:
     Parameters
     ----------
     title, text : str
-        What it is about; text is plain.
+        Title and introduction, plain text.
     contents : sequence of Content
-        Shown beside each other where there is room, tables below each other.
+        Shown side by side on a wide page; tables one below the other.
 
     """
 
@@ -84,29 +84,29 @@ class Section:
 
 def write_page(folder: Path, title: str, text: str, sections: Sequence[Section]) -> Path:
     """
-    Write a page and the files beside it, in the place of an earlier one.
+    Write a page and its files; replace an earlier report in the same folder.
 
-    What an earlier page had beside it, and this one has not, is removed; files that have changed
-    since, and all others, are left alone.
+    Files of the earlier report that the new one does not have are removed, unless they have been
+    changed since. Other files are left alone.
 
     Parameters
     ----------
     folder : Path
-        Where everything goes; made if it is missing. Nothing is written elsewhere.
+        Folder of the page and its files; created if missing.
     title, text : str
-        What the page is.
+        Title and introduction.
     sections : sequence of Section
-        What it shows.
+        The sections.
 
     Returns
     -------
     Path
-        The page, written last: if it is there, all else is.
+        The page; it is written last, so that its files exist.
 
     Raises
     ------
     OSError
-        If something cannot be written; FileExistsError if a page is there that is no report.
+        If a file cannot be written; FileExistsError if there is a page that is not a report.
 
     """
     folder.mkdir(parents=True, exist_ok=True)
@@ -145,17 +145,17 @@ def write_page(folder: Path, title: str, text: str, sections: Sequence[Section])
 
 def resource(name: str) -> str:
     """
-    Return a text file of this package.
+    Return the content of a text file of this package.
 
     Parameters
     ----------
     name : str
-        The file's.
+        The file's name.
 
     Returns
     -------
     str
-        What it holds.
+        Its content.
 
     """
     return files('rrr_traj_planner.report').joinpath(name).read_text(encoding='utf-8')
@@ -163,17 +163,17 @@ def resource(name: str) -> str:
 
 def paragraphs(text: str) -> str:
     """
-    Return a text as HTML.
+    Return plain text as HTML paragraphs.
 
     Parameters
     ----------
     text : str
-        Paragraphs, with empty lines between them.
+        Paragraphs, separated by empty lines.
 
     Returns
     -------
     str
-        Elements.
+        HTML elements.
 
     """
     return ''.join(f'<p>{escape(part)}</p>' for part in text.split('\n\n') if part.strip())

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What lies beside a page: which files belong to it, and which an earlier page has left."""
+"""The list of a page's files, with digests, and removal of the files of an earlier page."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ LIST = re.compile(r'<script type="application/json" id="files">(.*?)</script>', 
 
 def listed(folder: Path, names: Iterable[str]) -> str:
     """
-    Return the list of a page's files, with what tells whether they have changed since.
+    Return the list of a page's files with their SHA-256 digests.
 
     Parameters
     ----------
     folder : Path
-        Where they are.
+        Folder of the files.
     names : iterable of str
         Their names.
 
     Returns
     -------
     str
-        An element of the page that is not shown.
+        An invisible element of the page.
 
     """
     digests = {name: _digest(folder / name) for name in sorted(names)}
@@ -50,19 +50,19 @@ def listed(folder: Path, names: Iterable[str]) -> str:
 
 def remove_earlier(folder: Path, kept: Iterable[str]) -> None:
     """
-    Remove what an earlier page has left: files that it lists and that are still as it wrote them.
+    Remove the files that an earlier page lists and that have not been changed since.
 
     Parameters
     ----------
     folder : Path
-        Where the page is, if there is one.
+        Folder of the page.
     kept : iterable of str
         Names of files that will be written again.
 
     Raises
     ------
     FileExistsError
-        If there is a page that is no report.
+        If there is a page that is not a report.
 
     """
     page = folder / PAGE

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Figures in space: the tip's path with the arm, and the curved part magnified (6.12, 6.13)."""
+"""Figures in space: the tip's path with the arm, and a magnified corner of it (6.12, 6.13)."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ from rrr_traj_planner.report.motion_samples import arm_points, sampled
 from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.theme import DASHES, LIGHT, SERIES
 
-POSES = 9            # of the arm, along a motion
-MAGNIFIED = 2.0      # of half the curve's length, to either side of the via point
-POINTS = 600
-LEAST_EXTENT = 0.02  # m
-LABEL_DISTANCE = 10.0  # points
-LABEL_SIZE = (18.0, 11.0)  # points, of three digits
-MOST_LABELS = 24
-MARKS = ((20, 5.0), (100, 2.5), (np.inf, 1.2))  # points, of so many via points at most
+POSES = 9          # of the arm, at equal time steps
+MAGNIFIED = 2.0    # length shown on either side of the via point, in half lengths of the curve
+POINTS = 600       # of the magnified path
+MIN_EXTENT = 0.02  # m, least half length of a curve for this purpose
+LABEL_DISTANCE = 10.0      # points (1/72 inch), from a via point to its number
+LABEL_SIZE = (18.0, 11.0)  # points, width and height of three digits
+MAX_LABELS = 24
+MARKS = ((20, 5.0), (100, 2.5), (np.inf, 1.2))  # up to how many via points: marker size [points]
 POINTS_PER_INCH = 72.0
-ZOOM = 0.88          # leaves room for labels around the axes
+ZOOM = 0.88        # leaves space for labels around the axes
 
 
 def path_in_space(of: Planned, name: str, title: str, caption: str) -> Picture:
@@ -116,9 +116,9 @@ def magnified_zone(of: Planned, zone: int, name: str, title: str, caption: str) 
     of : Planned
         A motion along a path of the tip.
     zone : int
-        Index of the curved zone; its via point's is one more.
+        Index of the curved zone; the index of its via point is one more.
     name, title, caption : str
-        See `Picture`; the caption is added to.
+        See `Picture`; radius and deviation are added to the caption.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def magnified_zone(of: Planned, zone: int, name: str, title: str, caption: str) 
     assert isinstance(trajectory, PathTrajectory)
     path = trajectory.arm_path.path
     ends, radius = path.zone_ends[zone], float(path.radii[zone])
-    half = MAGNIFIED * max(float(np.ptp(ends)) / 2.0, LEAST_EXTENT)
+    half = MAGNIFIED * max(float(np.ptp(ends)) / 2.0, MIN_EXTENT)
     near = path.via_s[zone + 1]
     places = np.linspace(max(near - half, 0.0), min(near + half, path.length), POINTS)
 
@@ -155,7 +155,7 @@ def magnified_zone(of: Planned, zone: int, name: str, title: str, caption: str) 
 
 
 def _zone(axes: Any, line: Array, curved: BoolArray, ends: Array, polyline: Array) -> None:
-    """Draw a path in the plane of its curve, its via point the origin [m]."""
+    """Draw a path in the plane of its curve, with the via point as origin [m]."""
     axes.plot(*polyline.T * 1e3, color=LIGHT['limit'], linestyle='--', linewidth=1.0,
               label='polyline')
     axes.plot(*line.T * 1e3, color=LIGHT['tip'], linewidth=1.6, label='line')
@@ -169,12 +169,12 @@ def _zone(axes: Any, line: Array, curved: BoolArray, ends: Array, polyline: Arra
 
 
 def _padded(values: Array) -> tuple[float, float]:
-    room = 0.06 * float(np.ptp(values))
-    return float(values.min()) - room, float(values.max()) + room
+    padding = 0.06 * float(np.ptp(values))
+    return float(values.min()) - padding, float(values.max()) + padding
 
 
 def _via_points(axes: Any, points: Array) -> Any:
-    """Draw via points, numbered from 0 as requests count them, once the view is settled."""
+    """Draw via points with their indices; call it after the view is set."""
     x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
     seen = np.column_stack((x, y))
     offsets = LABEL_DISTANCE * label_directions(seen)
@@ -189,20 +189,20 @@ def _via_points(axes: Any, points: Array) -> Any:
 
 def legible(places: Array) -> list[int]:
     """
-    Return which labels to show so that none lies on another.
+    Return the indices of labels that can be shown without overlap.
 
     Parameters
     ----------
     places : ndarray, shape (n, 2)
-        Where the labels are [points].
+        Centres of the labels [points].
 
     Returns
     -------
     list of int
-        The first, the last, and between them at equal steps those for which there is room.
+        The first, the last, and every k-th in between that overlaps none of the others.
 
     """
-    stride = -(-len(places) // MOST_LABELS)
+    stride = -(-len(places) // MAX_LABELS)
     found: list[int] = []
     for i in dict.fromkeys((0, len(places) - 1, *range(0, len(places), stride))):
         if (np.abs(places[i] - places[found]) > LABEL_SIZE).any(axis=1).all():
@@ -212,17 +212,17 @@ def legible(places: Array) -> list[int]:
 
 def label_directions(seen: Array) -> Array:
     """
-    Return where labels go: away from the nearest other point.
+    Return the direction of each point's label: away from the nearest other point.
 
     Parameters
     ----------
     seen : ndarray, shape (n, 2)
-        Points as they are seen.
+        Points, projected.
 
     Returns
     -------
     ndarray, shape (n, 2)
-        Unit vectors; to the upper right where another point is at the same place.
+        Unit vectors; to the upper right if another point is at the same place.
 
     """
     found = np.full(seen.shape, np.sqrt(0.5))
@@ -235,7 +235,7 @@ def label_directions(seen: Array) -> Array:
 
 
 def _equal_scales(axes: Any) -> None:
-    """Settle the view: equal scales, and room for the labels."""
+    """Set the view: equal scales, and space for the labels."""
     limits = (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())
     axes.set_box_aspect([np.ptp(ends) for ends in limits], zoom=ZOOM)
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A figure with its title and caption: as SVG for a page, as PNG and CSV beside it."""
+"""A figure with title and caption: SVG inside the page, PNG and CSV beside it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.columns import write_columns
 from rrr_traj_planner.report.theme import STYLE, themed, WIDTH
 
-PNG_RESOLUTION = 200  # dots an inch
+PNG_RESOLUTION = 200  # dots per inch
 REFERENCES = re.compile(r'(\bid="|url\(#|href="#)')
 LEADING = re.compile(r'^.*?(?=<svg)', re.DOTALL)
 METADATA = re.compile(r'<metadata>.*?</metadata>', re.DOTALL)
@@ -38,20 +38,20 @@ METADATA = re.compile(r'<metadata>.*?</metadata>', re.DOTALL)
 @dataclass(frozen=True, eq=False)
 class Picture:
     """
-    A figure, not drawn yet.
+    A figure, drawn when it is written.
 
     Parameters
     ----------
     name : str
-        Of its files and its place in the page: letters, digits, underscores.
+        Name of its files and id in the page: letters, digits, underscores.
     title, caption : str
-        What it shows, and what there is to see.
+        Title and caption.
     draw : callable
-        Fills a figure of matplotlib.
+        Draws on a matplotlib figure.
     height : float
-        In inches, for a width of `theme.WIDTH`.
+        Height for a width of `theme.WIDTH` [inches].
     data : dict
-        What is drawn: columns of the CSV by their heads, each with its unit; of equal lengths.
+        The data drawn: columns of the CSV by heading (with unit), of equal lengths.
 
     """
 
@@ -64,7 +64,7 @@ class Picture:
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Return what is written beside the page."""
+        """Return the names of its files beside the page."""
         return (f'{self.name}.png', *([f'{self.name}.csv'] if self.data else []))
 
     def written(self, folder: Path) -> str:
@@ -74,12 +74,12 @@ class Picture:
         Parameters
         ----------
         folder : Path
-            Where PNG and CSV go.
+            Folder of PNG and CSV.
 
         Returns
         -------
         str
-            The figure as SVG, its colours a style sheet's variables.
+            The figure as SVG, with variables of the style sheet as colours.
 
         """
         with matplotlib.rc_context(STYLE):
@@ -95,21 +95,21 @@ class Picture:
 
 def embedded(svg: str, name: str, title: str) -> str:
     """
-    Return an SVG file's text as it stands in a page.
+    Return an SVG file as an element of a page.
 
     Parameters
     ----------
     svg : str
-        As matplotlib writes it.
+        The file as written by matplotlib.
     name : str
-        Put before every id, so that those of several pictures differ.
+        Prefix of every id, so that ids of several pictures differ.
     title : str
-        For readers who do not see it.
+        Label for screen readers.
 
     Returns
     -------
     str
-        An element that takes the width of what is around it.
+        An element as wide as its container.
 
     """
     svg = METADATA.sub('', LEADING.sub('', svg, count=1))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Any plan drawn: limits, torque, path, animation, peaks, several planners side by side."""
+"""The report of a task: profiles, torque, path, animation and peaks, for one or more planners."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from rrr_traj_planner.report.tables import (
     via_points_table,
 )
 
-FEW = 6  # via points: so many are in the page's first lines
+FEW = 6  # via points that the page's introduction lists; of more only the first and the last
 
 
 def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
@@ -41,14 +41,14 @@ def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
     Parameters
     ----------
     folder : Path
-        Where they go.
+        Folder of the page and its files.
     found : sequence of Attempt
-        What planners made of one task, at least one.
+        Results of one or more planners for one task.
 
     Returns
     -------
     Path
-        The page; a refusal is shown with its reason.
+        The page; it shows refusals with their reasons.
 
     """
     task = found[0].task
@@ -60,17 +60,17 @@ def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
 
 def sections(found: Sequence[Attempt]) -> list[Section]:
     """
-    Return the parts of the page.
+    Return the sections of the page.
 
     Parameters
     ----------
     found : sequence of Attempt
-        What planners made of one task.
+        Results of one or more planners for one task.
 
     Returns
     -------
     list of Section
-        Without plans, the tables of refusals and of via points alone.
+        If all planners refuse, only the tables of refusals and of via points.
 
     """
     plans, task = planned(found), found[0].task
@@ -87,15 +87,16 @@ def sections(found: Sequence[Attempt]) -> list[Section]:
         return [*parts, points]
     parts.append(Section('Motion', '', [Animation(
         'animation', 'The arm along the path',
-        'Drag a picture to turn the view. The path still to go is grey. Below each, the limit '
-        'that is nearest at the moment: of velocity, acceleration, jerk or torque, of any joint.',
+        'Drag a picture to turn the view. The path ahead of the tip is grey. Below each picture: '
+        'the limit of velocity, acceleration, jerk or torque that is used most at the moment, of '
+        'any joint.',
         plans)]))
     if len(plans) > 1:
         parts.append(Section('Side by side', '', _comparison(plans)))
     names = unique_names([p.planner_id for p in plans])
     kinds = [(title, text, [draw(p, name) for p, name in zip(plans, names)])
              for title, text, draw in _KINDS]
-    if len(plans) == 1:  # its figures beside each other
+    if len(plans) == 1:  # all figures in one section
         kinds = [('Figures', ' '.join(text for _, text, _ in kinds if text),
                   [content for _, _, contents in kinds for content in contents])]
     return [*parts, *(Section(*kind) for kind in kinds), points]
@@ -103,17 +104,17 @@ def sections(found: Sequence[Attempt]) -> list[Section]:
 
 def unique_names(planner_ids: Sequence[str]) -> list[str]:
     """
-    Return a name for each planner's files.
+    Return distinct file names for planners.
 
     Parameters
     ----------
     planner_ids : sequence of str
-        The planners, which may repeat.
+        The planners, possibly repeated.
 
     Returns
     -------
     list of str
-        The id, from its second appearance on with a number.
+        The ids; repeated ones with a number appended.
 
     """
     return [i if i not in planner_ids[:k] else f'{i}_{planner_ids[:k].count(i) + 1}'
@@ -146,6 +147,5 @@ def _peaks(of: Planned, name: str) -> Content:
 
 _KINDS: tuple[tuple[str, str, Callable[[Planned, str], Content]], ...] = (
     ('Profiles', 'Shaded: within the limits.', _profiles),
-    ('Torque', 'Of a motion along a path of the tip over the length of the path, else over time.',
-     _torque),
+    ('Torque', 'Over the length of the path for Cartesian planners, else over time.', _torque),
     ('Path', '', _path), ('Peaks', '', _peaks))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Figures of a motion over time: profiles against limits, single joints, torque use."""
+"""Figures of a motion over time: profiles with limits, single joints, use of torque limits."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from rrr_traj_planner.report.motion_samples import (
 from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.theme import DASHES, JOINTS, LIGHT, SERIES
 
-USED = 0.95  # a limit that is used to this share counts as used
+USED = 0.95  # of a limit, above which it counts as active
 
 
 def profiles(of: Planned, name: str, title: str, caption: str) -> Picture:
@@ -89,7 +89,7 @@ def positions(of: Planned, name: str, title: str, caption: str) -> Picture:
     Returns
     -------
     Picture
-        In degrees, as the thesis gives ranges.
+        Positions in degrees, as in the thesis.
 
     """
     s = sampled(of.task.model, of.plan.trajectory)
@@ -141,19 +141,19 @@ def one_joint(of: Planned, joint: int, name: str, title: str, caption: str) -> P
 
 def torque_use(of: Planned, name: str, title: str, caption: str) -> Picture:
     """
-    Return the figure of each torque limit's share that is used, and of the tightest limit's.
+    Return the figure of the use of each torque limit, and of the limit that is used most.
 
     Parameters
     ----------
     of : Planned
         The motion.
     name, title, caption : str
-        See `Picture`; the caption is added to.
+        See `Picture`; a sentence is added to the caption.
 
     Returns
     -------
     Picture
-        Over the length of the path where the tip was planned along one, else over time.
+        Over the length of the path for Cartesian planners, else over time.
 
     """
     trajectory = of.plan.trajectory
@@ -194,7 +194,7 @@ def compared(plans: Sequence[Planned], joint: int, name: str, title: str,
     Parameters
     ----------
     plans : sequence of Planned
-        At least one; all for the same arm.
+        One or more, all for the same arm.
     joint : int
         The joint's index.
     name, title, caption : str
@@ -238,7 +238,7 @@ def columns(s: Samples) -> dict[str, Array]:
     Returns
     -------
     dict
-        By their heads.
+        Columns by heading.
 
     """
     found: dict[str, Array] = {'time [s]': s.t}

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Tables: rows of texts with heads, as HTML for a page and as CSV beside it."""
+"""Tables with headings: HTML inside the page, CSV beside it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.report.attempts import Attempt, Planned, Task
 from rrr_traj_planner.report.measures import measures
 
-MINUTE = 1e-9  # what is smaller is rounding, and shown as 0
+ROUNDING = 1e-9  # smaller numbers are shown as 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,15 +39,15 @@ class Table:
     Parameters
     ----------
     name : str
-        Of its file and its place in the page.
+        Name of its file and id in the page.
     title, caption : str
-        What it shows.
+        Title and caption.
     heads : sequence of str
-        Of the columns.
+        Headings of the columns.
     rows : sequence of sequence of str
         Cells.
     sentences : bool
-        Whether cells are to be read as text: on several lines where the page is narrow.
+        Whether cells are sentences, which may be broken into lines.
 
     """
 
@@ -60,7 +60,7 @@ class Table:
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Return what is written beside the page."""
+        """Return the names of its files beside the page."""
         return (f'{self.name}.csv',)
 
     def written(self, folder: Path) -> str:
@@ -70,7 +70,7 @@ class Table:
         Parameters
         ----------
         folder : Path
-            Where its CSV goes.
+            Folder of the CSV file.
 
         Returns
         -------
@@ -101,14 +101,14 @@ def methods_table(found: Sequence[Attempt], name: str, title: str, caption: str)
     Parameters
     ----------
     found : sequence of Attempt
-        What they made of one task.
+        Their results for one task.
     name, title, caption : str
         See `Table`.
 
     Returns
     -------
     Table
-        A row for each that did not refuse; peaks are the largest of the three joints'.
+        A row for each plan; peaks are the largest of the three joints'.
 
     """
     heads = ('planner', 'total time [s]', 'velocity [rad/s]', 'acceleration [rad/s²]',
@@ -121,47 +121,47 @@ def methods_table(found: Sequence[Attempt], name: str, title: str, caption: str)
 
 def refusals_table(found: Sequence[Attempt], name: str) -> Table:
     """
-    Return the table of what planners refused.
+    Return the table of refusals.
 
     Parameters
     ----------
     found : sequence of Attempt
-        What they made of one task.
+        Results of planners for one task.
     name : str
         See `Table`.
 
     Returns
     -------
     Table
-        A row for each that refused, with its reason.
+        A row for each planner that refused, with the reason.
 
     """
-    return Table(name, 'Refusals', '', ('planner', 'why'), [
+    return Table(name, 'Refusals', '', ('planner', 'reason'), [
         [a.planner_id, f'refused: {a.refusal}'] for a in found if a.plan is None], sentences=True)
 
 
 def via_points_table(task: Task, plans: Sequence[Planned], name: str) -> Table:
     """
-    Return the table of via points, and of when they are passed.
+    Return the table of via points and their times.
 
     Parameters
     ----------
     task : Task
-        Whose points.
+        The task.
     plans : sequence of Planned
-        Plans of it.
+        Its plans.
     name : str
         See `Table`.
 
     Returns
     -------
     Table
-        A row for each point, numbered from 0; a column of times for each plan.
+        A row for each via point, numbered from 0; a column of times for each plan.
 
     """
     times = [[f'{t:.3f}' for t in p.plan.via_times] for p in plans]
     heads = ('#', 'x [m]', 'y [m]', 'z [m]', *(f'{p.planner_id} [s]' for p in plans))
-    caption = 'Where they are, and when each planner passes them.' if plans else ''
+    caption = 'Positions, and the times at which each planner passes them.' if plans else ''
     return Table(name, 'Via points', caption, heads, [
         [str(i), *(f'{x:.6g}' for x in point), *passed]
         for i, (point, *passed) in enumerate(zip(task.via_points, *times))])
@@ -178,7 +178,7 @@ def _method(of: Planned, planning_time: float) -> list[str]:
 
 def peaks_table(of: Planned, name: str) -> Table:
     """
-    Return the table of a motion's peaks against the limits, joint by joint.
+    Return the table of each joint's peaks and limits.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def peaks_table(of: Planned, name: str) -> Table:
                                                 limits)]
     rows.append(["jerk at transitions' ends [rad/s³]", *(shown(j, 3) for j in m.jerk_at_ends)])
     return Table(name, f'Peaks of {of.planner_id}',
-                 f'Over the continuous motion of {m.total_time:.3f} s, with what is used of each '
+                 f'Over the continuous motion of {m.total_time:.3f} s, with the used part of each '
                  f'limit. Via points are met to {m.via_error:.1e} rad, '
                  f'{1e3 * m.via_distance:.2g} mm.',
                  ('peak', *of.task.model.joint_names), rows)
@@ -211,26 +211,26 @@ def peaks_table(of: Planned, name: str) -> Table:
 
 def shown(value: float, digits: int) -> str:
     """
-    Return a number as it is shown.
+    Return a number as text.
 
     Parameters
     ----------
     value : float
         The number.
     digits : int
-        After the point.
+        Number of decimals.
 
     Returns
     -------
     str
-        0 where it is rounding.
+        '0' for numbers that are only rounding errors.
 
     """
-    return '0' if abs(value) < MINUTE else f'{value:.{digits}f}'
+    return '0' if abs(value) < ROUNDING else f'{value:.{digits}f}'
 
 
 def _unbroken(text: str) -> str:
-    """Return a text as HTML, no line of which ends before a unit's sign."""
+    """Return a text as HTML, without line breaks before units."""
     return escape(text).replace(' %', '&nbsp;%').replace('N m', 'N&nbsp;m')
 
 

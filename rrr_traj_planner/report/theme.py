@@ -13,10 +13,10 @@
 # limitations under the License.
 
 """
-How figures look: one set of colours by role, which a page turns dark where its reader's is.
+Style of figures: colours by role, in a light and a dark theme.
 
-A figure is drawn in the light colours. In a page's SVG each of them becomes a variable of the
-style sheet, so that one picture serves both; no two roles share a colour.
+Figures are drawn in the light colours. In the page's SVG each colour is replaced by a variable of
+the style sheet, which follows the reader's theme; so no two roles may share a colour.
 """
 
 from __future__ import annotations
@@ -39,10 +39,10 @@ DARK = {
     'extra-6': '#8fb0e6'}
 
 JOINTS = (LIGHT['joint-1'], LIGHT['joint-2'], LIGHT['joint-3'])
-DASHES: tuple[Any, ...] = ('-', (0, (5, 1.5)), (0, (1.5, 1.2)))  # told apart without colours too
+DASHES: tuple[Any, ...] = ('-', (0, (5, 1.5)), (0, (1.5, 1.2)))  # distinct without colours too
 SERIES = (*JOINTS, *(LIGHT[f'extra-{i}'] for i in (1, 4, 3, 2, 5, 6)), LIGHT['tip'])
 
-WIDTH = 4.7  # in: one column, so that text is legible where a page is as narrow as a phone
+WIDTH = 4.7  # inches: one column, legible on a phone
 
 STYLE: Any = {
     'font.family': 'sans-serif', 'font.sans-serif': ['DejaVu Sans'], 'font.size': 9.0,
@@ -66,17 +66,17 @@ VIA: dict[str, Any] = {'color': LIGHT['via'], 'linewidth': 0.9, 'linestyle': '-'
 
 def variables(colours: dict[str, str]) -> str:
     """
-    Return colours as a style sheet's variables.
+    Return colours as variables of a style sheet.
 
     Parameters
     ----------
     colours : dict
-        By role.
+        Colours by role.
 
     Returns
     -------
     str
-        Declarations.
+        CSS declarations.
 
     """
     return ' '.join(f'--{role}: {colour};' for role, colour in colours.items())
@@ -84,17 +84,17 @@ def variables(colours: dict[str, str]) -> str:
 
 def themed(svg: str) -> str:
     """
-    Return a picture whose colours are the style sheet's.
+    Replace a picture's colours by the style sheet's variables.
 
     Parameters
     ----------
     svg : str
-        Drawn in the light colours.
+        The picture in the light colours.
 
     Returns
     -------
     str
-        With variables in their place.
+        The picture with variables as colours.
 
     """
     for role, colour in LIGHT.items():

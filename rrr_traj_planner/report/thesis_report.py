@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The thesis's tables and figures, drawn from this package's own planners and functions."""
+"""The thesis's tables and figures, drawn with this package's planners and functions."""
 
 from __future__ import annotations
 
@@ -54,23 +54,25 @@ mirrored, as no elbow branch fits the printed one); jerk, which the thesis does 
 limited to 10 rad/s³."""
 
 CLAIMS = """\
-Less excitation: true of a transition of the same length, not of whole motions whose transitions
-are shorter. Near time optimality: not of approach (a); least times are those of any motion through
-the points under the same limits."""
+Less excitation: true for a transition of the same duration, not for whole motions with shorter
+transitions. Near time optimality: not true for approach (a); the least times are those of any
+motion through the points under the same limits."""
 
-REPEATS = 2  # the shorter planning time counts: the first one also loads what is needed
+REPEATS = 2  # plannings of a task; the shorter time counts, as the first one loads modules
 POLYNOMIAL, THESIS = 'poly_414', 'cycloid_approach_a'
 
 
 @dataclass(frozen=True, eq=False)
 class ThesisPlans:
     """
-    What every planner makes of the thesis's tasks.
+    Results of the planners for the thesis's tasks.
 
     Parameters
     ----------
-    table_6_1, table_6_3, as_printed : sequence of Attempt
-        By every planner; the last by one of a path, for the thesis's own torques.
+    table_6_1, table_6_3 : sequence of Attempt
+        Results of every planner.
+    as_printed : sequence of Attempt
+        Result of `line_arc` for table 6.3 with the thesis's own torque limits.
 
     """
 
@@ -114,7 +116,7 @@ class ThesisPlans:
 
 
 def thesis_plans() -> ThesisPlans:
-    """Return what every registered planner makes of the thesis's tasks."""
+    """Plan the thesis's tasks by every registered planner."""
     ids = planner_ids()
     return ThesisPlans(
         attempts(table_6_1(), ids, REPEATS), attempts(table_6_3(), ids, REPEATS),
@@ -128,7 +130,7 @@ def write_thesis_report(folder: Path) -> Path:
     Parameters
     ----------
     folder : Path
-        Where they go.
+        Folder of the page and its files.
 
     Returns
     -------
@@ -142,17 +144,17 @@ def write_thesis_report(folder: Path) -> Path:
 
 def sections(plans: ThesisPlans) -> list[Section]:
     """
-    Return the parts of the page.
+    Return the sections of the page.
 
     Parameters
     ----------
     plans : ThesisPlans
-        What it shows.
+        The plans.
 
     Returns
     -------
     list of Section
-        In the thesis's order, methods compared first.
+        A comparison of the methods, then the thesis's figures in their order.
 
     """
     return [
@@ -206,7 +208,7 @@ def total_times(found: Sequence[Attempt], name: str, title: str) -> Picture:
     Parameters
     ----------
     found : sequence of Attempt
-        What they made of one task.
+        Their results for one task.
     name, title : str
         See `Picture`.
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The thesis's tables of data, as the package has them."""
+"""The thesis's tables of data (6.1 to 6.3, B.1 to B.3), from the package's own values."""
 
 from __future__ import annotations
 

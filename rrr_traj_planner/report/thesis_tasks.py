@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The thesis's data: tables 6.1 to 6.3, and B.1 to B.3 as the defaults of arm and limits."""
+"""The thesis's tasks: tables 6.1 and 6.3, for the arm of tables 6.2 and B.1 to B.3."""
 
 from __future__ import annotations
 
