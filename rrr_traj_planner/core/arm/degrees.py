@@ -12,35 +12,35 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Whether numbers that are far out of bounds would be within them as degrees."""
+"""Detection of angles given in degrees: far out of bounds, within them once converted."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-HINT = ' (in degrees?)'  # what an error or a warning then asks
+HINT = ' (in degrees?)'  # appended to an error or a warning
 
-# Numbers that miss their bounds by less than this many times the width between them are not taken
-# for degrees.
+# Values beyond their bounds by less than this many times the distance between the bounds are not
+# suspected to be degrees.
 NEAR = 1.0
 
 
 def explained_by_degrees(sent: ArrayLike, low: float, high: float) -> bool:
     """
-    Return whether degrees explain numbers that are out of bounds.
+    Return whether values out of bounds are probably degrees.
 
     Parameters
     ----------
     sent : array_like, shape (n,) or ()
-        Numbers, as they were given.
+        The values as received.
     low, high : float
         Their bounds [rad, or rad/s, ...].
 
     Returns
     -------
     bool
-        True if one of them is far from the bounds, and all are within them as degrees.
+        True if one of them is far out of bounds, and all are within them once converted.
 
     """
     numbers, far = np.asarray(sent, dtype=float), NEAR * (high - low)

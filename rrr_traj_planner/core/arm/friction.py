@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Friction in the joints: a torque for each, proportional to velocity, and a constant one."""
+"""Viscous and Coulomb friction of the joints."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ class Friction(ReadOnlyArrays):
     """
     Friction of the three joints: -viscous qd - coulomb sign(qd) while a joint moves.
 
-    A joint at rest stays there exactly, while less than its Coulomb friction would keep it.
+    A joint at rest stays at rest while the torque that friction must supply for it is below its
+    Coulomb friction.
 
     Parameters
     ----------

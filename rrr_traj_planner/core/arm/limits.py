@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Joint limits: position, velocity, acceleration, jerk, effort; infinite where unlimited."""
+"""Joint limits on position, velocity, acceleration, jerk and effort; infinite for none."""
 
 from __future__ import annotations
 

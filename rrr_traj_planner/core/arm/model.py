@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm: lengths, masses, inertias, gravity and joint names."""
+"""The arm's kinematic and dynamic parameters, and its joint names."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class RobotModel(ReadOnlyArrays):
         self._check_inertia()
 
     def _check_inertia(self) -> None:
-        """Refuse an arm that a torque could accelerate without bound in some pose."""
+        """Refuse an arm whose inertia matrix is singular or not finite in some pose."""
         for name, mass, length in (('l2', self.mass[1], self.l2), ('l3', self.mass[2], self.l3)):
             with np.errstate(over='ignore'):
                 moment = mass * np.square(length)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the arm carries: a point mass at the tip, as a part of link 3."""
+"""The payload: a point mass at the tip, added to the inertial parameters of link 3."""
 
 from __future__ import annotations
 
@@ -56,8 +56,8 @@ def with_payload(model: RobotModel, mass: float) -> RobotModel:
     """
     Return the arm with a point mass at its tip.
 
-    The tip lies at d4 along z3 from joint axis 3, as link 3's centre of mass lies at l3: both
-    together are a link 3 with another mass, centre and inertia (Steiner).
+    The tip is at d4, link 3's centre of mass at l3 along z3 from joint axis 3: together they are a
+    link 3 with another mass, centre of mass and inertia (parallel-axis theorem).
 
     Parameters
     ----------
@@ -82,8 +82,8 @@ def with_payload(model: RobotModel, mass: float) -> RobotModel:
         return model
     m1, m2, m3 = model.mass.tolist()
     l3 = (m3 * model.l3 + mass * model.d4) / (m3 + mass)
-    spread = m3 * (model.l3 - l3) ** 2 + mass * (model.d4 - l3) ** 2
+    parallel_axis = m3 * (model.l3 - l3) ** 2 + mass * (model.d4 - l3) ** 2
     inertia = model.inertia.copy()
-    inertia[2, :2] += spread
+    inertia[2, :2] += parallel_axis
     return replace(model, l3=l3, mass=np.array((m1, m2, m3 + mass)),
                    inertia=inertia)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm as a URDF: what robot_state_publisher, RViz and other libraries read."""
+"""The arm as a URDF, for robot_state_publisher, RViz and other libraries."""
 
 from __future__ import annotations
 
@@ -28,19 +28,18 @@ from rrr_traj_planner.core.errors import InvalidInputError
 
 ROBOT = 'rrr_arm'
 
-# A URDF must bound velocity and effort: what stands for a limit that is not there.
+# A URDF must have limits on velocity and effort: values that stand for none.
 NO_VELOCITY_LIMIT = 1e3  # rad/s
 NO_EFFORT_LIMIT = 1e6    # N m
 
-# Thickness of what is drawn, of the arm's reach.
-RADIUS = 1.0 / 32.0
+RADIUS = 1.0 / 32.0  # of the drawn rods, as a part of the arm's reach
 
 COLOURS = {'light': (0.75, 0.75, 0.78, 1.0), 'dark': (0.35, 0.37, 0.42, 1.0)}
 
 Numbers = tuple[float, float, float]
 QUARTER_TURN = (0.5 * pi, 0.0, 0.0)  # Rx(90 deg), Denavit-Hartenberg's alpha
-ALONG_X = (0.0, 0.5 * pi, 0.0)       # of a cylinder, which lies along its own z
-AS_IT_IS = (0.0, 0.0, 0.0)
+ALONG_X = (0.0, 0.5 * pi, 0.0)       # turns a cylinder's axis from z to x
+AS_IT_IS = (0.0, 0.0, 0.0)           # no rotation, or no offset
 
 
 class FrameNames(NamedTuple):
@@ -52,18 +51,18 @@ class FrameNames(NamedTuple):
 
 
 class _Link(NamedTuple):
-    """A link, seen from the frame of its joint."""
+    """A link, in the frame of its joint."""
 
     centre: Numbers    # of mass [m]
     axes: Numbers      # roll, pitch, yaw of the Denavit-Hartenberg frame [rad]
-    rod: Numbers       # what is drawn: from the joint to here [m]
+    rod: Numbers       # far end of the drawn rod, which begins at the joint [m]
     rod_turn: Numbers  # roll, pitch, yaw [rad]
-    hub: Numbers       # centre of the ball that is drawn [m]
+    hub: Numbers       # centre of the drawn ball [m]
 
 
 def check_frames(frames: FrameNames) -> None:
     """
-    Refuse names that cannot tell frames apart.
+    Refuse frame names that are empty or repeat.
 
     Parameters
     ----------
@@ -88,9 +87,9 @@ def urdf(model: RobotModel, limits: JointLimits, frames: FrameNames | None = Non
     """
     Return the arm as a URDF.
 
-    A link's frame is that of its joint, as a URDF wants it: the Denavit-Hartenberg frame less
-    what lies behind the joint's rotation. The tip's frame is frame 3 (section 5.2). A link's
-    inertia is given in the axes of its Denavit-Hartenberg frame, as the model has it.
+    A link's frame is that of its joint, as URDF requires: the Denavit-Hartenberg frame without the
+    constant transform that follows the joint's rotation. The tip's frame is frame 3 (section 5.2).
+    A link's inertia is given in the axes of its Denavit-Hartenberg frame, as in the model.
 
     Parameters
     ----------
@@ -136,7 +135,7 @@ def urdf(model: RobotModel, limits: JointLimits, frames: FrameNames | None = Non
 
 
 def _links(model: RobotModel) -> tuple[_Link, _Link, _Link]:
-    """Return the links; z of frames 1 and 3 is -y of their joints' turning frames."""
+    """Return the links; z of frames 1 and 3 is -y of their joints' frames."""
     shoulder = (0.0, 0.0, model.d1)
     return (_Link(shoulder, QUARTER_TURN, shoulder, AS_IT_IS, shoulder),
             _Link((model.l2, 0.0, 0.0), AS_IT_IS, (model.a2, 0.0, 0.0), ALONG_X,
@@ -164,7 +163,7 @@ def _add_link(robot: ET.Element, model: RobotModel, i: int, name: str, link: _Li
 
 def _add_visual(link: ET.Element, xyz: Iterable[float], rpy: Numbers,
                 material: str) -> ET.Element:
-    """Add something to be seen, and return its geometry to be filled."""
+    """Add a visual element, and return its empty geometry element."""
     visual = ET.SubElement(link, 'visual')
     _add_origin(visual, xyz, rpy)
     geometry = ET.SubElement(visual, 'geometry')
@@ -182,7 +181,7 @@ def _add_joint(robot: ET.Element, name: str, kind: str, links: tuple[str, ...], 
 
 
 def _add_motion(joint: ET.Element, limits: JointLimits, friction: Friction, i: int) -> None:
-    """Add how a joint moves: about z of its frame, within limits, against friction."""
+    """Add a joint's axis, limits and friction."""
     velocity, effort = limits.max_velocity[i], limits.max_effort[i]
     ET.SubElement(joint, 'axis', xyz='0 0 1')
     ET.SubElement(

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm in lines, to be drawn: its joints in space, rods between them, a trail of the tip."""
+"""The arm as a wireframe for drawing: joint positions, rods between them, a trail of the tip."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Rod(NamedTuple):
 
 def skeleton(model: RobotModel, q: Sequence[float]) -> tuple[Point, Point, Point, Point]:
     """
-    Return where base, shoulder, elbow and tip are; for one state, in floats.
+    Return the positions of base, shoulder, elbow and tip for one joint state, in floats.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def rod(start: Point, end: Point) -> Rod:
     if length == 0.0:
         return Rod(centre, (0.0, 0.0, 0.0, 1.0), 0.0)
     x, y, z = ((b - a) / length for a, b in zip(start, end))
-    # A rod has no sense of direction: of the two, the turn by at most a right angle.
+    # A rod is symmetric: of its two directions, the one within a right angle of z.
     if z < 0.0:
         x, y, z = -x, -y, -z
     w = sqrt(0.5 * (1.0 + z))
@@ -89,14 +89,14 @@ def rod(start: Point, end: Point) -> Rod:
 
 class Trail:
     """
-    Where a point has been: its last places, each a step from the one before.
+    The last positions of a point, at least a step apart.
 
     Parameters
     ----------
     step : float
-        Least distance between places [m].
+        Least distance between consecutive positions [m].
     most : int
-        How many are kept; older ones are forgotten.
+        Largest number of positions; older ones are dropped.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class Trail:
 
     def add(self, place: Point) -> None:
         """
-        Note where the point is, if it has moved by a step.
+        Add a position if it is a step from the last one.
 
         Parameters
         ----------
@@ -123,22 +123,22 @@ class Trail:
             self.places.append(place)
 
     def clear(self) -> None:
-        """Forget all places."""
+        """Drop all positions."""
         self.places.clear()
 
 
 def picked(count: int, most: int, wanted: Array | IntArray | None = None) -> IntArray:
     """
-    Return which of many points to draw: evenly spread, ends included.
+    Return the indices of evenly spread points to draw, ends included.
 
     Parameters
     ----------
     count : int
-        How many there are.
+        Number of points.
     most : int
-        How many to draw at most, beside those that are wanted.
+        Largest number of evenly spread ones.
     wanted : ndarray of int, optional
-        Points to draw in any case.
+        Indices to include in any case.
 
     Returns
     -------

@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Derivatives of joint positions along a path, from those of the tip's position."""
+"""
+Inverse kinematics along a path: joint positions and three derivatives by arc length.
+
+The derivatives of the tip's position are expressed in the arm's vertical plane, and the constraint
+of the two links in that plane is differentiated three times. Only angles need the arc tangent.
+"""
 
 from __future__ import annotations
 
@@ -38,8 +43,8 @@ class PathPoints(NamedTuple):
     """
     Positions of the tip and their first three derivatives by arc length, shape (n, 3).
 
-    Where a piece of the path lies in a vertical plane through joint axis 1, the plane's azimuth is
-    given too: joint 1 stands still on it, whether or not it meets the axis.
+    For a piece of the path in a vertical plane through joint axis 1 the plane's azimuth is given
+    too: joint 1 is constant there, also where the piece meets the axis.
     """
 
     p: Array     # [m]
@@ -51,7 +56,7 @@ class PathPoints(NamedTuple):
 
 def unlimited_joint_path(model: RobotModel, points: PathPoints, posture: Posture) -> JointPath:
     """
-    Return joint positions along a path wherever joint 1 begins, in no range.
+    Return continuous joint positions along a path, without regard to the joints' ranges.
 
     Parameters
     ----------
@@ -74,7 +79,7 @@ def unlimited_joint_path(model: RobotModel, points: PathPoints, posture: Posture
 
 def joint_path_modulo_turns(model: RobotModel, points: PathPoints, posture: Posture) -> JointPath:
     """
-    Return joint positions along a path, of each as many whole turns as it happens.
+    Return joint positions at points of a path, each joint up to whole turns.
 
     Parameters
     ----------
@@ -91,47 +96,46 @@ def joint_path_modulo_turns(model: RobotModel, points: PathPoints, posture: Post
         Joint positions and derivatives.
 
     """
-    turn, radial = _about_axis(points)
+    theta_1, radial = _cylindrical(points)
     if points.plane is not None:
-        _stand_still(points, points.plane, turn, radial)
+        _fix_joint_1(points, points.plane, theta_1, radial)
     if posture.shoulder == 'back':
-        turn[0], radial = turn[0] + pi, [-x for x in radial]
+        theta_1[0], radial = theta_1[0] + pi, [-x for x in radial]
     z = np.array(radial), np.stack([x[:, 2] for x in points[:4]])
     z[1][0] -= model.d1
     upper, fore = _in_plane(model, np.stack(z, axis=1), posture.elbow)
     # The forearm's direction in the plane is theta_2 + theta_3 - 90 deg.
     third = [f - u for f, u in zip(fore, upper)]
     third[0] = third[0] + pi / 2
-    return JointPath(*(np.stack(joints, axis=-1) for joints in zip(turn, upper, third)))
+    return JointPath(*(np.stack(joints, axis=-1) for joints in zip(theta_1, upper, third)))
 
 
-def _about_axis(points: PathPoints) -> tuple[list[Array], list[Array]]:
+def _cylindrical(points: PathPoints) -> tuple[list[Array], list[Array]]:
     """Return theta_1 and the distance from joint axis 1, each with three derivatives."""
     theta = np.arctan2(points.p[:, 1], points.p[:, 0])
     r = np.hypot(points.p[:, 0], points.p[:, 1])
-    if points.plane is not None:  # which is used instead, on the axis itself too
+    if points.plane is not None:  # avoids 0 / 0 on the axis; `_fix_joint_1` sets the values
         r = np.where(np.isfinite(points.plane), 1.0, r)
     c, s = points.p[:, 0] / r, points.p[:, 1] / r
-    # Each derivative in the axes that turn with joint 1: outward and around.
+    # Radial and tangential components of each derivative.
     (u1, t1), (u2, t2), (u3, t3) = (
         (c * d[:, 0] + s * d[:, 1], c * d[:, 1] - s * d[:, 0]) for d in points[1:4])
-    w = t1 / r
-    r1 = u1
-    w1 = (t2 - 2.0 * r1 * w) / r
-    r2 = u2 + r * w ** 2
-    w2 = (t3 + w * (r * w ** 2 - 3.0 * r2) - 3.0 * r1 * w1) / r
-    r3 = u3 + 3.0 * r1 * w ** 2 + 3.0 * r * w * w1
-    return [theta, w, w1, w2], [r, r1, r2, r3]
+    theta1, r1 = t1 / r, u1
+    theta2 = (t2 - 2.0 * r1 * theta1) / r
+    r2 = u2 + r * theta1 ** 2
+    theta3 = (t3 + theta1 * (r * theta1 ** 2 - 3.0 * r2) - 3.0 * r1 * theta2) / r
+    r3 = u3 + 3.0 * r1 * theta1 ** 2 + 3.0 * r * theta1 * theta2
+    return [theta, theta1, theta2, theta3], [r, r1, r2, r3]
 
 
-def _stand_still(points: PathPoints, plane: Array, turn: list[Array],
+def _fix_joint_1(points: PathPoints, plane: Array, theta_1: list[Array],
                  radial: list[Array]) -> None:
-    """Enter theta_1 and the signed distance from joint axis 1 where joint 1 stands still."""
+    """Set theta_1 and the signed distance from joint axis 1 where joint 1 is constant."""
     at = np.flatnonzero(np.isfinite(plane))
     theta = plane[at]
-    turn[0][at] = theta
-    for rate in turn[1:]:
-        rate[at] = 0.0
+    theta_1[0][at] = theta
+    for derivative in theta_1[1:]:
+        derivative[at] = 0.0
     for r, x in zip(radial, points[:4]):
         assert x is not None
         r[at] = np.cos(theta) * x[at, 0] + np.sin(theta) * x[at, 1]
@@ -141,26 +145,27 @@ def _in_plane(model: RobotModel, z: Array, elbow: Elbow) -> tuple[list[Array], l
     """
     Return the directions of both links in the arm's plane, each with three derivatives.
 
-    With z outward and up, shape (4, 2, n): z = a + b, links a2 long at A and d4 long at B; its
-    derivatives are solved for those of A and B in turn.
+    With z the tip's radial and vertical position and its derivatives, shape (4, 2, n): z = a + b
+    with a of length a2 at angle A, b of length d4 at angle B. Each derivative of this equation is
+    linear in the highest derivatives of A and B.
     """
     a2, d4 = model.a2, model.d4
     W = np.hypot(*z[0])
     least, most = model.reach
     gamma = 2.0 * np.arctan2(np.sqrt((W - least) * (W + least)), np.sqrt((most - W) * (most + W)))
-    lift = np.arctan2(d4 * np.sin(gamma), a2 - d4 * np.cos(gamma))
-    A = np.arctan2(z[0, 1], z[0, 0]) + (lift if elbow == 'up' else -lift)
+    beta = np.arctan2(d4 * np.sin(gamma), a2 - d4 * np.cos(gamma))  # at the shoulder (5.11)
+    A = np.arctan2(z[0, 1], z[0, 0]) + (beta if elbow == 'up' else -beta)
     theta_3 = gamma - pi / 2 if elbow == 'up' else 1.5 * pi - gamma
     B = A + theta_3 - pi / 2
     a, b = (length * np.array([np.cos(x), np.sin(x)]) for length, x in ((a2, A), (d4, B)))
     area = a[1] * b[0] - a[0] * b[1]
 
-    def rates(w: Array) -> tuple[Array, Array]:
-        """Return x and y of x a + y b, turned by 90 deg, = w."""
+    def solve(w: Array) -> tuple[Array, Array]:
+        """Return x and y with x a + y b, rotated by 90 deg, equal to w."""
         return -(w * b).sum(axis=0) / area, (w * a).sum(axis=0) / area
 
-    A1, B1 = rates(z[1])
-    A2, B2 = rates(z[2] + A1 ** 2 * a + B1 ** 2 * b)
-    bent = A1 * A1 ** 2 * a + B1 * B1 ** 2 * b
-    A3, B3 = rates(z[3] + 3.0 * (A1 * A2 * a + B1 * B2 * b) + np.array([-bent[1], bent[0]]))
+    A1, B1 = solve(z[1])
+    A2, B2 = solve(z[2] + A1 ** 2 * a + B1 ** 2 * b)
+    cubic = A1 * A1 ** 2 * a + B1 * B1 ** 2 * b
+    A3, B3 = solve(z[3] + 3.0 * (A1 * A2 * a + B1 * B2 * b) + np.array([-cubic[1], cubic[0]]))
     return [A, A1, A2, A3], [B, B1, B2, B3]

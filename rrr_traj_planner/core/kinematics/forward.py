@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Tip position from joint positions, and the Jacobian with its rate."""
+"""Forward kinematics: the tip's position, its Jacobian and the Jacobian's time derivative."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def forward_kinematics(model: RobotModel, q: ArrayLike) -> Array:
 
 def radial_distance(model: RobotModel, q: ArrayLike) -> Array:
     """
-    Return how far the tip is from joint axis 1, in the direction to which joint 1 turns the arm.
+    Return the tip's signed distance from joint axis 1, in the arm's vertical plane.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def radial_distance(model: RobotModel, q: ArrayLike) -> Array:
 
 def jacobian(model: RobotModel, q: ArrayLike) -> Array:
     """
-    Return the matrix that maps joint velocities to the tip's velocity (5.18).
+    Return the Jacobian of the tip's position (5.18).
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def jacobian_rate(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
 
 
 def _reach_and_height(model: RobotModel, q: Array) -> tuple[Array, Array]:
-    """Return r and h of the tip: distance from joint axis 1, height above the shoulder."""
+    """Return the tip's signed distance from joint axis 1 and height above the shoulder [m]."""
     q23 = q[..., 1] + q[..., 2]
     return (model.a2 * np.cos(q[..., 1]) + model.d4 * np.sin(q23),
             model.a2 * np.sin(q[..., 1]) - model.d4 * np.cos(q23))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Joint positions from tip positions, in any posture, and the nearest of them."""
+"""Inverse kinematics in closed form: one posture, or the solution nearest to a joint state."""
 
 from __future__ import annotations
 
@@ -74,25 +74,25 @@ def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'u
     a2, d4 = model.a2, model.d4
     r, h = hypot(x, y), z - model.d1
     back = shoulder == 'back'
-    kept = 0.0 if previous is None else float(finite_array('previous', previous, (3,))[0])
+    before = 0.0 if previous is None else float(finite_array('previous', previous, (3,))[0])
     if r <= TIP_ROUNDING:
-        theta_1 = kept
+        theta_1 = before
     else:
         theta_1 = _wrapped(atan2(y, x) + (pi if back else 0.0))
     W = _distance_in_reach(model, (x, y, z), hypot(r, h))
-    # Half-angle and tangent forms of 5.9 and 5.11: exact to rounding at the workspace's edges too.
+    # Half-angle and tangent forms of 5.9 and 5.11: accurate at the workspace's edges too.
     least, most = model.reach
     gamma = 2.0 * atan2(sqrt((W - least) * (W + least)), sqrt((most - W) * (most + W)))
-    lift = atan2(d4 * sin(gamma), a2 - d4 * cos(gamma))
-    rise = atan2(h, -r if back else r)
+    beta = atan2(d4 * sin(gamma), a2 - d4 * cos(gamma))  # at the shoulder, from tip to link 2
+    elevation = atan2(h, -r if back else r)
     if elbow == 'up':
-        return np.array([theta_1, _wrapped(rise + lift), gamma - pi / 2])
-    return np.array([theta_1, _wrapped(rise - lift), 1.5 * pi - gamma])
+        return np.array([theta_1, _wrapped(elevation + beta), gamma - pi / 2])
+    return np.array([theta_1, _wrapped(elevation - beta), 1.5 * pi - gamma])
 
 
 def nearest_solution(model: RobotModel, position: ArrayLike, q: ArrayLike) -> Array:
     """
-    Return the joint positions that bring the tip to a point and are nearest to given ones.
+    Return the inverse solution nearest to given joint positions.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def nearest_solution(model: RobotModel, position: ArrayLike, q: ArrayLike) -> Ar
     Returns
     -------
     ndarray, shape (3,)
-        Of all postures and whole turns, those whose furthest joint has the shortest way [rad].
+        Of all postures and whole turns, the solution of least maximum joint displacement [rad].
 
     Raises
     ------
@@ -124,7 +124,7 @@ def nearest_solution(model: RobotModel, position: ArrayLike, q: ArrayLike) -> Ar
 
 
 def _distance_in_reach(model: RobotModel, point: tuple[float, float, float], W: float) -> float:
-    """Return W, moved onto the workspace's edge where rounding put it outside."""
+    """Return W clipped to the workspace's edge, which it may exceed by rounding alone."""
     least, most = model.reach
     if W > most + TIP_ROUNDING or W < least - TIP_ROUNDING:
         far = W > most

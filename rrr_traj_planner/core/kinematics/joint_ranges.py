@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Joint ranges: whole turns that bring joints into them, and the error of one that is outside."""
+"""Joint ranges: whole turns that bring joints into range, and the error if none does."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from rrr_traj_planner.core.errors import JointRangeError, told_apart
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
-TURN = 2.0 * pi
+TURN = 2.0 * pi  # rad
 
 
 def whole_turns(q: Array, limits: JointLimits, start: Array | None = None) -> Array:
     """
-    Return what whole turns are to be added to each joint for a motion to be in its range.
+    Return the whole turns that bring each joint of a motion into its range.
 
     Parameters
     ----------
@@ -40,14 +40,14 @@ def whole_turns(q: Array, limits: JointLimits, start: Array | None = None) -> Ar
     limits : JointLimits
         The ranges.
     start : ndarray, shape (3,), optional
-        Where the motion begins [rad]: the turns that lead there, in range or not. None: of those
-        that keep the range the ones with which the motion begins nearest to 0.
+        Where the motion begins [rad]; its turns are taken, in range or not. None: of the turns
+        within the range, those with which the motion begins nearest to 0.
 
     Returns
     -------
     ndarray, shape (3,)
-        Angles [rad]; where none fits, the one that brings the motion's middle nearest to the
-        range's.
+        Multiples of 2 pi to add [rad]; where none fits, the one that brings the middle of the
+        motion nearest to the middle of the range.
 
     """
     if start is not None:
@@ -66,7 +66,7 @@ def whole_turns(q: Array, limits: JointLimits, start: Array | None = None) -> Ar
 
 def out_of_range(q: Array, limits: JointLimits) -> BoolArray:
     """
-    Return where joints are out of their ranges by more than rounding.
+    Return which joint positions are out of range by more than rounding.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def out_of_range(q: Array, limits: JointLimits) -> BoolArray:
 def range_error(model: RobotModel, limits: JointLimits, where: str, joint: int, value: float,
                 posture: Posture, via_point: int = -1) -> JointRangeError:
     """
-    Return the error of a joint that would leave its range.
+    Return the error for a joint out of its range.
 
     Parameters
     ----------
@@ -98,13 +98,13 @@ def range_error(model: RobotModel, limits: JointLimits, where: str, joint: int, 
     limits : JointLimits
         The ranges.
     where : str
-        The place, for people.
+        Location in the plan, for the message.
     joint : int
-        Which joint.
+        Index of the joint.
     value : float
-        Where it would be [rad].
+        Its position there [rad].
     posture : Posture
-        In which posture.
+        Posture of the solution.
     via_point : int
         Index of the via point to blame, -1 where none is.
 

@@ -13,12 +13,12 @@
 # limitations under the License.
 
 """
-Joint positions at consecutive via points: whole turns and free angles chosen for all together.
+Inverse kinematics at consecutive via points: whole turns and free angles chosen jointly.
 
-A joint that turns to the nearest solution from each point to the next has the least way. Where
-that takes it out of its range, or another way round might save it from turning back, the turns are
-those of least estimated time for all points together. On joint axis 1, where any theta_1 will do,
-joint 1 is on its way from the point before to the point after.
+Taking the nearest solution at every point gives the least travel. Where it leaves a joint's
+range, or where the other direction might avoid a reversal, the turns of all points are chosen
+together for the least estimated time (`least_time_turns`). On joint axis 1, where theta_1 is free,
+it is interpolated between the point before and the point after.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, TURN, whole_turns
 from rrr_traj_planner.core.kinematics.least_time_turns import least_time_turns, TRAVEL
 from rrr_traj_planner.core.kinematics.postures import Posture
-from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH, way_times
+from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH, travel_times
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 
@@ -59,8 +59,8 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
     Returns
     -------
     ndarray, shape (n, 3)
-        Joint positions [rad]. A joint that no turn brings into its range at some point is as near
-        to it there as turns bring it.
+        Joint positions [rad]. Where no whole turn brings a joint into its range, the turn that
+        brings it nearest.
 
     Raises
     ------
@@ -74,11 +74,11 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
         q, free = np.vstack((start, q)), np.concatenate(([False], free))
     if free.all():
         q[:, 0] = np.clip(0.0, limits.min_position[0], limits.max_position[0])
-    elif free.any():  # for now as at the point before, or at the first that is not free
+    elif free.any():  # preliminary: as at the point before, or at the first that is not free
         q[:, 0] = q[np.maximum.accumulate(np.where(free, free.argmin(), np.arange(len(q)))), 0]
     q[1:] -= TURN * np.cumsum(np.round(np.diff(q, axis=0) / TURN), axis=0)
     q += whole_turns(q, limits, start)
-    for j in np.flatnonzero(_to_be_chosen(limits, q, passing))[::-1].tolist():
+    for j in np.flatnonzero(_needs_search(limits, q, passing))[::-1].tolist():
         at = np.flatnonzero(~free) if j == 0 else np.arange(len(q))
         q[at, j] = least_time_turns(
             limits, j, q[at, j], np.diff(_elapsed(limits, q, j, passing)[at]), start is not None,
@@ -93,7 +93,7 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
 
 
 def _solutions(model: RobotModel, points: Array, posture: Posture) -> Array:
-    """Return joint positions at each point, of each as many whole turns as it happens."""
+    """Return joint positions at each point, each joint up to whole turns."""
     q = np.empty((len(points), 3))
     for i, point in enumerate(points):
         try:
@@ -103,25 +103,25 @@ def _solutions(model: RobotModel, points: Array, posture: Posture) -> Array:
     return q
 
 
-def _to_be_chosen(limits: JointLimits, q: Array, passing: Passing) -> BoolArray:
+def _needs_search(limits: JointLimits, q: Array, passing: Passing) -> BoolArray:
     """
-    Return for which joints the nearest turns are out of range or need not be the best, shape (3,).
+    Return for which joints the nearest turns are out of range or may not be optimal, shape (3,).
 
-    To go round the other way takes 2 (pi - way) / v longer; not to turn back at either end of the
-    way saves no more than a ramp down and one up at both.
+    Going round the other way takes 2 (pi - |travel|) / v longer; avoiding a reversal at both ends
+    saves at most the time of a ramp down and a ramp up at each.
     """
-    ways = np.diff(q, axis=0)
+    travel = np.diff(q, axis=0)
     with np.errstate(invalid='ignore'):
         saved = 2.0 * limits.max_velocity ** 2 / (
             passing.mean_acceleration * limits.max_acceleration)
-    long = 2.0 * (np.pi - np.abs(ways)) < saved
-    other = TURN * np.sign(ways)
+    long = 2.0 * (np.pi - np.abs(travel)) < saved
+    other = TURN * np.sign(travel)
     possible = (~out_of_range(q[:-1] + other, limits)) | (~out_of_range(q[1:] - other, limits))
     return np.asarray(out_of_range(q, limits).any(axis=0) | (long & possible).any(axis=0))
 
 
 def _elapsed(limits: JointLimits, q: Array, joint: int, passing: Passing) -> Array:
-    """Return the time at each point that the other joints' ways have taken by then, shape (n,)."""
+    """Return the times of arrival [s] at each point by the estimate for the other joints, (n,)."""
     others = [j for j in range(3) if j != joint]
-    times = way_times(limits, q, passing) + TRAVEL * np.abs(np.diff(q, axis=0))
+    times = travel_times(limits, q, passing) + TRAVEL * np.abs(np.diff(q, axis=0))
     return np.concatenate(([0.0], np.cumsum(times[:, others].max(axis=1))))

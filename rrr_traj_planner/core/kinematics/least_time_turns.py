@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Whole turns of one joint at consecutive points, in its range and of least time together."""
+"""
+Whole turns of one joint at consecutive via points for the least estimated time.
+
+A shortest path through a graph with one stage for each point, by dynamic programming (Bellman,
+Dynamic Programming, 1957; Cormen et al., Introduction to Algorithms, 4th ed., ch. 14).
+"""
 
 from __future__ import annotations
 
@@ -20,24 +25,24 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.kinematics.joint_ranges import TURN
-from rrr_traj_planner.core.kinematics.travel_time import motion_ends, Passing, way_time
+from rrr_traj_planner.core.kinematics.travel_time import joint_travel_time, motion_ends, Passing
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
-MOST_TURNS = 5  # of a point that are tried: the nearest ones, however wide the range is
+MOST_TURNS = 5  # candidates at each point, the nearest: bounds the work in wide ranges
 
-# Of turns that take equally long, those of least travel are taken, then those that begin nearest
-# to 0: what a radian counts beside a second.
+# Tie-breakers among turns of equal time: least travel, then a beginning near 0. So small that they
+# hardly change the order of different times.
 TRAVEL, BEGINNING = 1e-6, 1e-9  # s/rad
 
 
 def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
                      begun: bool, passing: Passing) -> Array:
     """
-    Return one joint's positions at points with the turns that keep its range and take least time.
+    Return one joint's positions with the whole turns of least time within its range.
 
-    A shortest path by dynamic programming, linear in the number of points: for each two turns of
-    a point and the next, and whether the motion begins or turns back at the former, the best way
-    there is kept.
+    The state of the dynamic programme is the pair of turns at a point and the next, and whether
+    the joint rests at the former (at the beginning or at a reversal). Linear in the number of
+    points.
 
     Parameters
     ----------
@@ -46,37 +51,37 @@ def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
     joint : int
         The joint.
     q : ndarray, shape (m,)
-        Its positions with any turns, at most half a turn from one to the next [rad].
+        Its positions up to whole turns, at most half a turn from one to the next [rad].
     others : ndarray, shape (m - 1,)
-        The least time from each point to the next, that other joints take [s].
+        Times from each point to the next that the other joints need [s].
     begun : bool
-        Whether the first position is given with its turns.
+        Whether the turn of the first position is fixed.
     passing : Passing
         How the motion passes via points.
 
     Returns
     -------
     ndarray, shape (m,)
-        Positions [rad]; where no turn keeps the range, nearest to it.
+        Positions [rad]; where no turn is in range, the nearest.
 
     """
     values, allowed = _options(limits, joint, q, begun)
     cost = np.where(allowed, 0.0, np.inf)
     if len(q) == 1:
         return values[0, [np.argmin(cost[0] + BEGINNING * np.abs(values[0]))]]
-    ways = values[1:, np.newaxis] - values[:-1, :, np.newaxis]  # from point, turn, to turn
+    travel = values[1:, np.newaxis] - values[:-1, :, np.newaxis]  # from point, turn, to turn
     least = others[:, np.newaxis, np.newaxis]
-    ends = motion_ends(len(ways))[:, np.newaxis, np.newaxis]
-    times = np.stack([np.maximum(least, way_time(
-        limits, joint, np.abs(ways), ends, np.maximum(n - ends, 0), passing))
-        + TRAVEL * np.abs(ways) for n in range(3)], axis=1)
-    # Of ways to a turn (second axis) by a turn of the point before it (first axis), and of
-    # whether the joint rests at the latter (third axis).
-    best = np.full((*ways.shape[1:], 2), np.inf)
+    ends = motion_ends(len(travel))[:, np.newaxis, np.newaxis]
+    times = np.stack([np.maximum(least, joint_travel_time(
+        limits, joint, np.abs(travel), ends, np.maximum(n - ends, 0), passing))
+        + TRAVEL * np.abs(travel) for n in range(3)], axis=1)
+    # Axes of the cost: turn at the point before, turn at this point, whether the joint rests at
+    # the former.
+    best = np.full((*travel.shape[1:], 2), np.inf)
     best[..., 1] = (cost[0] + BEGINNING * np.abs(values[0]))[:, np.newaxis] + cost[1]
     came = []
-    for i in range(len(ways) - 1):
-        rests = np.sign(ways[i])[:, :, np.newaxis] * np.sign(ways[i + 1]) <= 0.0
+    for i in range(len(travel) - 1):
+        rests = np.sign(travel[i])[:, :, np.newaxis] * np.sign(travel[i + 1]) <= 0.0
         best, origin = _step(best, times[i], rests, cost[i + 2])
         came.append(origin)
     best = best + np.stack([times[-1, 1], times[-1, 2]], axis=-1)
@@ -89,9 +94,9 @@ def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
 
 
 def _step(best: Array, times: Array, rests: BoolArray, cost: Array) -> tuple[Array, Array]:
-    """Return the best ways to the turns of the next point, and by which they came."""
+    """Return least costs at the next stage, and the predecessors that attain them."""
     reached, origin = [], []
-    for rest in (0, 1):  # at the point between
+    for rest in (0, 1):  # at the middle one of three points
         way = best + np.stack([times[rest], times[rest + 1]], axis=-1)
         total = np.where(rests[:, np.newaxis] == rest, np.moveaxis(way, 2, 1)[..., np.newaxis],
                          np.inf)  # turn before, rest before, turn between, turn after
@@ -102,7 +107,7 @@ def _step(best: Array, times: Array, rests: BoolArray, cost: Array) -> tuple[Arr
 
 
 def _options(limits: JointLimits, joint: int, q: Array, begun: bool) -> tuple[Array, BoolArray]:
-    """Return positions with the turns that are tried at each point, and which are in range."""
+    """Return candidate positions at each point, shape (m, k), and which of them are allowed."""
     low, high = limits.min_position[joint], limits.max_position[joint]
     first = np.ceil((low - q - JOINT_ROUNDING) / TURN)
     last = np.floor((high - q + JOINT_ROUNDING) / TURN)

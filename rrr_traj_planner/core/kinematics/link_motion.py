@@ -45,7 +45,7 @@ class LinkMotion(NamedTuple):
 
 def link_motion(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> LinkMotion:
     """
-    Return how every link moves.
+    Return rotations, velocities and accelerations of all links: the outward recursion.
 
     Frames are those of section 5.2 with their origins at the links' far ends, frame 3's at the
     tip. Angular quantities are expressed in the link's own frame as the thesis does, points in
@@ -74,10 +74,11 @@ def link_motion(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) 
     w, wd = _angular_motion(q, qd, qdd)
     base = np.zeros(q.shape)
     shoulder = base + (0.0, 0.0, model.d1)
-    elbow = _end_of(R[..., 1, :, :], w[..., 1, :], wd[..., 1, :], (model.a2, 0.0, 0.0))
-    forearm = _end_of(R[..., 2, :, :], w[..., 2, :], wd[..., 2, :], (0.0, 0.0, model.d4))
-    upper_com = _end_of(R[..., 1, :, :], w[..., 1, :], wd[..., 1, :], (model.l2, 0.0, 0.0))
-    fore_com = _end_of(R[..., 2, :, :], w[..., 2, :], wd[..., 2, :], (0.0, 0.0, model.l3))
+    elbow = _relative_motion(R[..., 1, :, :], w[..., 1, :], wd[..., 1, :], (model.a2, 0.0, 0.0))
+    forearm = _relative_motion(R[..., 2, :, :], w[..., 2, :], wd[..., 2, :], (0.0, 0.0, model.d4))
+    upper_com = _relative_motion(
+        R[..., 1, :, :], w[..., 1, :], wd[..., 1, :], (model.l2, 0.0, 0.0))
+    fore_com = _relative_motion(R[..., 2, :, :], w[..., 2, :], wd[..., 2, :], (0.0, 0.0, model.l3))
     at_shoulder = (shoulder, base, base)
     at_elbow = _added(at_shoulder, elbow)
     return LinkMotion(
@@ -114,13 +115,13 @@ def _angular_motion(q: Array, qd: Array, qdd: Array) -> tuple[Array, Array]:
     return velocity, acceleration
 
 
-def _end_of(R: Array, w: Array, wd: Array,
-            offset: tuple[float, float, float]) -> tuple[Array, Array, Array]:
+def _relative_motion(R: Array, w: Array, wd: Array,
+                     offset: tuple[float, float, float]) -> tuple[Array, Array, Array]:
     """Return a point's motion relative to its link's joint (5.17, 5.25-5.28), base frame."""
-    arm = np.broadcast_to(np.array(offset), w.shape)
-    velocity = np.cross(w, arm)
-    acceleration = np.cross(wd, arm) + np.cross(w, velocity)
-    to_base = [np.einsum('...ij,...j->...i', R, v) for v in (arm, velocity, acceleration)]
+    lever = np.broadcast_to(np.array(offset), w.shape)
+    velocity = np.cross(w, lever)
+    acceleration = np.cross(wd, lever) + np.cross(w, velocity)
+    to_base = [np.einsum('...ij,...j->...i', R, v) for v in (lever, velocity, acceleration)]
     return to_base[0], to_base[1], to_base[2]
 
 

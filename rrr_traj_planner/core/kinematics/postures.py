@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The four postures that bring the tip to a point: elbow up or down, shoulder front or back."""
+"""The four branches of the inverse kinematics: elbow up or down, shoulder front or back."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Posture(NamedTuple):
 
 def posture_of(model: RobotModel, q: Array) -> Posture:
     """
-    Return the posture that joint positions have.
+    Return the posture of joint positions.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def posture_of(model: RobotModel, q: Array) -> Posture:
     Returns
     -------
     Posture
-        Where two meet, up before down and front before back.
+        At a singular position, up rather than down and front rather than back.
 
     """
     return postures_of(model, q, 0.0)[0]
@@ -75,7 +75,7 @@ def posture_of(model: RobotModel, q: Array) -> Posture:
 
 def postures_of(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
     """
-    Return every posture that joint positions have, or that is no more than a tolerance away.
+    Return the posture of joint positions, and others within a tolerance.
 
     Postures meet where the arm is stretched or folded, and where the tip is on joint axis 1.
 
@@ -86,8 +86,8 @@ def postures_of(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
     q : ndarray, shape (3,)
         Joint positions [rad].
     tolerance : float
-        Of joint 3 from the angle at which elbows meet [rad]; times the arm's reach, of the tip
-        from joint axis 1.
+        Distance of joint 3 from the angle at which elbow up and down meet [rad]; times the arm's
+        reach, distance of the tip from joint axis 1 [m].
 
     Returns
     -------
@@ -95,9 +95,9 @@ def postures_of(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
         The posture of the positions themselves first.
 
     """
-    bend, r = float(np.cos(q[2])), float(radial_distance(model, q))
-    elbows = ELBOWS if bend >= 0.0 else ELBOWS[::-1]
+    cosine, r = float(np.cos(q[2])), float(radial_distance(model, q))
+    elbows = ELBOWS if cosine >= 0.0 else ELBOWS[::-1]
     shoulders = SHOULDERS if r >= -TIP_ROUNDING else SHOULDERS[::-1]
     return [Posture(elbow, shoulder)
             for shoulder in shoulders[:2 if abs(r) <= tolerance * model.reach[1] else 1]
-            for elbow in elbows[:2 if abs(bend) <= tolerance else 1]]
+            for elbow in elbows[:2 if abs(cosine) <= tolerance else 1]]

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""An estimate of how long a motion through joint positions takes, before it is planned."""
+"""Estimated time of a motion through joint positions: trapezoidal velocity profiles."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from rrr_traj_planner.core.arrays import Array, IntArray
 
 class Passing(NamedTuple):
     """
-    How a planner's motions pass via points, as far as an estimate of their time goes by it.
+    How a planner's motions pass via points, for the estimate of their time.
 
     Parameters
     ----------
     via : {'through', 'stop', 'blend'}
-        'through': a joint rests at a via point where it turns back there; 'stop': all joints rest
-        at every via point; 'blend': from each segment's constant velocity to the next one's in a
-        transition around the via point, which is missed.
+        'through': a joint has zero velocity at a via point where it reverses; 'stop': all joints
+        rest at every via point; 'blend': a transition around the via point, which is not met,
+        joins the constant velocities of both segments.
     mean_acceleration : float
-        Of a change of velocity, over its peak: 0.5 where acceleration rises from zero and falls
-        to it again as in a full-period cycloid, or in any symmetric ramp without a cruise.
+        Mean over peak acceleration of a change of velocity: 0.5 for a full-period cycloid, and
+        for symmetric ramps without a phase of constant acceleration.
 
     """
 
@@ -46,28 +46,29 @@ class Passing(NamedTuple):
 THROUGH = Passing()
 
 
-def way_time(limits: JointLimits, joint: int | slice, ways: Array, ends: Array | IntArray | int,
-             turns: Array | IntArray | int, passing: Passing) -> Array:
+def joint_travel_time(limits: JointLimits, joint: int | slice, travel: Array,
+                      ends: Array | IntArray | int, turns: Array | IntArray | int,
+                      passing: Passing) -> Array:
     """
-    Return how long a joint takes for ways between via points.
+    Return the time of a joint's travel between via points, by a trapezoidal velocity profile.
 
-    Where it begins or ends at rest, velocity over time is a trapezium, or a triangle where the way
-    is short; with no rest, a rectangle. In a blend half of a transition lies within the way: with
-    a speed v and a mean acceleration a it takes v / a where the joint turns back, and v / (2 a)
-    where the motion begins or ends, of which the other half comes before or after.
+    With a rest at one or both ends velocity over time is a trapezium, or a triangle for a short
+    travel; with none, a rectangle (Siciliano et al., Robotics, 2009, section 4.2.1). With blends,
+    half of each transition lies within the segment: at speed v and mean acceleration a it takes
+    v / a at a reversal and v / (2 a) at an end of the motion.
 
     Parameters
     ----------
     limits : JointLimits
-        Velocity and acceleration; infinite ones do not bind.
+        Velocity and acceleration limits; may be infinite.
     joint : int or slice
         Which joint, or joints along the last axis.
-    ways : ndarray
+    travel : ndarray
         Lengths [rad], not negative.
     ends : ndarray or int
-        How many of the two ends are ends of the motion.
+        Number of ends of the travel that are ends of the motion.
     turns : ndarray or int
-        At how many of the others the joint turns back.
+        Number of the other ends at which the joint reverses.
     passing : Passing
         How the motion passes via points.
 
@@ -81,20 +82,21 @@ def way_time(limits: JointLimits, joint: int | slice, ways: Array, ends: Array |
     acceleration = passing.mean_acceleration * limits.max_acceleration[joint]
     with np.errstate(invalid='ignore', divide='ignore', over='ignore'):
         if passing.via == 'blend':
-            line = np.maximum(ways / velocity, np.sqrt(ways * (turns + 0.5 * ends) / acceleration))
-            speed = np.where(line > 0.0, ways / line, 0.0)
+            line = np.maximum(travel / velocity,
+                              np.sqrt(travel * (turns + 0.5 * ends) / acceleration))
+            speed = np.where(line > 0.0, travel / line, 0.0)
             return np.asarray(line + 0.5 * ends * speed / acceleration)
         rests = 2 if passing.via == 'stop' else ends + turns
         ramp = np.where(np.isinf(acceleration), 0.0, velocity / acceleration)
-        cruises = 2.0 * ways >= rests * velocity * ramp
-        return np.where(rests == 0, ways / velocity,
-                        np.where(cruises, ways / velocity + 0.5 * rests * ramp,
-                                 np.sqrt(2.0 * rests * ways / acceleration)))
+        cruises = 2.0 * travel >= rests * velocity * ramp
+        return np.where(rests == 0, travel / velocity,
+                        np.where(cruises, travel / velocity + 0.5 * rests * ramp,
+                                 np.sqrt(2.0 * rests * travel / acceleration)))
 
 
-def way_times(limits: JointLimits, q: Array, passing: Passing) -> Array:
+def travel_times(limits: JointLimits, q: Array, passing: Passing) -> Array:
     """
-    Return how long each joint takes from each point to the next, if it alone counts.
+    Return the time of each joint alone from each point to the next.
 
     Parameters
     ----------
@@ -111,21 +113,22 @@ def way_times(limits: JointLimits, q: Array, passing: Passing) -> Array:
         Times [s].
 
     """
-    ways = np.diff(q, axis=0)
+    travel = np.diff(q, axis=0)
     turns = np.zeros(q.shape, dtype=int)
-    turns[1:-1] = np.sign(ways[:-1]) * np.sign(ways[1:]) <= 0.0
-    return way_time(limits, slice(None), np.abs(ways), motion_ends(len(ways))[:, np.newaxis],
-                    turns[:-1] + turns[1:], passing)
+    turns[1:-1] = np.sign(travel[:-1]) * np.sign(travel[1:]) <= 0.0
+    return joint_travel_time(
+        limits, slice(None), np.abs(travel), motion_ends(len(travel))[:, np.newaxis],
+        turns[:-1] + turns[1:], passing)
 
 
 def motion_ends(segments: int) -> IntArray:
     """
-    Return how many ends of the motion each of its segments has.
+    Return the number of ends of the motion that belong to each segment.
 
     Parameters
     ----------
     segments : int
-        How many there are.
+        Number of segments.
 
     Returns
     -------
@@ -141,7 +144,7 @@ def motion_ends(segments: int) -> IntArray:
 
 def travel_time(limits: JointLimits, q: Array, passing: Passing) -> float:
     """
-    Return how long a motion through joint positions takes.
+    Return the estimated time of a motion through joint positions.
 
     Parameters
     ----------
@@ -155,7 +158,7 @@ def travel_time(limits: JointLimits, q: Array, passing: Passing) -> float:
     Returns
     -------
     float
-        In each segment the time of the joint that takes longest, in all [s].
+        Sum over the segments of the slowest joint's time [s].
 
     """
-    return float(way_times(limits, q, passing).max(axis=1).sum())
+    return float(travel_times(limits, q, passing).max(axis=1).sum())

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-The thesis's function: pieces whose acceleration is c - b cos(w s), s in [0, 1] (3.4-3.7, 4.3-4.5).
+The cycloid: pieces whose acceleration is c - b cos(w s), s in [0, 1] (3.4-3.7, 4.3-4.5).
 
 Full-period transitions, general ones between non-zero accelerations, half-period ramps and
 cruises are all such pieces. Fields of a piece may be floats or arrays of one shape.
@@ -34,7 +34,7 @@ class CycloidPiece(NamedTuple):
     """
     One piece of a joint's motion over a normalised time s = t / duration in [0, 1].
 
-    The thesis's a is 1 / w; its b and c are ours times duration squared, as ours are
+    The thesis's a is 1 / w; its b and c are these times the duration squared: here they are
     accelerations.
     """
 
@@ -75,7 +75,7 @@ class CycloidPiece(NamedTuple):
 
     def made_of(self, arrays: Iterable[Any]) -> CycloidPiece:
         """
-        Return pieces made of other values; see `Pieces`.
+        Return pieces of the same type with other values; see `Pieces`.
 
         Parameters
         ----------
@@ -92,12 +92,12 @@ class CycloidPiece(NamedTuple):
 
     def time_scaled(self, factor: float) -> CycloidPiece:
         """
-        Return the same positions run through at another rate; see `Pieces`.
+        Return the pieces with time scaled by a factor, positions unchanged; see `Pieces`.
 
         Parameters
         ----------
         factor : float
-            What every time is multiplied by, positive.
+            New over old duration, positive.
 
         Returns
         -------
@@ -206,14 +206,14 @@ def general_transition(position: float, velocity: float, end_velocity: float,
     start_acceleration, end_acceleration : float
         [rad/s^2].
     peak_acceleration : float
-        The acceleration at the peak [rad/s^2], signed. The function leaves the start toward
-        its peak and, within one period, never falls behind the start again.
+        The acceleration at the peak [rad/s^2], signed. Within one period the acceleration is
+        never on the other side of its start value.
 
     Returns
     -------
     CycloidPiece
-        With cos(1/a) = 1 - 2 (end - start) / (peak - start), its duration follows from the
-        change of velocity.
+        With cos(1/a) = 1 - 2 (end - start) / (peak - start); the change of velocity determines
+        its duration.
 
     Raises
     ------

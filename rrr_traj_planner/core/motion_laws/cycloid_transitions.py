@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The full-period cycloid as one of the functions that transitions can be made of."""
+"""The full-period cycloid as a transition function (4.3-4.10)."""
 
 from __future__ import annotations
 

@@ -15,10 +15,10 @@
 """
 Gauss's function as the acceleration of a transition (3.1-3.3, appendix A), with mu = 1/2.
 
-A Gauss function is nowhere 0: it is lowered by its value at the transition's ends, k sigma from
-the middle, as the thesis's constant C0 does (A.5), and scaled to the change of velocity. So
-acceleration is continuous; jerk steps at the ends, the less the larger k, but the transition then
-lasts longer.
+A Gauss function is nowhere 0: its value at the transition's ends, k sigma from the middle, is
+subtracted, as by the thesis's constant C0 (A.5), and the result scaled to the change of velocity.
+So acceleration is continuous; jerk steps at the ends, less for larger k, for which the transition
+takes longer.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ from rrr_traj_planner.core.motion_laws.transition_shape import Curve, Transition
 from rrr_traj_planner.core.scalars import positive, whole_number
 from scipy.special import erf
 
-# k. Over so many sigma a Maclaurin series of order 9, and none below, is right to a thousandth of
-# the peak: what appendix A says is needed.
+# k [sigma]. Up to 2 sigma the Maclaurin series needs order 9 for an error below a thousandth of
+# the peak, the accuracy that appendix A asks for.
 HALF_WIDTH = 2.0
 NEEDED_ORDER = 9
 
@@ -68,7 +68,7 @@ def maclaurin(u: Any, order: int) -> Array:
 
 def maclaurin_error(order: int, half_width: float = HALF_WIDTH) -> float:
     """
-    Return the largest error of the series against Gauss's function, of a peak of 1.
+    Return the largest error of the series, relative to the peak of Gauss's function.
 
     Parameters
     ----------
@@ -99,10 +99,10 @@ def gauss(half_width: float = HALF_WIDTH, order: int | None = None) -> Transitio
     Parameters
     ----------
     half_width : float
-        k: its ends are so many sigma from its middle.
+        k, distance of the ends from the middle [sigma].
     order : int, optional
-        N of the thesis's series (A.2-A.4) that takes the function's place; None: closed form,
-        with erf.
+        N of the thesis's series (A.2-A.4), used instead of the function; None: closed form, with
+        erf.
 
     Returns
     -------
@@ -153,16 +153,16 @@ class _Lowered:
         self.value, self.first, self.second, self.slope = value, first, second, slope
         self.end, self.first_end, self.second_end = (
             float(curve(k)) for curve in (value, first, second))
-        self.area = float(self.gained(k))
+        self.area = float(self.velocity_gain(k))
 
-    def gained(self, u: Any) -> Any:
+    def velocity_gain(self, u: Any) -> Any:
         return self.first(u) + self.first_end - self.end * (u + self.k)
 
     def acceleration(self, s: Any) -> Any:
         return self.width / self.area * (self.value(self.k * (2.0 * s - 1.0)) - self.end)
 
     def velocity(self, s: Any) -> Any:
-        return self.gained(self.k * (2.0 * s - 1.0)) / self.area
+        return self.velocity_gain(self.k * (2.0 * s - 1.0)) / self.area
 
     def position(self, s: Any) -> Any:
         rise = self.second(self.k * (2.0 * s - 1.0)) - self.second_end

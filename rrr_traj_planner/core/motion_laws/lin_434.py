@@ -19,8 +19,9 @@ After Lin (thesis, sections 2.2.2 and 4.2, c; classical in Paul, Craig and Fu-Go
 normalised time u in [0, 1] a normalised position goes from 0 to 1. The three polynomials have 14
 coefficients; 14 conditions give them: rest at both ends (position, velocity, acceleration: 6),
 both joins' positions from either side (4), velocity and acceleration continuous at both joins (4).
-Lin gives the joins' times and positions. Here the accelerations at the joins stand for their
-positions, which follow from them one to one; with them the conditions need no solver:
+Lin prescribes the joins' times and positions. Here the accelerations at the joins are prescribed
+instead of the positions, with which they are in one-to-one relation; the conditions then have a
+closed-form solution:
 
     lift-off, x = u / first        a(x) =  a1 x + k1 x (1 - x),  k1 = 6 v1 / first - 3 a1
     cruise, x from 0 to 1          a(x) =  a1 + (a2 - a1) x
@@ -41,24 +42,24 @@ from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
 
 class Lin434(NamedTuple):
     """
-    One law, or several at once; times in durations, positions in displacements.
+    One law, or several at once; time in durations, position in displacements.
 
-    Fields are floats or arrays that broadcast. Both parts are positive, together below 1.
+    Fields are floats or arrays that broadcast. `first` and `last` are positive, their sum below 1.
     """
 
-    first: Any  # part of the duration that is lift-off
-    last: Any   # set-down
+    first: Any  # fraction of the duration for the lift-off
+    last: Any   # for the set-down
     a1: Any     # acceleration at the end of lift-off
     a2: Any     # at the start of set-down, mostly negative
 
     @property
     def cruise(self) -> Any:
-        """Part of the duration that is cruise."""
+        """Fraction of the duration for the cruise."""
         return 1.0 - self.first - self.last
 
     @property
     def v1(self) -> Any:
-        """Velocity at the end of lift-off: that with which the parts cover a displacement of 1."""
+        """Velocity at the end of lift-off, for which the total displacement is 1."""
         first, last, cruise = self.first, self.last, self.cruise
         by_acceleration = (self.a1 * (4.0 * cruise ** 2 - first ** 2)
                            + self.a2 * (2.0 * cruise ** 2 + last ** 2)
@@ -72,13 +73,13 @@ class Lin434(NamedTuple):
 
     @property
     def k1(self) -> Any:
-        """Bulge of the lift-off's acceleration."""
-        return _bulge(self.first, self.a1, self.v1)
+        """Coefficient k1 of the lift-off's acceleration."""
+        return _quadratic_coefficient(self.first, self.a1, self.v1)
 
     @property
     def k2(self) -> Any:
-        """Bulge of the set-down's deceleration."""
-        return _bulge(self.last, -self.a2, self.v2)
+        """Coefficient k2 of the set-down's acceleration."""
+        return _quadratic_coefficient(self.last, -self.a2, self.v2)
 
     @property
     def lift_off(self) -> Any:
@@ -87,22 +88,22 @@ class Lin434(NamedTuple):
 
     @property
     def set_down(self) -> Any:
-        """Way from the start of set-down, Lin's set-down point, to the end."""
+        """Displacement from the start of set-down, Lin's set-down point, to the end."""
         return self.last * (6.0 * self.v2 + self.last * self.a2) / 12.0
 
     @property
     def backwards(self) -> Lin434:
-        """Return the same law, run through from its end to its start."""
+        """Return the law reversed in time."""
         return Lin434(self.last, self.first, -self.a2, -self.a1)
 
     def velocities(self) -> Array:
         """
-        Return every velocity that may be the largest.
+        Return candidates for the largest velocity.
 
         Returns
         -------
         ndarray, shape (3,) + that of the fields
-            Where acceleration is 0 in lift-off, cruise and set-down, or else at an end of it.
+            At the zero of the acceleration in lift-off, cruise and set-down, or at an end.
 
         """
         turn = -self.a1 / _nonzero(self.a2 - self.a1)
@@ -113,7 +114,7 @@ class Lin434(NamedTuple):
 
     def accelerations(self) -> Array:
         """
-        Return every acceleration whose magnitude may be the largest.
+        Return candidates for the acceleration of largest magnitude.
 
         Returns
         -------
@@ -127,7 +128,7 @@ class Lin434(NamedTuple):
 
     def jerks(self) -> Array:
         """
-        Return every jerk whose magnitude may be the largest.
+        Return candidates for the jerk of largest magnitude.
 
         Returns
         -------
@@ -172,14 +173,14 @@ class Lin434(NamedTuple):
                             2.0 * k2 / last ** 2 * snap))
 
 
-def _bulge(part: Any, a: Any, v: Any) -> Any:
-    """Return k of a lift-off of the given part that ends with acceleration a and velocity v."""
+def _quadratic_coefficient(part: Any, a: Any, v: Any) -> Any:
+    """Return k of a lift-off over a fraction of the duration, with a and v at its end."""
     return 6.0 * v / part - 3.0 * a
 
 
 def _extreme(part: Any, a: Any, v: Any) -> Array:
     """Return the extreme of a x + k x (1 - x) in [0, 1]; at x = 1 where there is none between."""
-    k = _bulge(part, a, v)
+    k = _quadratic_coefficient(part, a, v)
     x = (a + k) / _nonzero(2.0 * k)
     x = np.where((x > 0.0) & (x < 1.0), x, 1.0)
     return np.asarray(x * (a + k * (1.0 - x)))
@@ -187,12 +188,12 @@ def _extreme(part: Any, a: Any, v: Any) -> Array:
 
 def _velocity(part: Any, a: Any, v: Any) -> Array:
     """Return the velocity where a x + k x (1 - x) is 0 in (0, 1]; at x = 1 where it is not."""
-    k = _bulge(part, a, v)
+    k = _quadratic_coefficient(part, a, v)
     x = 1.0 + a / _nonzero(k)
     x = np.where((x > 0.0) & (x < 1.0), x, 1.0)
     return np.asarray(part * x * x * (0.5 * (a + k) - k * x / 3.0))
 
 
 def _nonzero(value: Any) -> Array:
-    """Return a value to divide by: where it is 0, the quotient is not used."""
+    """Return a divisor, infinite instead of 0 (the quotient is then not used)."""
     return np.where(value == 0.0, np.inf, value)

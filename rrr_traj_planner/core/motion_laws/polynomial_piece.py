@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Pieces of a joint's motion that are polynomials in time, of fourth order at most."""
+"""Polynomial pieces of a joint's motion, of fourth degree in time at most."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from rrr_traj_planner.core.arrays import Array
 
 
 class PolynomialPiece(NamedTuple):
-    """One piece, or several; implements `Pieces`. Rates are by time, at the piece's start."""
+    """One piece, or several; implements `Pieces`. Derivatives by time at the piece's start."""
 
     duration: Any      # [s]
     position: Any      # [rad]
@@ -60,7 +60,7 @@ class PolynomialPiece(NamedTuple):
 
     def made_of(self, arrays: Iterable[Any]) -> PolynomialPiece:
         """
-        Return pieces made of other values; see `Pieces`.
+        Return pieces of the same type with other values; see `Pieces`.
 
         Parameters
         ----------
@@ -77,12 +77,12 @@ class PolynomialPiece(NamedTuple):
 
     def time_scaled(self, factor: float) -> PolynomialPiece:
         """
-        Return the same positions run through at another rate; see `Pieces`.
+        Return the pieces with time scaled by a factor, positions unchanged; see `Pieces`.
 
         Parameters
         ----------
         factor : float
-            What every time is multiplied by, positive.
+            New over old duration, positive.
 
         Returns
         -------
@@ -96,7 +96,7 @@ class PolynomialPiece(NamedTuple):
 
     def turning_points(self) -> Array:
         """Return the ends and the zeros of the acceleration, shape (n, 4); see `Pieces`."""
-        # a + j T s + n (T s)^2 / 2 = 0; of both roots, one without cancellation first
+        # Roots of a + j T s + n (T s)^2 / 2, the one without cancellation first.
         T, half = self.duration, 0.5 * self.snap * self.duration ** 2
         slope = self.jerk * T
         root = np.sqrt(np.maximum(slope ** 2 - 4.0 * half * self.acceleration, 0.0))

@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-Ramps from one acceleration to another: half a period of the thesis's function, parted at its peak.
+Ramps from one acceleration to another: a half-period cycloid with a phase of constant jerk.
 
-Where the jerk of a half-period (3.4 with 1/a = pi) has risen to its peak it may cruise there,
-before it falls again: what the thesis does with velocity (4.2) done with jerk. A limit on jerk is
-then used to the full for most of a ramp; jerk is continuous, and zero at both ends, all the same.
+Jerk rises sinusoidally to its peak (first half of 3.4's half-period, 1/a = pi), is constant, and
+falls likewise. The longer the constant phase, the better a jerk limit is used; jerk remains
+continuous and zero at both ends.
 """
 
 from __future__ import annotations
@@ -33,18 +33,17 @@ from rrr_traj_planner.core.errors import InvalidInputError
 
 class RampShape:
     """
-    The part of its rise that a ramp of unit duration has behind it, over time.
+    Normalised ramp: acceleration from 0 to 1 over a normalised time from 0 to 1.
 
     Parameters
     ----------
     cruise : float
-        Part of its duration during which jerk is constant, in [0, 1); 0: a half-period.
+        Fraction of the duration with constant jerk, in [0, 1); 0: a half-period.
 
     Attributes
     ----------
     peak_jerk : float
-        Of a ramp that gains a unit of acceleration: pi / 2 for a half-period, towards 1 for more
-        cruise.
+        Largest jerk of the normalised ramp: pi / 2 for a half-period, towards 1 for more cruise.
 
     Raises
     ------
@@ -58,38 +57,38 @@ class RampShape:
             raise InvalidInputError(f'cruise is {cruise}, must be in [0, 1)')
         self.cruise = cruise
         self._rise = 0.5 * (1.0 - cruise)
-        self._rate = 0.5 * pi / self._rise      # of the phase in which jerk rises
+        self._rate = 0.5 * pi / self._rise      # angular frequency while jerk rises
         self.peak_jerk = 1.0 / (cruise + 4.0 * self._rise / pi)
-        # the part behind it when jerk has risen, and its integral until then
+        # acceleration at the end of the rising jerk, and its integral until then
         self._part = self.peak_jerk / self._rate
         self._first = self._part * (self._rise - 1.0 / self._rate)
         self._half = float(self._early(np.array(0.5))[0])
 
     def __call__(self, s: Any) -> tuple[Array, Array, Array, Array]:
         """
-        Return the part of the rise and its integrals and derivative.
+        Return the normalised acceleration, its integrals and its derivative.
 
         Parameters
         ----------
         s : array_like
-            Time over, in [0, 1].
+            Normalised time, in [0, 1].
 
         Returns
         -------
         tuple of ndarray
-            Second integral, first integral, the part itself (from 0 to 1), derivative.
+            Second integral, first integral, acceleration (from 0 to 1), derivative.
 
         """
         s = np.asarray(s, dtype=float)
         late, beyond = s > 0.5, s - 0.5
-        # the second half is the first, turned about the middle
+        # point symmetry about the middle
         second, first, part, rate = self._early(np.where(late, 1.0 - s, s))
         return (np.where(late, 2.0 * self._half + 0.5 * beyond ** 2 - second, second),
                 np.where(late, beyond + first, first), np.where(late, 1.0 - part, part), rate)
 
     def reached(self, part: Any) -> Array:
         """
-        Return when a part of the rise is reached.
+        Return the times at which normalised accelerations are reached.
 
         Parameters
         ----------
@@ -99,7 +98,7 @@ class RampShape:
         Returns
         -------
         ndarray
-            Time, in [0, 1].
+            Normalised times, in [0, 1].
 
         """
         part = np.asarray(part, dtype=float)
@@ -158,7 +157,7 @@ class Ramps(NamedTuple):
 
     def made_of(self, arrays: Iterable[Any]) -> Ramps:
         """
-        Return ramps of the same shape made of other values; see `Pieces`.
+        Return pieces of the same type with other values; see `Pieces`.
 
         Parameters
         ----------
@@ -176,12 +175,12 @@ class Ramps(NamedTuple):
 
     def time_scaled(self, factor: float) -> Ramps:
         """
-        Return the same positions run through at another rate; see `Pieces`.
+        Return the pieces with time scaled by a factor, positions unchanged; see `Pieces`.
 
         Parameters
         ----------
         factor : float
-            What every time is multiplied by, positive.
+            New over old duration, positive.
 
         Returns
         -------

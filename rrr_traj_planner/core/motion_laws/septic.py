@@ -15,8 +15,9 @@
 """
 The seventh-order transition of appendix C: acceleration proportional to (1 - (t/T)^2)^2.
 
-With the end position that (C.10) gives, (C.1) to (C.9) lose their cubic and higher odd terms: what
-is left is this, t in [-T, T]. Here s = (t + T) / (2 T) in [0, 1], where 1 - (t/T)^2 = 4 s (1 - s).
+With the end position of (C.10) the cubic and higher odd terms of (C.1) to (C.9) vanish, which
+leaves this law with t in [-T, T]. Here s = (t + T) / (2 T) in [0, 1], and
+1 - (t/T)^2 = 4 s (1 - s).
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ PEAK_JERK = 10.0 / sqrt(3.0)      # at t = T / sqrt(3), where (1 - x^2) x is lar
 
 
 def _acceleration(s: Array) -> Array:
-    rest = s * (1.0 - s)
-    return 30.0 * rest * rest
+    product = s * (1.0 - s)
+    return 30.0 * product * product
 
 
 def _velocity(s: Array) -> Array:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Transitions of any shape: acceleration over normalised time, and its closed-form integrals."""
+"""Transitions defined by an acceleration over normalised time and its closed-form integrals."""
 
 from __future__ import annotations
 
@@ -27,10 +27,9 @@ Curve = Callable[[Any], Any]  # of floats or arrays
 
 class TransitionShape(NamedTuple):
     """
-    The acceleration of a transition of duration 1 that changes velocity by 1; see `pieces`.
+    A normalised transition: duration 1, change of velocity 1; implements `TransitionFunction`.
 
-    It is 0 at both ends of [0, 1], symmetric, never negative, and of integral 1. It is a
-    `TransitionFunction`.
+    Its acceleration is 0 at both ends of [0, 1], symmetric, never negative, and of integral 1.
     """
 
     name: str
@@ -118,7 +117,7 @@ class ShapedPiece(NamedTuple):
 
     def made_of(self, arrays: Iterable[Any]) -> ShapedPiece:
         """
-        Return pieces of the same shape made of other values; see `Pieces`.
+        Return pieces of the same type with other values; see `Pieces`.
 
         Parameters
         ----------
@@ -136,12 +135,12 @@ class ShapedPiece(NamedTuple):
 
     def time_scaled(self, factor: float) -> ShapedPiece:
         """
-        Return the same positions run through at another rate; see `Pieces`.
+        Return the pieces with time scaled by a factor, positions unchanged; see `Pieces`.
 
         Parameters
         ----------
         factor : float
-            What every time is multiplied by, positive.
+            New over old duration, positive.
 
         Returns
         -------
