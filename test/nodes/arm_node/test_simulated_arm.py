@@ -102,13 +102,13 @@ def test_distant_point_due_now_is_gone_to_within_limits(ros):
 
 def test_stamped_trajectory_arrives_on_its_time(ros):
     arm = Arm(ros)
-    start = arm.now() + SECOND // 2
-    arm.send(rest_to_rest(GOAL, 0.1), stamp=start)
+    goal, start = START + 0.1 * (GOAL - START), arm.now() + SECOND  # it takes 0.3 s to get there
+    arm.send(rest_to_rest(goal, 0.1), stamp=start)
     end = start + SECOND // 10
     due = arm.desired.wait_for(lambda m: stamp(m) >= end)
-    np.testing.assert_array_equal(due.position, GOAL)
+    np.testing.assert_array_equal(due.position, goal)
     before = [m for m in arm.desired.messages if stamp(m) < end - SECOND // 100]
-    assert all(np.abs(np.subtract(m.position, GOAL)).max() > 0.0 for m in before)
+    assert all(np.abs(np.subtract(m.position, goal)).max() > 0.0 for m in before)
 
 
 def test_hold_stops_the_arm_short_of_its_goal(ros):

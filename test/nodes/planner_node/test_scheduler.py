@@ -24,9 +24,10 @@ DEADLINE = 20.0  # s
 
 
 def work(job, seconds):
-    """Run for a time."""
-    while job.checkpoint() < seconds:
-        pass
+    """Take the processor for a time, however long that takes on a busy machine."""
+    begun = thread_time()
+    while thread_time() < begun + seconds:
+        job.checkpoint()
 
 
 class Worker:
@@ -101,8 +102,8 @@ def test_run_time_leaves_out_the_time_of_others():
     first, second = started(scheduler, 0.3), started(scheduler, 0.3)
     for worker in (first, second):
         worker.join()
-        assert 0.3 <= worker.run_time < 0.45
-    assert max(first.ended, second.ended) - first.asked > 0.6
+        assert worker.run_time >= 0.3
+    assert first.run_time + second.run_time <= max(first.ended, second.ended) - first.asked
 
 
 def test_one_works_at_a_time_and_equals_in_the_order_of_their_coming():
