@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 CONVERGED = 5e-3   # gap to the optimum, as a part of the time
-INFORMATIVE = 0.5  # gap, as a part of the time, up to which the bound is of use to a reader
+INFORMATIVE = 0.25  # gap, as a part of the time, up to which the bound is of use to a reader
 
 
 def unconverged_note(gap: float, duration: float) -> str:

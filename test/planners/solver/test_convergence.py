@@ -24,13 +24,13 @@ def test_nothing_is_said_of_what_converged():
     assert unconverged_note(0.0, 10.0) == unconverged_note(0.04, 10.0) == ''
 
 
-@pytest.mark.parametrize(('gap', 'part'), [(0.1, '1'), (2.0, '20'), (4.99, '49.9')])
+@pytest.mark.parametrize(('gap', 'part'), [(0.1, '1'), (2.0, '20'), (2.49, '24.9')])
 def test_a_bound_is_told_where_it_says_something(gap, part):
     assert unconverged_note(gap, 10.0) == (
         f'planning ended before it converged: at most {part} % of the time could be saved')
 
 
-@pytest.mark.parametrize('gap', [5.0, 10.0, 1e9, inf, nan])
+@pytest.mark.parametrize('gap', [2.5, 10.0, 1e9, inf, nan])
 def test_no_bound_is_told_that_says_nothing(gap):
     assert unconverged_note(gap, 10.0) == (
         'planning ended before it converged: faster motions may be possible')
