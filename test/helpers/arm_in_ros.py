@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A running arm node for tests: what it publishes, and ways to talk to it."""
+"""A running arm node for tests, with its messages and ways to command it."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ NAMES = ['joint_1', 'joint_2', 'joint_3']
 START = np.array(rows_of(ARM, NAMES)['initial_positions'].default)
 GOAL = START + (0.05, -0.04, 0.06)
 SECOND = 10 ** 9
-ALL = 1000  # messages that a listener keeps: of a burst on a busy machine none is lost
+ALL = 1000  # queue of a listener [messages]: no burst is lost on a busy machine
 
 
 class Arm:
-    """A running arm node, what it publishes, and a way to send it trajectories."""
+    """A running arm node, its published messages, and methods to send it trajectories."""
 
     def __init__(self, ros, **overrides):
         self.ros = ros
@@ -61,14 +61,14 @@ class Arm:
         self._publisher.publish(message)
 
     def disturb(self, **torques):
-        """Put torques [N m] on joints; without any, end the disturbance."""
+        """Apply disturbance torques [N m] to joints; without any, end the disturbance."""
         if not hasattr(self, '_disturber'):
             self._disturber = self.ros.publisher(JointState, 'disturbance')
         self._disturber.publish(JointState(
             name=list(torques), effort=[float(x) for x in torques.values()]))
 
     def set_parameter(self, name, value):
-        """Set a parameter, and return the answer."""
+        """Set a parameter, and return the response."""
         message = ParameterMessage(
             name=name, value=Parameter(name, value=value).get_parameter_value())
         return self.ros.call(SetParameters, 'simulated_arm/set_parameters',
@@ -86,7 +86,7 @@ def stamp(message):
 
 
 def at(q, tolerance=1e-5):
-    """Return whether a state is at rest at positions."""
+    """Return whether a joint state is at rest at given positions."""
     return lambda m: (np.abs(np.subtract(m.position, q)).max() <= tolerance
                       and np.abs(m.velocity).max() <= tolerance)
 

@@ -32,7 +32,7 @@ def arm_process(*arguments, code=RUN):
 
 
 def ended(process):
-    """Return exit code, output and errors."""
+    """Return exit code, standard output and standard error."""
     try:
         output, errors = process.communicate(timeout=DEADLINE)
         return process.returncode, output, errors

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Bags as MCAP's reference reader for ROS 2 sees them."""
+"""Reads bags with MCAP's reference reader for ROS 2."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def summary(file):
 
 
 def plain(message):
-    """Return a message of ROS or of the reader as plain values, to be compared."""
+    """Return a message of ROS or of the reader as plain values, for comparison."""
     if hasattr(message, 'get_fields_and_field_types'):
         return {f: plain(getattr(message, f)) for f in message.get_fields_and_field_types()}
     if hasattr(message, '__slots__'):

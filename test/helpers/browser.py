@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Chromium without a window, driven over its debugging pipe: no other package is needed."""
+"""Headless Chromium, controlled over its debugging pipe without further packages."""
 
 from __future__ import annotations
 
@@ -26,31 +26,31 @@ import subprocess
 import time
 
 NAMES = ('chromium', 'chromium-browser', 'google-chrome', 'google-chrome-stable', 'chrome')
-DEADLINE = 60.0  # s; nothing here takes so long
+DEADLINE = 60.0  # s, for every wait here
 
 OPTIONS = (
     '--headless=new', '--remote-debugging-pipe', '--no-sandbox', '--disable-gpu',
     '--disable-dev-shm-usage', '--no-first-run', '--disable-background-networking',
     '--disable-component-update', '--disable-default-apps', '--disable-extensions',
     '--disable-sync', '--hide-scrollbars=false', '--mute-audio',
-    # a page that nobody sees is drawn all the same, as often as one that is seen
+    # draw hidden pages as often as visible ones
     '--disable-background-timer-throttling', '--disable-backgrounding-occluded-windows',
     '--disable-renderer-backgrounding')
 
 
 def found():
-    """Return the browser's path, None where there is none; $CHROMIUM says which to use."""
+    """Return the browser's path ($CHROMIUM, or the first one installed), None if there is none."""
     asked = os.environ.get('CHROMIUM')
     return next((path for path in map(shutil.which, [asked] if asked else NAMES) if path), None)
 
 
 class Browser:
-    """A browser with one page; leaving the context ends it."""
+    """A browser with one page; a context manager that ends it."""
 
     def __init__(self, folder):
         command_read, self._out = os.pipe()
         self._in, answer_write = os.pipe()
-        # the browser speaks on its descriptors 3 and 4
+        # the browser reads from descriptor 3 and writes to 4
         shell = f'exec "$@" 3<&{command_read} 4>&{answer_write}'
         self._process = subprocess.Popen(
             ['bash', '-c', shell, 'bash', found(), *OPTIONS, f'--user-data-dir={folder}',
@@ -102,7 +102,7 @@ class Browser:
         return json.loads(message)
 
     def show(self, page, width, height, dark):
-        """Load a page in a window of a size, for a reader who likes it dark or light."""
+        """Load a page in a window of a size, with a dark or light theme."""
         self.events.clear()
         self.ask('Emulation.setDeviceMetricsOverride', width=width, height=height,
                  deviceScaleFactor=2 if width < 600 else 1, mobile=width < 600)
@@ -114,7 +114,7 @@ class Browser:
             self.events.append(self._next(deadline))
 
     def value(self, expression):
-        """Return what an expression is in the page."""
+        """Evaluate a JavaScript expression in the page."""
         answer = self.ask('Runtime.evaluate', expression=expression, returnByValue=True,
                           awaitPromise=True)
         assert 'exceptionDetails' not in answer, answer['exceptionDetails']
@@ -128,15 +128,15 @@ class Browser:
             time.sleep(0.02)
 
     def complaints(self):
-        """Return errors, warnings and exceptions that the page has caused."""
-        self.value('1')  # what has come before it is here now
+        """Return the page's errors, warnings and exceptions."""
+        self.value('1')  # events before this answer have been received
         methods = ('Runtime.exceptionThrown', 'Log.entryAdded')
         told = ('Runtime.consoleAPICalled',)
         return [e['params'] for e in self.events if e.get('method') in methods
                 or e.get('method') in told and e['params']['type'] in ('error', 'warning')]
 
     def requests(self):
-        """Return every address that the page has asked for."""
+        """Return every address that the page has requested."""
         return [e['params']['request']['url'] for e in self.events
                 if e.get('method') == 'Network.requestWillBeSent']
 

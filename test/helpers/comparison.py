@@ -12,22 +12,22 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How a printed equation is told from a true one, and derivatives to judge both by."""
+"""Comparison of printed equations with correct ones, and exact numerical derivatives."""
 
 import numpy as np
 
-# A printed form fails if it is this far off: a million times what rounding may do here.
+# Least relative difference of a wrong printed equation: far above any rounding error.
 VISIBLE = 1e-3
-# Sums and products of values of the order of 1 to 10.
+# Tolerance of sums and products of values of the order of 1 to 10.
 ROUNDING = 1e-12
-# Fourth-order differences of such functions.
+# Tolerance of fourth-order differences of such functions.
 DIFFERENCES = 1e-8
 
 COMPLEX_STEP = 1e-30
 
 
 def differ(printed, truth):
-    """Return whether two results differ by far more than rounding, in some case at least."""
+    """Return whether two results differ by far more than rounding in at least one case."""
     return float(np.max(np.abs(np.asarray(printed) - np.asarray(truth)))) > VISIBLE
 
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Hard tasks, replayed: names, joint positions [rad] and what is unusual about the limits."""
+"""Tasks that were once hard to plan: joint positions [rad] and unusual limits, by name."""
 
 import numpy as np
 
@@ -24,7 +24,7 @@ def _smooth_chain(n):
                     axis=1)
 
 
-# name: joint positions, and limits other than the thesis arm's.
+# name: joint positions, and limits that differ from the thesis arm's.
 HARD_CASES = {
     'dense smooth chain of 80 points': (_smooth_chain(80), {}),
     'dense chain with a tight jerk limit': (_smooth_chain(40), {'max_jerk': [2.0, 2.0, 2.0]}),
@@ -42,6 +42,6 @@ HARD_CASES = {
         {'max_effort': [150.0, 123.8, 200.0]}),
 }
 
-# What approach (a) cannot do, because it leaves a via point in the direction that it came from:
-# beyond it the range ends, or gravity is too much.
+# Infeasible for approach (a), which continues beyond a via point in the direction of arrival: the
+# range ends there, or gravity is too large.
 NOT_FOR_APPROACH_A = ('corner of the joint ranges', 'torque all but used up by gravity')

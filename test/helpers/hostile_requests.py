@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Requests that nobody in his right mind sends, and what an answer to any of them must keep."""
+"""Randomly corrupted requests, and checks that every answer to them must pass."""
 
 from __future__ import annotations
 
@@ -41,16 +41,16 @@ REFUSALS = {CODES.PLANNING_FAILED, CODES.GOAL_CONSTRAINTS_VIOLATED,
             CODES.INVALID_GOAL_CONSTRAINTS, CODES.FRAME_TRANSFORM_FAILURE,
             CODES.START_STATE_INVALID, CODES.NO_IK_SOLUTION}
 
-# The node's own, but for answers that do not take a test's time.
+# The node's defaults, except for a bound on answers that keeps the tests fast.
 MAX_POINTS = 2000
 CONFIG = PlannerConfig.from_values({
     **{name: row.default for name, row in rows_of(PLANNER, JOINT_NAMES).items()},
     'max_points': MAX_POINTS})
 
-# A planner is told to stop when it has asked so often: unlike a clock, the same every time.
+# Number of calls of `should_stop` after which it returns True: reproducible, unlike a clock.
 PATIENCE = 4
 
-# The quintic through the points keeps the limits to this part, as the contract has it.
+# Relative tolerance of the limits for the quintics through the points (docs/nodes.md).
 INTERPOLATED = 1e-3
 
 ODD = (nan, inf, -inf, 0.0, -0.0, 5e-324, -5e-324, 1e-310, 1e-300, 1e-30, 1e-9, -1.0, 1e9, 1e30,
@@ -60,13 +60,13 @@ odd_texts = st.one_of(
     st.sampled_from(('', 'magic', 'CYCLOID', ' cycloid', 'line\nbreak', 'x' * 10_000)),
     st.text(st.characters(exclude_characters='\0', exclude_categories=('Cs',)), max_size=20))
 
-POSITIONS = st.tuples(  # most of these can be held
+POSITIONS = st.tuples(  # the arm can hold most of these
     st.floats(0.0, pi / 2), st.floats(0.6, 2.4), st.floats(-pi / 2, pi / 2))
 
 
 @st.composite
 def hostile_requests(draw):
-    """Return a request that may be good, with up to two of its parts replaced by odd ones."""
+    """Return a request with up to two of its parts replaced by unusual values."""
     q = draw(st.lists(POSITIONS, min_size=2, max_size=5))
     request = plan_request(forward_kinematics(RobotModel(), np.array(q)))
     request.planner_id = draw(st.sampled_from(planner_ids()))
@@ -92,7 +92,7 @@ def _odd_orientation(draw, request):
 
 
 def _special_place(draw, request):
-    """Put a via point on or near axis 1, into the hole, next to its edge or the reach's."""
+    """Move a via point to or near joint axis 1, out of reach, or next to the limit of reach."""
     radius, height = draw(st.sampled_from((
         (0.0, 1.5), (0.0, 0.5), (1e-12, 1.5), (5e-324, 1.2), (1e-3, 1.3), (0.1, 0.5), (0.2, 0.5),
         (0.2 + 1e-12, 0.5), (0.2 - 1e-12, 0.5), (1.6, 0.5), (1.6 - 1e-12, 0.5),
@@ -159,7 +159,7 @@ CHANGES = (
 
 
 def answered(request, config=CONFIG, patience=PATIENCE):
-    """Return the node's answer; a bug is raised."""
+    """Return the node's answer; raise unexpected exceptions."""
     asked = count()
     try:
         return success(plan(config.model, config.limits, planning_request(
@@ -171,7 +171,7 @@ def answered(request, config=CONFIG, patience=PATIENCE):
 
 
 def assert_sound(request, response, config=CONFIG):
-    """Assert that an answer is a refusal that blames well, or a trajectory within its limits."""
+    """Assert that an answer is a refusal with a reason, or a trajectory within its limits."""
     if response.error_code != CODES.SUCCESS:
         assert response.error_code in REFUSALS
         assert response.message.isprintable() and len(response.message) < 5000
@@ -198,7 +198,7 @@ def assert_sound(request, response, config=CONFIG):
 
 
 def is_well_formed(request):
-    """Return whether nothing in a request is beyond what a planner may be asked."""
+    """Return whether all values of a request are within the documented bounds."""
     tips = [(p.position.x, p.position.y, p.position.z, p.orientation.x, p.orientation.y,
              p.orientation.z, p.orientation.w) for p in request.via_points.poses]
     return (np.isfinite(tips).all() and request.via_points.header.frame_id in ('', 'base_link')

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Plans of random feasible tasks by every joint-space planner, each made once and measured."""
+"""Plans of random feasible tasks by every joint-space planner, planned once and sampled."""
 
 from functools import cache
 
@@ -22,9 +22,9 @@ from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.planners.planning import plan
 
 EXACT = ['cycloid', 'cycloid_approach_a', 'cycloid_approach_c', 'gauss', 'septic', 'poly_434']
-MISSING = ['cycloid_approach_b', 'poly_414']  # via points, by construction
+MISSING = ['cycloid_approach_b', 'poly_414']  # these miss via points, by construction
 
-# Approach (a) passes every via point at its cruise velocity: not where a joint has no room.
+# Approach (a) passes via points at cruise velocity, so it cannot plan tasks at the end of a range.
 SEEDS = {'cycloid': range(212),
          'cycloid_approach_a': [s for s in range(252) if KINDS[s % len(KINDS)] != 'at a limit']}
 SOME_SEEDS = range(40)  # of the others
@@ -32,7 +32,7 @@ SOME_SEEDS = range(40)  # of the others
 
 @cache
 def outcomes(planner_id):
-    """Return the measured plans, and the refusals with their tasks."""
+    """Return the sampled plans, and the refusals with their tasks."""
     planned, refused = {}, {}
     for seed in SEEDS.get(planner_id, SOME_SEEDS):
         task = random_task(seed)
@@ -45,11 +45,11 @@ def outcomes(planner_id):
 
 
 def broken(motions, excess):
-    """Return the seeds of motions for which a measure is above 0, with it."""
+    """Return the seeds of motions for which a measure is positive, with the measure."""
     found = {seed: float(np.max(excess(m))) for seed, m in motions.items()}
     return {seed: value for seed, value in found.items() if not value <= 0.0}
 
 
 def via_points(m):
-    """Return the joint positions that a request asks for, shape (n, 3) [rad]."""
+    """Return the joint positions at the via points of a request, shape (n, 3) [rad]."""
     return m.task.q[len(m.task.q) - len(m.plan.via_times):]

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Limits for joints of other names than the default arm's: those of that arm, given expressly."""
+"""Parameters that give renamed joints the limits of the default arm's joints."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The package's modules as syntax trees, and the layers that they are in."""
+"""Syntax trees and layers of the package's modules."""
 
 import ast
 
@@ -23,18 +23,18 @@ FILES = sorted((ROOT / PACKAGE).rglob('*.py'))
 MODULES = {'.'.join(path.relative_to(ROOT).with_suffix('').parts): ast.parse(path.read_text())
            for path in FILES}
 
-# Arrows point only this way: a layer sees itself and those after it.
+# A layer may import itself and the layers after it.
 LAYERS = ('nodes', 'report', 'planners', 'core')
 
 
 def layer_of(module):
-    """Return a module's layer; an empty text for what lies on top of all layers."""
+    """Return a module's layer; an empty string for modules outside all layers."""
     parts = module.split('.')
     return parts[1] if len(parts) > 1 and parts[1] in LAYERS else ''
 
 
 def imports_of(module):
-    """Return the full names of what a module imports, wherever in it."""
+    """Return the full names of everything that a module imports, anywhere in it."""
     names = set()
     for node in ast.walk(MODULES[module]):
         if isinstance(node, ast.Import):
@@ -42,7 +42,7 @@ def imports_of(module):
         elif isinstance(node, ast.ImportFrom):
             package = module.split('.')[:-node.level] if node.level else []
             source = '.'.join([*package, *([node.module] if node.module else [])])
-            # "from package import name" may name a module as well as what is in one.
+            # In "from package import name", the name may be a module.
             names |= {f'{source}.{alias.name}' for alias in node.names}
     return names
 

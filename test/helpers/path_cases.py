@@ -20,7 +20,7 @@ import numpy as np
 
 
 def random_points(rng):
-    """Return 3 to 10 points: anywhere, or with legs of very unequal length."""
+    """Return 3 to 10 points: anywhere, or with line segments of very different lengths."""
     n = rng.integers(3, 11)
     if rng.random() < 0.5:
         return rng.uniform(-1.0, 1.0, (n, 3))
@@ -28,14 +28,14 @@ def random_points(rng):
 
 
 def random_tasks(seed, count):
-    """Return points and radii, from so small that they fit to so large that they do not."""
+    """Return points and radii, from small ones that fit to large ones that do not."""
     rng = np.random.default_rng(seed)
     tasks = [random_points(rng) for _ in range(count)]
     return [(points, 10.0 ** rng.uniform(-3.0, 0.0, len(points) - 2)) for points in tasks]
 
 
 def inside_pieces(path, per_piece, margin=1e-3):
-    """Return places inside the pieces, not nearer to a join than a share of the piece."""
+    """Return path coordinates inside the pieces, at a distance from the joins."""
     knots = np.concatenate(([0.0], path.joins, [path.length]))
     share = np.linspace(margin, 1.0 - margin, per_piece)
     return (knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * share).ravel()

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A second method for the least time along a path: velocity and acceleration limits only."""
+"""Least time along a path by the phase-plane method, with velocity and acceleration limits."""
 
 from __future__ import annotations
 

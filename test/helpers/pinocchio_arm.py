@@ -12,20 +12,20 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm as Pinocchio sees it, built from table 5.1 alone: a second opinion on every formula."""
+"""The arm as a Pinocchio model, built from table 5.1: a reference for kinematics and dynamics."""
 
 from __future__ import annotations
 
 import numpy as np
 import pinocchio
 
-# Rx(90 deg), which Denavit-Hartenberg's alpha puts behind joints 1 and 3.
+# Rx(90 deg), from the Denavit-Hartenberg angles alpha of joints 1 and 3.
 RX_90 = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 AXES_KEPT = np.eye(3)
 
 
 class PinocchioArm:
-    """A `RobotModel` handed to Pinocchio's own algorithms."""
+    """A `RobotModel` converted to a Pinocchio model."""
 
     def __init__(self, arm, payload=0.0):
         """
@@ -35,8 +35,8 @@ class PinocchioArm:
         """
         model = pinocchio.Model()
         model.gravity.linear = np.array([0.0, 0.0, -arm.gravity])
-        # What lies between the turning part of joint i and frame i, and between that joint and
-        # its link's centre of mass: both in the axes of frame i.
+        # Placements of frame i, and of the centre of mass of link i, relative to joint i: both in
+        # the axes of frame i.
         frames = [_placement(RX_90, (0.0, 0.0, arm.d1)), _placement(AXES_KEPT, (arm.a2, 0.0, 0.0)),
                   _placement(RX_90, RX_90 @ (0.0, 0.0, arm.d4))]
         centres = [frames[0], _placement(AXES_KEPT, (arm.l2, 0.0, 0.0)),
@@ -86,7 +86,7 @@ class PinocchioArm:
         return pinocchio.computePotentialEnergy(self.model, self.data, q)
 
     def move(self, q, qd, qdd):
-        """Put the arm into a state; the functions below tell about it."""
+        """Set the arm's state for the functions below."""
         pinocchio.computeJointJacobiansTimeVariation(self.model, self.data, q, qd)
         pinocchio.forwardKinematics(self.model, self.data, q, qd, qdd)
         pinocchio.updateFramePlacements(self.model, self.data)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Where the files are that tests read beside the package's own."""
+"""Paths of the repository's folders."""
 
 from pathlib import Path
 

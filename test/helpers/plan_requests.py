@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Requests of plans, and what the tests need to judge the answers."""
+"""Plan requests, and checks of their responses."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ from sensor_msgs.msg import JointState
 NAMES = ['joint_1', 'joint_2', 'joint_3']
 TABLE_6_1 = ((1.02, 0.59, 0.97), (0.46, 0.55, 1.44), (0.45, 0.38, 1.45))
 TABLE_6_3 = ((0.2, 0.8, 0.5), (0.5, 1.0, 1.0), (0.8, 1.2, 0.6))
-NEAR = ((1.02, 0.59, 0.97), (1.0, 0.6, 1.0))  # planned and driven in no time
+NEAR = ((1.02, 0.59, 0.97), (1.0, 0.6, 1.0))  # a short motion
 START = inverse_kinematics(RobotModel(), TABLE_6_1[0])
 SECOND = 10 ** 9
 
 
 def patient(**overrides):
-    """Return parameters of a planner that plans to the end, however busy the machine is."""
+    """Return parameters that let planning finish on a busy machine."""
     return [Parameter(name, value=value)
             for name, value in {'planning_time_limit': 60.0, **overrides}.items()]
 
 
 def plan_request(points=TABLE_6_1, frame='', start=None, **fields):
-    """Return a request; start is a JointState's fields or joint positions."""
+    """Return a request; start is a dict of JointState's fields, or joint positions."""
     request = PlanTrajectory.Request(**fields)
     request.via_points = PoseArray(poses=[Pose() for _ in points])
     request.via_points.header.frame_id = frame
@@ -60,14 +60,14 @@ def stamps(trajectory):
 
 
 def points_of(trajectory):
-    """Return a message's points as the interpolation takes them."""
+    """Return a message's points as `TrajectoryPoints`."""
     return TrajectoryPoints(1e-9 * stamps(trajectory), *(
         np.array([getattr(p, field) for p in trajectory.points])
         for field in ('positions', 'velocities', 'accelerations')))
 
 
 def is_refused(response, code, text, via_point=-1):
-    """Assert that a request was refused, and nothing else."""
+    """Assert that a response is a refusal without a trajectory."""
     assert (response.error_code, response.failed_via_point) == (code, via_point), response.message
     assert text in response.message
     assert not response.trajectory.points

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Seeded chains of ramps for the tests of what they are made of and how they are optimised."""
+"""Seeded random motions of ramps, and constraints, for tests of the solver."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ NONE = np.full(3, np.inf)
 ARM = RobotModel()
 LIMITS = JointLimits(min_position=[-2.9] * 3, max_position=[3.1] * 3)  # not symmetric
 FREE = replace(LIMITS, max_effort=NONE)
-COARSE, FINE = 61, 601  # cells of joint 2 and of joint 3 in which a way is looked for
+COARSE, FINE = 61, 601  # cells of joints 2 and 3 of the grid in which a path is searched
 
 
 def random_motion(seed, n=None, segments=None):
@@ -59,14 +59,14 @@ def shifted(m, step, size):
 
 
 def bounds(limits, grid, points, floor=None, margin=0.0):
-    """Return constraints without room for repairs, or with some for positions."""
+    """Return constraints without margins, or with margins of positions."""
     N, p = len(points) - 1, 2 * grid.n + 1
     return JointConstraints(ARM, limits, grid, points, np.full((2, N, p, 3), margin),
                             np.zeros((N, p, 3)), np.zeros((N, p, 3)), floor)
 
 
 def closer(limits, part):
-    """Return limits of which only a part is left, but for the ranges."""
+    """Return limits scaled by a factor, except for the ranges."""
     return replace(limits, **{name: part * getattr(limits, name) for name in (
         'max_velocity', 'max_acceleration', 'max_jerk', 'max_effort')})
 
@@ -84,12 +84,12 @@ def slow_start(limits, grid, points, floor=None):
 
 
 def flat(m):
-    """Return the unknowns of a motion, one behind the other."""
+    """Return the decision variables of a motion as one array."""
     return np.concatenate([f.ravel() for f in m])
 
 
 def stepped(problem, m, step, size):
-    """Return where a part of a step leads, and the slacks there; None where it leads nowhere."""
+    """Return the motion after a fraction of a step, and its slacks; None if it is infeasible."""
     problem.begin(m, DurationConstraints.all_free(len(m.T), m.inner.shape[-1]))
     arrays = problem.arrays
     arrays['slack'][:], arrays['direction 0'][:] = -np.inf, flat(step)
@@ -99,12 +99,12 @@ def stepped(problem, m, step, size):
 
 
 def share_of(task, q):
-    """Return the largest part of an effort limit that gravity takes."""
+    """Return the largest ratio of gravity torque to effort limit."""
     return (np.abs(gravity_torque(task.model, q)) / task.limits.max_effort).max(axis=-1)
 
 
 def blocked_task(seed):
-    """Return two poses of a random arm that can be held, not straight between them."""
+    """Return two poses that a random arm can hold, but not on the straight line between them."""
     rng = np.random.default_rng(60_000 + seed)
     while True:
         model = random_model(rng)
@@ -120,22 +120,23 @@ def blocked_task(seed):
                          held[:2], None, 0.01)
         pairs = held[rng.integers(len(held), size=(40, 2))]
         good = share_of(task, np.linspace(pairs[:, 0], pairs[:, 1], 100)).max(axis=0) > 1.02
-        if seed % 4:  # most of them where there is another way
+        if seed % 4:  # most of them with another path
             start, end = (_parts_of(task, COARSE, 1.0, pairs[:, k]) for k in (0, 1))
             good &= np.array([bool(a & b) for a, b in zip(start, end)])
         if good.any():
             return replace(task, points=pairs[good.argmax()])
 
 
-def is_connected(task, room):
+def is_connected(task, margin):
     """
-    Return whether cells of joints 2 and 3 that can be held connect a task's two poses.
+    Return whether holdable poses connect a task's two poses, on a grid of joints 2 and 3.
 
-    Margins is how much less than its limits gravity may take, in changes from cell to cell.
+    The margin is subtracted from the torque limits, in multiples of the largest change of gravity
+    torque between neighbouring cells.
     """
     share = _shares(task, FINE)
     change = max(np.abs(np.diff(share, axis=k)).max() for k in (0, 1))
-    start, end = _parts_of(task, FINE, 1.0 - room * change, task.points)
+    start, end = _parts_of(task, FINE, 1.0 - margin * change, task.points)
     return bool(start & end)
 
 
@@ -148,7 +149,7 @@ def _shares(task, cells):
 
 
 def _parts_of(task, cells, most, poses):
-    """Return the connected parts, by number, that the corners of the poses' cells are in."""
+    """Return the numbers of the connected components around two poses."""
     low, high = task.limits.min_position[1:], task.limits.max_position[1:]
     parts = ndimage.label(_shares(task, cells) <= most)[0]
     corner = ((poses[:, 1:] - low) / (high - low) * (cells - 1)).astype(int)

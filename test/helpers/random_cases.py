@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Seeded random arms, states and motions, and the numerical derivatives to judge them by."""
+"""Seeded random arms, states and motions, and numerical derivatives."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTr
 
 
 def random_model(rng):
-    """Return an arm with a geometry, masses and inertias of its own."""
+    """Return an arm with random geometry, masses and inertias."""
     a2, d4 = rng.uniform(0.2, 1.5, 2)
     return RobotModel(
         d1=rng.uniform(-0.5, 1.0), a2=a2, d4=d4, l2=rng.uniform(0.1, 1.0) * a2,
@@ -31,18 +31,18 @@ def random_model(rng):
         inertia=rng.uniform(0.01, 2.0, (3, 3)), gravity=rng.uniform(1.0, 25.0))
 
 
-# The thesis's arm and four others, for tests that must hold for any.
+# The thesis's arm and four random ones, for properties of every arm.
 ARMS = [RobotModel(), *(random_model(np.random.default_rng(seed)) for seed in range(4))]
 
 
 def random_states(rng, n):
-    """Return joint positions of any turn, velocities and accelerations, shape (n, 3) each."""
+    """Return random joint positions, velocities and accelerations, shape (n, 3) each."""
     return rng.uniform(-7.0, 7.0, (n, 3)), rng.normal(0.0, 2.0, (n, 3)), rng.normal(
         0.0, 5.0, (n, 3))
 
 
 def central_difference(function, x, step):
-    """Return df/dx of a function of one number, to the fourth order of the step."""
+    """Return df/dx of a function of one number by fourth-order differences."""
     return (8.0 * (function(x + step) - function(x - step))
             - (function(x + 2.0 * step) - function(x - 2.0 * step))) / (12.0 * step)
 
@@ -53,7 +53,7 @@ def joined(pieces):
 
 
 def random_chain(rng, durations):
-    """Return pieces of every kind, from rest to rest, acceleration continuous at the joins."""
+    """Return pieces of every kind, from rest to rest, with continuous acceleration."""
     pieces = []
     position, velocity, acceleration = rng.uniform(-1.0, 1.0), 0.0, 0.0
     for duration in durations[:-2]:
@@ -74,7 +74,7 @@ def random_chain(rng, durations):
 
 
 def random_trajectory(rng, duration=None, via_times=None):
-    """Return a smooth motion of three joints, each with three to nine pieces of its own."""
+    """Return a smooth motion of three joints, each with three to nine pieces."""
     if duration is None:
         duration = rng.uniform(0.5, 5.0)
     profiles = []
@@ -88,7 +88,7 @@ def random_trajectory(rng, duration=None, via_times=None):
 
 
 def dense_times(trajectory, per_interval):
-    """Return times on a fine grid that meets every knot, made without the code under test."""
+    """Return times on a fine grid that contains every knot, without the code under test."""
     knots = trajectory.knots
     grids = [np.linspace(a, b, per_interval, endpoint=False)
              for a, b in zip(knots[:-1], knots[1:])]

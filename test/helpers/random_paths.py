@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Seeded random paths that an arm can follow, with limits made to fit them, and their plans."""
+"""Seeded random paths that an arm can follow, with limits that suit them, and their plans."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ from rrr_traj_planner.planners.sampling_jerk_limit import followable
 PLANNERS = ('line_arc', 'line_polynomial')
 NONE = np.full(3, np.inf)
 FREE = JointLimits(min_position=-NONE, max_position=NONE)
-PER_SAMPLE = 20     # evaluated points between two samples
-BESIDE = 1e-9       # s before a knot
+PER_SAMPLE = 20     # evaluations between two samples
+BESIDE = 1e-9       # s before a knot, for left-hand limits
 
 
 @dataclass(frozen=True, eq=False)
 class PathCase:
-    """A request for a path, the arm and limits that suit it."""
+    """A request for a path, with an arm and limits for which it is feasible."""
 
     model: RobotModel
     limits: JointLimits
@@ -53,7 +53,7 @@ class PathCase:
 
     @cached_property
     def arm_path(self):
-        """Return the path as the planner is to find it."""
+        """Return the path that the planner is expected to design."""
         r = self.request
         path = largest_radii(getattr(path_design, r.planner_id), r.via_points, r.max_deviation)
         start = check_workspace(self.model, self.limits, path, Posture(r.elbow)).start
@@ -61,7 +61,7 @@ class PathCase:
 
     @property
     def cruise(self):
-        """Return what `sampling_jerk_limit` says of the case's own limits."""
+        """Return `sampling_jerk_limit` of the case's limits."""
         return followable(self.model, self.limits, self.arm_path(self.arm_path.path.via_s).q,
                           self.request.sample_period).cruise
 
@@ -77,7 +77,7 @@ class PathCase:
 
 
 def random_case(seed, points=None):
-    """Return a path of 2 to 6 points; planner and elbow follow from the seed."""
+    """Return a path of 2 to 6 points; the seed determines planner and elbow."""
     rng = np.random.default_rng(90_000 + seed)
     model = RobotModel() if rng.random() < 0.5 else random_model(rng)
     request = PlanningRequest(
@@ -117,7 +117,7 @@ def _positions(case):
 
 
 class Measured:
-    """A motion at given times, or on a fine grid that meets every knot."""
+    """A motion at given times, or on a fine grid that contains every knot."""
 
     def __init__(self, case, plan, motion=None, t=None):
         self.case, self.plan, self.motion = case, plan, motion or plan.trajectory
@@ -130,7 +130,7 @@ class Measured:
         self.torque = inverse_dynamics(case.model, self.q, self.qd, self.qdd)
 
     def use(self):
-        """Return the largest part of any limit of any joint that is used, at each time."""
+        """Return the largest ratio of a quantity to its limit at each time, over all joints."""
         limits = self.case.limits
         return np.max([np.abs(x) / bound for x, bound in (
             (self.qd, limits.max_velocity), (self.qdd, limits.max_acceleration),
@@ -139,6 +139,6 @@ class Measured:
 
 @cache
 def measured(seed):
-    """Return the measured plan of a random path."""
+    """Return the sampled plan of a random path."""
     case = random_case(seed)
     return Measured(case, case.planned())

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Seeded random planning tasks that are feasible by construction, and what a plan measures."""
+"""Seeded random planning tasks that are feasible by construction, and samples of plans."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
-HOLDABLE = 0.999    # of an effort limit, at a drawn via point
+HOLDABLE = 0.999    # of an effort limit, largest holding torque at a via point
 CLOSE = 1e-4        # rad between the points of a close pair
-HEAVY = 0.99        # of an effort limit, at the heaviest via point of a heavy task
+HEAVY = 0.99        # of an effort limit, largest holding torque of a heavy task
 
 KINDS = ('plain', 'close pair', 'repeated point', 'joint at rest', 'reversal', 'at a limit',
          'heavy', 'start state')
@@ -38,7 +38,7 @@ KINDS = ('plain', 'close pair', 'repeated point', 'joint at rest', 'reversal', '
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A request with the joint positions that it was made from."""
+    """A request with the joint positions of its via points."""
 
     seed: int
     kind: str
@@ -48,12 +48,12 @@ class Task:
     request: PlanningRequest
 
     def asked_of(self, planner_id, **changes):
-        """Return the request to another planner, or otherwise changed."""
+        """Return the request with some fields changed, such as the planner."""
         return replace(self.request, planner_id=planner_id, **changes)
 
 
 def random_task(seed):
-    """Return a task of 2 to 8 points, of the kind that its seed says."""
+    """Return a task of 2 to 8 points; the seed determines its kind."""
     rng = np.random.default_rng(50_000 + seed)
     kind = KINDS[seed % len(KINDS)]
     model = RobotModel() if rng.random() < 0.6 else random_model(rng)
@@ -79,7 +79,7 @@ def random_task(seed):
 
 
 def random_limits(rng, model):
-    """Return limits, some of them without velocity, jerk or effort limits."""
+    """Return random limits; some lack velocity, jerk or effort limits."""
     middle = rng.uniform([-1.0, 0.3, -0.3], [1.0, 1.3, 0.3])
     half = rng.uniform([0.4, 0.4, 0.4], [2.0, 1.4, 1.2])
     low, high = middle - half, middle + half
@@ -99,7 +99,7 @@ def random_limits(rng, model):
 
 
 def _is_usable(model, limits, q):
-    """Return whether the elbow is up, the tip before the arm, and every motor can hold it."""
+    """Return whether the elbow is up, the tip in front, and every motor can hold the pose."""
     reach = model.a2 * np.cos(q[1]) + model.d4 * np.sin(q[1] + q[2])
     held = (np.abs(gravity_torque(model, q)) <= HOLDABLE * limits.max_effort).all()
     return bool(abs(q[2]) < 1.55 and reach > 0.02 and held)
@@ -113,7 +113,7 @@ def _holdable_position(rng, model, limits):
 
 
 def _make_special(rng, kind, q, limits):
-    """Change drawn points, in place, to what their kind asks for."""
+    """Change random points in place, according to the kind of task."""
     k, j = int(rng.integers(1, len(q))), int(rng.integers(3))
     if kind == 'close pair':
         step = rng.normal(size=3)
@@ -130,7 +130,7 @@ def _make_special(rng, kind, q, limits):
 
 
 class Measured:
-    """A plan's motion on a fine grid, by nothing but evaluating it there."""
+    """A plan's motion, evaluated on a fine grid."""
 
     def __init__(self, task: Task, plan: Plan) -> None:
         self.task, self.plan = task, plan

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The installed scripts as processes, and the processes that they start."""
+"""The installed scripts as processes, and their child processes."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ from time import monotonic
 
 from ament_index_python.packages import get_package_prefix
 
-# Nothing here takes so long [s]; what waits longer has failed.
+# Timeout of every wait [s].
 DEADLINE = 60.0
 
 
 def script(name):
-    """Return what `ros2 run` executes."""
+    """Return the command that `ros2 run` executes."""
     return [str(Path(get_package_prefix('rrr_traj_planner'), 'lib', 'rrr_traj_planner', name))]
 
 
 def python(code):
-    """Return a command that runs a piece of Python, with what is installed and no other module."""
+    """Return a command that runs Python code with installed modules only."""
     return [sys.executable, '-c', f'import sys; del sys.path[0]  # the folder\n{code}']
 
 
 class Script:
-    """A running script; leaving the context ends it and what it started."""
+    """A running script; a context manager that ends it and its child processes."""
 
     def __init__(self, command, *arguments, cwd=None, new_group=False):
         self.process = subprocess.Popen(
@@ -58,22 +58,22 @@ class Script:
         self.process.communicate()
 
     def _kill(self):
-        """End it and what it started, which holds its pipes open too."""
+        """End it and its child processes, which hold its pipes open."""
         self.children = self.children or children_of(self.process.pid)
         self.process.kill()
         for child in self.children:
             child.kill()
 
     def read_until(self, text):
-        """Return lines of its output, up to one that holds a text."""
+        """Return lines of its output, up to one that contains a text."""
         return self._read_until(text, self.process.stdout)
 
     def read_errors_until(self, text):
-        """Return lines of its errors, the log among them, up to one that holds a text."""
+        """Return lines of its standard error (with the log), up to one that contains a text."""
         return self._read_until(text, self.process.stderr)
 
     def _read_until(self, text, stream):
-        deadline = Timer(DEADLINE, self._kill)  # then there is nothing more to read
+        deadline = Timer(DEADLINE, self._kill)  # ends the stream
         deadline.start()
         try:
             lines = []
@@ -86,13 +86,13 @@ class Script:
             deadline.cancel()
 
     def started(self, count):
-        """Return the processes that it has started, if they are as many as expected."""
+        """Return its child processes, if there are as many as expected."""
         self.children = children_of(self.process.pid)
         assert len(self.children) == count
         return self.children
 
     def wait_for_children(self, count):
-        """Return the processes that it starts, as soon as they are as many as expected."""
+        """Return its child processes, as soon as there are as many as expected."""
         deadline = monotonic() + DEADLINE
         while len(self.children) < count and monotonic() < deadline:
             self.children = children_of(self.process.pid)
@@ -107,17 +107,17 @@ class Script:
         return True
 
     def ended(self):
-        """Return exit code, output and errors."""
+        """Return exit code, standard output and standard error."""
         output, errors = self.process.communicate(timeout=DEADLINE)
         return self.process.returncode, output, errors
 
 
 class Child:
-    """A process that another one has started."""
+    """A child process."""
 
     def __init__(self, pid):
         self.pid = pid
-        self._handle = os.pidfd_open(pid)  # never another process that has got its number
+        self._handle = os.pidfd_open(pid)  # identifies the process even if its number is reused
         self.command = Path(f'/proc/{pid}/cmdline').read_text().split('\0')
 
     def __del__(self):
@@ -127,7 +127,7 @@ class Child:
         signal.pidfd_send_signal(self._handle, number)
 
     def kill(self):
-        """End it, if it runs."""
+        """End it, if it is running."""
         try:
             self.send_signal(signal.SIGKILL)
         except ProcessLookupError:
@@ -141,7 +141,7 @@ class Child:
 
 
 def children_of(pid):
-    """Return the processes that a process has started and that still run."""
+    """Return the running child processes of a process."""
     try:
         pids = Path(f'/proc/{pid}/task/{pid}/children').read_text().split()
     except FileNotFoundError:

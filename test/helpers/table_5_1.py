@@ -12,13 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm as products of table 5.1's matrices, and how it moves by differentiation alone."""
+"""Kinematics of the arm from table 5.1's matrices, and its rates by differentiation."""
 
 from helpers.comparison import rate
 from helpers.random_cases import central_difference
 import numpy as np
 
-STEP = 1e-3  # s, of differences in time
+STEP = 1e-3  # s, step of differences in time
 
 
 def denavit_hartenberg(theta, a, d, alpha):

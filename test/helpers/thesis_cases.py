@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Figures of the thesis, in their verified form, that the code must give back."""
+"""Numbers of the thesis, verified, that the code must reproduce."""
 
 # Appendix B, as printed.
 MASS = (40.0, 16.0, 12.0)                                                    # kg
@@ -32,6 +32,6 @@ POINTS = {
 POINT_THAT_CANNOT_BE_HELD = '6.3 point 3'
 HOLDING_TORQUE_THERE_ELBOW_DOWN = 224.6  # N m
 
-# Half of the last printed digit, and a little for its own rounding.
+# Half of the last printed digit, and a little for rounding.
 ANGLE_TOLERANCE = 0.51e-4   # deg
 TORQUE_TOLERANCE = 0.051    # N m

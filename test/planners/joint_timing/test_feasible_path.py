@@ -65,9 +65,9 @@ def test_the_random_tasks_are_of_both_sorts():
 @pytest.mark.parametrize('seed', SEEDS)
 def test_a_way_is_found_where_cells_with_room_connect_the_poses_and_nowhere_else(seed):
     task, way = found(seed)
-    if is_connected(task, room=2.0):
+    if is_connected(task, margin=2.0):
         assert way is not None
-    if not is_connected(task, room=-2.0):
+    if not is_connected(task, margin=-2.0):
         assert way is None
 
 
