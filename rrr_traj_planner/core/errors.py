@@ -221,3 +221,25 @@ def told_apart(value: float, *bounds: float, digits: int = 6) -> tuple[str, ...]
         if all(text != texts[0] for text, x in zip(texts[1:], bounds) if x != value):
             return texts
     return tuple(f'{float(x):.{MOST_DIGITS}g}' for x in numbers)
+
+
+def counted(count: int, singular: str, plural: str = '') -> str:
+    """
+    Return a number with what it counts, for messages.
+
+    Parameters
+    ----------
+    count : int
+        How many.
+    singular : str
+        What one of them is called.
+    plural : str
+        What several are called; empty: the singular and an s.
+
+    Returns
+    -------
+    str
+        Such as '1 point' and '2 points'.
+
+    """
+    return f'{count} {singular if count == 1 else plural or singular + "s"}'

@@ -26,7 +26,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, number_array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
-from rrr_traj_planner.core.errors import InvalidInputError, shown
+from rrr_traj_planner.core.errors import counted, InvalidInputError, shown
 from rrr_traj_planner.core.kinematics.postures import Elbow, ELBOWS, Posture
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
@@ -124,7 +124,7 @@ class PlanningRequest(ReadOnlyArrays):
         needed = 2 if self.start is None else 1
         if len(points) < needed:
             raise InvalidInputError(
-                f'{len(points)} via points given, at least {needed} needed')
+                f'{counted(len(points), "via point")} given, at least {needed} needed')
         for name, checked in CHECKS.items():
             object.__setattr__(self, name, checked(name, getattr(self, name)))
         if self.elbow is not None:
@@ -140,7 +140,8 @@ class PlanningRequest(ReadOnlyArrays):
         object.__setattr__(self, 'segment_durations', durations)
         if len(durations) != self.segments:
             raise InvalidInputError(
-                f'{len(durations)} segment_durations given for {self.segments} segments')
+                f'{len(durations)} segment_durations given for '
+                f'{counted(self.segments, "segment")}')
         wrong = (durations < NANOSECOND) | np.isinf(durations)
         if wrong.any():
             k = int(wrong.argmax())

@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.report.animation import Animation
 from rrr_traj_planner.report.attempts import Attempt, Planned, planned
 from rrr_traj_planner.report.page import Content, Section, write_page
@@ -54,8 +55,8 @@ def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
     task = found[0].task
     points = ['(' + ', '.join(f'{x:g}' for x in p) + ')' for p in task.via_points]
     told = '; '.join(points) if len(points) <= FEW else f'from {points[0]} to {points[-1]}'
-    return write_page(folder, f'Plan of {task.name}', f'{len(points)} via points [m]: {told}.',
-                      sections(found))
+    return write_page(folder, f'Plan of {task.name}',
+                      f'{counted(len(points), "via point")} [m]: {told}.', sections(found))
 
 
 def sections(found: Sequence[Attempt]) -> list[Section]:

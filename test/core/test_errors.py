@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.errors import quoted, told_apart
+from rrr_traj_planner.core.errors import counted, quoted, told_apart
 
 
 @pytest.mark.parametrize(('text', 'shown'), [
@@ -55,3 +55,11 @@ def test_digits_are_few_where_few_suffice_or_there_is_nothing_to_tell():
     assert told_apart(1.0, 1.0, 1.0000001) == ('1', '1', '1.0000001')
     assert told_apart(1.0, 1.0) == ('1', '1')
     assert told_apart(np.nan, 0.1, np.inf) == ('nan', '0.1', 'inf')
+
+
+@pytest.mark.parametrize(('count', 'nouns', 'text'), [
+    (0, ('point',), '0 points'), (1, ('point',), '1 point'), (2, ('point',), '2 points'),
+    (1, ('velocity', 'velocities'), '1 velocity'),
+    (3, ('velocity', 'velocities'), '3 velocities')])
+def test_what_is_counted_is_in_the_singular_where_it_is_one(count, nouns, text):
+    assert counted(count, *nouns) == text

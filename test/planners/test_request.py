@@ -27,7 +27,7 @@ POINTS = [[1.0, 0.6, 1.0], [0.5, 0.5, 1.4]]
 
 
 @pytest.mark.parametrize(('changes', 'message'), [
-    ({'via_points': [[1.0, 0.6, 1.0]]}, '^1 via points given, at least 2 needed$'),
+    ({'via_points': [[1.0, 0.6, 1.0]]}, '^1 via point given, at least 2 needed$'),
     ({'via_points': np.zeros((0, 3)), 'start': [0.0, 0.0, 0.0]},
      '^0 via points given, at least 1 needed$'),
     ({'via_points': [[1.0, 0.6, 1.0], [0.5, np.nan, 1.4]]}, r'^via_points.* is nan, must be fin'),
@@ -37,7 +37,7 @@ POINTS = [[1.0, 0.6, 1.0], [0.5, 0.5, 1.4]]
     ({'sample_period': 0.0}, r'^sample_period is 0\.0 s, must be positive$'),
     ({'sample_period': np.nan}, '^sample_period is nan s, must be finite$'),
     ({'max_deviation': -1.0}, r'^max_deviation is -1\.0 m, must be positive$'),
-    ({'segment_durations': [1.0, 1.0]}, '^2 segment_durations given for 1 segments$'),
+    ({'segment_durations': [1.0, 1.0]}, '^2 segment_durations given for 1 segment$'),
     ({'segment_durations': [0.0]}, r'^segment_durations\[0\] is 0\.0 s, must be finite and at '),
     ({'segment_durations': [np.inf]}, r'^segment_durations\[0\] is inf s, must be finite and')])
 def test_malformed_value_is_refused_by_name(changes, message):

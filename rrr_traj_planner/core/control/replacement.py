@@ -109,11 +109,14 @@ class Replacement(NamedTuple):
         Starting from the command, or already under way where the command is on it.
     warnings : tuple of str
         What a stop on the way could not keep.
+    holds : bool
+        Whether the arm stops instead of going where the trajectory leads.
 
     """
 
     motion: ReferenceTrajectory
     warnings: tuple[str, ...] = ()
+    holds: bool = False
 
 
 def replacement(takeover: Takeover, points: CommandedPoints, origin_ns: int,
@@ -159,8 +162,7 @@ def _lead_keeps_limits(takeover: Takeover, whole: CommandedPoints) -> bool:
     T = np.diff(whole.times[:2])
     known = int(segment_orders(whole)[0] + 1) // 2
     if known == 1 and len(whole.times) > 2:
-        rate = (whole.positions[1] - whole.positions[0]) / T
-        step = np.abs(rate - whole.velocities[0])
+        step = np.abs((whole.positions[1] - whole.positions[0]) / T - whole.velocities[0])
         if (step > takeover.limits.max_acceleration * T).any():
             return False
     ends = (whole.positions, whole.velocities, whole.accelerations)[:known]
@@ -251,14 +253,12 @@ def _gone_to(takeover: Takeover, motion: ReferenceTrajectory) -> Replacement:
     Return a quintic to the motion's end, later than on schedule, or a stop and a move there.
 
     Where the motion has a velocity at its end, the quintic leads to where it would be by then, if
-    the arm can stop inside its ranges from there.
-    Where gravity alone asks too much of a motor on the way, or the end is outside a range, the arm
-    stays where it has stopped.
+    the arm can stop inside its ranges from there. Where gravity asks too much of a motor on the
+    way, or the end is outside a range, the arm stays where it has stopped.
     """
-    outside = _ends_outside(takeover, motion)
-    if outside:
+    if outside := _ends_outside(takeover, motion):
         stopped, warnings = _stopped(takeover)
-        return Replacement(stopped, warnings + outside)
+        return Replacement(stopped, warnings + outside, holds=True)
     due = motion.end - takeover.now
     T = max(due, LEAST_TIME) * LATER
     q, qd, qdd = np.reshape(motion.end_state, (3, 3))
@@ -278,23 +278,23 @@ def _gone_to(takeover: Takeover, motion: ReferenceTrajectory) -> Replacement:
         f'{takeover.limits.max_effort[i]:.1f} N m: holding'
         for i, name in enumerate(takeover.model.joint_names)
         if torque[i] > takeover.limits.max_effort[i] * (1.0 + LIMIT_TOLERANCE))
-    return Replacement(stopped if told else moved, warnings + told)
+    return Replacement(stopped if told else moved, warnings + told, bool(told))
 
 
 def _stopped(takeover: Takeover) -> Stop:
     """Return a stop from the present."""
-    running = takeover.running or from_state(takeover.command, nanoseconds(takeover.now))
-    return stop(running, takeover.now, takeover.limits, takeover.model)
+    moving = takeover.running or from_state(takeover.command, nanoseconds(takeover.now))
+    return stop(moving, takeover.now, takeover.limits, takeover.model)
 
 
 def _ends_outside(takeover: Takeover, motion: ReferenceTrajectory) -> tuple[str, ...]:
     """Return a sentence for each joint that a motion leaves outside its range."""
-    low, high = takeover.limits.min_position, takeover.limits.max_position
+    q, limits = motion.final, takeover.limits
     return tuple(
         'the trajectory would end with {} at {} rad, range [{}, {}] rad: holding'.format(
-            name, *told_apart(float(q), float(a), float(b)))
-        for name, q, a, b, beyond in zip(takeover.model.joint_names, motion.final, low, high,
-                                         _outside(takeover, motion.final)) if beyond)
+            name, *told_apart(*map(float, bounds)))
+        for name, beyond, *bounds in zip(takeover.model.joint_names, _outside(takeover, q), q,
+                                         limits.min_position, limits.max_position) if beyond)
 
 
 def _outside(takeover: Takeover, q: Array) -> BoolArray:

@@ -56,6 +56,12 @@ class Excess(NamedTuple):
     low: float
     high: float
     in_degrees: bool  # whether the numbers that were sent would be within it, taken as degrees
+    leading_in: bool = False  # whether on the way from the command to the first point
+
+    @property
+    def kind(self) -> tuple[int, str, bool]:
+        """Return what is common to repeated findings: joint, quantity, and where."""
+        return self.joint, self.quantity, self.leading_in
 
     def text(self, joint_names: Sequence[str]) -> str:
         """
@@ -85,9 +91,10 @@ def excesses(points: CommandedPoints, limits: JointLimits, time: float = np.inf,
     """
     Return the ranges and limits that a trajectory leaves: position, velocity, acceleration.
 
-    The segment that leads from the command to a first point ahead belongs to it, but for its
-    acceleration. Lines have no acceleration, and steps of velocity between them are not looked at.
-    Where degrees explain a joint's positions, its velocity and acceleration are left out.
+    The segment that leads from the command to a first point ahead is looked at too, for position
+    and velocity: `replacement` does not follow one that leaves limits. Lines have no
+    acceleration, and steps of velocity between them are not looked at. Where degrees explain a
+    joint's positions, its velocity and acceleration are left out.
 
     Parameters
     ----------
@@ -103,26 +110,35 @@ def excesses(points: CommandedPoints, limits: JointLimits, time: float = np.inf,
     Returns
     -------
     list of Excess
-        By quantity, then joint, with the furthest value of each. Empty for a sound trajectory.
+        By quantity, then joint, with the furthest value of each; of the segment that leads in
+        where the trajectory itself is within. Empty for a sound trajectory.
 
     """
-    forms = list(_bernstein_forms(through(points)))
-    if time < points.times[0]:
-        q, qd, qdd = np.reshape(command, (3, 3))
-        forms[:2] = _bernstein_forms(through(with_start_state(points, time, (q, qd, qdd))))[:2]
+    own = _bernstein_forms(through(points))
+    lead_in = _lead_in_forms(points, time, command)
     sent = (points.positions, points.velocities[points.has_velocity],
             points.accelerations[points.has_acceleration])
     found: list[Excess] = []
-    for quantity, form, numbers, low, high in zip(
-            ('position', 'velocity', 'acceleration'), forms, sent,
+    for quantity, forms, numbers, low, high in zip(
+            ('position', 'velocity', 'acceleration'), zip(own, lead_in), sent,
             (limits.min_position, -limits.max_velocity, -limits.max_acceleration),
             (limits.max_position, limits.max_velocity, limits.max_acceleration)):
         for j, bounds in enumerate(zip(low.tolist(), high.tolist())):
-            value = _furthest(form[:, j], *_with_room(quantity, *bounds))
+            values = [_furthest(form[:, j], *_with_room(quantity, *bounds)) for form in forms]
+            value = values[1] if values[0] is None else values[0]
             if value is not None and not any(e.joint == j and e.in_degrees for e in found):
-                found.append(Excess(j, quantity, value, *bounds,
-                                    explained_by_degrees(numbers[:, j], *bounds)))
+                found.append(Excess(j, quantity, value, *bounds, explained_by_degrees(
+                    numbers[:, j], *bounds), leading_in=values[0] is None))
     return found
+
+
+def _lead_in_forms(points: CommandedPoints, time: float, command: ArrayLike) -> list[Array]:
+    """Return Bernstein coefficients of position and velocity on the segment that leads in."""
+    if not time < points.times[0]:
+        return [np.zeros((0, 3, 1))] * 3
+    q, qd, qdd = np.reshape(command, (3, 3))
+    forms = _bernstein_forms(through(with_start_state(points, time, (q, qd, qdd))))
+    return [forms[0][:1], forms[1][:1], np.zeros((0, 3, 1))]
 
 
 def _bernstein_forms(motion: ReferenceTrajectory) -> tuple[Array, Array, Array]:
@@ -130,8 +146,9 @@ def _bernstein_forms(motion: ReferenceTrajectory) -> tuple[Array, Array, Array]:
     T = np.diff(motion.knots)[:, np.newaxis, np.newaxis]
     q = (motion.coefficients * T ** np.arange(6.0)) @ BERNSTEIN
     qd = 5.0 * np.diff(q) / T
-    rest = np.broadcast_to(motion.final[:, np.newaxis], (1, 3, 6))
-    return np.concatenate((q, rest)), qd, 4.0 * np.diff(qd) / T
+    last = [np.broadcast_to(x[:, np.newaxis], (1, 3, 6 - order))
+            for order, x in enumerate((motion.final, motion.final_velocity))]
+    return np.concatenate((q, last[0])), np.concatenate((qd, last[1])), 4.0 * np.diff(qd) / T
 
 
 def _with_room(quantity: str, low: float, high: float) -> tuple[float, float]:

@@ -111,7 +111,7 @@ class ControlledArm(ControlLoop):
         self.violation: tuple[str, ...] = ()
         self.torque = self.control(self.desired)
 
-    def follow(self, points: CommandedPoints, origin_ns: int) -> None:
+    def follow(self, points: CommandedPoints, origin_ns: int) -> bool:
         """
         Take over a new trajectory, without a jump in what is commanded.
 
@@ -122,14 +122,20 @@ class ControlledArm(ControlLoop):
         origin_ns : int
             What its times are counted from, on the arm's own time [ns].
 
+        Returns
+        -------
+        bool
+            Whether it is followed; else the arm stops, and `stop_warnings` say why.
+
         """
         takeover = Takeover(self.time, self.desired, self.settings.limits,
                             self.settings.controller_model, self._what_moves())
-        self.motion, self.stop_warnings = replacement(
+        self.motion, self.stop_warnings, holds = replacement(
             takeover, points, origin_ns, self.settings.step)
         self.violation = ()
         self._watched = self._first_check = True
         self._brake_at_end()
+        return not holds
 
     def hold(self) -> None:
         """Stop inside the ranges, as fast as the limits allow, and stay there."""

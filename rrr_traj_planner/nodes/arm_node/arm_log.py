@@ -22,6 +22,7 @@ import re
 from rclpy.node import Node
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.control.trajectory_limits import Excess
+from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.simulation.condition import Condition, SOUND
 from rrr_traj_planner.nodes.output.throttle import Throttle
 
@@ -59,8 +60,8 @@ class ArmLog:
 
         """
         if self._throttle.passes('followed'):
-            self._log.info(f'following {points} points, until {seconds:.3f} s from now'
-                           + self._before('followed', 'trajectories were taken over'))
+            self._log.info(f'following {counted(points, "point")}, at the end in {seconds:.3f} s'
+                           + self._held('followed'))
 
     def refused(self, text: str) -> None:
         """
@@ -74,7 +75,7 @@ class ArmLog:
         """
         kind = NUMBER.sub('#', text)
         if self._throttle.passes(kind):
-            self._log.error(text + self._before(kind, 'messages were refused for it'))
+            self._log.error(text + self._held(kind))
 
     def exceeded(self, excesses: Sequence[Excess]) -> None:
         """
@@ -86,9 +87,14 @@ class ArmLog:
             The exceeded ranges and limits.
 
         """
-        if excesses and self._throttle.passes(*(e[:2] for e in excesses)):
-            self._log.warning("the trajectory, as it was sent, leaves the joints' limits: "
-                              + '; '.join(e.text(self._joint_names) for e in excesses))
+        for leading_in, text in (
+                (False, "the trajectory, as it was sent, leaves the joints' limits: {}"),
+                (True, "the way to the trajectory's first point, by its time, leaves the joints' "
+                       'limits: {}; the arm joins it later, within them')):
+            found = [e for e in excesses if e.leading_in is leading_in]
+            if found and self._throttle.passes(*(e.kind for e in found)):
+                self._log.warning(text.format('; '.join(
+                    e.text(self._joint_names) for e in found)))
 
     def strained(self, condition: Condition, limits: JointLimits) -> None:
         """
@@ -108,7 +114,7 @@ class ArmLog:
                 if self._throttle.passes((kind, joint)):
                     self._log.warning(text)
 
-    def _before(self, kind: str, what: str) -> str:
+    def _held(self, kind: str) -> str:
         """Return the number of messages of a kind that were held back, as text."""
         held = self._throttle.held(kind)
-        return f' (before, {held} more {what})' if held else ''
+        return f' ({held} more since the last such line)' if held else ''

@@ -21,7 +21,7 @@ from collections.abc import Sequence
 
 from builtin_interfaces.msg import Duration, Time
 from rrr_traj_planner.core.control.trajectory_validation import IncomingPoint, IncomingTrajectory
-from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.errors import counted, InvalidInputError, told_apart
 from rrr_traj_planner.core.nanoseconds import SECOND
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
@@ -56,8 +56,9 @@ def disturbance_torque(message: JointState,
     if len(message.position) or len(message.velocity):
         raise InvalidInputError('a disturbance has efforts alone, no positions or velocities')
     if len(message.name) != len(message.effort):
-        raise InvalidInputError(f'a disturbance has {len(message.name)} names and '
-                                f'{len(message.effort)} efforts, must be as many')
+        raise InvalidInputError(f'a disturbance has {counted(len(message.name), "name")} and '
+                                f'{counted(len(message.effort), "effort")}, must have an effort '
+                                'for each name')
     torque = dict.fromkeys(joint_names, 0.0)
     for i, (name, effort) in enumerate(zip(message.name, message.effort)):
         if name not in torque or name in message.name[:i]:

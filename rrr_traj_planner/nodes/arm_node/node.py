@@ -157,8 +157,8 @@ class SimulatedArm(ServiceNode):
         origin_ns = trajectory.stamp - self._time.epoch if trajectory.stamp != 0 else arm.now
         self._log.exceeded(excesses(
             points, arm.settings.limits, (arm.now - origin_ns) / SECOND, arm.desired))
-        arm.follow(points, origin_ns)
-        self._log.followed(len(trajectory.points), arm.motion.end - arm.time)
+        if arm.follow(points, origin_ns):
+            self._log.followed(len(trajectory.points), arm.motion.end - arm.time)
 
     def _disturb(self, message: JointState) -> None:
         """Apply disturbance torques, or log why they are refused."""

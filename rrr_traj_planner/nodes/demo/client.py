@@ -28,6 +28,7 @@ from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 from rclpy.time import Time
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.kinematics.postures import posture_of
 from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
 from rrr_traj_planner.nodes.demo.messages import plan_request, trajectory_points
@@ -114,10 +115,10 @@ class Client(Node):
             self._wait(demo_recorder(self, bag).is_connected, 'the topics to record')
         config = self._planner_config()
         response = self._planned(plan_request(task))
-        print(f'planned {len(task.via_points)} via points with '
+        print(f'planned {counted(len(task.via_points), "via point")} with '
               f"'{task.planner_id or config.default_planner_id}' in "
               f'{1e3 * response.planning_time:.0f} ms: {response.via_times[-1]:.3f} s, '
-              f'{len(response.trajectory.points)} points', flush=True)
+              f'{counted(len(response.trajectory.points), "point")}', flush=True)
         planned = trajectory_points(response.trajectory)
         self._go_to(planned.positions[0], task, config)
         start = self._drive(response.trajectory, 'driving')

@@ -28,6 +28,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.wireframe import skeleton
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.nodes.demo.client import Run
@@ -65,8 +66,9 @@ def draw(run: Run, file: Path) -> None:
         _space(right.add_subplot(grid[0], projection='3d'), run)
         _tracking(right.add_subplot(grid[1]), run)
         planner = run.task.planner_id or run.config.default_planner_id
-        figure.suptitle(f'{run.task.name}: {len(run.task.via_points)} via points, planner '
-                        f'{planner}, {run.response.via_times[-1]:.3f} s', fontsize=11)
+        points = counted(len(run.task.via_points), 'via point')
+        figure.suptitle(f'{run.task.name}: {points}, planner {planner}, '
+                        f'{run.response.via_times[-1]:.3f} s', fontsize=11)
         left.align_ylabels(profiles)
         figure.savefig(file, dpi=150)
 

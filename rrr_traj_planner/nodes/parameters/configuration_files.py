@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from rrr_traj_planner.core.arrays import Array, finite_array
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, shown
 from rrr_traj_planner.nodes.parameters.point_tables import (
     check_number,
     listed_points,
@@ -31,6 +31,7 @@ import yaml
 
 CHECKOUT = Path(__file__).resolve().parents[3] / 'config'  # of the source tree
 FIELDS = ('planner_id', 'via_points', 'segment_durations', 'arm')
+NEEDED = 'must have via_points: [[x, y, z], ...] in m'
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +98,7 @@ def _table(text: str) -> tuple[dict[str, Any], list[int]]:
     """Return the content of a CSV file in the form of `_document`, without line numbers."""
     points = tabulated_points(text).tolist()
     if not points:
-        raise InvalidInputError('no via_points')
+        raise InvalidInputError('no via_points, must have a line x, y, z [m] for each')
     return {'via_points': points}, []
 
 
@@ -114,10 +115,17 @@ def _document(text: str) -> tuple[dict[str, Any], list[int]]:
             + ', '.join(filter(None, (error.context, error.problem)))) from None
     except yaml.YAMLError as error:
         raise InvalidInputError(str(error)) from None
-    if not isinstance(content, dict) or not content.get('via_points'):
-        raise InvalidInputError('no via_points')
+    if not isinstance(content, dict):
+        raise InvalidInputError(
+            f'no via_points, it {"is empty" if content is None else "has no fields"}: {NEEDED}')
+    if 'via_points' not in content:
+        raise InvalidInputError(
+            f'no via_points, its fields are {", ".join(map(shown, content))}: {NEEDED}')
     _check_keys(root)
     points = next(value for key, value in root.value if key.value == 'via_points')
+    if content['via_points'] in (None, []):
+        raise InvalidInputError(
+            f'line {points.start_mark.line + 1}: no via_points, the list is empty: {NEEDED}')
     return content, [item.start_mark.line + 1 for item in points.value
                      if isinstance(item, yaml.Node)]
 

@@ -66,21 +66,31 @@ def unused_warnings(given: Collection[str], joint_names: Sequence[str]) -> list[
     Returns
     -------
     list of str
-        One text per unused parameter, with a similar known name if there is one.
+        One text per unused parameter, with the similar known names if there are any.
 
     """
     known, texts = _known(joint_names), []
     for name in given:
         if name not in known and _group(name) not in (*map(_group, known), *ROS_PARAMETERS):
-            near = get_close_matches(name, known, 1, SIMILARITY)
+            meant = ' or '.join(_similar(name, known))
             texts.append(f'parameter {name} is used by neither node'
-                         + ''.join(f'; is {other} meant?' for other in near))
+                         + (f'; is {meant} meant?' if meant else ''))
     return texts
 
 
 def _known(joint_names: Sequence[str]) -> list[str]:
     """Return the parameter names of both nodes: one file may serve both."""
     return list({**rows_of(PLANNER, joint_names), **rows_of(ARM, joint_names)})
+
+
+def _similar(name: str, known: Sequence[str]) -> list[str]:
+    """Return the known names that are most similar, whole or without their first parts."""
+    parts = name.count('.') + 1
+    ends: dict[str, list[str]] = {}
+    for other in known:
+        for end in {other, '.'.join(other.split('.')[-parts:])}:
+            ends.setdefault(end, []).append(other)
+    return [other for end in get_close_matches(name, ends, 1, SIMILARITY) for other in ends[end]]
 
 
 def _group(name: str) -> str:
@@ -95,7 +105,8 @@ def _unknown(given: Mapping[str, Any], joint_names: Sequence[str]) -> Iterator[s
         near, = get_close_matches(name, [k for k in known if _group(k) == _group(name)], 1, 0.0)
         yield f'parameter {name} is unknown, the nearest known one is {near}'
     if len(unknown) > MAX_SHOWN:
-        yield f'{len(unknown) - MAX_SHOWN} more are unknown'
+        more = len(unknown) - MAX_SHOWN
+        yield f'{more} more {"is" if more == 1 else "are"} unknown'
 
 
 def _missing_limits(given: Mapping[str, Any], joint_names: Sequence[str]) -> Iterator[str]:

@@ -25,7 +25,7 @@ from math import inf, isfinite, pi
 from typing import Any, NamedTuple
 
 from rrr_traj_planner.core.arm.model import JOINT_NAMES, RobotModel
-from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.errors import counted, InvalidInputError, told_apart
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.trajectory.sampling import MOST_POINTS
 
@@ -233,7 +233,8 @@ def check_value(row: Row, value: Any) -> None:
             f'{row.name} is {_shown(value)}, must be {row.range_text}{NOTATION_HINT[wanted]}')
     if is_list and len(items) != len(row.default):
         raise InvalidInputError(
-            f'{row.name} has {len(items)} values, {_shown(value)}, must be {row.range_text}')
+            f'{row.name} has {counted(len(items), "value")}, {_shown(value)}, must be '
+            f'{row.range_text}')
     for i, x in enumerate(items):
         if wanted in (int, float) and not (isfinite(x) and row.low <= x <= row.high):
             index = f'[{i}]' if is_list else ''

@@ -31,7 +31,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import InvalidHandle
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rrr_traj_planner.core.cancellation import step
-from rrr_traj_planner.core.errors import ConvergenceError, quoted, RrrPlannerError
+from rrr_traj_planner.core.errors import ConvergenceError, counted, quoted, RrrPlannerError
 from rrr_traj_planner.nodes.output.diagnostics import PERIOD
 from rrr_traj_planner.nodes.output.marker_messages import no_plan_markers, plan_markers
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
@@ -169,8 +169,8 @@ class TrajectoryPlanner(ServiceNode):
         if response.error_code == response.SUCCESS:
             points = response.trajectory.points
             last = points[-1].time_from_start
-            log.info(f'{name} planned {len(response.via_times)} via points {took}: '
-                     f'{last.sec + 1e-9 * last.nanosec:.3f} s, {len(points)} points'
+            log.info(f'{name} planned {counted(len(response.via_times), "via point")} {took}: '
+                     f'{last.sec + 1e-9 * last.nanosec:.3f} s, {counted(len(points), "point")}'
                      + (f'; {response.message}' if response.message else ''))
         elif answer.trace:
             log.error(f'{name} failed {took}: {response.message}\n{answer.trace}')

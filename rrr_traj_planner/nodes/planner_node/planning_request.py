@@ -23,6 +23,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import (
+    counted,
     InvalidInputError,
     quoted,
     RrrPlannerError,
@@ -154,9 +155,10 @@ def _start(state: JointState, config: PlannerConfig) -> Array | None:
                                   f"name each of {', '.join(model.joint_names)} once")
     if len(position) != len(names) or len(velocity) not in (0, len(names)):
         raise StartStateError(
-            f'start state has {len(names)} names, {len(position)} positions and '
-            f'{len(velocity)} velocities, must have a position for each name, and a velocity '
-            'for each or none')
+            f'start state has {counted(len(names), "name")}, '
+            f'{counted(len(position), "position")} and '
+            f'{counted(len(velocity), "velocity", "velocities")}, must have a position '
+            'for each name, and a velocity for each or none')
     order = [names.index(n) for n in model.joint_names]
     q = [position[i] for i in order]
     qd = [velocity[i] for i in order] if velocity else [0.0] * len(order)

@@ -22,6 +22,7 @@ from typing import NamedTuple
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import numpy as np
+from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.nodes.output.diagnostics import diagnostics
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
@@ -98,7 +99,7 @@ class RequestStatistics:
         """
         requests, bugs = self.answers.total(), self.answers[_RESPONSE.FAILURE]
         refused = requests - self.answers[_RESPONSE.SUCCESS] - bugs
-        text = f'{requests} requests answered, {refused} of them refused'
+        text = f'{counted(requests, "request")} answered, {refused} of them refused'
         if bugs:
             text += f'; {bugs} met a bug, see the log'
         return diagnostics(

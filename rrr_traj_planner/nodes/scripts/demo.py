@@ -62,12 +62,15 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--planner', default='', metavar='ID',
                         help="planner id (default: the file's)")
     parser.add_argument('--plot', type=Path, metavar='PNG',
-                        help='file of the plot (default: demo_TASK.png); "" for none')
+                        help='file of the plot (default: demo_TASK.png); "" for none; folders '
+                             'that do not exist are made')
     parser.add_argument('--record', type=Path, metavar='MCAP',
-                        help='record all topics in this file, a ROS 2 bag')
+                        help='record all topics in this new file, a ROS 2 bag; folders that do '
+                             'not exist are made')
 
 
 def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+    from rrr_traj_planner.core.errors import counted
     from rrr_traj_planner.nodes.demo.client import Client
     from rrr_traj_planner.nodes.demo.table import figures, table
     from rrr_traj_planner.nodes.parameters.configuration_files import read_task
@@ -87,7 +90,7 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     found = figures(run)
     print(table(run, found), flush=True)
     if bag is not None:
-        print(f'recording: {bag.file}, {bag.count} messages', flush=True)
+        print(f'recording: {bag.file}, {counted(bag.count, "message")}', flush=True)
     plot = Path(f'demo_{task.name}.png') if options.plot is None else options.plot
     if str(plot) not in ('', '.'):
         _plot(run, plot)

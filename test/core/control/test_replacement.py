@@ -255,6 +255,7 @@ def test_trajectory_out_of_reach_is_left_for_its_end_without_leaving_a_range():
 def test_motion_of_our_own_does_not_end_outside_a_range(command, q, text):
     found = replacement(takeover(command), single(q, 0.1), NOW_NS, LEAD)
     assert text in ' '.join(found.warnings)
+    assert found.holds
     _, states = commands(found.motion, found.motion.end + 0.1)
     assert (states[:, :3] >= LIMITS.min_position).all()
     assert (states[:, :3] <= LIMITS.max_position).all()
@@ -276,10 +277,10 @@ def test_point_that_is_met_late_does_not_lead_the_arm_out_of_a_range(joint, end,
     q, qd = command[:3].copy(), np.zeros(3)
     q[joint], qd[joint] = end - side * before, side * speed
     # 0.3 rad in 0.1 s is too much; meanwhile the point would be so much further
-    motion, warnings = replacement(takeover(tuple(command.tolist())), CommandedPoints(
+    motion, *told = replacement(takeover(tuple(command.tolist())), CommandedPoints(
         [0.1], [q], [qd], np.zeros((1, 3)), [True], [True]), NOW_NS, LEAD)
     states = commands(motion, motion.end + 0.1)[1]
     assert (side * (states[:, joint] - end)).max() <= 1e-4
     arrived = motion.final[joint] + 0.5 * motion.final_velocity[joint] * speed  # v^2 / 2 A on
     assert side * (arrived - end) <= 1e-4
-    assert warnings == ()
+    assert told == [(), False]

@@ -110,10 +110,22 @@ def test_line_has_a_velocity_and_no_acceleration():
         'joint_1 reaches 1.25 rad/s, limit 1 rad/s']
 
 
-def test_segment_that_leads_in_belongs_to_the_trajectory():
+def test_segment_that_leads_in_is_looked_at_and_told_from_what_was_sent():
     command = (*Q, *(0.0,) * 6)
-    assert texts(single(Q + (0.0, 0.0, 0.5), 0.25), LIMITS, 0.0, command) == [
-        'joint_3 reaches 2 rad/s, limit 1 rad/s']
+    points = single(Q + (0.0, 0.0, 0.5), 0.25)
+    assert texts(points, LIMITS, 0.0, command) == ['joint_3 reaches 2 rad/s, limit 1 rad/s']
+    assert [x.leading_in for x in excesses(points, LIMITS, 0.0, command)] == [True]
+    outside = excesses(single(Q + (0.0, 0.0, 9.8), 0.25), LIMITS, 0.0, command)
+    assert [(x.quantity, x.leading_in) for x in outside] == [
+        ('position', False), ('velocity', True)]
+    # a cubic in t / T, fastest at its end
+    moving = CommandedPoints([0.3], [Q + (0.0, 0.0, 0.3)], [(0.0, 0.0, 3.0)], np.zeros((1, 3)),
+                             [True], [False])
+    assert [(x.value, x.leading_in) for x in excesses(moving, LIMITS, 0.0, command)] == [
+        (3.0, False)]
+    # 0.5 rad in 0.9 s take 10 / 3^(1/2) 0.5 / 0.9^2 = 3.6 rad/s^2, of which nothing is said
+    rest = CommandedPoints([0.95], [Q + (0.0, 0.0, 0.5)], *np.zeros((2, 1, 3)), [True], [True])
+    assert excesses(rest, LIMITS, 0.0, command) == []
     assert excesses(single(Q + (0.0, 0.0, 0.5), 0.25), LIMITS, 0.3, command) == []  # it is past
 
 
@@ -132,8 +144,9 @@ def test_extremes_equal_those_of_dense_samples():
         for found in excesses(points, tight):
             n = ('position', 'velocity', 'acceleration').index(found.quantity)
             sampled = np.abs(states[:, n, found.joint]).max()
-            if n == 0:
-                sampled = max(sampled, abs(points.positions[-1, found.joint]))
+            if n < 2:
+                last = (motion.final, motion.final_velocity)[n]
+                sampled = max(sampled, abs(last[found.joint]))
             assert abs(found.value) == pytest.approx(sampled, rel=1e-4, abs=1e-4)
 
 

@@ -80,7 +80,7 @@ def test_bad_disturbance_is_refused_with_a_reason_and_changes_nothing(ros):
              "a disturbance names joint 'joint_1', must name distinct joints of joint_1, "
              'joint_2, joint_3'),
             (JointState(name=NAMES, effort=[1.0]),
-             'a disturbance has 3 names and 1 efforts, must be as many'),
+             'a disturbance has 3 names and 1 effort, must have an effort for each name'),
             (JointState(name=['joint_2'], effort=[float('nan')]),
              'the disturbance of joint_2 is nan N m, must be in [-100000, 100000] N m'),
             (JointState(name=['joint_2'], effort=[-1e6]),

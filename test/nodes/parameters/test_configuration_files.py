@@ -75,11 +75,12 @@ def test_durations_are_read(here):
 
 
 @pytest.mark.parametrize(('content', 'text'), [
-    ('', 'no via_points'),
-    ('- 1\n- 2\n', 'no via_points'),
-    ('planner_id: cycloid\n', 'no via_points'),
-    ('via_points:\n', 'no via_points'),
-    ('via_points: []\n', 'no via_points'),
+    ('', 'no via_points, it is empty: must have via_points: [[x, y, z], ...] in m'),
+    ('- 1\n- 2\n', 'no via_points, it has no fields: must have via_points: '),
+    ('planner_id: cycloid\n', "no via_points, its fields are 'planner_id': must have "),
+    ('points:\n', "no via_points, its fields are 'points': must have via_points: "),
+    ('arm: x\nvia_points:\n', 'line 2: no via_points, the list is empty: must have via_points: '),
+    ('via_points: []\n', 'line 1: no via_points, the list is empty: must have via_points: '),
     ('via_points: 3.0\n', 'via_points is 3.0, must be a list of points [x, y, z]'),
     ('via_points: {x: 1.0}\n', "via_points is {'x': 1.0}, must be a list of points [x, y, z]"),
     ('via_points: [1.0, 2.0, 3.0]\n',

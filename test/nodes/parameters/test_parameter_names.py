@@ -93,7 +93,11 @@ def test_joints_in_another_order_need_their_own_limits():
 
 @pytest.mark.parametrize(('name', 'hint'), [
     ('foo', ''), ('speed.max', ''), ('sample_priod', '; is sample_period meant?'),
-    ('max_via_point', '; is max_via_points meant?')])
+    ('max_via_point', '; is max_via_points meant?'),
+    ('max_velocty', '; is joint_limits.base.max_velocity or joint_limits.lift.max_velocity or '
+     'joint_limits.bend.max_velocity meant?'),
+    ('base.min_positions', '; is joint_limits.base.min_position meant?'),
+    ('d4', '; is arm.d4 meant?')])
 def test_name_that_neither_node_uses_is_told(name, hint):
     known = ['publish_rate', 'sample_period', 'joint_names']  # each of some node
     assert unused_warnings([name, *known, *OWN], NAMES) == [

@@ -144,7 +144,7 @@ def test_every_parameter_is_described():
     ('encoder.seed', 1.0,
      'encoder.seed is 1.0, must be in [0, 2.14748e+09] (a whole number)'),
     ('payload.mass', -2.0, 'payload.mass is -2 kg, must be in [0, 10000] kg'),
-    ('joint_names', ['a'], "joint_names has 1 values, ['a'], must be 3 distinct texts")])
+    ('joint_names', ['a'], "joint_names has 1 value, ['a'], must be 3 distinct texts")])
 def test_wrong_values_are_named_with_their_range(name, value, text):
     with pytest.raises(InvalidInputError) as caught:
         check_value(rows_of(ARM, JOINT_NAMES)[name], value)

@@ -113,7 +113,7 @@ def test_short_durations_are_refused_with_ones_that_do(ask, planner_id, asked):
 
 @pytest.mark.parametrize(('fields', 'text'), [
     ({'points': ()}, '0 via points given, at least 2 needed'),
-    ({'points': TABLE_6_1[:1]}, '1 via points given, at least 2 needed'),
+    ({'points': TABLE_6_1[:1]}, '1 via point given, at least 2 needed'),
     ({'points': (), 'start': START}, '0 via points given, at least 1 needed'),
     ({'segment_durations': [1.0]}, '1 segment_durations given for 2 segments'),
     ({'segment_durations': [3.0, 3.0], 'start': START},
@@ -174,7 +174,7 @@ def test_another_frame_is_refused(ask):
     ({'position': []}, 'start state has 3 names, 0 positions and 0 velocities'),
     ({'position': START[:2]}, 'start state has 3 names, 2 positions and 0 velocities'),
     ({'position': START, 'velocity': [0.0]},
-     'start state has 3 names, 3 positions and 1 velocities'),
+     'start state has 3 names, 3 positions and 1 velocity'),
     ({'position': [0.5, nan, 0.2]}, 'start state: joint_2 is at nan rad, must be finite'),
     ({'position': [0.5, 0.9, inf]}, 'start state: joint_3 is at inf rad, must be finite'),
     ({'position': [-0.1, 0.9, 0.2]},
