@@ -33,6 +33,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.control.trajectory_limits import outside_ranges
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import told_apart
 from rrr_traj_planner.core.nanoseconds import nanoseconds
@@ -54,10 +55,6 @@ POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
 
 # Limits are kept on this many steps of a join, to this relative tolerance.
 STEPS, LIMIT_TOLERANCE = 32, 1e-6
-
-# A last point is outside a range by more than this part of its end, or of 1 rad: positions are
-# rounded to four digits.
-ROUNDED = 1e-4
 
 # Points that are tried at once.
 BATCH = 256
@@ -265,7 +262,7 @@ def _gone_to(takeover: Takeover, motion: ReferenceTrajectory) -> Replacement:
     q = q + qd * (T - due)[:, np.newaxis]
     met = _within_limits(takeover, T, (q, np.tile(qd, (len(T), 1)), np.tile(qdd, (len(T), 1))))
     rest = q + 0.5 * qd * np.abs(qd) / takeover.limits.max_acceleration
-    met &= ~(_outside(takeover, q) | _outside(takeover, rest)).any(axis=1)
+    met &= ~outside_ranges(np.stack((q, rest)), takeover.limits).any(axis=(0, 2))
     if met.any():
         i = int(np.argmax(met))
         late = ReferenceTrajectory(T[i:i + 1], np.zeros((0, 3, 6)), q[i],
@@ -293,12 +290,6 @@ def _ends_outside(takeover: Takeover, motion: ReferenceTrajectory) -> tuple[str,
     return tuple(
         'the trajectory would end with {} at {} rad, range [{}, {}] rad: holding'.format(
             name, *told_apart(*map(float, bounds)))
-        for name, beyond, *bounds in zip(takeover.model.joint_names, _outside(takeover, q), q,
-                                         limits.min_position, limits.max_position) if beyond)
-
-
-def _outside(takeover: Takeover, q: Array) -> BoolArray:
-    """Return which positions are outside their ranges by more than rounding, shape (..., 3)."""
-    low, high = takeover.limits.min_position, takeover.limits.max_position
-    return np.asarray((q < low - ROUNDED * np.maximum(1.0, np.abs(low)))
-                      | (q > high + ROUNDED * np.maximum(1.0, np.abs(high))))
+        for name, beyond, *bounds in zip(
+            takeover.model.joint_names, outside_ranges(q, limits), q, limits.min_position,
+            limits.max_position) if beyond)

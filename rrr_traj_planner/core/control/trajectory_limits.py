@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
 from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints, with_start_state
 
@@ -124,12 +124,33 @@ def excesses(points: CommandedPoints, limits: JointLimits, time: float = np.inf,
             (limits.min_position, -limits.max_velocity, -limits.max_acceleration),
             (limits.max_position, limits.max_velocity, limits.max_acceleration)):
         for j, bounds in enumerate(zip(low.tolist(), high.tolist())):
-            values = [_furthest(form[:, j], *_with_room(quantity, *bounds)) for form in forms]
+            values = [_furthest(form[:, j], *map(float, _with_tolerance(quantity, *bounds))) for form in forms]
             value = values[1] if values[0] is None else values[0]
             if value is not None and not any(e.joint == j and e.in_degrees for e in found):
                 found.append(Excess(j, quantity, value, *bounds, explained_by_degrees(
                     numbers[:, j], *bounds), leading_in=values[0] is None))
     return found
+
+
+def outside_ranges(q: Array, limits: JointLimits) -> BoolArray:
+    """
+    Return which positions are outside their ranges by more than rounding.
+
+    Parameters
+    ----------
+    q : ndarray, shape (..., 3)
+        Positions [rad].
+    limits : JointLimits
+        The ranges.
+
+    Returns
+    -------
+    ndarray of bool, shape (..., 3)
+        By more than 1e-4 of a range's end, or of 1 rad.
+
+    """
+    low, high = _with_tolerance('position', limits.min_position, limits.max_position)
+    return np.asarray((q < low) | (q > high))
 
 
 def _lead_in_forms(points: CommandedPoints, time: float, command: ArrayLike) -> list[Array]:
@@ -151,12 +172,13 @@ def _bernstein_forms(motion: ReferenceTrajectory) -> tuple[Array, Array, Array]:
     return np.concatenate((q, last[0])), np.concatenate((qd, last[1])), 4.0 * np.diff(qd) / T
 
 
-def _with_room(quantity: str, low: float, high: float) -> tuple[float, float]:
-    """Return what a value may be before it is worth a word."""
+def _with_tolerance(quantity: str, low: ArrayLike, high: ArrayLike) -> tuple[Array, Array]:
+    """Return bounds beyond which a value is told."""
+    low, high = np.asarray(low), np.asarray(high)
     if quantity != 'position':
         return low * (1.0 + LIMIT_TOLERANCE), high * (1.0 + LIMIT_TOLERANCE)
-    return (low - POSITION_TOLERANCE * max(1.0, abs(low)),
-            high + POSITION_TOLERANCE * max(1.0, abs(high)))
+    return (low - POSITION_TOLERANCE * np.maximum(1.0, np.abs(low)),
+            high + POSITION_TOLERANCE * np.maximum(1.0, np.abs(high)))
 
 
 def _furthest(form: Array, low: float, high: float) -> float | None:
