@@ -124,7 +124,8 @@ def excesses(points: CommandedPoints, limits: JointLimits, time: float = np.inf,
             (limits.min_position, -limits.max_velocity, -limits.max_acceleration),
             (limits.max_position, limits.max_velocity, limits.max_acceleration)):
         for j, bounds in enumerate(zip(low.tolist(), high.tolist())):
-            values = [_furthest(form[:, j], *map(float, _with_tolerance(quantity, *bounds))) for form in forms]
+            widened = [float(bound) for bound in _with_tolerance(quantity, *bounds)]
+            values = [_furthest(form[:, j], *widened) for form in forms]
             value = values[1] if values[0] is None else values[0]
             if value is not None and not any(e.joint == j and e.in_degrees for e in found):
                 found.append(Excess(j, quantity, value, *bounds, explained_by_degrees(
