@@ -13,14 +13,15 @@
 # limitations under the License.
 
 """
-The points of an answer: close enough for a controller's quintics through them to keep the limits.
+The points of an answer, close enough that a controller's quintics through them keep the limits.
 
-Where those of the asked period do not, further points are put between, not closer than a tenth of
-it; where that is not enough, the motion is slowed. Where it cannot be slowed, since its durations
-are given or since it hurries past a pose that the motors cannot hold, points are closer still. So
-they are where a joint would leave its range, as where it turns back or comes to rest at the end of
-it: the quintics swing beyond the motion there by the cube of the time between points.
-Further points also bring down jerk; no motion is slowed for that, but what is left of it is told.
+joint_trajectory_controller interpolates by quintics. Where quintics through points of the sample
+period exceed limits, points are inserted, not closer than a tenth of the period; where that is not
+enough, the motion is slowed. A motion that cannot be slowed, because its durations are prescribed
+or because it passes fast through a pose that the motors cannot hold, has closer points still. So
+has one where a joint would leave its range, as where it turns back or stops at the range's end:
+there the quintics overshoot by the cube of the time between points. Inserted points also reduce
+jerk; no motion is slowed for jerk, but the note tells of what remains.
 """
 
 from __future__ import annotations
@@ -46,29 +47,29 @@ from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.request import PlanningRequest
 
-ROUNDS = 40              # of slowing
-MOST_STRETCH = 1.5       # in one of them
-CLOSEST = 1e-4           # s between points of a motion that cannot be slowed, or leaves a range
+ROUNDS = 40            # of slowing, at most
+LARGEST_SCALING = 1.5  # of time, in one of them
+CLOSEST = 1e-4         # s between points of a motion that cannot be slowed, or leaves a range
 
-# Beyond these a plan's note tells of it:
-TOLD_JERK = 1.1       # the quintics' jerk, of its limit
-TOLD_STRETCH = 1.001  # how much slower the motion is
+# Ratios above which the plan's note tells of them:
+REPORTED_JERK = 1.1       # of the quintics' jerk to its limit
+REPORTED_SCALING = 1.001  # of the slowed motion's duration to the planned one's
 
 
 class AnswerPoints(NamedTuple):
-    """Points whose quintics keep the limits, and what it took."""
+    """Points whose quintics keep the limits, and the motion that they sample."""
 
-    trajectory: Trajectory    # slowed, if it had to be
+    trajectory: Trajectory    # slowed where necessary
     points: TrajectoryPoints
     effort: Array             # largest torque of the quintics, (3,) [N m]
-    stretch: float            # by what the motion has been slowed
-    note: str                 # what there is to be said of it
+    time_scale: float            # the factor by which the motion has been slowed
+    note: str                 # on slowing and jerk; mostly empty
 
 
 def answer_points(model: RobotModel, limits: JointLimits, request: PlanningRequest,
                   trajectory: Trajectory) -> AnswerPoints:
     """
-    Return the points of a motion, and the motion, slowed if its points ask for that.
+    Return the points of a motion, and the motion, slowed as its points require.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
     limits : JointLimits
         Scaled as requested.
     request : PlanningRequest
-        For the sample period, the durations and how many points there may be.
+        For the sample period, the durations and the largest number of points.
     trajectory : Trajectory
         Within the limits.
 
@@ -92,19 +93,19 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
     InvalidInputError
         If there would be too many points.
     TimingError
-        If a motion of prescribed durations does not keep its limits between any points.
+        If quintics through the points of a motion of prescribed durations exceed limits.
     ConvergenceError
         If no points are found, which is a bug.
 
     """
-    stretch, gap = 1.0, LEAST_GAP * request.sample_period
+    time_scale, gap = 1.0, LEAST_GAP * request.sample_period
     closest = min(gap, CLOSEST)
     for _ in range(ROUNDS):
         spline, excess = _best_refined(model, limits, request, trajectory, gap)
         factor = excess.slowing
         if factor <= 1.0:
-            return AnswerPoints(trajectory, spline.points, excess.effort, stretch, _note(
-                model, limits, request.sample_period, excess.jerk.max(axis=0), stretch))
+            return AnswerPoints(trajectory, spline.points, excess.effort, time_scale, _note(
+                model, limits, request.sample_period, excess.jerk.max(axis=0), time_scale))
         cannot_be_slower = request.segment_durations is not None or np.isinf(
             time_scale_for_torque(model, limits, trajectory).value).any()
         if cannot_be_slower or np.isinf(factor):
@@ -112,8 +113,8 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
                 break
             gap = closest
             continue
-        factor = min(factor, MOST_STRETCH)
-        trajectory, stretch = trajectory.time_scaled(factor), stretch * factor
+        factor = min(factor, LARGEST_SCALING)
+        trajectory, time_scale = trajectory.time_scaled(factor), time_scale * factor
     if request.segment_durations is not None:
         raise TimingError(
             f'sample_period {request.sample_period} s is too long for segment_durations '
@@ -126,11 +127,11 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
 def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
                   trajectory: Trajectory, gap: float) -> tuple[Interpolant, SplineExcess]:
     """
-    Return quintics through points as close as need be, and what they still exceed.
+    Return quintics through points as close as necessary, and by how much they exceed limits.
 
-    Where a limit is exceeded on one side of a step of acceleration, the quintic is made to
-    overshoot on the other. If that exceeds it too, all overshoot before the step: planners whose
-    motions have steps leave room for that (`PathTable.overshoot`).
+    Where a limit is exceeded on one side of a step of acceleration, points are placed so that the
+    quintic overshoots on the other side. If that exceeds it too, all overshoot before the step:
+    planners whose motions have steps leave a margin for that (`PathTable.overshoot`).
     """
     found = _refined(model, limits, request, trajectory, gap, False)
     if len(trajectory.step_times) and found[1].slowing > 1.0:
@@ -142,7 +143,7 @@ def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningReque
 def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, gap: float,
              overshoot_before: bool) -> tuple[Interpolant, SplineExcess]:
-    """Return the same; whether quintics are to overshoot before steps alone."""
+    """Return the same, for overshoot before steps only or on either side."""
     times = sample_times(trajectory, request.sample_period, request.max_points)
     while True:
         request.should_stop()
@@ -157,34 +158,35 @@ def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
 
 def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, steps: Array,
              gap: float, overshoot_before: bool) -> Array:
-    """Return times at which intervals that exceed limits may be cut, none nearer than a gap."""
+    """Return times at which to divide intervals that exceed limits, none closer than the gap."""
     begin, width = times.stamps[:-1] * NANOSECOND, np.diff(times.stamps) * NANOSECOND
     cut = begin + 0.5 * width
     outside = excess.outside > 0.0
-    jerky = np.asarray((excess.jerk > TOLD_JERK * limits.max_jerk).any(axis=1))
+    exceeds_jerk = np.asarray((excess.jerk > REPORTED_JERK * limits.max_jerk).any(axis=1))
     if len(steps):
         index = np.searchsorted(begin, steps, side='right') - 1
         share = (steps - begin[index]) / width[index]
-        after = np.where(outside[index], share < 0.5,  # what is left is shorter in any case
+        after = np.where(outside[index], share < 0.5,  # both intervals are shorter in any case
                          (excess.place[index] > share) | overshoot_before)
-        # Never at the step: so that it is STEP_SHARE from the end on the side that is short.
+        # Not at the step itself: beside it, so that the step is STEP_SHARE of an interval inside.
         beside = STEP_SHARE / (1.0 - STEP_SHARE) * width[index]
         cut[index] = np.where(after, steps + beside * share, steps - beside * (1.0 - share))
-        jerky[index] = False  # in less time the step would be steeper
+        exceeds_jerk[index] = False  # a shorter interval would make the step's jerk larger
     least = np.where(outside, min(gap, CLOSEST), gap) - NANOSECOND
     far = np.minimum(cut - begin, begin + width - cut) >= least
-    return cut[far & (jerky | (excess.stretch > 1.0) | outside)]
+    return cut[far & (exceeds_jerk | (excess.stretch > 1.0) | outside)]
 
 
 def _note(model: RobotModel, limits: JointLimits, period: float, jerk: Array,
-          stretch: float) -> str:
-    """Return what there is to be said of time and of jerk; mostly nothing."""
+          time_scale: float) -> str:
+    """Return the note on slowing and on jerk; mostly empty."""
     texts = []
-    if stretch > TOLD_STRETCH:
-        texts.append(f'sample_period {period:g} s makes the motion {100.0 * (stretch - 1.0):.2g} '
+    if time_scale > REPORTED_SCALING:
+        slower = 100.0 * (time_scale - 1.0)
+        texts.append(f'sample_period {period:g} s makes the motion {slower:.2g} '
                      '% slower: a controller would else exceed limits between points')
     joint = int((jerk / limits.max_jerk).argmax())
-    if jerk[joint] > TOLD_JERK * limits.max_jerk[joint]:
+    if jerk[joint] > REPORTED_JERK * limits.max_jerk[joint]:
         texts.append(
             f'between points a controller makes {model.joint_names[joint]} reach a jerk of '
             f'{jerk[joint]:.3g} rad/s^3, limit {limits.max_jerk[joint]:g} rad/s^3')

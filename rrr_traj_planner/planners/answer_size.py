@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The least time that a motion can take, known before it is planned: its answer's size."""
+"""A lower bound on a motion's duration, to reject requests whose answer has too many points."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rrr_traj_planner.planners.request import PlanningRequest
 
 def check_answer_size(limits: JointLimits, request: PlanningRequest, q: Array) -> None:
     """
-    Refuse a request whose answer is bound to have too many points, however fast it is planned.
+    Reject a request whose answer has too many points even at the lower bound of its duration.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def check_answer_size(limits: JointLimits, request: PlanningRequest, q: Array) -
     request : PlanningRequest
         For the time between points, and how many there may be.
     q : ndarray, shape (n, 3)
-        Joint positions that are passed in turn [rad].
+        Joint positions in the order in which they are passed [rad].
 
     Raises
     ------
@@ -47,10 +47,10 @@ def check_answer_size(limits: JointLimits, request: PlanningRequest, q: Array) -
 
 def least_time(limits: JointLimits, q: Array) -> float:
     """
-    Return a time below which no motion passes points in turn, from rest to rest.
+    Return a lower bound on the time in which a motion passes points in turn, from rest to rest.
 
     With a velocity limit V a segment takes at least |dq| / V. With an acceleration limit A a joint
-    whose way is L in all takes at least 2 sqrt(L / A): its speed is below a triangle of slope A.
+    that covers L in all takes at least 2 sqrt(L / A): its speed is below a triangle of slope A.
 
     Parameters
     ----------
@@ -65,8 +65,8 @@ def least_time(limits: JointLimits, q: Array) -> float:
         [s].
 
     """
-    ways = np.abs(np.diff(q, axis=0))
-    with np.errstate(over='ignore'):  # infinite is long enough
-        by_velocity = (ways / limits.max_velocity).max(axis=1, initial=0.0).sum()
-        by_acceleration = 2.0 * np.sqrt((ways.sum(axis=0) / limits.max_acceleration).max())
+    D = np.abs(np.diff(q, axis=0))
+    with np.errstate(over='ignore'):  # infinity is a valid bound
+        by_velocity = (D / limits.max_velocity).max(axis=1, initial=0.0).sum()
+        by_acceleration = 2.0 * np.sqrt((D.sum(axis=0) / limits.max_acceleration).max())
     return float(max(by_velocity, by_acceleration))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Columns of numbers as a file of comma-separated values."""
+"""Writing columns of numbers as a file of comma-separated values."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ def write_columns(file: str | PathLike[str] | TextIO, columns: Mapping[str, Arra
     Parameters
     ----------
     file : path or text file
-        Where it goes: a path, which is overwritten, or a file that is open for text.
+        A path, which is overwritten, or a file that is open for text.
     columns : mapping
-        Columns, shape (n,) each, by their heads.
+        Columns, shape (n,) each, by their headers.
     digits : int, optional
-        Significant digits; None: as many as it takes to read the same numbers again.
+        Significant digits; None: as many as reproduce the same numbers.
 
     Raises
     ------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A limit on the time of planning: first the best so far is asked for, then it is given up."""
+"""A limit on planning time: first the best motion so far is requested, then planning is ended."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from time import perf_counter
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import TimeLimitError
 
-IMPROVING = 0.8  # of the limit, after which a motion that was found is brought to an answer,
-GRACE = 0.25     # s after the limit up to which that may take
+IMPROVING = 0.8  # part of the limit after which a motion is not improved any more
+GRACE = 0.25     # s after the limit until which points and checks of the answer may take
 
 
 class Deadline:
@@ -33,12 +33,12 @@ class Deadline:
     Parameters
     ----------
     limit : float
-        How long planning may take [s]. After a part of it, IMPROVING, the answer is True: the
-        best motion so far is to be the answer.
+        Planning time [s]. After a part of it, IMPROVING, the callback returns True: the best
+        motion so far is to be the answer.
     clock : callable, optional
-        What the time is taken from [s].
+        Returns the time [s].
     is_over : callable, optional
-        Whether nobody waits for the answer any more.
+        Returns whether the request has been abandoned.
 
     """
 
@@ -49,24 +49,24 @@ class Deadline:
 
     def __call__(self) -> bool:
         """
-        Return whether it is time to end with what there is.
+        Return whether planning is to end with the best motion so far.
 
         Raises
         ------
         TimeLimitError
-            If it is over by more than GRACE: what is done now would take too long.
+            If the limit is exceeded by more than GRACE.
 
         """
         return self._after(IMPROVING)
 
     def part(self, share: float) -> ShouldStop:
         """
-        Return a question whether a share of the time is used up; it raises as the whole does.
+        Return a callback for a share of the time; it raises as the deadline itself does.
 
         Parameters
         ----------
         share : float
-            Of the time up to when this one answers True, in [0, 1].
+            Of the time after which this one returns True, in [0, 1].
 
         Returns
         -------
@@ -85,19 +85,19 @@ class Deadline:
 
 def part_of(should_stop: ShouldStop, share: float) -> ShouldStop:
     """
-    Return a question that leaves time for what follows, where that can be known.
+    Return a cancellation callback for a share of the time, if the given one is a `Deadline`.
 
     Parameters
     ----------
     should_stop : callable
-        Of the whole.
+        For the whole time.
     share : float
         Of its time, in [0, 1].
 
     Returns
     -------
     callable
-        The deadline's part; the same question where it is no `Deadline`.
+        The deadline's part; the same callback where it is not a `Deadline`.
 
     """
     return should_stop.part(share) if isinstance(should_stop, Deadline) else should_stop

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""By how much a motion misses its via points, where missing them is its method's way."""
+"""The distances by which a motion with blends misses its via points, and the note about them."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Misses(NamedTuple):
 
 def misses(model: RobotModel, trajectory: Trajectory, via_times: Array, q: Array) -> Misses:
     """
-    Return how far a motion is from its via points at their times.
+    Return the distances of a motion from its via points at their times.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def misses(model: RobotModel, trajectory: Trajectory, via_times: Array, q: Array
     trajectory : Trajectory
         The motion.
     via_times : ndarray, shape (n,)
-        The via points' times [s]: of one that is straddled, the middle of its transition.
+        The via points' times [s]: the middle of its transition for one that is blended.
     q : ndarray, shape (n, 3)
         Joint positions at the via points [rad].
 
@@ -55,13 +55,13 @@ def misses(model: RobotModel, trajectory: Trajectory, via_times: Array, q: Array
 
     """
     passed = trajectory(via_times)[0]
-    apart = forward_kinematics(model, passed) - forward_kinematics(model, q)
-    return Misses(np.linalg.norm(apart, axis=1), np.abs(passed - q).max(axis=1))
+    difference = forward_kinematics(model, passed) - forward_kinematics(model, q)
+    return Misses(np.linalg.norm(difference, axis=1), np.abs(passed - q).max(axis=1))
 
 
 def miss_note(found: Misses) -> str:
     """
-    Return what the caller should know.
+    Return the note on missed via points.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def miss_note(found: Misses) -> str:
     Returns
     -------
     str
-        Empty where every via point is hit.
+        Empty where every via point is reached.
 
     """
     missed = [f'{i} by {tip:.3g} m ({joint:.3g} rad)' for i, (tip, joint) in enumerate(

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a planner answers: the motion, its points, and the figures that show it."""
+"""The result of planning: the motion, its points, and its peaks."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from rrr_traj_planner.planners.columns import write_columns
 @dataclass(frozen=True, eq=False)
 class Plan(ReadOnlyArrays):
     """
-    A motion that keeps its limits, and the figures that show it.
+    A motion within its limits, and its peaks.
 
     Parameters
     ----------
@@ -41,8 +41,7 @@ class Plan(ReadOnlyArrays):
     points : TrajectoryPoints
         The same, sampled.
     via_times : ndarray
-        When each via point is passed [s]; where a planner misses one, the middle of the
-        transition that straddles it.
+        When each via point is passed [s]; for one that is blended, the middle of its transition.
     peaks : Peaks
         Exact extremes over the continuous motion.
     effort : ndarray, shape (3,)
@@ -50,7 +49,7 @@ class Plan(ReadOnlyArrays):
     model : RobotModel
         The arm that it is planned for.
     note : str
-        What the caller should know; empty where there is nothing.
+        Remarks for the caller, mostly empty.
 
     """
 
@@ -64,12 +63,12 @@ class Plan(ReadOnlyArrays):
 
     def columns(self) -> dict[str, Array]:
         """
-        Return the sampled motion by columns, with the torques that it takes.
+        Return the sampled motion by columns, with its torques.
 
         Returns
         -------
         dict
-            Arrays of shape (n,) by their heads: `time [s]`, then of every joint `NAME position
+            Arrays of shape (n,) by their headers: `time [s]`, then of every joint `NAME position
             [rad]`, of every joint `NAME velocity [rad/s]`, `NAME acceleration [rad/s^2]` and
             `NAME effort [N m]`.
 
@@ -92,7 +91,7 @@ class Plan(ReadOnlyArrays):
         Parameters
         ----------
         file : path or text file
-            Where it goes: a path, which is overwritten, or a file that is open for text.
+            A path, which is overwritten, or a file that is open for text.
 
         Raises
         ------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The front door: a request in, a checked plan out."""
+"""`plan`: from a request to a checked plan."""
 
 from __future__ import annotations
 
@@ -52,12 +52,11 @@ from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 # are one point: at the edge of the workspace 1e-9 m are 7e-5 rad.
 SAME_POSTURE = 1e-4  # rad
 
-# A joint that moves no further from one point to the next stands still: with ways of 1e-310 rad
-# beside ways of 1 rad, numbers overflow.
+# Displacements up to this are set to zero: ratios of 1e-310 rad to 1 rad would overflow.
 STANDING = 1e-14  # rad
 
-# Motions are planned for points no further apart than this, so that a long sample_period makes
-# none of them slower: the answer has further points where its quintics need them.
+# Motions are planned for sample periods up to this, so that a longer sample_period does not slow
+# them: the answer has additional points where its quintics need them.
 LONGEST_SPACING = 0.01  # s
 
 
@@ -72,12 +71,12 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
     limits : JointLimits
         Its limits, before the request's scaling.
     request : PlanningRequest
-        What is asked.
+        Via points and how to pass them.
 
     Returns
     -------
     Plan
-        A motion that keeps every limit, with its exact peaks.
+        A motion within every limit, with its exact peaks.
 
     Raises
     ------
@@ -108,7 +107,7 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
 
 def _planned_joints(method: Registered, model: RobotModel, limits: JointLimits,
                     request: PlanningRequest, start: Array | None) -> Plan:
-    """Return the plan in joint space, in the first posture that can have it."""
+    """Return the plan in joint space, in the first feasible posture."""
     durations = request.segment_durations
     if durations is not None and np.isnan(durations).any() and not method.some_durations:
         raise InvalidInputError(
@@ -142,12 +141,12 @@ def _through(method: Registered, model: RobotModel, limits: JointLimits,
 
 
 def _spacing(request: PlanningRequest) -> float:
-    """Return how close points may be for which a motion is planned [s]."""
+    """Return the sample period for which a motion is planned [s]."""
     return min(request.sample_period, LONGEST_SPACING)
 
 
 def _with_misses(model: RobotModel, answer: Plan, q: Array) -> Plan:
-    """Return a plan whose note also says by how much it misses its via points."""
+    """Return a plan with the distances by which it misses its via points in the note."""
     found = misses(
         model, answer.trajectory, answer.via_times, q[len(q) - len(answer.via_times):])
     return replace(answer, note='; '.join(filter(None, (answer.note, miss_note(found)))))
@@ -187,7 +186,7 @@ def _path_in(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
 
 
 def _as_counted(error: RrrPlannerError, same: BoolArray, started: bool) -> RrrPlannerError:
-    """Return an error whose via points are counted as the request does."""
+    """Return an error with via points numbered as in the request."""
     numbers = np.concatenate(([0], np.flatnonzero(~same) + 1)) - started
     if error.via_point is not None and error.via_point >= 0:
         error.via_point = int(numbers[error.via_point])
@@ -211,7 +210,7 @@ def _via_times(request: PlanningRequest, trajectory: Trajectory, same: BoolArray
 
 
 def _without_noise(q: Array) -> Array:
-    """Return points at which a joint is exactly where it was, if it all but is."""
+    """Return points in which displacements of at most STANDING are exactly zero."""
     q = q.copy()
     for before, point in zip(q, q[1:]):
         still = np.abs(point - before) <= STANDING
@@ -232,7 +231,7 @@ def _same_tips(tips: Array) -> BoolArray:
 
 
 def _rest(model: RobotModel, limits: JointLimits, request: PlanningRequest, q: Array) -> Plan:
-    """Return the plan of via points that are all one: rest there for a sample period."""
+    """Return the plan for identical via points: rest there for a sample period."""
     period = request.sample_period
     profiles = [JointProfile(cycloid.cruise(np.array([period]), np.array([position]),
                                             np.zeros(1))) for position in q[0]]
@@ -242,7 +241,7 @@ def _rest(model: RobotModel, limits: JointLimits, request: PlanningRequest, q: A
 
 def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, via_times: Array) -> Plan:
-    """Return the plan of a trajectory, after the checks that no planner is trusted with."""
+    """Return the plan of a trajectory, after checks that are independent of the planner."""
     with step('the choice of points for the answer'):
         found = answer_points(model, limits, request, trajectory)
     trajectory = found.trajectory
@@ -256,7 +255,7 @@ def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
     if broken:
         raise ConvergenceError(
             f'planner {request.planner_id} broke a limit: {broken[0].text(model.joint_names)}')
-    # To the part to which the points keep a limit, what they do at it is not beyond it.
+    # The points keep limits to a tolerance: within it their torque counts as at the limit.
     effort = np.maximum(effort, np.minimum(found.effort, limits.max_effort))
-    return Plan(trajectory, found.points, via_times * found.stretch, peaks, effort, model,
+    return Plan(trajectory, found.points, via_times * found.time_scale, peaks, effort, model,
                 '; '.join(filter(None, (trajectory.note, found.note))))

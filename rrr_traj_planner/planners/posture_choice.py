@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""In which postures a motion is tried: the start's own first."""
+"""The postures in which a motion is planned, in order: the start's own first."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ from rrr_traj_planner.core.kinematics.travel_time import Passing, travel_time
 from rrr_traj_planner.core.path.axis_planes import passes_axis
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
-# A start this close to where postures meet has them all: noise must not choose between them.
+# A start this close to where postures meet counts as in all of them: noise must not decide.
 MEETING = 0.01  # rad
 
 Answer = TypeVar('Answer')
@@ -54,7 +54,7 @@ Answer = TypeVar('Answer')
 def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start: Array | None,
                    elbow: Elbow | None, passing: Passing) -> list[Posture]:
     """
-    Return the postures in which via points are tried by a motion in joint space.
+    Return the postures for a motion in joint space through via points, in order.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start:
     start : ndarray, shape (3,), optional
         Where the motion begins [rad].
     elbow : {'up', 'down'}, optional
-        What is asked for.
+        The requested branch.
     passing : Passing
         How the motion passes via points.
 
@@ -91,7 +91,7 @@ def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start:
 def path_postures(model: RobotModel, points: Array, start: Array | None,
                   elbow: Elbow | None) -> list[Posture]:
     """
-    Return the postures in which a path of the tip is tried.
+    Return the postures for a path of the tip, in order.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def path_postures(model: RobotModel, points: Array, start: Array | None,
     start : ndarray, shape (3,), optional
         Where the motion begins [rad]: along a path of the tip its posture is kept.
     elbow : {'up', 'down'}, optional
-        What is asked for.
+        The requested branch.
 
     Returns
     -------
@@ -113,7 +113,7 @@ def path_postures(model: RobotModel, points: Array, start: Array | None,
     Raises
     ------
     StartStateError
-        If the start has another elbow than what is asked for.
+        If the start is on another elbow branch than requested.
 
     """
     if start is None:

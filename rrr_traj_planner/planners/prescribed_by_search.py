@@ -24,7 +24,7 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scaling
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scale
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 # Without unit.
@@ -70,7 +70,7 @@ def within_torque(task: JointTask, law: TransitionLaw,
                 return None
             too_slow = scale
         else:
-            scaling = torque_time_scaling(task, motion)
+            scaling = torque_time_scale(task, motion)
             if np.isinf(scaling):
                 raise cannot_hold(task, motion)
             if scaling <= 1.0 + TORQUE_TOLERANCE:

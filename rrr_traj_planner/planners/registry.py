@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Planner ids and the functions behind them; every module of `methods` is looked through."""
+"""The registry of planners by id; it imports every module of `methods`."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ CartesianPlanner = Callable[[CartesianTask], Trajectory]
 
 
 class Registered(NamedTuple):
-    """A planner, of motions in joint space or along a path of the tip, and what it can do."""
+    """A planner, of motions in joint space or along a path of the tip, and its capabilities."""
 
     plan: JointPlanner | None
     some_durations: bool = False  # whether durations may be prescribed for some segments only
     plan_path: CartesianPlanner | None = None
-    misses_via_points: bool = False  # whether its way is to pass them by at a distance
-    passing: Passing = THROUGH     # how it passes via points: whole turns are chosen by that
+    misses_via_points: bool = False  # whether it blends around via points instead of reaching them
+    passing: Passing = THROUGH     # how it passes via points, for the choice of whole turns
 
 
 _planners: dict[str, Registered] = {}
@@ -56,10 +56,10 @@ def register(planner_id: str, some_durations: bool = False,
     planner_id : str
         The id, as requests name it.
     some_durations : bool
-        Whether it takes durations that are NaN, for segments that are free.
+        Whether it accepts durations that are NaN, for segments that are free.
     misses_via_points : bool
-        Whether it passes via points between the first and the last at a distance, by construction;
-        the plan's note then says at which.
+        Whether it blends around via points between the first and the last; the plan's note then
+        has the distances.
     passing : Passing
         How it passes via points, for the estimate of time by which whole turns are chosen.
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a planner is asked, and what each kind of them works on."""
+"""The planning request, and the tasks of joint-space and Cartesian planners."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ from rrr_traj_planner.core.trajectory.sampling import check_size, MOST_POINTS, N
 
 T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
 
-# How each field that is no array is checked: a function of its name and its value.
+# The check of each field that is not an array: a function of its name and its value.
 CHECKS: dict[str, Callable[[str, Any], Any]] = {
     'planner_id': text, 'velocity_scaling': share, 'acceleration_scaling': share,
     'sample_period': partial(positive, unit='s'), 'max_deviation': partial(positive, unit='m'),
@@ -67,17 +67,17 @@ class PlanningRequest(ReadOnlyArrays):
     planner_id : str
         The method.
     segment_durations : array_like, optional
-        Durations [s], one for each segment; NaN leaves a segment free, where the planner can do
+        Durations [s], one for each segment; NaN leaves a segment free, if the planner supports
         that. None: as fast as the limits allow.
     velocity_scaling, acceleration_scaling : float
         Factors in (0, 1] on the limits.
     sample_period : float
         Time between the points of the answer [s].
     elbow : {'up', 'down'}, optional
-        Branch; None: with a start, the one that it is on if the way from it can be had, else the
-        other; without, up if that keeps the limits, else down.
+        Branch; None: with a start, its own if feasible, else the other; without, up if feasible,
+        else down.
     max_deviation : float
-        How far a Cartesian path may leave the polyline [m].
+        Largest distance of a Cartesian path from the polyline [m].
     max_tip_speed : float
         Bound on the tip's speed along a Cartesian path [m/s]; infinite: none.
     steady_zones : bool
@@ -85,12 +85,13 @@ class PlanningRequest(ReadOnlyArrays):
     half_transition : float
         Half the length of a transition of `poly_414` [s], its t_acc.
     should_stop : callable
-        Asked now and then; once it answers True, the best motion so far is the answer.
+        Cancellation callback, called repeatedly; once it returns True, the best motion so far is
+        the answer.
     max_points : int
-        How many points the answer may have; one that must have more is not planned.
+        Largest number of points of the answer; a request that needs more is rejected.
     start_state_tolerance : float
-        By how much the start may be outside a joint's range [rad]: it is then taken as on its
-        end, and the motion starts there.
+        Distance by which the start may be outside a joint's range [rad]: the motion then starts
+        at the end of the range.
 
     Raises
     ------
@@ -160,7 +161,7 @@ class PlanningRequest(ReadOnlyArrays):
 @dataclass(frozen=True, eq=False)
 class JointTask(ReadOnlyArrays):
     """
-    What a joint-space planner works on: consecutive points that differ, unless durations say so.
+    The task of a joint-space planner: consecutive points that differ, or stay by given durations.
 
     Parameters
     ----------
@@ -169,13 +170,13 @@ class JointTask(ReadOnlyArrays):
     limits : JointLimits
         Scaled as requested.
     points : ndarray, shape (n + 1, 3)
-        Joint positions [rad], within the limits, each of which the motors can hold.
+        Joint positions [rad], within the ranges, at which the motors can hold the arm.
     durations : ndarray, shape (n,), optional
         Prescribed durations of the segments [s]; NaN where one is free.
     sample_period : float
         [s].
     segment_numbers : ndarray of int, shape (n,), optional
-        What the caller calls the segments, where it has more of them; None: 0, 1, 2, ...
+        The segments' numbers in the request, which may have more of them; None: 0, 1, 2, ...
     should_stop : callable
         As in `PlanningRequest`.
     half_transition : float
@@ -194,17 +195,17 @@ class JointTask(ReadOnlyArrays):
 
     def segment_number(self, segment: int) -> int:
         """
-        Return what the caller calls a segment.
+        Return a segment's number in the request.
 
         Parameters
         ----------
         segment : int
-            Its index among the task's own segments.
+            Its index in the task.
 
         Returns
         -------
         int
-            Its index among the caller's.
+            Its index in the request.
 
         """
         return segment if self.segment_numbers is None else int(self.segment_numbers[segment])
@@ -213,7 +214,7 @@ class JointTask(ReadOnlyArrays):
 @dataclass(frozen=True, eq=False)
 class CartesianTask(ReadOnlyArrays):
     """
-    What a planner of Cartesian paths works on: consecutive points that differ.
+    The task of a planner of Cartesian paths: consecutive points that differ.
 
     Parameters
     ----------
@@ -229,7 +230,7 @@ class CartesianTask(ReadOnlyArrays):
     posture : Posture
         In which the arm follows the path.
     max_deviation : float
-        How far the path may leave the polyline [m].
+        Largest distance of the path from the polyline [m].
     max_tip_speed : float
         [m/s], infinite: none.
     steady_zones : bool

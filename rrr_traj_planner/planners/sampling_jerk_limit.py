@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How fast acceleration may change, and how, so that samples can follow a motion."""
+"""The jerk limit due to sampling: a sampled motion must represent every change of acceleration."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inertia_matrix
 from rrr_traj_planner.core.errors import InvalidInputError
 
-# Samples that a full swing of acceleration lasts; more where the acceleration that a controller
-# rebuilds from them must keep a limit.
+# Least number of samples in a reversal from full acceleration to full deceleration; more where the
+# acceleration that a controller interpolates between them must keep a limit.
 SAMPLES, SAMPLES_OF_LIMITED = 2.0, 4.0
 
-# Part of a ramp during which jerk is constant, and how many times as long as it must a swing has
-# to last for samples to follow jerk that rises and falls so fast.
+# Part of a ramp during which jerk is constant, and the ratio of the sampling's jerk limit to the
+# joints' own from which on ramps have that part: jerk then changes slowly enough for the samples.
 CRUISE, SLOW_ENOUGH = 0.6, 7.5
 
 
-class Followable(NamedTuple):
-    """What samples can follow."""
+class SamplingLimits(NamedTuple):
+    """Limits with the jerk limit due to sampling, and the shape of ramps."""
 
     limits: JointLimits  # with finite limits on jerk
     cruise: float        # part of a ramp during which jerk is constant
 
 
-def followable(model: RobotModel, limits: JointLimits, q: Array,
-               sample_period: float) -> Followable:
+def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
+                        sample_period: float) -> SamplingLimits:
     """
-    Return limits whose jerk keeps changes of acceleration so long that samples can follow them.
+    Return limits with jerk bounded so that every change of acceleration lasts several samples.
 
     Parameters
     ----------
@@ -54,14 +54,14 @@ def followable(model: RobotModel, limits: JointLimits, q: Array,
     limits : JointLimits
         Its limits.
     q : ndarray, shape (n, 3)
-        Poses on the way [rad].
+        Poses along the motion [rad].
     sample_period : float
         [s].
 
     Returns
     -------
-    Followable
-        Jerk cruises where its limits make every swing much longer than samples do.
+    SamplingLimits
+        With a cruise of jerk where the joints' jerk limits are much tighter than the sampling's.
 
     Raises
     ------
@@ -72,12 +72,12 @@ def followable(model: RobotModel, limits: JointLimits, q: Array,
     samples = np.where(np.isinf(limits.max_acceleration), SAMPLES, SAMPLES_OF_LIMITED)
     jerk = np.pi * acceleration_scale(model, limits, q) / (samples * sample_period)
     cruise = CRUISE if (SLOW_ENOUGH * limits.max_jerk <= jerk).all() else 0.0
-    return Followable(replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk)), cruise)
+    return SamplingLimits(replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk)), cruise)
 
 
 def acceleration_scale(model: RobotModel, limits: JointLimits, q: Array) -> Array:
     """
-    Return the acceleration that each joint can have, by its limit or by its torque.
+    Return the largest acceleration of each joint, by its limit or by its torque and inertia.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def acceleration_scale(model: RobotModel, limits: JointLimits, q: Array) -> Arra
     limits : JointLimits
         Its limits.
     q : ndarray, shape (n, 3)
-        Poses on the way [rad].
+        Poses along the motion [rad].
 
     Returns
     -------

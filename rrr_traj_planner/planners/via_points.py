@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Via points in joint space, in one posture and within the ranges; holding torques."""
+"""Via points in joint space, in one posture, checked against ranges and holding torques."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
-HOLDING_TOLERANCE = 1e-9  # relative
+HOLDING_TOLERANCE = 1e-9  # part of an effort limit up to which exceeding it is rounding
 
 
 def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
@@ -54,7 +54,7 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
     posture : Posture
         The posture.
     passing : Passing
-        How the motion passes via points: what their whole turns are chosen by.
+        How the motion passes via points, for the choice of whole turns.
 
     Returns
     -------
@@ -161,13 +161,13 @@ def holding_error(where: str, joint: str, torque: float, limit: float,
     Parameters
     ----------
     where : str
-        The place, for people.
+        The position, for the message.
     joint : str
         Name of the joint.
     torque, limit : float
-        What is needed and what there is [N m].
+        The torque needed and its limit [N m].
     via_point : int
-        Index of the via point to blame, -1 where none is.
+        Index of the via point, -1 where it is none.
 
     Returns
     -------
@@ -184,7 +184,7 @@ def holding_error(where: str, joint: str, torque: float, limit: float,
 
 def torque_texts(torque: float, limit: float) -> tuple[str, ...]:
     """
-    Return a torque and its limit for an error's message, to a tenth where that tells them apart.
+    Return a torque and its limit for a message, to a tenth where that distinguishes them.
 
     Parameters
     ----------

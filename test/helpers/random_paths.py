@@ -34,7 +34,7 @@ from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.path_timing.least_time import fastest_along, PathTask
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
-from rrr_traj_planner.planners.sampling_jerk_limit import followable
+from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
 
 PLANNERS = ('line_arc', 'line_polynomial')
 NONE = np.full(3, np.inf)
@@ -62,8 +62,9 @@ class PathCase:
     @property
     def cruise(self):
         """Return `sampling_jerk_limit` of the case's limits."""
-        return followable(self.model, self.limits, self.arm_path(self.arm_path.path.via_s).q,
-                          self.request.sample_period).cruise
+        q = self.arm_path(self.arm_path.path.via_s).q
+        return limits_for_sampling(
+            self.model, self.limits, q, self.request.sample_period).cruise
 
     def timed(self, max_tip_speed=np.inf, **limits):
         """Return the fastest motion along the path, with limits changed."""

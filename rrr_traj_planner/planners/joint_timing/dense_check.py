@@ -67,7 +67,7 @@ class DenseCheck:
             return None
         return inverse_dynamics(self._task.model, self.q, self.qd, self.qdd)
 
-    def time_scaling(self) -> float:
+    def time_scale(self) -> float:
         """
         Return the least factor on all times with which limits other than positions hold.
 

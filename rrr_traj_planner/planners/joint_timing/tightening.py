@@ -84,7 +84,7 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion) -> Solved | 
         outcome = problem.minimised(constraints, margins, start)
         task.should_stop()
         check = DenseCheck(task, grid, outcome.motion)
-        if check.time_scaling() <= 1.0 + worth_it and not check.beyond_range.any():
+        if check.time_scale() <= 1.0 + worth_it and not check.beyond_range.any():
             task.should_stop()
             fits = problem.fitting(outcome, outcome.motion)
             if fits is not None and fits.cost <= (1.0 + worth_it) * durations.cost(

@@ -22,7 +22,7 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import peak_torque
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import torque_time_scaling
+from rrr_traj_planner.planners.transitions.motion_law import torque_time_scale
 
 ROUNDING = 1e-7  # part of a limit up to which exceeding it is rounding
 
@@ -50,8 +50,8 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
     """
     if beyond_range(task, trajectory).any():
         return None
-    by_torque = torque_time_scaling(task, trajectory)
-    factor = kinematic_time_scaling(task, trajectory)
+    by_torque = torque_time_scale(task, trajectory)
+    factor = kinematic_time_scale(task, trajectory)
     # a motion may pass fast, but not slowly, where gravity alone exceeds a limit
     dynamic = np.isinf(by_torque)
     if dynamic and not torque_fits(task, trajectory):
@@ -100,7 +100,7 @@ def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
     return np.where(beyond > JOINT_ROUNDING, beyond, 0.0)
 
 
-def kinematic_time_scaling(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
+def kinematic_time_scale(task: JointTask, trajectory: PiecewiseTrajectory) -> float:
     """
     Return the least factor on all times by velocity, acceleration and jerk limits.
 

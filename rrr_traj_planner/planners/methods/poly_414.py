@@ -42,7 +42,7 @@ from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import (
     cannot_hold,
     slowed_for_torque,
-    torque_time_scaling,
+    torque_time_scale,
     via_problem_of,
 )
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
@@ -148,7 +148,7 @@ def _motion_in(task: JointTask, problem: ViaProblem, t_acc: float,
     if not is_within_limits(problem, timing):
         return None
     motion = trajectory(task.points, timing, QUARTIC)
-    scaling = torque_time_scaling(task, motion)
+    scaling = torque_time_scale(task, motion)
     if np.isinf(scaling):
         raise cannot_hold(task, motion)
     return motion if scaling <= 1.0 + TORQUE_TOLERANCE else None

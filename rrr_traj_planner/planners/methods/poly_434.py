@@ -47,7 +47,7 @@ from rrr_traj_planner.planners.stops.symmetric_434 import (
     least_time,
 )
 from rrr_traj_planner.planners.stops.torque_434 import law_for_torque, Segment, STARTS
-from rrr_traj_planner.planners.transitions.motion_law import torque_time_scaling, via_problem_of
+from rrr_traj_planner.planners.transitions.motion_law import torque_time_scale, via_problem_of
 from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
 
 
@@ -120,7 +120,7 @@ def _for_torque(task: JointTask, k: int, ratios: DisplacementRatios, law: Lin434
         quick = max(floor, float(kinematic_durations(task, least_time(law, ratios))))
         each = Lin434(*(np.array([field]) for field in law))
         motion = _motion(points, each, np.array([quick]))
-        return quick * max(1.0, torque_time_scaling(task, motion))
+        return quick * max(1.0, torque_time_scale(task, motion))
 
     least = total(law)
     enough = floor if task.durations is None or np.isnan(task.durations[k]) else max(

@@ -34,7 +34,7 @@ from rrr_traj_planner.planners.joint_timing.prescribed import prescribed
 from rrr_traj_planner.planners.joint_timing.start import cannot_be_held
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, followable
+from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.solver.ramps import grid_of
 
@@ -72,7 +72,7 @@ def plan(task: JointTask) -> Trajectory:
         If no path between two via points is found along which the motors can hold the arm.
 
     """
-    limits, cruise = followable(task.model, task.limits, task.points, task.sample_period)
+    limits, cruise = limits_for_sampling(task.model, task.limits, task.points, task.sample_period)
     task = replace(task, limits=limits)
     grid = grid_of(_ramps(task), cruise)
     found = fastest(task, grid) if task.durations is None else prescribed(

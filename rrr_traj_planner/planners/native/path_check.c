@@ -29,7 +29,7 @@ typedef struct {
     const double *bounds;   /* (CHECKED), infinite where there is none */
     double *excess;         /* (N, P, stride), zero at first */
     double *scratch;        /* (CHECKED + 1, 2 n checks + 1) and n + 1 */
-    double stretch, slowest, fastest;  /* found: see path_timing's dense check */
+    double time_scale, slowest, fastest;  /* found: see path_timing's dense check */
 } PathCheck;
 
 typedef struct {            /* over the motion */
@@ -125,7 +125,7 @@ static void excess_near_points(int n, int checks, const double *x, double limit,
 
 /* Check a motion along a path at many times: by how much each quantity exceeds its bound near each
  * point, the time scaling with which all bounds hold, and the tip's least and largest speed. */
-EXPORTED void path_checked(const Problem *p, PathCheck *check, double *variables)
+EXPORTED void check_path(const Problem *p, PathCheck *check, double *variables)
 {
     const int n = p->n, width = 2 * n * check->checks + 1;
     const Variables m = variables_at(p, variables);
@@ -143,6 +143,6 @@ EXPORTED void path_checked(const Problem *p, PathCheck *check, double *variables
                          check->excess + (size_t)k * points_of(p) * check->stride + e,
                          check->stride);
     }
-    check->stretch = fmax(peaks.rate, fmax(sqrt(peaks.squared), cbrt(peaks.cubed)));
+    check->time_scale = fmax(peaks.rate, fmax(sqrt(peaks.squared), cbrt(peaks.cubed)));
     check->slowest = peaks.slowest, check->fastest = peaks.fastest;
 }

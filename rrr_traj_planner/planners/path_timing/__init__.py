@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The least time along a path of the tip: what it asks of the joints, limits, a start."""
+"""The least time along a path of the tip: tabulated dynamics, constraints, a feasible start."""

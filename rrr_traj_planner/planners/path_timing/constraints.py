@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The limits of a motion along a path, for the solver."""
+"""The joints' and the tip's limits as constraints on the motion along a path, for the solver."""
 
 from __future__ import annotations
 
@@ -22,24 +22,25 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.planners.path_timing.table import Demand, PathTable
+from rrr_traj_planner.planners.path_timing.table import PathTable, PathTerms
 from rrr_traj_planner.planners.solver.limits import Limits, PATH
 from rrr_traj_planner.planners.solver.ramps import Grid, States, Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 
-FAR = 1e6  # stands for no bound
+FAR = 1e6  # stands for no bound, in SI units and rad: never active
 
 
 QUANTITIES = 14  # three each of velocity, acceleration, jerk and torque, then:
 VELOCITY, ACCELERATION, JERK, TORQUE = (slice(3 * k, 3 * k + 3) for k in range(4))
 SPEED, ALONG = 12, 13  # the tip's speed, and its acceleration along the path
 
-# Along a piece on which the tip is to keep its speed it may accelerate by so much [m/s^2].
+# Bound on the tip's acceleration along pieces of constant speed [m/s^2]: a barrier method needs an
+# interior.
 STEADY = 1e-3
 
 
 class Progress(NamedTuple):
-    """Place, speed, acceleration and jerk along the path at points, shape (N, p) each."""
+    """Position, speed, acceleration and jerk along the path at points, shape (N, p) each."""
 
     s: Array
     sd: Array
@@ -47,13 +48,15 @@ class Progress(NamedTuple):
     sddd: Array
 
 
-def limited(demand: Demand, at: Progress) -> Array:
+def limited(terms: PathTerms, at: Progress) -> Array:
     """
     Return the limited quantities.
 
+    Torques are those of Bobrow, Dubowsky & Gibson (1985): m sdd + c sd^2 + g.
+
     Parameters
     ----------
-    demand : Demand
+    terms : PathTerms
         Of the path at the points.
     at : Progress
         Of the motion.
@@ -66,9 +69,9 @@ def limited(demand: Demand, at: Progress) -> Array:
     """
     _, v, a, j = (f[..., np.newaxis] for f in at)
     return np.concatenate((
-        demand.dq * v, demand.ddq * v ** 2 + demand.dq * a,
-        v * (demand.dddq * v ** 2 + 3.0 * demand.ddq * a) + demand.dq * j,
-        demand.m * a + demand.c * v ** 2 + demand.g, v, a), axis=-1)
+        terms.dq * v, terms.ddq * v ** 2 + terms.dq * a,
+        v * (terms.dddq * v ** 2 + 3.0 * terms.ddq * a) + terms.dq * j,
+        terms.m * a + terms.c * v ** 2 + terms.g, v, a), axis=-1)
 
 
 def all_bounds(limits: JointLimits, max_tip_speed: float) -> Array:
@@ -99,7 +102,7 @@ class PathConstraints:
     Parameters
     ----------
     table : PathTable
-        What the path asks of the joints.
+        The path's derivatives and dynamics.
     limits : JointLimits
         Infinite where there is none.
     max_tip_speed : float
@@ -107,16 +110,16 @@ class PathConstraints:
     grid : Grid
         The family of motions.
     margins : ndarray, shape (N, 2 n + 1, QUANTITIES)
-        How far below its limit each quantity is to stay.
+        Subtracted from each quantity's limit.
     steady : ndarray of bool, shape (N,)
         Pieces on which the tip keeps its speed.
     workspace : Workspace, optional
-        Memory that problems share which are solved one after the other.
+        Memory shared by problems that are solved one after the other.
 
     Attributes
     ----------
     points : ndarray, shape (N + 1, 1)
-        Places where the pieces meet [m].
+        Path lengths where the pieces meet [m].
     margins
         As given.
 
@@ -130,11 +133,11 @@ class PathConstraints:
         upper = np.minimum(bounds, FAR) - margins
         upper[steady, :, ALONG] = STEADY
         lower = -upper
-        lower[..., SPEED] = 0.0  # the tip moves on, but for where it begins and ends
+        lower[..., SPEED] = 0.0  # the tip moves forward; it rests at the start and the end
         lower[0, 0, SPEED] = lower[-1, grid.n, SPEED] = -FAR
-        kept = np.isfinite(bounds)
-        kept[SPEED], kept[ALONG] = True, steady.any()
-        self._lower, self._upper, self._kept = lower, upper, kept
+        is_limited = np.isfinite(bounds)
+        is_limited[SPEED], is_limited[ALONG] = True, steady.any()
+        self._lower, self._upper, self._limited = lower, upper, is_limited
 
     @cached_property
     def problem(self) -> TimingProblem:
@@ -143,34 +146,34 @@ class PathConstraints:
         lower, upper, bounded = np.zeros((N, P, 4)), np.zeros((N, P, 4)), np.zeros((P, 4), bool)
         along = slice(1, 3)  # the states' columns of the tip's speed and acceleration
         lower[..., along], upper[..., along] = self._lower[..., SPEED:], self._upper[..., SPEED:]
-        bounded[:, along] = self._kept[SPEED:]
+        bounded[:, along] = self._limited[SPEED:]
         return TimingProblem(self.grid, self.points, Limits(
             PATH, lower, upper, bounded, self._lower[..., :SPEED], self._upper[..., :SPEED],
-            np.tile(self._kept[:SPEED], (P, 1)), table=self.table.coefficients,
+            np.tile(self._limited[:SPEED], (P, 1)), table=self.table.coefficients,
             overshoot=self.table.overshoot), self._workspace)
 
-    def demand(self, s: Array) -> Demand:
+    def terms(self, s: Array) -> PathTerms:
         """
-        Return what is demanded, at the end of a piece with what a quintic overshoots by.
+        Return the path's terms, with a quintic's overshoot added at the ends of pieces.
 
         Parameters
         ----------
         s : ndarray, shape (N, 2 n + 1)
-            Places of a motion's points [m].
+            Path lengths of a motion's points [m].
 
         Returns
         -------
-        Demand
+        PathTerms
             Of the path there.
 
         """
-        demand = self.table(s)
+        terms = self.table(s)
         if not self.table.overshoot.any():
-            return demand
-        ddq, c = demand.ddq.copy(), demand.c.copy()
+            return terms
+        ddq, c = terms.ddq.copy(), terms.c.copy()
         ddq[:, self.grid.n] += self.table.overshoot[:, 0]
         c[:, self.grid.n] += self.table.overshoot[:, 1]
-        return demand._replace(ddq=ddq, c=c)
+        return terms._replace(ddq=ddq, c=c)
 
 
 def progress_at(grid: Grid, points: Array, m: Variables) -> Progress:
@@ -182,9 +185,9 @@ def progress_at(grid: Grid, points: Array, m: Variables) -> Progress:
     grid : Grid
         The family of motions.
     points : ndarray, shape (N + 1, 1)
-        Places where the pieces meet [m].
+        Path lengths where the pieces meet [m].
     m : Variables
-        Its unknowns.
+        The motion.
 
     Returns
     -------

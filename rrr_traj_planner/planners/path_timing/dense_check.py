@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Dense check of a motion along a path: what it exceeds between the points of the problem."""
+"""Dense check of a motion along a path: by how much it exceeds limits between the points."""
 
 from __future__ import annotations
 
@@ -34,54 +34,55 @@ from rrr_traj_planner.planners.path_timing.constraints import (
     TORQUE,
     VELOCITY,
 )
-from rrr_traj_planner.planners.path_timing.table import Demand
+from rrr_traj_planner.planners.path_timing.table import PathTerms
 from rrr_traj_planner.planners.solver.library import Arena, KERNELS
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
-CHECKS = 8        # between two points
-CHECKED = 13      # quantities: all but acceleration along the path
-BACKWARD = 1e-12  # of the largest speed, that is rounding
+CHECKS = 8        # samples between two points
+CHECKED = 13      # number of quantities: all but acceleration along the path
+BACKWARD = 1e-12  # part of the largest speed up to which a negative speed is rounding
 
 
 class DenseCheck(NamedTuple):
-    """What a dense check of a motion finds."""
+    """The result of a dense check of a motion."""
 
-    excess: Array   # of every limited quantity up to the points beside each, (N, 2 n + 1, K)
-    stretch: float  # by how much the motion must be slowed; see `least_stretch`
-    slowest: float  # speed of the tip [m/s]
-    fastest: float
+    excess: Array   # of every limited quantity near each point, (N, 2 n + 1, QUANTITIES)
+    time_scale: float  # least factor on all times with which limits hold
+    slowest: float  # least speed of the tip [m/s]
+    fastest: float  # largest [m/s]
 
     @property
-    def goes_on(self) -> bool:
-        """Return whether the tip never goes back."""
+    def is_forward(self) -> bool:
+        """Return whether the tip never moves backward."""
         return self.slowest >= -BACKWARD * self.fastest
 
 
 class _PathCheck(ctypes.Structure):  # as in native/path_check.c
-    _fields_ = [('checks', ctypes.c_int32), ('apart', ctypes.c_int32),
+    _fields_ = [('checks', ctypes.c_int32), ('stride', ctypes.c_int32),
                 ('rounding', ctypes.c_double),
                 *((name, ctypes.c_void_p) for name in ('ramp', 'bounds', 'excess', 'scratch')),
-                *((name, ctypes.c_double) for name in ('stretch', 'slowest', 'fastest'))]
+                *((name, ctypes.c_double) for name in ('time_scale', 'slowest', 'fastest'))]
 
 
 def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> DenseCheck:
     """
-    Return what a motion exceeds between its points, as a table of the path has it.
+    Return by how much a motion exceeds its limits between the points, by the path's table.
 
     Parameters
     ----------
     problem : TimingProblem
         Of the path.
     m : Variables
-        Its unknowns.
+        The motion.
     bounds : ndarray, shape (QUANTITIES,)
-        On magnitudes, infinite where there is none; on accelerations along the path there is.
+        On magnitudes, infinite where there is none; that on acceleration along the path is not
+        checked.
 
     Returns
     -------
     DenseCheck
-        At CHECKS times between two points.
+        With CHECKS samples between two points.
 
     """
     N, n, ramp = len(m.T), problem.grid.n, _unit_ramp(problem.grid.shape.cruise)
@@ -90,17 +91,17 @@ def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> DenseChe
     arrays['bounds'][:], arrays['excess'][:] = bounds, 0.0
     check = _PathCheck(CHECKS, QUANTITIES, ROUNDING, ramp=ramp.ctypes.data, **arrays.addresses)
     variables = np.concatenate([f.ravel() for f in m])
-    KERNELS.path_checked(problem.at, ctypes.byref(check), variables.ctypes.data)
-    return DenseCheck(arrays['excess'], check.stretch, check.slowest, check.fastest)
+    KERNELS.check_path(problem.at, ctypes.byref(check), variables.ctypes.data)
+    return DenseCheck(arrays['excess'], check.time_scale, check.slowest, check.fastest)
 
 
-def least_stretch(demand: Demand, at: Progress, bounds: Array) -> float:
+def least_time_scale(terms: PathTerms, at: Progress, bounds: Array) -> float:
     """
-    Return by how much a motion must be slowed for its limits at given points.
+    Return the least factor on all times with which limits hold at given points.
 
     Parameters
     ----------
-    demand : Demand
+    terms : PathTerms
         Of the path at the points.
     at : Progress
         Of the motion.
@@ -110,16 +111,16 @@ def least_stretch(demand: Demand, at: Progress, bounds: Array) -> float:
     Returns
     -------
     float
-        At most 1 where it keeps them as it is; infinite where no slowing helps.
+        At most 1 where they hold as it is; infinite where no factor helps.
 
     """
-    x = limited(demand, at)
+    x = limited(terms, at)
     share = np.abs(x) / bounds
-    moving = x[..., TORQUE] - demand.g
-    spare = bounds[..., TORQUE] - np.sign(moving) * demand.g
+    moving = x[..., TORQUE] - terms.g
+    margin = bounds[..., TORQUE] - np.sign(moving) * terms.g
     with np.errstate(divide='ignore', invalid='ignore'):
-        by_torque = np.where(moving != 0.0, np.abs(moving) / spare, 0.0)
-    by_torque = np.where((spare <= 0.0) & (moving != 0.0), np.inf, by_torque)
+        by_torque = np.where(moving != 0.0, np.abs(moving) / margin, 0.0)
+    by_torque = np.where((margin <= 0.0) & (moving != 0.0), np.inf, by_torque)
     return float(max(share[..., VELOCITY].max(), share[..., SPEED].max(),
                      np.sqrt(share[..., ACCELERATION].max()),
                      np.cbrt(share[..., JERK].max()), np.sqrt(by_torque.max())))
@@ -127,7 +128,7 @@ def least_stretch(demand: Demand, at: Progress, bounds: Array) -> float:
 
 @lru_cache(maxsize=64)
 def _unit_ramp(cruise: float) -> Array:
-    """Return a unit ramp's values at all checks from its start on, (2 CHECKS, 4)."""
+    """Return a unit ramp's q, qd, qdd and jerk at all samples from its start, (2 CHECKS, 4)."""
     values = np.stack(RampShape(cruise)(np.arange(2 * CHECKS) / (2 * CHECKS)), axis=1)
     values.setflags(write=False)
     return values

@@ -12,7 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How fast the tip may pass where pieces of a path meet: what a motion to begin from goes by."""
+"""
+The tip's speeds where pieces of a path meet, for a feasible first motion.
+
+A forward and a backward pass bound each speed by what is reachable from its neighbour (as in
+Pham & Pham, A new approach to time-optimal path parameterization based on reachability analysis,
+IEEE Trans. Robotics 34, 2018, but with one speed a piece and with jerk limits).
+"""
 
 from __future__ import annotations
 
@@ -27,18 +33,18 @@ from rrr_traj_planner.planners.path_timing.constraints import (
 )
 from rrr_traj_planner.planners.path_timing.table import PathTable
 
-PART = 0.25       # of each limit, for the speed itself and for its changes
-HALVINGS = 40
+PART = 0.25    # of each limit, used by the constant speed and by its changes alike
+HALVINGS = 40  # of a speed's bracket: to 1e-12 of it
 
 
-def paces(table: PathTable, bounds: Array) -> Array:
+def initial_speeds_of(table: PathTable, bounds: Array) -> Array:
     """
-    Return speeds at the ends of all pieces between which the tip can change its speed in time.
+    Return speeds at the ends of all pieces such that each piece is long enough for its change.
 
     Parameters
     ----------
     table : PathTable
-        What the path asks of the joints.
+        The path's derivatives and dynamics.
     bounds : ndarray, shape (QUANTITIES,)
         On the limited quantities, infinite where there is none.
 
@@ -52,34 +58,34 @@ def paces(table: PathTable, bounds: Array) -> Array:
     velocity, acceleration, jerk = (PART * bounds[k] for k in (VELOCITY, ACCELERATION, JERK))
     torque = PART * np.maximum(bounds[TORQUE] - np.abs(d.g), 0.0)
     with np.errstate(divide='ignore', invalid='ignore'):
-        steady = _least(velocity / np.abs(d.dq), np.sqrt(acceleration / np.abs(d.ddq)),
-                        np.cbrt(jerk / np.abs(d.dddq)), np.sqrt(torque / np.abs(d.c)))
-        speeding = _least(acceleration / np.abs(d.dq), torque / np.abs(d.m))
-        jerking = _least(jerk / np.abs(d.dq))
-    steady = np.minimum(steady, PART * bounds[SPEED])
+        constant = _least(velocity / np.abs(d.dq), np.sqrt(acceleration / np.abs(d.ddq)),
+                          np.cbrt(jerk / np.abs(d.dddq)), np.sqrt(torque / np.abs(d.c)))
+        max_sdd = _least(acceleration / np.abs(d.dq), torque / np.abs(d.m))
+        max_sddd = _least(jerk / np.abs(d.dq))
+    constant = np.minimum(constant, PART * bounds[SPEED])
     lengths = np.diff(table.ends)
-    limit = np.concatenate(([0.0], np.minimum(steady[:-1], steady[1:]), [0.0]))
-    forth = _reachable(limit, lengths, speeding, jerking)
-    back = _reachable(limit[::-1], lengths[::-1], speeding[::-1], jerking[::-1])[::-1]
-    return np.minimum(forth, back)
+    limit = np.concatenate(([0.0], np.minimum(constant[:-1], constant[1:]), [0.0]))
+    forward = _reachable(limit, lengths, max_sdd, max_sddd)
+    backward = _reachable(limit[::-1], lengths[::-1], max_sdd[::-1], max_sddd[::-1])[::-1]
+    return np.minimum(forward, backward)
 
 
 def _least(*shares: Array) -> Array:
-    """Return the least of each piece, over places and joints; what is not limited aside."""
+    """Return the least value on each piece, over positions and joints; NaN counts as no limit."""
     return np.asarray(np.min([np.nan_to_num(s, nan=np.inf, posinf=np.inf).min(axis=(1, 2))
                               for s in shares], axis=0))
 
 
-def _reachable(limit: Array, lengths: Array, speeding: Array, jerking: Array) -> Array:
-    """Return speeds that are not higher than what can be reached from the one before."""
+def _reachable(limit: Array, lengths: Array, max_sdd: Array, max_sddd: Array) -> Array:
+    """Return speeds limited to those that can be reached from the one before."""
     speeds = limit.copy()
     for k, length in enumerate(lengths):
         low, high = speeds[k], limit[k + 1]
-        if high <= low or _may(low, high, length, speeding[k], jerking[k]):
+        if high <= low or _is_feasible(low, high, length, max_sdd[k], max_sddd[k]):
             continue
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            if _may(speeds[k], middle, length, speeding[k], jerking[k]):
+            if _is_feasible(speeds[k], middle, length, max_sdd[k], max_sddd[k]):
                 low = middle
             else:
                 high = middle
@@ -87,7 +93,7 @@ def _reachable(limit: Array, lengths: Array, speeding: Array, jerking: Array) ->
     return speeds
 
 
-def _may(v0: float, v1: float, length: float, speeding: float, jerking: float) -> bool:
-    """Return whether a cycloid of velocity, from one speed to another, keeps the limits."""
+def _is_feasible(v0: float, v1: float, length: float, max_sdd: float, max_sddd: float) -> bool:
+    """Return whether a cycloidal change of speed along a piece keeps the limits."""
     T = 2.0 * length / (v0 + v1)
-    return 2.0 * (v1 - v0) <= speeding * T and 2.0 * np.pi * (v1 - v0) <= jerking * T * T
+    return 2.0 * (v1 - v0) <= max_sdd * T and 2.0 * np.pi * (v1 - v0) <= max_sddd * T * T

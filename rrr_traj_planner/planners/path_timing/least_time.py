@@ -13,10 +13,11 @@
 # limitations under the License.
 
 """
-The fastest motion along a given path: its progress is a sequence of ramps.
+The fastest motion along a given path (Bobrow, Dubowsky & Gibson 1985; Shin & McKay 1985).
 
-One coordinate, the length behind the tip, takes the place of the joints in the method of
-`time_optimal`: pieces of the path are its segments, and what the joints may do bounds it.
+The method is that of `time_optimal`, direct transcription and an interior-point method, with one
+coordinate, the path length s, instead of the joints: its acceleration is a sequence of ramps, the
+pieces of the path are its segments, and the joints' limits are functions of s, sd, sdd and sddd.
 """
 
 from __future__ import annotations
@@ -39,10 +40,10 @@ from rrr_traj_planner.planners.path_timing.constraints import (
 from rrr_traj_planner.planners.path_timing.dense_check import (
     dense_check,
     DenseCheck,
-    least_stretch,
+    least_time_scale,
 )
-from rrr_traj_planner.planners.path_timing.initial_speeds import paces
-from rrr_traj_planner.planners.path_timing.start import paced_along, uniform_along
+from rrr_traj_planner.planners.path_timing.initial_speeds import initial_speeds_of
+from rrr_traj_planner.planners.path_timing.start import motion_with_speeds, uniform_along
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.solver.interior_point import (
     Centre,
@@ -55,20 +56,21 @@ from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, time_scaled, V
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 from rrr_traj_planner.planners.via_points import holding_error
 
-MOST_RAMPS, FEWEST_RAMPS = 16, 8  # in a piece of the path: the most up to so many pieces,
-PIECES, SPARING = 11, 2.0         # and for more fewer, by this power of their number
-ROOM = 1.02        # durations of the start over the least that fit
-HOLDING_ROOM = 1e-6
-REPAIRS = 8
-WORTH_IT = 2e-3    # a longer stretch than this is better mended by planning again
-PATIENCE = 1       # times after which it is worth less, again each time:
-LESS_WORTH = 1.7   # so many times a longer stretch is left as it is
-ROUGH_GAP = 0.3    # of the total time, at which what the first motion exceeds is looked at
-NEARER = 3         # centres before the last, from which limits are approached that are closer
+# Without unit.
+MOST_RAMPS, FEWEST_RAMPS = 16, 8  # in a piece of the path: the most for up to
+PIECES, RAMP_EXPONENT = 11, 2.0   # so many pieces, beyond fewer by this power of their number
+DURATION_MARGIN = 1.02  # durations of the start / least durations: it is strictly feasible
+HOLDING_MARGIN = 1e-6   # part of the effort limits that gravity must leave along the path
+ROUNDS = 8              # of solving with larger margins, at most
+WORTH_IT = 2e-3         # part by which a motion is slowed rather than solved again,
+PATIENCE = 1            # after so many rounds multiplied in each round by
+WORTH_IT_GROWTH = 1.7
+ROUGH_GAP = 0.3         # part of the total time: the gap to which the first round converges
+CENTRES_BACK = 3        # which of the last centres a round with larger margins starts from
 
 
 class PathTask(NamedTuple):
-    """A path and the limits on the way along it."""
+    """A path and the limits of the motion along it."""
 
     arm_path: ArmPath
     limits: JointLimits
@@ -79,10 +81,10 @@ class PathTask(NamedTuple):
 
 
 class Timed(NamedTuple):
-    """A motion along a path, and how far it may be from the fastest."""
+    """A motion along a path, and its gap to the optimum."""
 
     trajectory: PathTrajectory
-    gap: float  # [s]
+    gap: float  # bound on the time that the fastest motion saves [s]
 
 
 def fastest_along(task: PathTask) -> Timed:
@@ -97,20 +99,20 @@ def fastest_along(task: PathTask) -> Timed:
     Returns
     -------
     Timed
-        Within every limit, between the points that are looked at too.
+        Within every limit, between the problem's points too.
 
     Raises
     ------
     LimitViolationError
-        If the motors cannot hold the arm somewhere on the path; with the place.
+        If the motors cannot hold the arm somewhere on the path; with the position.
 
     """
-    return kept(task, nearly_fastest_along(task))
+    return fitted(task, nearly_fastest_along(task))
 
 
 def nearly_fastest_along(task: PathTask) -> Timed:
     """
-    Return the fastest motion along a path as a table of the path has it.
+    Return the fastest motion along a path, by the path's table.
 
     Parameters
     ----------
@@ -120,12 +122,12 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     Returns
     -------
     Timed
-        Within limits but for what the table's interpolation leaves.
+        Within the limits but for the table's interpolation error.
 
     Raises
     ------
     LimitViolationError
-        If the motors cannot hold the arm somewhere on the path; with the place.
+        If the motors cannot hold the arm somewhere on the path; with the position.
 
     """
     task.should_stop()
@@ -134,7 +136,7 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     N = len(table.ends) - 1
     grid = grid_of(_ramps(N), task.cruise)
     bounds = all_bounds(task.limits, task.max_tip_speed)
-    _refuse_heavy(task, table)
+    _check_held(task, table)
     durations = DurationConstraints.all_free(N, 1)
     steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
 
@@ -145,25 +147,26 @@ def nearly_fastest_along(task: PathTask) -> Timed:
             table, task.limits, task.max_tip_speed, grid, margins, steady, workspace)
 
     task.should_stop()
-    constraints, former = limits(np.zeros((N, 2 * grid.n + 1, QUANTITIES))), None
+    constraints, previous = limits(np.zeros((N, 2 * grid.n + 1, QUANTITIES))), None
     start = Centre(_slow_start(task, table, constraints, steady), None)
     found = [(float(start.motion.T.sum()), start.motion, -np.inf)]  # no motion takes less than
     task.should_stop()
-    for repair in range(REPAIRS if constraints.problem.is_within(start.motion) else 0):
+    for round_ in range(ROUNDS if constraints.problem.is_within(start.motion) else 0):
         outcome = minimise(constraints.problem, start, durations, task.should_stop,
-                           previous=former.problem if former else None,
-                           relative_gap=RELATIVE_GAP if former else ROUGH_GAP)
-        if former and not outcome.within:  # it was too much at once
-            constraints = limits(0.5 * (former.margins + constraints.margins))
+                           previous=previous.problem if previous else None,
+                           relative_gap=RELATIVE_GAP if previous else ROUGH_GAP)
+        if previous and not outcome.within:  # margins were enlarged too much at once
+            constraints = limits(0.5 * (previous.margins + constraints.margins))
             continue
         task.should_stop()
-        outcome, seen = _onward(outcome, start, constraints.problem, bounds)
-        found.append(_slowed(outcome, seen.stretch))
-        worth_it = WORTH_IT * LESS_WORTH ** max(repair - PATIENCE, 0)
-        if former and seen.stretch <= 1.0 + worth_it or task.should_stop() or not outcome.centres:
+        outcome, check = _last_forward(outcome, start, constraints.problem, bounds)
+        found.append(_slowed(outcome, check.time_scale))
+        worth_it = WORTH_IT * WORTH_IT_GROWTH ** max(round_ - PATIENCE, 0)
+        fits = previous and check.time_scale <= 1.0 + worth_it
+        if fits or task.should_stop() or not outcome.centres:
             break
-        start = outcome.centres[-NEARER if former else -1:][0]
-        former, constraints = constraints, limits(constraints.margins + seen.excess)
+        start = outcome.centres[-CENTRES_BACK if previous else -1:][0]
+        previous, constraints = constraints, limits(constraints.margins + check.excess)
     task.should_stop()
     T, motion, _ = min(found, key=lambda f: f[0])
     least = max(least for *_, least in found)
@@ -171,13 +174,13 @@ def nearly_fastest_along(task: PathTask) -> Timed:
 
 
 def _ramps(pieces: int) -> int:
-    """Return in how many ramps a piece is run through."""
-    return max(int(MOST_RAMPS * min(PIECES / pieces, 1.0) ** SPARING), FEWEST_RAMPS)
+    """Return the number of ramps in a piece."""
+    return max(int(MOST_RAMPS * min(PIECES / pieces, 1.0) ** RAMP_EXPONENT), FEWEST_RAMPS)
 
 
-def kept(task: PathTask, timed: Timed) -> Timed:
+def fitted(task: PathTask, timed: Timed) -> Timed:
     """
-    Return a motion slowed by what the table's interpolation leaves, measured exactly.
+    Return a motion slowed until it keeps its limits exactly, by its own peaks, not the table's.
 
     Parameters
     ----------
@@ -193,13 +196,13 @@ def kept(task: PathTask, timed: Timed) -> Timed:
 
     """
     task.should_stop()
-    factor = _exact_stretch(task, timed.trajectory)
+    factor = _exact_time_scale(task, timed.trajectory)
     return timed if factor <= 1.0 else timed._replace(
         trajectory=timed.trajectory.time_scaled(factor))
 
 
 def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
-    """Return which pieces are in curved zones; not the first and the last, which have rest."""
+    """Return which pieces are in curved zones; not the first and the last, which touch rest."""
     middle = 0.5 * (table.ends[1:] + table.ends[:-1])[:, np.newaxis]
     begin, end = task.arm_path.path.zone_ends.T
     inside = ((middle > begin) & (middle < end)).any(axis=1)
@@ -207,29 +210,29 @@ def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
     return np.asarray(inside)
 
 
-def _onward(outcome: Outcome, start: Centre, problem: TimingProblem,
-            bounds: Array) -> tuple[Outcome, DenseCheck]:
-    """Return the last motion on which the tip never goes back: one cut short may."""
+def _last_forward(outcome: Outcome, start: Centre, problem: TimingProblem,
+                  bounds: Array) -> tuple[Outcome, DenseCheck]:
+    """Return the last motion on which the tip never moves backward, as when cancelled it may."""
     passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion)
     for motion in passed:
-        seen = dense_check(problem, motion, bounds)
-        if seen.goes_on:
+        check = dense_check(problem, motion, bounds)
+        if check.is_forward:
             break
     lost = float(motion.T.sum() - outcome.motion.T.sum())
-    return outcome._replace(motion=motion, gap=outcome.gap + lost), seen
+    return outcome._replace(motion=motion, gap=outcome.gap + lost), check
 
 
-def _slowed(outcome: Outcome, stretch: float) -> tuple[float, Variables, float]:
-    """Return a motion slowed to keep its limits, its duration and the least of any motion."""
-    T, factor = float(outcome.motion.T.sum()), max(stretch, 1.0)
+def _slowed(outcome: Outcome, time_scale: float) -> tuple[float, Variables, float]:
+    """Return the duration of a motion slowed to its limits, the motion, and a lower bound."""
+    T, factor = float(outcome.motion.T.sum()), max(time_scale, 1.0)
     return factor * T, time_scaled(outcome.motion, factor), T - outcome.gap
 
 
-def _refuse_heavy(task: PathTask, table: PathTable) -> None:
-    """Refuse a path on which gravity takes more than a motor has."""
+def _check_held(task: PathTask, table: PathTable) -> None:
+    """Raise an error if gravity's torque exceeds an effort limit along the path."""
     share = np.abs(table.values.g) / task.limits.max_effort
     piece, place, joint = map(int, np.unravel_index(int(share.argmax()), share.shape))
-    if share.max() < 1.0 - HOLDING_ROOM:
+    if share.max() < 1.0 - HOLDING_MARGIN:
         return
     needed, limit = (float(f) for f in (
         abs(table.values.g[piece, place, joint]), task.limits.max_effort[joint]))
@@ -240,19 +243,19 @@ def _refuse_heavy(task: PathTask, table: PathTable) -> None:
 
 def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
                 steady: BoolArray) -> Variables:
-    """Return a motion as slow as the limits ask for, of constant speed where pieces ask for it."""
+    """Return a feasible motion to start from, of constant speed if any piece is to have it."""
     grid, bounds = constraints.grid, all_bounds(task.limits, task.max_tip_speed)
     if steady.any():
         m = uniform_along(grid, table.ends)
     else:
-        m = paced_along(grid, table.ends, paces(table, bounds))
+        m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))
     at = progress_at(grid, constraints.points, m)
-    return time_scaled(m, ROOM * least_stretch(
-        constraints.demand(at.s), at, bounds - constraints.margins))
+    return time_scaled(m, DURATION_MARGIN * least_time_scale(
+        constraints.terms(at.s), at, bounds - constraints.margins))
 
 
-def _exact_stretch(task: PathTask, trajectory: PathTrajectory) -> float:
-    """Return by how much a motion must be slowed, by its own values."""
+def _exact_time_scale(task: PathTask, trajectory: PathTrajectory) -> float:
+    """Return the least factor on all times with which limits hold, by the motion's own peaks."""
     limits = task.limits
     peaks, speed = trajectory.peaks(), trajectory.peak_speed
     torque = time_scale_for_torque(task.arm_path.model, limits, trajectory).value

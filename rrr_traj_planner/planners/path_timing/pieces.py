@@ -13,14 +13,14 @@
 # limitations under the License.
 
 """
-Where a path is parted into pieces for its timing: finely near singular positions of the arm.
+The pieces into which a path is divided for its timing: short near singular positions of the arm.
 
-Near joint axis 1, and near the edges of the workspace, joints turn within as little of the path as
-the distance to the singular position. Joint positions are analytic functions of the place but for
-that position, so that splines and ramps approximate them on every piece that is no longer than the
-distance from it to the singularity in the complex plane (Trefethen, Approximation Theory and
-Approximation Practice, 2013, chapter 8). Halving leads there in few pieces: their number grows
-with the logarithm of the distance.
+Near joint axis 1 and near the edges of the workspace, joint positions change over a length of the
+path as short as the distance to the singularity. They are analytic functions of the path length
+except there, so that splines and ramps approximate them well on pieces no longer than the distance
+to the singularity in the complex plane (Trefethen, Approximation Theory and Approximation
+Practice, 2013, chapter 8). Pieces are halved until they are: their number grows with the logarithm
+of the distance.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.path.path_trajectory import ArmPath
 
-PARTS = 8        # of the whole length: no piece is longer than one
-NEAR = 1.5       # nor longer than this times the distance from its middle to a singularity
-SHORTEST = 1e-9  # m, of what is halved
+PARTS = 8        # least number of pieces of equal length
+NEAR = 1.5       # largest ratio of a piece's length to the distance of its middle to a singularity
+SHORTEST = 1e-9  # m, length of pieces that are not halved again
 
 
 def piece_ends(arm_path: ArmPath) -> Array:
     """
-    Return places where the pieces of a path meet: joins, and what parts long pieces.
+    Return the path lengths where pieces meet: joins of the path, and divisions of long pieces.
 
     Parameters
     ----------
@@ -61,14 +61,14 @@ def piece_ends(arm_path: ArmPath) -> Array:
 
 def singular_distance(arm_path: ArmPath, s: Array) -> Array:
     """
-    Return how far away the nearest singular position is, along the path's tangent.
+    Return the distance to the nearest singular position along the path's tangent.
 
     Parameters
     ----------
     arm_path : ArmPath
         The path in joint space.
     s : ndarray, shape (m,)
-        Places along it [m].
+        Path lengths [m].
 
     Returns
     -------
@@ -96,7 +96,7 @@ def _nearest_root(p: Array, u: Array, R: float) -> Array:
 
 
 def _parted(ends: Array) -> Array:
-    """Return ends of pieces between which long ones are parted equally."""
+    """Return the ends of pieces after long ones are divided equally."""
     counts = np.ceil(np.diff(ends) / ends[-1] * PARTS).astype(int)
     return np.concatenate((*(np.linspace(a, b, k, endpoint=False) for a, b, k in zip(
         ends[:-1], ends[1:], np.maximum(counts, 1))), ends[-1:]))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the planners of Cartesian paths share: path, check, timing, and what there is to say."""
+"""Planning along Cartesian paths: design of the path, workspace check, timing and notes."""
 
 from __future__ import annotations
 
@@ -31,27 +31,29 @@ from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.deadline import part_of
 from rrr_traj_planner.planners.path_timing.least_time import (
-    kept,
+    fitted,
     nearly_fastest_along,
     PathTask,
     Timed,
 )
 from rrr_traj_planner.planners.request import CartesianTask
-from rrr_traj_planner.planners.sampling_jerk_limit import followable
+from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 
 Family = Callable[[Array, ArrayLike, ShouldStop, ArrayLike], CartesianPath]
 Design = Callable[[Array, ArrayLike], CartesianPath]  # of points and radii
 
-DESIGN = 0.3     # of the time, for the first path: the motion takes the rest
-AGAIN = 0.4      # of the time, after which no other path is begun
+# Parts of the planning time:
+DESIGN = 0.3  # for the first path; its timing has the rest
+AGAIN = 0.4   # after which no other path is timed
 
-LEAST_PART = 1e-3  # of the largest radii: so small that a path is as good as the polyline
-HALVED = 0.5       # radii where the arm cannot follow larger ones
+# Radii of zones, and what smaller ones must gain:
+LEAST_PART = 1e-3  # of the largest radii: the path is then practically the polyline
+HALVED = 0.5       # factor where the arm cannot follow larger ones
+SMALLER = 0.7      # factor from one path to the next that is tried
+WORTH_IT = 1e-3    # part of the motion's duration
 
-SMALLER = 0.7    # radii, than those before
-WORTH_IT = 1e-3  # of the time, that smaller radii must gain
-STEP = 1e-3  # rad/s^2: joint accelerations that step by more are told of
+STEP = 1e-3  # rad/s^2, steps of joint acceleration above which the note tells of them
 
 
 def along(task: CartesianTask, family: Family) -> PathTrajectory:
@@ -61,22 +63,22 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
     Parameters
     ----------
     task : CartesianTask
-        What is asked.
+        Points of the tip, the arm and its limits.
     family : callable
         `line_arc` or `line_polynomial` of `core.path.design`.
 
     Returns
     -------
     PathTrajectory
-        On the path whose radii are the largest that the deviation allows, or part of them where
-        the arm cannot follow larger ones or the motion is faster then.
+        On the path with the largest radii that the deviation allows, or with smaller ones where
+        the arm cannot follow that or where the motion is faster.
 
     Raises
     ------
     InvalidInputError
         If no path passes the points without a stop.
     UnreachableError, LimitViolationError
-        If the arm cannot follow the path; with the place.
+        If the arm cannot follow the path; with the position.
 
     """
     early = part_of(task.should_stop, DESIGN)
@@ -94,11 +96,11 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
 
 def _fastest(task: CartesianTask, design: Design, paths: list[CartesianPath],
              early: ShouldStop) -> PathTrajectory:
-    """Return the fastest motion along one of some paths, or along one of smaller radii."""
+    """Return the fastest motion along one of several paths, or along one of smaller radii."""
     late = part_of(task.should_stop, AGAIN)
     cut_short = len(paths[0].radii) > 0 and early()
-    asked = _followed(task, design, paths[0], early)
-    best = _Motion(asked, nearly_fastest_along(asked))
+    path_task = _feasible_path_task(task, design, paths[0], early)
+    best = _Motion(path_task, nearly_fastest_along(path_task))
     for path in paths[1:]:
         if not late():
             best = min(best, _motion(task, path) or best, key=_Motion.duration)
@@ -106,7 +108,7 @@ def _fastest(task: CartesianTask, design: Design, paths: list[CartesianPath],
         if late():
             cut_short = True
             break
-        # smaller ones bend more, but their way is another one: now and then the faster
+        # smaller radii have larger curvature on shorter zones: sometimes that is faster
         path = design(task.tips, SMALLER * best.path.radii)
         if (path.deviation > task.max_deviation).any():
             break
@@ -114,52 +116,52 @@ def _fastest(task: CartesianTask, design: Design, paths: list[CartesianPath],
         if smaller is None or smaller.duration() >= (1.0 - WORTH_IT) * best.duration():
             break
         best = smaller
-    timed = kept(best.asked, best.timed)
+    timed = fitted(best.path_task, best.timed)
     return timed.trajectory.noted(_note(task, timed, cut_short))
 
 
 class _Motion(NamedTuple):
     """A motion along a path."""
 
-    asked: PathTask
+    path_task: PathTask
     timed: Timed
 
     @property
     def path(self) -> CartesianPath:
         """Return the path."""
-        return self.asked.arm_path.path
+        return self.path_task.arm_path.path
 
     def duration(self) -> float:
-        """Return how long it takes [s]."""
+        """Return its duration [s]."""
         return self.timed.trajectory.duration
 
 
 def _motion(task: CartesianTask, path: CartesianPath) -> _Motion | None:
     """Return the fastest motion along a path; None where the arm cannot follow it."""
     try:
-        asked = _timing(task, path)
-        return _Motion(asked, nearly_fastest_along(asked))
+        path_task = _path_task(task, path)
+        return _Motion(path_task, nearly_fastest_along(path_task))
     except (UnreachableError, LimitViolationError):
         return None
 
 
-def _followed(task: CartesianTask, design: Design, path: CartesianPath,
-              early: ShouldStop) -> PathTask:
+def _feasible_path_task(task: CartesianTask, design: Design, path: CartesianPath,
+                        early: ShouldStop) -> PathTask:
     """
-    Return what is asked of the timing along a path, or along one of smaller radii.
+    Return the timing task along a path, or along one of smaller radii that the arm can follow.
 
-    Where the arm cannot follow a path though it could follow the polyline, the radii around the
-    place are halved, again and again.
+    Where the arm cannot follow a path but can follow the polyline, the radii next to the position
+    of the failure are halved repeatedly.
     """
     try:
-        return _timing(task, path)
+        return _path_task(task, path)
     except (UnreachableError, LimitViolationError) as error:
         if not len(path.radii):
             raise
         refusal = error
     radii, least = path.radii, LEAST_PART * path.radii
     try:
-        nearest = _timing(task, design(task.tips, least))
+        nearest = _path_task(task, design(task.tips, least))
     except (UnreachableError, LimitViolationError):
         raise refusal from None
     smaller = _around(refusal, radii)
@@ -172,31 +174,31 @@ def _followed(task: CartesianTask, design: Design, path: CartesianPath,
         if smaller.any():
             continue
         try:
-            return _timing(task, path)
+            return _path_task(task, path)
         except (UnreachableError, LimitViolationError) as error:
             smaller = _around(error, radii)
     return nearest
 
 
 def _around(refusal: UnreachableError | LimitViolationError, radii: Array) -> BoolArray:
-    """Return which zones are at the via point nearest to where a path is refused, or beside it."""
+    """Return the zones at the via point nearest to a failure, and beside it."""
     return np.asarray(np.abs(np.arange(1, len(radii) + 1) - refusal.via_point) <= 1)
 
 
-def _timing(task: CartesianTask, path: CartesianPath) -> PathTask:
-    """Return what is asked of the timing, after a check that the arm can follow the path."""
+def _path_task(task: CartesianTask, path: CartesianPath) -> PathTask:
+    """Return the timing task along a path, after a check that the arm can follow it."""
     with step('the check that the arm can follow the path'):
         joints = check_workspace(
             task.model, task.limits, path, task.posture, task.start, task.should_stop)
     arm_path = ArmPath(task.model, task.limits, path, task.posture, joints.start)
-    limits, cruise = followable(
+    limits, cruise = limits_for_sampling(
         task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
     return PathTask(
         arm_path, limits, cruise, task.max_tip_speed, task.steady_zones, task.should_stop)
 
 
 def _note(task: CartesianTask, timed: Timed, cut_short: bool) -> str:
-    """Return the note of a motion; no bound on its gain if not every path was tried."""
+    """Return the note: acceleration steps, and the gap, unknown if not every path was tried."""
     notes = []
     most = timed.trajectory.acceleration_steps().max(axis=0, initial=0.0)
     if most.max() > STEP:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motions along a path to begin from: however slowly, they go from end to end without a stop."""
+"""First motions along a path, from end to end without a stop; scaled in time they are feasible."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables
 
 
-def paced_along(grid: Grid, ends: Array, speeds: Array) -> Variables:
+def motion_with_speeds(grid: Grid, ends: Array, speeds: Array) -> Variables:
     """
-    Return a motion of given speeds where pieces meet, a cycloid of velocity between them.
+    Return a motion of given speeds where pieces meet, with cycloidal transitions between them.
 
     Parameters
     ----------
     grid : Grid
         The family of motions.
     ends : ndarray, shape (N + 1,)
-        Places where the pieces meet [m].
+        Path lengths where the pieces meet [m].
     speeds : ndarray, shape (N + 1,)
         [m/s], no two neighbours 0.
 
     Returns
     -------
     Variables
-        Through every place, from rest to rest where the outer speeds are 0.
+        From rest to rest where the outer speeds are 0.
 
     """
     T = 2.0 * np.diff(ends) / (speeds[1:] + speeds[:-1])
@@ -49,19 +49,19 @@ def paced_along(grid: Grid, ends: Array, speeds: Array) -> Variables:
 
 def uniform_along(grid: Grid, ends: Array) -> Variables:
     """
-    Return a motion of 1 m/s, but for the first piece and the last.
+    Return a motion of 1 m/s, except on the first and the last piece (5.61-5.62).
 
     Parameters
     ----------
     grid : Grid
         The family of motions.
     ends : ndarray, shape (N + 1,)
-        Places where the pieces meet [m], at least three.
+        Path lengths where the pieces meet [m], at least three.
 
     Returns
     -------
     Variables
-        Through every place.
+        From rest to rest.
 
     """
     T = np.diff(ends)

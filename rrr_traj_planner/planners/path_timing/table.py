@@ -12,7 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a path asks of the joints, tabulated along it as smooth pieces with derivatives."""
+"""
+Joint derivatives and dynamics along a path, tabulated in smooth pieces.
+
+Torque along a path is m sdd + c sd^2 + g (Bobrow, Dubowsky & Gibson, Time-optimal control of
+robotic manipulators along specified paths, IJRR 4, 1985). Between the table's positions all terms
+are cubic splines (de Boor, A Practical Guide to Splines).
+"""
 
 from __future__ import annotations
 
@@ -27,12 +33,12 @@ from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
 from rrr_traj_planner.planners.path_timing.pieces import piece_ends
 from scipy.interpolate import CubicSpline
 
-INTERVALS = 64  # of each piece
+INTERVALS = 64  # of each piece, between the table's positions
 
 
-class Demand(NamedTuple):
+class PathTerms(NamedTuple):
     """
-    What each joint must do along the path, shape (..., 3) each.
+    The joints' derivatives by path length and the dynamics' terms, shape (..., 3) each.
 
     Velocity is dq sd; acceleration ddq sd^2 + dq sdd; jerk dddq sd^3 + 3 ddq sd sdd + dq sddd;
     torque m sdd + c sd^2 + g.
@@ -48,7 +54,7 @@ class Demand(NamedTuple):
 
 class PathTable:
     """
-    A path in pieces, on each of which everything is smooth.
+    A path in pieces, on each of which all terms are smooth.
 
     Parameters
     ----------
@@ -58,15 +64,15 @@ class PathTable:
     Attributes
     ----------
     ends : ndarray, shape (N + 1,)
-        Places where the pieces meet [m]: joins, and what parts long pieces (`pieces`).
+        Path lengths where the pieces meet [m] (`pieces`).
     places : ndarray, shape (N, INTERVALS + 1)
-        Where the table has its values [m].
-    values : Demand
-        What is demanded there, one-sided at the pieces' ends, shape (N, INTERVALS + 1, 3) each.
+        Path lengths of the table's values [m].
+    values : PathTerms
+        The terms there, one-sided at the pieces' ends, shape (N, INTERVALS + 1, 3) each.
     coefficients : ndarray, shape (N, 4, INTERVALS, 18)
-        Cubic ones, highest first, of all columns of `Demand` by the part of its interval.
+        Of the cubic splines of all terms, highest power first, by the part of a piece.
     overshoot : ndarray, shape (N, 2, 3)
-        At each piece's end, what a controller's quintic adds to ddq and to c where they step
+        At each piece's end, by how much a controller's quintic overshoots steps of ddq and c
         (`core.trajectory.sampling.STEP_OVERSHOOT`).
 
     """
@@ -78,7 +84,7 @@ class PathTable:
         u = np.linspace(0.0, 1.0, INTERVALS + 1)
         self.places = self.ends[:-1, np.newaxis] + self._lengths[:, np.newaxis] * u
         self.places[:, -1] = self.ends[1:]
-        self.values = self._demanded(arm_path)
+        self.values = self._terms(arm_path)
         stepping = np.stack((self.values.ddq, self.values.c), axis=2)
         steps = np.where(np.isin(self.ends[1:-1], path.joins)[:, np.newaxis, np.newaxis],
                          stepping[1:, 0] - stepping[:-1, -1], 0.0)
@@ -86,29 +92,29 @@ class PathTable:
         self.coefficients = (_spline() @ np.concatenate(self.values, axis=-1)).reshape(
             len(self.places), 4, INTERVALS, -1)
 
-    def _demanded(self, arm_path: ArmPath) -> Demand:
-        """Return all columns at the table's places, one-sided at the pieces' ends."""
+    def _terms(self, arm_path: ArmPath) -> PathTerms:
+        """Return all terms at the table's path lengths, one-sided at the pieces' ends."""
         ending = np.zeros(self.places.shape, bool)
         ending[:, -1] = True
         q, dq, ddq, dddq = (f.reshape(*self.places.shape, 3) for f in arm_path(
             self.places.ravel(), left=ending.ravel()))
-        still = np.zeros_like(q)
-        g, by_sdd, by_sd = inverse_dynamics(  # of terms at q that are there once
-            arm_path.model, q, np.stack((still, still, dq)), np.stack((still, dq, ddq)))
-        return Demand(dq, ddq, dddq, by_sdd - g, by_sd - g, g)
+        at_rest = np.zeros_like(q)
+        g, by_sdd, by_sd = inverse_dynamics(  # one evaluation of the terms that depend on q alone
+            arm_path.model, q, np.stack((at_rest, at_rest, dq)), np.stack((at_rest, dq, ddq)))
+        return PathTerms(dq, ddq, dddq, by_sdd - g, by_sd - g, g)
 
-    def __call__(self, s: Array) -> Demand:
+    def __call__(self, s: Array) -> PathTerms:
         """
-        Return what is demanded.
+        Return the terms along the path.
 
         Parameters
         ----------
         s : ndarray, shape (N, p)
-            Places [m]; row k is on piece k.
+            Path lengths [m]; row k is on piece k.
 
         Returns
         -------
-        Demand
+        PathTerms
             Of shape (N, p, 3) each.
 
         """
@@ -117,7 +123,7 @@ class PathTable:
         x = ((u - index) / INTERVALS)[..., np.newaxis]
         rows = np.arange(len(s))[:, np.newaxis]
         c3, c2, c1, c0 = (self.coefficients[rows, k, index] for k in range(4))
-        return Demand(*np.split(((c3 * x + c2) * x + c1) * x + c0, 6, axis=-1))
+        return PathTerms(*np.split(((c3 * x + c2) * x + c1) * x + c0, 6, axis=-1))
 
 
 @cache

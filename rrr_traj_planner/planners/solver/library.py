@@ -44,7 +44,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     'via_begin': (None, [c_void_p]),
     'via_accept': (None, [c_void_p, c_double]),
     'via_damp': (None, [c_void_p, c_double, c_double]),
-    'path_checked': (None, [c_void_p] * 3),
+    'check_path': (None, [c_void_p] * 3),
     'timing_accept': (None, [c_void_p, c_void_p, c_int32, *[c_double] * 3]),
     'timing_central_duals': (None, [c_void_p, c_double]),
     'timing_reduce_shifts': (None, [c_void_p, c_void_p, c_double, c_double]),

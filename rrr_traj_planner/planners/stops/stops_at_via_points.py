@@ -30,7 +30,7 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import torque_sweep
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scaling
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scale
 
 # Without unit.
 DURATION_MARGIN = 1e-6     # part added to the least durations
@@ -92,7 +92,7 @@ def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> Pie
     scalings = np.ones(len(quick))
     for k in np.flatnonzero(may_lack_torque(task, motion(everywhere, quick))).tolist():
         task.should_stop()
-        scalings[k] = max(1.0, torque_time_scaling(task, motion(slice(k, k + 1), quick[k:k + 1])))
+        scalings[k] = max(1.0, torque_time_scale(task, motion(slice(k, k + 1), quick[k:k + 1])))
     if np.isinf(scalings).any():
         raise cannot_hold(task, motion(everywhere, quick))
     least = quick * scalings

@@ -32,7 +32,7 @@ from rrr_traj_planner.planners.transitions.motion import (
     motion_slowed_for_torque,
     motion_with_floor,
     quickest_motion,
-    segment_time_scaling,
+    segment_time_scale,
     TimedMotion,
 )
 from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
@@ -120,7 +120,7 @@ def _slowed(task: JointTask, problem: ViaProblem, floor: Array | None, motion: T
         slow = np.where(lacking, motion.durations * change, 0.0)
         slow = slow if floor is None else np.maximum(slow, floor)
         motion = _least_time_motion(task, problem, slow)
-        scaling = segment_time_scaling(task, motion)
+        scaling = segment_time_scale(task, motion)
         yield motion, scaling
 
 
@@ -135,13 +135,13 @@ def _statically_feasible_motion(task: JointTask, problem: ViaProblem,
     for _ in range(STRAIGHTENING_ROUNDS):
         task.should_stop()
         motion = _least_time_motion(task, problem, floor)
-        scaling = segment_time_scaling(task, motion)
+        scaling = segment_time_scale(task, motion)
         blocked = np.isinf(scaling)
         if not blocked.any():
             return problem, motion, scaling
         problem = slower_at(problem, np.tile(blocked[:, np.newaxis], 3))
     motion = _least_time_motion(task, at_rest(problem), floor)
-    return at_rest(problem), motion, segment_time_scaling(task, motion)
+    return at_rest(problem), motion, segment_time_scale(task, motion)
 
 
 def _least_time_motion(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedMotion:

@@ -26,9 +26,9 @@ from rrr_traj_planner.core.trajectory.torque import torque_sweep
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.transitions import segment_motion
-from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scaling
+from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scale
 from rrr_traj_planner.planners.transitions.via_problem import rests_everywhere, ViaProblem
-from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scaling
+from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scale
 
 # Without unit: parts of a duration.
 SCALING_TOLERANCE = 3e-7   # by which prescribed durations may fall short: jerk is then within 1e-6
@@ -72,7 +72,7 @@ def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
         factor = float((problem.rest_to_rest_times() / durations).max())
         v, T = np.zeros_like(problem.highest), durations * factor
     else:
-        factor, solution = least_time_scaling(problem, durations)
+        factor, solution = least_time_scale(problem, durations)
         v, T = solution.velocities, solution.durations
     if factor > 1.0 + SCALING_TOLERANCE:
         return None, np.zeros_like(problem.displacements, dtype=bool)
@@ -138,7 +138,7 @@ def motion_with_floor(task: JointTask, problem: ViaProblem,
     return timed_motion(task, problem, durations * (1.0 + DURATION_MARGIN))
 
 
-def segment_time_scaling(task: JointTask, motion: TimedMotion) -> Array:
+def segment_time_scale(task: JointTask, motion: TimedMotion) -> Array:
     """
     Return the least factor on each segment's times with which torque limits hold.
 
@@ -187,7 +187,7 @@ def motion_slowed_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotio
         If gravity alone exceeds an effort limit along the path.
 
     """
-    factor = torque_time_scaling(task, motion.trajectory)
+    factor = torque_time_scale(task, motion.trajectory)
     if np.isinf(factor):
         raise cannot_hold(task, motion.trajectory)
     if factor <= 1.0 + TORQUE_TOLERANCE:

@@ -78,7 +78,7 @@ def via_problem_of(task: JointTask, function: TransitionFunction = CYCLOID) -> V
     return ViaProblem(D, law, velocity, -highest, highest, function)
 
 
-def torque_time_scaling(task: JointTask, trajectory: Trajectory) -> float:
+def torque_time_scale(task: JointTask, trajectory: Trajectory) -> float:
     """
     Return the least factor on all times with which torque limits hold; at most 1: as it is.
 
@@ -120,7 +120,7 @@ def slowed_for_torque(task: JointTask, trajectory: Trajectory) -> Trajectory:
         If gravity alone exceeds an effort limit along the path.
 
     """
-    factor = torque_time_scaling(task, trajectory)
+    factor = torque_time_scale(task, trajectory)
     if np.isinf(factor):
         raise cannot_hold(task, trajectory)
     return trajectory.time_scaled(factor) if factor > 1.0 else trajectory

@@ -29,12 +29,12 @@ from rrr_traj_planner.planners.transitions.fastest import (
 from rrr_traj_planner.planners.transitions.motion import (
     DURATION_MARGIN,
     SCALING_TOLERANCE,
-    segment_time_scaling,
+    segment_time_scale,
     timed_motion,
     TimedMotion,
     TORQUE_TOLERANCE,
 )
-from rrr_traj_planner.planners.transitions.motion_law import torque_time_scaling
+from rrr_traj_planner.planners.transitions.motion_law import torque_time_scale
 from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
 
 DURATION_TOLERANCE = 1e-9  # s, between prescribed durations and those of the motion
@@ -87,8 +87,8 @@ def _within_limits(task: JointTask, problem: ViaProblem, durations: Array) -> Ti
             motion = _with_durations(task, problem, durations, gently)
             if motion is None:
                 return None
-            scaling = segment_time_scaling(task, motion)
-            if torque_time_scaling(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
+            scaling = segment_time_scale(task, motion)
+            if torque_time_scale(task, motion.trajectory) <= 1.0 + TORQUE_TOLERANCE:
                 return motion
         lacking = scaling > 1.0
         problem = slower_at(problem, np.tile(lacking[:, np.newaxis], 3))

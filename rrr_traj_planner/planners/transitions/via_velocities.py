@@ -64,7 +64,7 @@ def least_time(problem: ViaProblem, floor: Array | None = None,
     return minimise(barrier, should_stop)
 
 
-def least_time_scaling(problem: ViaProblem, durations: Array) -> tuple[float, Solution]:
+def least_time_scale(problem: ViaProblem, durations: Array) -> tuple[float, Solution]:
     """
     Return the least factor with which prescribed durations are feasible.
 

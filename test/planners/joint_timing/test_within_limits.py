@@ -24,7 +24,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.planners.joint_timing.within_limits import (
     beyond_range,
     fitted,
-    kinematic_time_scaling,
+    kinematic_time_scale,
     torque_fits,
 )
 from rrr_traj_planner.planners.request import JointTask
@@ -76,7 +76,7 @@ def test_stretch_is_the_root_of_what_is_exceeded(seed, limit, values, power):
     for part in (0.5, 0.9, 1.3):
         limits = np.append(part, [2.0, 2.0]) * case.largest(values)
         task = case.task(**{limit: limits})
-        assert kinematic_time_scaling(task, case.trajectory) == pytest.approx(
+        assert kinematic_time_scale(task, case.trajectory) == pytest.approx(
             part ** (-1.0 / power), rel=BETWEEN)
 
 

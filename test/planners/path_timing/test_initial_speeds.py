@@ -30,8 +30,8 @@ from rrr_traj_planner.planners.path_timing.constraints import (
     TORQUE,
     VELOCITY,
 )
-from rrr_traj_planner.planners.path_timing.initial_speeds import paces, PART
-from rrr_traj_planner.planners.path_timing.start import paced_along
+from rrr_traj_planner.planners.path_timing.initial_speeds import initial_speeds_of, PART
+from rrr_traj_planner.planners.path_timing.start import motion_with_speeds
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.solver.ramps import Grid
@@ -46,7 +46,7 @@ def limits_of(case):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_speeds_are_zero_at_both_ends_only(seed):
     case = random_case(seed)
-    speeds = paces(PathTable(case.arm_path), all_bounds(limits_of(case), np.inf))
+    speeds = initial_speeds_of(PathTable(case.arm_path), all_bounds(limits_of(case), np.inf))
     assert speeds[[0, -1]].tolist() == [0.0, 0.0]
     assert (speeds[1:-1] > 0.0).all()
 
@@ -56,7 +56,7 @@ def test_a_motion_of_these_speeds_keeps_every_limit(seed):
     case, grid = random_case(seed), Grid(12)
     limits = limits_of(case)
     table, bounds = PathTable(case.arm_path), all_bounds(limits, np.inf)
-    m = paced_along(grid, table.ends, paces(table, bounds))
+    m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))
     at = progress_at(grid, table.ends[:, np.newaxis], m)
     demand = table(at.s)
     x = np.abs(limited(demand, at))
@@ -69,7 +69,7 @@ def test_a_motion_of_these_speeds_keeps_every_limit(seed):
 def test_every_speed_is_held_down_by_a_neighbour_or_by_a_limit_of_its_own(seed):
     case = random_case(seed)
     table, bounds = PathTable(case.arm_path), all_bounds(limits_of(case), np.inf)
-    speeds = paces(table, bounds)
+    speeds = initial_speeds_of(table, bounds)
     d = table(table.places)
     for k in range(1, len(speeds) - 1):
         own = np.inf
@@ -93,7 +93,7 @@ def test_a_tiny_zone_slows_the_tip_there_and_not_on_the_long_lines(planner_id):
                          (1.1, 0.3 + size, 0.8)])
         case = PathCase(RobotModel(), JointLimits(), PlanningRequest(
             tips, planner_id=planner_id, max_deviation=0.05, elbow='up'))
-        speeds = paces(PathTable(case.arm_path), all_bounds(limits_of(case), np.inf))
+        speeds = initial_speeds_of(PathTable(case.arm_path), all_bounds(limits_of(case), np.inf))
         assert speeds[1:-1].min() <= 0.1 * speeds.max()
         found = case.planned()
         assert 'converged' not in found.note

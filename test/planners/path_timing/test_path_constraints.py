@@ -62,7 +62,7 @@ def slacks_of(constraints, m):
 
 def demands_of(constraints, m):
     at = progress_at(constraints.grid, constraints.points, m)
-    return at, limited(constraints.demand(at.s), at)
+    return at, limited(constraints.terms(at.s), at)
 
 
 @pytest.mark.parametrize('seed', SEEDS)

@@ -30,7 +30,7 @@ from rrr_traj_planner.planners.path_timing.constraints import (
     VELOCITY,
 )
 from rrr_traj_planner.planners.path_timing.dense_check import dense_check
-from rrr_traj_planner.planners.path_timing.start import paced_along
+from rrr_traj_planner.planners.path_timing.start import motion_with_speeds
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.solver.ramps import Grid, restored, time_scaled
 
@@ -47,7 +47,7 @@ def random_look(seed, ramps=6):
     table, grid = PathTable(random_case(seed).arm_path), Grid(ramps, (0.0, 0.6)[seed % 2])
     speeds = rng.uniform(0.2, 0.4, len(table.ends))
     speeds[[0, -1]] = 0.0
-    m = paced_along(grid, table.ends, speeds)
+    m = motion_with_speeds(grid, table.ends, speeds)
     m = m._replace(inner=m.inner + rng.normal(0.0, 0.1, m.inner.shape),
                    a=rng.normal(0.0, 0.1, m.a.shape))
     return table, grid, restored(grid, table.ends[:, np.newaxis], m)
@@ -118,25 +118,25 @@ def test_a_motion_stretched_as_it_says_just_keeps_its_limits(seed, kind):
     bounds[kind] = 0.8 * np.abs(dense(table, grid, m)).max(axis=(0, 1))[kind]
     if kind == TORQUE:  # no less than gravity takes, 0 of joint 1
         bounds[kind] = 1.01 * np.abs(table.values.g).max(axis=(0, 1)) + 0.01
-    stretch = look(table, grid, m, bounds).stretch
+    stretch = look(table, grid, m, bounds).time_scale
     assert stretch > 1.0
     scaled = time_scaled(m, stretch)
-    assert look(table, grid, scaled, bounds).stretch == pytest.approx(1.0, rel=1e-9)
+    assert look(table, grid, scaled, bounds).time_scale == pytest.approx(1.0, rel=1e-9)
 
 
 def test_a_torque_that_gravity_takes_can_be_met_by_no_slowing():
     table, grid, m = random_look(0)
     bounds = np.full(QUANTITIES, np.inf)
-    assert look(table, grid, m, bounds).stretch == 0.0
+    assert look(table, grid, m, bounds).time_scale == 0.0
     bounds[10] = 0.5 * np.abs(table.values.g[..., 1]).min()
-    assert look(table, grid, m, bounds).stretch == np.inf
+    assert look(table, grid, m, bounds).time_scale == np.inf
 
 
 def test_a_tip_that_goes_back_is_seen():
     table, grid, m = random_look(1)
     bounds = np.full(QUANTITIES, np.inf)
-    assert look(table, grid, m, bounds).goes_on
+    assert look(table, grid, m, bounds).is_forward
     back = m._replace(v=m.v * np.where(np.arange(len(m.v)) == 1, -1.0, 1.0)[:, np.newaxis])
     seen = look(table, grid, restored(grid, table.ends[:, np.newaxis], back), bounds)
     assert seen.slowest <= -0.2
-    assert not seen.goes_on
+    assert not seen.is_forward

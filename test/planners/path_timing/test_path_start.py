@@ -16,7 +16,7 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.path_timing.start import paced_along, uniform_along
+from rrr_traj_planner.planners.path_timing.start import motion_with_speeds, uniform_along
 from rrr_traj_planner.planners.solver.ramps import Grid
 
 
@@ -28,7 +28,7 @@ def rough_path(seed):
 
 
 def paced(grid, ends, speeds):
-    return paced_along(grid, ends, speeds)
+    return motion_with_speeds(grid, ends, speeds)
 
 
 def uniform(grid, ends, speeds):
@@ -52,7 +52,7 @@ def test_motions_to_begin_from_pass_every_place_and_never_go_back(start, seed):
 @pytest.mark.parametrize('seed', range(10))
 def test_a_paced_motion_has_the_speeds_asked_and_no_acceleration_where_pieces_meet(seed):
     grid, (ends, speeds) = Grid(20), rough_path(seed)
-    m = paced_along(grid, ends, speeds)
+    m = motion_with_speeds(grid, ends, speeds)
     assert m.v[:, 0] == pytest.approx(speeds[1:-1], rel=1e-12)
     assert (m.a == 0.0).all()
     # a cycloid of velocity covers the mean of its end speeds

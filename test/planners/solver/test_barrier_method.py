@@ -24,7 +24,7 @@ from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 from rrr_traj_planner.planners.transitions.reach import reach
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
-from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scaling
+from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scale
 from scipy.optimize import minimize
 
 SEEDS = range(8)
@@ -98,11 +98,11 @@ def test_at_the_end_the_gradient_of_objective_and_barrier_vanishes(seed):
 def test_the_least_stretch_of_the_least_durations_is_one_and_halves_for_twice_as_long(seed):
     chain = random_chain(seed)
     T = least_time(chain).durations
-    factor, found = least_time_scaling(chain, T)
+    factor, found = least_time_scale(chain, T)
     assert factor <= 1.0 + 1e-6
     assert slacks(chain, found.velocities, found.durations).min() > 0.0
     assert found.durations == pytest.approx(factor * T, rel=1e-12)
-    assert least_time_scaling(chain, 2.0 * T)[0] == pytest.approx(0.5 * factor, rel=1e-5)
+    assert least_time_scale(chain, 2.0 * T)[0] == pytest.approx(0.5 * factor, rel=1e-5)
 
 
 def test_one_segment_takes_its_closed_form():
@@ -110,7 +110,7 @@ def test_one_segment_takes_its_closed_form():
     chain = ViaProblem(np.array([[0.5, 0.1, 0.0]]), TransitionLaw(np.full(3, 2.0), np.zeros(3)),
                        np.ones(3), np.zeros((0, 3)), np.zeros((0, 3)))
     assert least_time(chain).durations == pytest.approx([2.0], rel=1e-6)
-    assert least_time_scaling(chain, np.array([4.0]))[0] == pytest.approx(0.5, rel=1e-6)
+    assert least_time_scale(chain, np.array([4.0]))[0] == pytest.approx(0.5, rel=1e-6)
 
 
 def test_a_line_through_a_via_point_takes_as_long_as_without_it():

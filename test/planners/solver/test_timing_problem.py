@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.planners.path_timing.constraints import PathConstraints, QUANTITIES
-from rrr_traj_planner.planners.path_timing.start import paced_along
+from rrr_traj_planner.planners.path_timing.start import motion_with_speeds
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
@@ -131,7 +131,7 @@ def path_problem(seed):
     constraints = PathConstraints(
         table, replace(case.limits, max_jerk=[30.0] * 3), 0.7, grid,
         np.zeros((N, 2 * grid.n + 1, QUANTITIES)), np.zeros(N, bool))
-    m = paced_along(grid, table.ends, np.concatenate(([0.0], np.full(N - 1, 0.3), [0.0])))
+    m = motion_with_speeds(grid, table.ends, np.concatenate(([0.0], np.full(N - 1, 0.3), [0.0])))
     while not constraints.problem.is_within(m):
         m = time_scaled(m, 1.3)
     return constraints.problem, m

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
-from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scaling
+from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scale
 from scipy.optimize import brentq, minimize
 
 GAP = 1e-6            # relative: the solver promises 2e-7
@@ -205,10 +205,10 @@ def test_floor_is_kept_and_costs_no_more_than_it_adds(seed):
 def test_least_durations_need_no_stretch_and_shorter_ones_their_shortness(seed):
     chain = random_chain(300 + seed, 4)
     durations = least_time(chain).durations
-    assert least_time_scaling(chain, durations)[0] == pytest.approx(1.0, abs=2e-6)
+    assert least_time_scale(chain, durations)[0] == pytest.approx(1.0, abs=2e-6)
     # The same proportions: the stretch undoes any common factor.
-    assert least_time_scaling(chain, 0.4 * durations)[0] == pytest.approx(2.5, rel=4e-6)
-    factor, solution = least_time_scaling(chain, 0.4 * durations)
+    assert least_time_scale(chain, 0.4 * durations)[0] == pytest.approx(2.5, rel=4e-6)
+    factor, solution = least_time_scale(chain, 0.4 * durations)
     assert solution.durations == pytest.approx(factor * 0.4 * durations, rel=1e-12)
 
 
@@ -217,7 +217,7 @@ def test_stretch_is_the_least_that_bisection_over_floors_finds(seed):
     # Durations d f are feasible where the least time with that floor is their own sum.
     chain = random_chain(400 + seed, 3)
     d = np.random.default_rng(seed).uniform(0.5, 2.0, 3)
-    factor = least_time_scaling(chain, d)[0]
+    factor = least_time_scale(chain, d)[0]
 
     def excess(f):
         return least_time(chain, f * d).durations.sum() / (f * d.sum()) - 1.0 - 1e-4

@@ -23,7 +23,11 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, CRUISE, followable
+from rrr_traj_planner.planners.sampling_jerk_limit import (
+    acceleration_scale,
+    CRUISE,
+    limits_for_sampling,
+)
 
 NONE = np.full(3, np.inf)
 PERIOD = 0.01
@@ -37,14 +41,15 @@ def random_poses(seed):
 def test_a_limit_that_is_low_enough_is_kept():
     model, q = random_poses(0)
     limits = JointLimits(max_jerk=[10.0, 20.0, 30.0])
-    assert followable(model, limits, q, PERIOD).limits.max_jerk.tolist() == [10.0, 20.0, 30.0]
+    jerk = limits_for_sampling(model, limits, q, PERIOD).limits.max_jerk
+    assert jerk.tolist() == [10.0, 20.0, 30.0]
 
 
 def test_a_ramp_from_one_limit_to_the_other_lasts_four_samples():
     # Half a cosine of 2 A in four periods: jerk pi A / (4 periods).
     model, q = random_poses(1)
     limits = JointLimits(max_acceleration=[1.0, 2.0, 3.0], max_jerk=NONE)
-    found = followable(model, replace(limits, max_effort=NONE), q, PERIOD).limits.max_jerk
+    found = limits_for_sampling(model, replace(limits, max_effort=NONE), q, PERIOD).limits.max_jerk
     assert found == pytest.approx(np.pi * np.array((1.0, 2.0, 3.0)) / (4.0 * PERIOD))
 
 
@@ -53,7 +58,7 @@ def test_without_an_acceleration_limit_torque_decides_and_two_samples_are_enough
     model, q = random_poses(seed)
     limits = JointLimits(max_acceleration=NONE, max_jerk=NONE, max_effort=[90.0, 150.0, 70.0])
     scale = acceleration_scale(model, limits, q)
-    assert followable(model, limits, q, PERIOD).limits.max_jerk == pytest.approx(
+    assert limits_for_sampling(model, limits, q, PERIOD).limits.max_jerk == pytest.approx(
         np.pi * scale / (2.0 * PERIOD))
     # No joint that moves alone can be accelerated more, at any of the poses.
     for p in q:
@@ -70,17 +75,17 @@ def test_jerk_cruises_where_every_joint_s_limit_lets_a_swing_last_thirty_samples
     model, q = random_poses(3)
     slow = np.pi * np.array((1.0, 2.0, 3.0)) / (30.0 * PERIOD)
     limits = JointLimits(max_acceleration=[1.0, 2.0, 3.0], max_effort=NONE, max_jerk=slow)
-    assert followable(model, limits, q, PERIOD * (1.0 - 1e-9)).cruise == CRUISE
-    assert followable(model, limits, q, PERIOD * (1.0 + 1e-9)).cruise == 0.0
+    assert limits_for_sampling(model, limits, q, PERIOD * (1.0 - 1e-9)).cruise == CRUISE
+    assert limits_for_sampling(model, limits, q, PERIOD * (1.0 + 1e-9)).cruise == 0.0
     for joint in range(3):
         fast = replace(limits, max_jerk=np.where(np.arange(3) == joint, np.inf, slow))
-        assert followable(model, fast, q, 0.5 * PERIOD).cruise == 0.0
+        assert limits_for_sampling(model, fast, q, 0.5 * PERIOD).cruise == 0.0
 
 
 def test_everything_but_jerk_is_kept():
     model, q = random_poses(2)
     limits = JointLimits(max_jerk=NONE)
-    found = followable(model, limits, q, PERIOD).limits
+    found = limits_for_sampling(model, limits, q, PERIOD).limits
     for name in ('min_position', 'max_position', 'max_velocity', 'max_acceleration', 'max_effort'):
         assert getattr(found, name).tolist() == getattr(limits, name).tolist()
     assert np.isfinite(found.max_jerk).all()
@@ -90,4 +95,4 @@ def test_a_joint_without_acceleration_and_effort_limit_is_refused_by_name():
     limits = JointLimits(max_acceleration=[1.0, np.inf, 1.0], max_effort=[9.0, np.inf, 9.0])
     with pytest.raises(InvalidInputError, match='needs an acceleration or an effort limit on '
                                                 'every joint, joint_2 has neither$'):
-        followable(RobotModel(), limits, np.zeros((1, 3)), PERIOD)
+        limits_for_sampling(RobotModel(), limits, np.zeros((1, 3)), PERIOD)
