@@ -174,7 +174,7 @@ def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, step
         exceeds_jerk[index] = False  # a shorter interval would make the step's jerk larger
     least = np.where(outside, min(gap, CLOSEST), gap) - NANOSECOND
     far = np.minimum(cut - begin, begin + width - cut) >= least
-    return cut[far & (exceeds_jerk | (excess.stretch > 1.0) | outside)]
+    return cut[far & (exceeds_jerk | (excess.time_scale > 1.0) | outside)]
 
 
 def _note(model: RobotModel, limits: JointLimits, period: float, jerk: Array,

@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-Whether the quintics that a controller lays through an answer's points keep the limits.
+Check of the quintic spline that a controller interpolates between the points of an answer.
 
-joint_trajectory_controller follows, from a point to the next, the polynomial of fifth order that
-meets position, velocity and acceleration of both. It is near the planned motion, not the same:
-between points its velocity, acceleration and torque may be beyond what the motion keeps.
+joint_trajectory_controller interpolates with the polynomial of fifth degree that meets position,
+velocity and acceleration at both points. It approximates the planned motion: between points its
+velocity, acceleration and torque may exceed limits that the planned motion satisfies.
 """
 
 from __future__ import annotations
@@ -33,35 +33,38 @@ from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.core.trajectory.torque import squared_time_scale
 
-# Limits are kept to this part, 0.1 %, less what the finest look may miss.
-SPLINE_TOLERANCE = 8e-4
-RANGE_TOLERANCE = 8e-7   # rad beyond the end of a range, of 1e-6, likewise
+# Tolerances promised are 0.1 % of a limit and 1e-6 rad of a range; the dense check may miss the
+# difference to these.
+SPLINE_TOLERANCE = 8e-4  # relative
+RANGE_TOLERANCE = 8e-7   # rad
 
-# Every interval is looked at in so many steps. Between them a smooth quantity rises by an eighth
-# of its second difference; where twice that could be too much, the steps are finer.
+# Steps of an interval in the coarse and in the dense check. Between samples a smooth quantity
+# exceeds them by an eighth of its second difference; where twice that might exceed a limit, the
+# interval is checked densely.
 STEPS, FINE_STEPS = 4, 64
 RISE = 0.25
 
 
 class SplineExcess(NamedTuple):
-    """Where quintics through points exceed limits; n - 1 intervals."""
+    """Excess of the quintics over the limits, for each of n - 1 intervals."""
 
-    stretch: Array  # by what factor each asks the motion to be slowed; 1: not at all, (n - 1,)
-    outside: Array  # how far it leaves a joint's range [rad], 0 within the tolerance, (n - 1,)
-    place: Array    # where it exceeds most, as a share of the interval, (n - 1,)
-    effort: Array   # largest torque of all [N m], (3,)
-    jerk: Array     # largest jerk of each interval [rad/s^3], exactly, (n - 1, 3)
+    time_scale: Array  # least factor that satisfies the limits; 1 where they are, (n - 1,)
+    outside: Array     # distance beyond a joint's range [rad], 0 within tolerance, (n - 1,)
+    place: Array       # of the largest excess, as a fraction of the interval, (n - 1,)
+    effort: Array      # largest torque over all intervals [N m], (3,)
+    jerk: Array        # largest jerk of each interval [rad/s^3], exact, (n - 1, 3)
 
     @property
     def slowing(self) -> float:
         """
-        Return by what factor the motion as a whole would have to be slowed, at least 1.
+        Return the time-scaling factor that the whole motion needs, at least 1.
 
         Where jerk steps, quintics through points h apart differ from the motion by O(h^3): the
-        same points of a slower motion leave a range by the cube of the factor less.
+        excess over a range falls with the cube of the factor.
         """
         outside = float(self.outside.max(initial=0.0))
-        return max(float(self.stretch.max(initial=1.0)), float(np.cbrt(outside / RANGE_TOLERANCE)))
+        return max(float(self.time_scale.max(initial=1.0)),
+                   float(np.cbrt(outside / RANGE_TOLERANCE)))
 
 
 def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
@@ -78,7 +81,7 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
     spline : Interpolant
         The quintics.
     should_stop : callable
-        Asked now and then; its answer does not matter, but what it raises ends the work.
+        Called now and then for the exceptions it may raise; its result is ignored.
 
     Returns
     -------
@@ -104,7 +107,7 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
     found = SplineExcess(none + 1.0, none, none.copy(), effort, spline.peak_jerks())
     index = np.flatnonzero(doubtful)
     if len(index):
-        *fine, most = _looked_at(model, limits, spline, index)
+        *fine, most = _dense_check(model, limits, spline, index)
         for all_of_them, some in zip(found, fine):
             all_of_them[index] = some
         found = found._replace(effort=np.maximum(effort, most))
@@ -112,14 +115,14 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
 
 
 def _most(values: Array, smooth: Array) -> Array:
-    """Return what values may reach in each interval, those of a smooth quantity, (k, 3)."""
-    bends = np.abs(smooth[2:] - 2.0 * smooth[1:-1] + smooth[:-2]).max(axis=0)
-    return np.asarray(values.max(axis=0) + RISE * bends)
+    """Return upper bounds of values in each interval, by second differences, (k, 3)."""
+    second = np.abs(smooth[2:] - 2.0 * smooth[1:-1] + smooth[:-2]).max(axis=0)
+    return np.asarray(values.max(axis=0) + RISE * second)
 
 
-def _looked_at(model: RobotModel, limits: JointLimits, spline: Interpolant,
-               index: IntArray) -> tuple[Array, Array, Array, Array]:
-    """Return stretch, outside, place and effort of some intervals, looked at finely."""
+def _dense_check(model: RobotModel, limits: JointLimits, spline: Interpolant,
+                 index: IntArray) -> tuple[Array, Array, Array, Array]:
+    """Return time scale, distance outside, place and effort of some intervals, checked densely."""
     shares = np.linspace(0.0, 1.0, FINE_STEPS + 1)
     q, qd, qdd = spline.within(shares, index)
     tau = inverse_dynamics(model, q, qd, qdd)
@@ -131,14 +134,14 @@ def _looked_at(model: RobotModel, limits: JointLimits, spline: Interpolant,
     peaks = ratios + _between(ratios)
     factors = np.where(ratios > 1.0 + SPLINE_TOLERANCE, factors, np.where(
         peaks > 1.0 + SPLINE_TOLERANCE, np.sqrt(peaks), 1.0)).max(axis=(0, 3))
-    q = _turning(q, qd, qdd, np.diff(spline.points.times)[index] / FINE_STEPS)
+    q = _at_reversals(q, qd, qdd, np.diff(spline.points.times)[index] / FINE_STEPS)
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max(axis=(0, 2))
     return (factors.max(axis=0), np.where(outside > RANGE_TOLERANCE, outside, 0.0),
             shares[factors.argmax(axis=0)], np.abs(tau).max(axis=(0, 1)))
 
 
-def _turning(q: Array, qd: Array, qdd: Array, step: Array) -> Array:
-    """Return positions, where a joint turns back within half a step those at the turn."""
+def _at_reversals(q: Array, qd: Array, qdd: Array, step: Array) -> Array:
+    """Return positions; where a joint reverses within half a step, those at the reversal."""
     with np.errstate(divide='ignore', invalid='ignore'):
         dt = -qd / qdd
     dt[~(np.abs(dt) <= 0.5 * step[:, np.newaxis])] = 0.0
@@ -146,7 +149,7 @@ def _turning(q: Array, qd: Array, qdd: Array, step: Array) -> Array:
 
 
 def _between(values: Array) -> Array:
-    """Return by how much a parabola through three samples may rise above, (m, steps, k, 3)."""
+    """Return the excess over a sample of the parabola through it and its neighbours."""
     rise = np.zeros_like(values)
     rise[:, 1:-1] = np.abs(values[:, 2:] - 2.0 * values[:, 1:-1] + values[:, :-2]) / 8.0
     return rise

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What joint_trajectory_controller makes of trajectory points: lines, cubics or quintics."""
+"""Interpolation of trajectory points as in joint_trajectory_controller: degree 1, 3 or 5."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class TrajectoryPoints(ReadOnlyArrays):
 
 class Interpolant:
     """
-    The motion through points: linear, cubic or quintic by what the points carry.
+    Piecewise polynomial through points: linear, cubic or quintic by the derivatives given.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class Interpolant:
         Parameters
         ----------
         t : array_like, shape (n,) or ()
-            Times [s]; before the first point and after the last the end's position is held.
+            Times [s]; outside the points' times the nearest end position is held.
 
         Returns
         -------
@@ -111,14 +111,14 @@ class Interpolant:
     def within(self, shares: ArrayLike,
                segments: IntArray | slice = slice(None)) -> tuple[Array, Array, Array]:
         """
-        Return position, velocity and acceleration at the same shares of several segments.
+        Return position, velocity and acceleration at the same fractions of several segments.
 
         Parameters
         ----------
         shares : array_like, shape (m,)
-            Of the time from a point to the next, from 0 to 1.
+            Fractions of the time from a point to the next, from 0 to 1.
         segments : ndarray or slice
-            Which of the n - 1 segments; k in all.
+            Indices of k of the n - 1 segments.
 
         Returns
         -------
@@ -138,7 +138,7 @@ class Interpolant:
         Parameters
         ----------
         per_segment : int
-            Steps between two points, for the velocity; accelerations are exact.
+            Sampling steps between two points for the velocity; accelerations are exact.
 
         Returns
         -------
@@ -151,7 +151,7 @@ class Interpolant:
             return np.zeros(3), np.zeros(3)
         velocity = self.within(np.linspace(0.0, 1.0, per_segment + 1))[1]
         accelerations = [_polynomial(self.coefficients, x, 2)
-                         for x in (0.0 * widths, widths, *self._turns_of_acceleration(widths))]
+                         for x in (0.0 * widths, widths, *self._zeros_of_jerk(widths))]
         return np.abs(velocity).max(axis=(0, 1)), np.abs(accelerations).max(axis=(0, 1))
 
     def peak_jerks(self) -> Array:
@@ -166,17 +166,17 @@ class Interpolant:
         """
         widths = np.diff(self.points.times)[:, np.newaxis]
         places = [0.0 * widths, widths]
-        if len(self.coefficients) == 6:  # a parabola, whose top may be within
+        if len(self.coefficients) == 6:  # jerk is a parabola; its vertex may be within
             with np.errstate(divide='ignore', invalid='ignore'):
                 top = -0.2 * self.coefficients[4] / self.coefficients[5]
             places.append(np.clip(np.nan_to_num(top), 0.0, widths))
         return np.asarray(np.abs(
             [_polynomial(self.coefficients, x, 3) for x in places]).max(axis=0))
 
-    def _turns_of_acceleration(self, widths: Array) -> tuple[Array, ...]:
+    def _zeros_of_jerk(self, widths: Array) -> tuple[Array, ...]:
         """Return times since each knot, within its segment, at which the jerk is zero."""
         c = self.coefficients
-        if len(c) < 6:  # the acceleration of lines and cubics is largest at the ends
+        if len(c) < 6:  # acceleration is largest at the ends
             return ()
         A, B, C = 60.0 * c[5], 24.0 * c[4], 6.0 * c[3]
         with np.errstate(divide='ignore', invalid='ignore'):
@@ -186,14 +186,14 @@ class Interpolant:
 
 def hermite(T: float | Array, start: tuple[Array, ...], end: tuple[Array, ...]) -> list[Array]:
     """
-    Return the polynomial of least order between two states.
+    Return the Hermite polynomial between two states: degree 1, 3 or 5.
 
     Parameters
     ----------
     T : float or ndarray
         Time between them [s].
     start, end : tuple of ndarray
-        Position, and as far as known velocity and acceleration, as many in both.
+        Position, and velocity and acceleration if given, as many in both.
 
     Returns
     -------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Whether a motion keeps its limits, and what breaks them."""
+"""Check of a motion's extremes against its limits."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from rrr_traj_planner.core.errors import told_apart
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.trajectory import Peaks
 
-# Relative room for rounding, the package's promise for every motion it returns.
+# Relative; every motion that the package returns satisfies its limits to this tolerance.
 TOLERANCE = 1e-6
 
 
 class Violation(NamedTuple):
-    """A limit that a motion breaks."""
+    """A limit that a motion violates."""
 
     joint: int
     quantity: str
@@ -41,7 +41,7 @@ class Violation(NamedTuple):
 
     def text(self, joint_names: Sequence[str]) -> str:
         """
-        Return a sentence for people.
+        Return the violation as a sentence.
 
         Parameters
         ----------
@@ -61,7 +61,7 @@ class Violation(NamedTuple):
 
 def violations(limits: JointLimits, peaks: Peaks, effort: Array) -> list[Violation]:
     """
-    Return every limit that a motion breaks.
+    Return every limit that a motion violates.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def violations(limits: JointLimits, peaks: Peaks, effort: Array) -> list[Violati
     Returns
     -------
     list of Violation
-        Empty where the motion keeps them all.
+        Empty if there is none.
 
     """
     found = []

@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Maxima of piecewise smooth quantities over time, found between the points of a grid too."""
+"""
+Maxima over time of piecewise smooth quantities: sampling, then successive parabolic interpolation.
+
+The interpolation within a bracket is that of Brent, Algorithms for Minimization without
+Derivatives, 1973, chapter 5, here for many brackets at once and with several points a round.
+"""
 
 from __future__ import annotations
 
@@ -22,16 +27,17 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, IntArray
 
-# A peak is looked for around the top of a parabola through three points, at these parts of the way
-# to the outer two: a bracket narrows to a 64th where the parabola is good, at worst to a half. The
-# value of a smooth peak stands to the square of that.
+# Sampling around the vertex of the parabola through three points, at these fractions of the
+# distance to the outer two: a bracket narrows to a 64th where the parabola fits well, at worst to
+# a half. The error of a smooth peak's value is of the order of the square.
 ZOOM_ROUNDS = 12
 OFFSETS = np.array([-32.0, -8.0, -1.0, 0.0, 1.0, 8.0, 32.0]) / 64.0
-# A local maximum is followed where it might be the highest of all by more than this part: between
-# equal steps a smooth quantity rises by an eighth of its second difference, one with corners by
-# half; beside a step of a seventh of the other's size, by seven quarters.
+# A local maximum is refined if it might exceed the highest value found by more than NEGLIGIBLE
+# (relative). Bounds on the rise between samples, in second differences: an eighth for a smooth
+# quantity on an equal grid, a half with corners (RISE), seven quarters with neighbouring steps of
+# ratio seven (ZOOMED_RISE, rounded up).
 RISE, ZOOMED_RISE, NEGLIGIBLE = 0.5, 2.0, 1e-8
-# Points no further apart are the two sides of a knot: there is nothing between them.
+# Points no further apart are the two sides of a knot.
 SAME_TIME = 1e-8  # s
 
 
@@ -52,7 +58,7 @@ def maximum_over_time(quantity: Callable[[Array], Array], grid: Array,
     quantity : callable
         Values of shape (n, K) at times of shape (n,).
     grid : ndarray
-        Increasing times [s], fine enough for each high local maximum to show.
+        Increasing times [s], dense enough to resolve each high local maximum.
     values : ndarray, shape (n, K), optional
         The quantity at the grid, where it is known.
 
@@ -70,7 +76,7 @@ def maximum_over_time(quantity: Callable[[Array], Array], grid: Array,
     for _ in range(ZOOM_ROUNDS if np.isfinite(value).all() else 0):
         if not len(column):
             break
-        inner = _around_tops(t, f)
+        inner = _around_vertices(t, f)
         at = quantity(inner.ravel()).reshape(*inner.shape, -1)
         own = np.take_along_axis(at, column[:, np.newaxis, np.newaxis], axis=2)[..., 0]
         t = np.concatenate((t[:, :1], inner, t[:, 2:]), axis=1)
@@ -91,20 +97,21 @@ def maximum_over_time(quantity: Callable[[Array], Array], grid: Array,
 
 
 def _brackets(values: Array, grid: Array) -> tuple[Array, Array, IntArray]:
-    """Return points around local maxima that may hide a column's highest value: t, f, column."""
+    """Return brackets of local maxima that may contain a column's maximum: t, f, column."""
     local = values > 0.0
     local[1:] &= values[1:] >= values[:-1]
     local[:-1] &= values[:-1] >= values[1:]
     with np.errstate(invalid='ignore'):
-        local &= values + RISE * _bends(values) > values.max(axis=0) * (1.0 + NEGLIGIBLE)
+        local &= (values + RISE * _second_differences(values)
+                  > values.max(axis=0) * (1.0 + NEGLIGIBLE))
     column, row = np.nonzero(local.T)
     apart = np.diff(grid, prepend=grid[0], append=grid[-1]) > SAME_TIME
     beside = np.stack((row - apart[row], row, row + apart[row + 1]), axis=1)
     return grid[beside], values[beside, column[:, np.newaxis]], column
 
 
-def _around_tops(t: Array, f: Array) -> Array:
-    """Return times around the tops of parabolas through three points each, (k, len(OFFSETS))."""
+def _around_vertices(t: Array, f: Array) -> Array:
+    """Return times around the vertices of parabolas through three points, (k, len(OFFSETS))."""
     before, after = t[:, 1] - t[:, 0], t[:, 2] - t[:, 1]
     rise, fall = f[:, 1] - f[:, 0], f[:, 1] - f[:, 2]
     with np.errstate(divide='ignore', invalid='ignore'):
@@ -114,9 +121,9 @@ def _around_tops(t: Array, f: Array) -> Array:
     return np.clip(top[:, np.newaxis] + reach[:, np.newaxis] * OFFSETS, t[:, :1], t[:, 2:])
 
 
-def _bends(values: Array) -> Array:
-    """Return the largest second difference beside each point; a peak between rises an eighth."""
+def _second_differences(values: Array) -> Array:
+    """Return the largest second difference at or next to each point."""
     if len(values) < 3:
         return np.full(values.shape, np.inf)
-    bends = np.pad(np.abs(np.diff(values, 2, axis=0)), ((2, 2), (0, 0)), mode='edge')
-    return np.asarray(np.max([bends[k:k + len(values)] for k in range(3)], axis=0))
+    second = np.pad(np.abs(np.diff(values, 2, axis=0)), ((2, 2), (0, 0)), mode='edge')
+    return np.asarray(np.max([second[k:k + len(values)] for k in range(3)], axis=0))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What motions are made of: pieces of one joint's motion, and functions that make them."""
+"""Interfaces: pieces of one joint's motion, and transition functions that make them."""
 
 from __future__ import annotations
 
@@ -50,16 +50,16 @@ class Pieces(Protocol):
         """
 
     def arrays(self) -> dict[str, Any]:
-        """Return every value that the pieces are made of, by its name."""
+        """Return the parameters of the pieces by name."""
 
     def made_of(self, arrays: Iterable[Any]) -> Pieces:
         """
-        Return pieces of the same function made of other values.
+        Return pieces of the same type with other values.
 
         Parameters
         ----------
         arrays : iterable
-            The values, in the order of `arrays`.
+            Values of the parameters, in the order of `arrays`.
 
         Returns
         -------
@@ -70,12 +70,12 @@ class Pieces(Protocol):
 
     def time_scaled(self, factor: float) -> Pieces:
         """
-        Return the same positions run through at another rate.
+        Return the pieces with time scaled by a factor, positions unchanged.
 
         Parameters
         ----------
         factor : float
-            What every time is multiplied by, positive.
+            New over old duration, positive.
 
         Returns
         -------
@@ -93,23 +93,23 @@ class Pieces(Protocol):
 
 class TransitionFunction(Protocol):
     """
-    A function that leads from one velocity to another, its acceleration 0 at both ends.
+    A law of motion from one velocity to another, with zero acceleration at both ends.
 
-    Acceleration is symmetric in time, so that a transition covers duration * (velocity +
-    end_velocity) / 2, and never changes its sign, so that velocity is monotone.
+    Acceleration is symmetric in time, so that the displacement is duration * (velocity +
+    end_velocity) / 2, and does not change sign, so that velocity is monotone.
     """
 
     @property
     def name(self) -> str:
-        """Return what it is called."""
+        """Return the name of the function."""
 
     @property
     def peak_acceleration(self) -> float:
-        """Its peak, times change of velocity / duration."""
+        """Peak acceleration in units of change of velocity / duration."""
 
     @property
     def peak_jerk(self) -> float:
-        """Its largest jerk, times change of velocity / duration squared."""
+        """Peak jerk in units of change of velocity / duration squared."""
 
     def transition(self, duration: Any, position: Any, velocity: Any,
                    end_velocity: Any) -> Pieces:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Trajectories made of pieces, each joint with pieces of its own."""
+"""Piecewise trajectories: each joint has a profile of consecutive pieces."""
 
 from __future__ import annotations
 
@@ -29,10 +29,11 @@ from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory.pieces import Pieces
 from rrr_traj_planner.core.trajectory.trajectory import ending_at_duration, Peaks, Trajectory
 
-# Newton steps towards a zero of velocity, halvings of its bracket where they leave it. An error e
-# of the place in [0, 1] changes the position there by the order of e squared.
+# Safeguarded Newton iteration for zeros in [0, 1] (Press et al., Numerical Recipes, section 9.4):
+# a step that leaves the bracket is replaced by a bisection. At a zero of velocity an error e of
+# the normalised time changes the position by O(e^2).
 MOST_STEPS = 60
-PLACE_TOLERANCE = 1e-9
+PLACE_TOLERANCE = 1e-9  # of the normalised time
 
 
 class JointProfile(ReadOnlyArrays):
@@ -85,7 +86,7 @@ class JointProfile(ReadOnlyArrays):
 
     @cached_property
     def begins(self) -> Array:
-        """Return the positions where the pieces begin, shape (n,) [rad]."""
+        """Return the positions at the beginnings of the pieces, shape (n,) [rad]."""
         return np.asarray(self.pieces.at(0.0)[0])
 
     def position_range(self) -> tuple[float, float]:
@@ -109,7 +110,7 @@ class JointProfile(ReadOnlyArrays):
 
     def passed(self, positions: Array) -> Array:
         """
-        Return when positions are passed, where the motion never goes back.
+        Return the times at which positions are passed by a monotone motion.
 
         Parameters
         ----------
@@ -141,12 +142,12 @@ class JointProfile(ReadOnlyArrays):
 
     def time_scaled(self, factor: float) -> JointProfile:
         """
-        Return the same positions run through at another rate.
+        Return the profile with time scaled by a factor, positions unchanged.
 
         Parameters
         ----------
         factor : float
-            What every time is multiplied by, positive.
+            New over old duration, positive.
 
         Returns
         -------
@@ -163,7 +164,7 @@ class JointProfile(ReadOnlyArrays):
         return self._at((slice(None), np.newaxis))
 
     def _zero_of_velocity(self, row: IntArray, low: Array, high: Array) -> Array:
-        """Return positions where velocity, monotone in each bracket, changes its sign."""
+        """Return the positions at the zeros of velocity, monotone in each bracket."""
         piece = self._at(row)
         sign_low, s = np.sign(piece.at(low)[1]), 0.5 * (low + high)
         for _ in range(MOST_STEPS):
@@ -181,7 +182,7 @@ class JointProfile(ReadOnlyArrays):
 
 class PiecewiseTrajectory(Trajectory):
     """
-    Profiles of all joints, equally long.
+    A trajectory of joint profiles of equal duration.
 
     Parameters
     ----------
@@ -251,7 +252,7 @@ class PiecewiseTrajectory(Trajectory):
             min_position=ranges[:, 0], max_position=ranges[:, 1])
 
     def time_scaled(self, factor: float) -> PiecewiseTrajectory:
-        """Return the same path run through at another rate; see `Trajectory`."""
+        """Return the same path with time scaled by a factor; see `Trajectory`."""
         factor = positive('factor', factor)
         slower = PiecewiseTrajectory([p.time_scaled(factor) for p in self.profiles],
                                      self.via_times * factor, self.note)

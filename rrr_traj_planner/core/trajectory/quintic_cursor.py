@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The desired state at one instant after another, which follow closely: floats, no arrays."""
+"""Evaluation of a piecewise quintic at consecutive instants, in floats: for a control loop."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rrr_traj_planner.core.states import Desired
 
 class QuinticCursor:
     """
-    Evaluates polynomials in time, and remembers in which of them it was last.
+    Evaluates a piecewise quintic, and remembers the interval used last.
 
     Parameters
     ----------
@@ -37,14 +37,14 @@ class QuinticCursor:
     coefficients : ndarray, shape (n - 1, 3, 6)
         For each interval and joint, of 1, x, ..., x^5 with x the time since its knot [s].
     final : ndarray, shape (3,)
-        Where the joints rest from the last knot on [rad].
+        Positions at rest, from the last knot on [rad].
 
     """
 
     def __init__(self, knots: Array, knots_ns: list[int], coefficients: Array,
                  final: Array) -> None:
         self._knots, self._knots_ns, self._coefficients = knots, knots_ns, coefficients
-        # One knot alone is a rest that has no beginning.
+        # A single knot means rest at all times.
         self._rests_from = knots_ns[-1] if len(knots) > 1 else -np.inf
         self._rest = rest(final)
         # The interval found last [ns], its beginning [s], and its coefficients.
@@ -59,9 +59,9 @@ class QuinticCursor:
         Parameters
         ----------
         n : int
-            The time, to choose a polynomial by [ns].
+            The time that selects the interval [ns].
         t : float
-            The same time, to evaluate it at [s].
+            The same time, for the evaluation [s].
 
         Returns
         -------
@@ -88,7 +88,7 @@ class QuinticCursor:
             2.0 * c2 + x * (6.0 * c3 + x * (12.0 * c4 + x * (20.0 * c5))))
 
     def _find(self, n: int, t: float) -> float:
-        """Make the interval around a time the current one, and return the time, not before all."""
+        """Select the interval of a time, and return the time, at least that of the first knot."""
         knots = self._knots_ns
         i = max(bisect_right(knots, n) - 1, 0)
         self._low, self._high = knots[i], knots[i + 1]
@@ -99,7 +99,7 @@ class QuinticCursor:
 
 def rest(q: ArrayLike) -> Desired:
     """
-    Return the desired state of an arm that rests.
+    Return the desired state of an arm at rest.
 
     Parameters
     ----------

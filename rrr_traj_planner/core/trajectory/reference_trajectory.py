@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the arm's controller follows: polynomials in time, at one instant or at many."""
+"""The reference trajectory of the arm's controller: piecewise quintics in time."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ from rrr_traj_planner.core.trajectory.trajectory_points import (
 
 class ReferenceTrajectory:
     """
-    A motion of polynomials, one after another.
+    Piecewise polynomials in time.
 
-    After its last knot it rests; where it has a velocity there, whoever follows it has to brake
+    After the last knot the reference is at rest. If it has a velocity there, the arm must brake
     from `end_state` (`stopping.stop`).
 
-    Which of them is in force is decided in whole nanoseconds, as in joint_trajectory_controller:
-    exactly at a knot it is the one that begins there.
+    The interval of a time is determined in whole nanoseconds, as in joint_trajectory_controller;
+    at a knot it is the one that begins there.
 
     Parameters
     ----------
@@ -48,16 +48,16 @@ class ReferenceTrajectory:
     coefficients : ndarray, shape (n - 1, 3, 6)
         For each interval and joint, of 1, x, ..., x^5 with x the time since its knot [s].
     final : ndarray, shape (3,)
-        Position at the last knot [rad], which is held.
+        Position at the last knot, held from then on [rad].
     origin_ns : int
-        What the knots are counted from [ns].
+        Origin of the knots' times [ns].
     final_velocity, final_acceleration : ndarray, shape (3,), optional
-        With which it arrives at the last knot [rad/s], [rad/s^2]; None: it comes to rest there.
+        At the last knot [rad/s], [rad/s^2]; None: at rest.
 
     Attributes
     ----------
     ends_moving : bool
-        Whether it has a velocity at its last knot.
+        Whether there is a velocity at the last knot.
     elapsed : callable
         `QuinticCursor.elapsed`: the desired state after a time since the origin.
 
@@ -76,7 +76,7 @@ class ReferenceTrajectory:
 
     def arrive(self, velocity: Array, acceleration: Array) -> None:
         """
-        Say with which velocity and acceleration the motion arrives at its last knot.
+        Set velocity and acceleration at the last knot.
 
         Parameters
         ----------
@@ -85,11 +85,11 @@ class ReferenceTrajectory:
 
         """
         self.final_velocity, self.final_acceleration = velocity, acceleration
-        self.ends_moving = bool(velocity.any())  # asked at every step of simulations
+        self.ends_moving = bool(velocity.any())  # read at every step of a simulation
 
     @property
     def origin(self) -> float:
-        """Return what the knots are counted from [s]."""
+        """Return the origin of the knots' times [s]."""
         return self.origin_ns / SECOND
 
     @property
@@ -109,7 +109,7 @@ class ReferenceTrajectory:
 
     @property
     def end_state(self) -> Desired:
-        """Position, velocity and acceleration with which it arrives at its last knot."""
+        """Position, velocity and acceleration at the last knot."""
         q1, q2, q3, qd1, qd2, qd3, a1, a2, a3 = np.concatenate(
             (self.final, self.final_velocity, self.final_acceleration)).tolist()
         return q1, q2, q3, qd1, qd2, qd3, a1, a2, a3
@@ -121,7 +121,7 @@ class ReferenceTrajectory:
         Parameters
         ----------
         t : float
-            [s]; before the first knot the motion is as at that knot, after the last it rests.
+            [s]; before the first knot its state applies, after the last one rest.
 
         Returns
         -------
@@ -157,8 +157,7 @@ class ReferenceTrajectory:
         Parameters
         ----------
         t : array_like, shape (...)
-            Times [s]; before the first knot the motion is as at that knot, from the last one on
-            it is as it arrives there.
+            Times [s]; before the first knot its state applies, from the last one on `end_state`.
 
         Returns
         -------
@@ -186,7 +185,7 @@ class ReferenceTrajectory:
 
     def states(self) -> tuple[Array, Array, Array]:
         """
-        Return the state with which the motion goes on from each knot, and arrives at the last.
+        Return the states after each knot, and `end_state` at the last.
 
         Returns
         -------
@@ -202,14 +201,14 @@ class ReferenceTrajectory:
 
 def through(points: CommandedPoints, origin_ns: int = 0) -> ReferenceTrajectory:
     """
-    Return the motion through points.
+    Return the reference trajectory through points.
 
     Parameters
     ----------
     points : CommandedPoints
         The points.
     origin_ns : int
-        What their times are counted from [ns].
+        Origin of their times [ns].
 
     Returns
     -------
@@ -220,7 +219,7 @@ def through(points: CommandedPoints, origin_ns: int = 0) -> ReferenceTrajectory:
     coefficients = segment_coefficients(points, segment_orders(points))
     motion = ReferenceTrajectory(points.times, coefficients, points.positions[-1], origin_ns)
     moving = np.abs(points.velocities[-1]) > FLOAT_EPSILON
-    if moving.any():  # joints without a velocity stand, as where all do
+    if moving.any():  # other joints are at rest, as if all were
         acceleration = motion.at(motion.end)[2] if len(coefficients) else points.accelerations[-1]
         motion.arrive(np.where(moving, points.velocities[-1], 0.0),
                       np.where(moving, acceleration, 0.0))
@@ -229,7 +228,7 @@ def through(points: CommandedPoints, origin_ns: int = 0) -> ReferenceTrajectory:
 
 def holding(q: ArrayLike, now: int = 0) -> ReferenceTrajectory:
     """
-    Return the motion that stays where it is.
+    Return a reference trajectory that holds a position.
 
     Parameters
     ----------
@@ -241,7 +240,7 @@ def holding(q: ArrayLike, now: int = 0) -> ReferenceTrajectory:
     Returns
     -------
     ReferenceTrajectory
-        A motion of one knot.
+        Of one knot.
 
     """
     return ReferenceTrajectory(np.zeros(1), np.zeros((0, 3, 6)), finite_array('q', q, (3,)), now)

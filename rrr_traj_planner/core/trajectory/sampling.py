@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The points of a message: a motion sampled so that controllers rebuild it within its limits."""
+"""Sampling of a motion into points that a controller can interpolate within the limits."""
 
 from __future__ import annotations
 
@@ -25,31 +25,31 @@ from rrr_traj_planner.core.scalars import positive, whole_number
 from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
-NANOSECOND = 1e-9
+NANOSECOND = 1e-9  # s
 
-# No regular sample is nearer to a via point's than this part of the period.
-LEAST_GAP = 0.1
+LEAST_GAP = 0.1  # of the period, between a regular sample and a via point's
 
-# The quintic of an interval in which acceleration steps has the mean and the first moment of the
-# acceleration, and swings beyond what is on both sides. Where the step is at one end of it, it
-# overshoots on the other side by 37 % of the step, and its jerk is 9 times the step over the
-# interval; where it is a sixth from the end, on the other side alone too, but least, by 5 %.
+# The quintic of an interval in which acceleration steps has the same mean and first moment of
+# acceleration as the motion, and overshoots. With the step at one end of the interval, it
+# overshoots at the other end by 37 % of the step, and its jerk is 9 times the step over the
+# interval; with the step at a sixth of the interval (STEP_SHARE) the overshoot is least, 5 % of
+# the step.
 STEP_SHARE, STEP_OVERSHOOT = 1.0 / 6.0, 0.0501
-STEP_GAP = 0.3  # of the period, between a step and a regular point: in less time jerk is higher
+STEP_GAP = 0.3  # of the period, between a step and a regular point: bounds the quintic's jerk
 
-# More points than this, where nothing else is said, are refused: they would fill the memory.
+# Default limit on the number of points, which bounds the memory used.
 MOST_POINTS = 200_000
 
 
 class SampleTimes(NamedTuple):
-    """When a motion is sampled, shape (n,) each."""
+    """Sampling times of a motion, shape (n,) each."""
 
     exact: Array   # [s]
     stamps: Array  # the same in whole nanoseconds, strictly increasing
 
     def with_further(self, times: Array) -> SampleTimes:
         """
-        Return these times and further ones between them.
+        Return these times and additional ones between them.
 
         Parameters
         ----------
@@ -80,7 +80,7 @@ def sample(trajectory: Trajectory, period: float,
     period : float
         Time between points [s], positive.
     most_points : int
-        How many points there may be.
+        Largest number of points.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def points_at(trajectory: Trajectory, times: SampleTimes) -> TrajectoryPoints:
     trajectory : Trajectory
         The motion.
     times : SampleTimes
-        When, from its start to its end.
+        Sampling times, from start to end.
 
     Returns
     -------
@@ -122,11 +122,11 @@ def points_at(trajectory: Trajectory, times: SampleTimes) -> TrajectoryPoints:
 def sample_times(trajectory: Trajectory, period: float,
                  most_points: int = MOST_POINTS) -> SampleTimes:
     """
-    Return when a motion is sampled: at every period, at every via time and at the end.
+    Return the sampling times of a motion: every period, every via time and the end.
 
-    No regular point is nearer than a tenth of a period to a via time, nor nearer than three tenths
-    to a step of acceleration: it gives way to one half a period before the step and one half a
-    period after it. See `STEP_SHARE` for what a quintic makes of steps.
+    A regular point nearer than a tenth of a period to a via time is dropped. One nearer than three
+    tenths to a step of acceleration is replaced by points half a period before and after the step.
+    See `STEP_SHARE` for quintics across steps.
 
     Parameters
     ----------
@@ -157,8 +157,8 @@ def sample_times(trajectory: Trajectory, period: float,
     regular: Array = period * np.arange(1.0, int(trajectory.duration / period) + 1)
     gap, steps = LEAST_GAP * period, trajectory.step_times
     beside = _beside_steps(steps, regular, period)
-    kept = regular[_distance(regular, steps) >= STEP_GAP * period]
-    between = np.round(np.sort(np.concatenate((kept, beside))) / NANOSECOND) * NANOSECOND
+    retained = regular[_distance(regular, steps) >= STEP_GAP * period]
+    between = np.round(np.sort(np.concatenate((retained, beside))) / NANOSECOND) * NANOSECOND
     between = between[(_distance(between, fixed) >= gap) & (between > 0.0)
                       & (between < trajectory.duration)]
     # Regular points share the rounding of the via points' stamps, which a controller would
@@ -171,7 +171,7 @@ def sample_times(trajectory: Trajectory, period: float,
 
 
 def _beside_steps(steps: Array, regular: Array, period: float) -> Array:
-    """Return times half a period from steps that a regular point gives way to, far from others."""
+    """Return times half a period from the steps that displace a regular point."""
     near = steps[_distance(steps, regular) < STEP_GAP * period]
     beside = np.sort(np.concatenate((near - 0.5 * period, near + 0.5 * period)))
     beside = beside[_distance(beside, steps) >= LEAST_GAP * period]
@@ -179,7 +179,7 @@ def _beside_steps(steps: Array, regular: Array, period: float) -> Array:
 
 
 def _distance(times: Array, others: Array) -> Array:
-    """Return how far each time is from the nearest of others, which increase [s]."""
+    """Return the distance of each time from the nearest of others, which increase [s]."""
     if not len(others):
         return np.full(len(times), np.inf)
     after = np.searchsorted(others, times)
@@ -190,18 +190,18 @@ def _distance(times: Array, others: Array) -> Array:
 def check_size(duration: float, period: float, most_points: int = MOST_POINTS,
                points: float | None = None) -> None:
     """
-    Refuse a motion that has too many points.
+    Refuse a motion with too many points.
 
     Parameters
     ----------
     duration : float
-        How long it lasts, or the least that it can [s].
+        Duration, or a lower bound of it [s].
     period : float
         Time between points [s], positive.
     most_points : int
         How many points there may be.
     points : float, optional
-        How many it has; None: as many as there are periods, and one.
+        Number of points; None: one for each period, and one more.
 
     Raises
     ------

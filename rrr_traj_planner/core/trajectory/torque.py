@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motor torques along a motion: their peaks, and the rate at which they fit their limits."""
+"""
+Motor torques along a motion: their peaks, and the time scaling that satisfies their limits.
+
+With time scaled by a factor f, the part of the torque that is not gravity falls with f^2
+(Hollerbach, Dynamic scaling of manipulator trajectories, ASME J. Dynamic Systems 106, 1984).
+"""
 
 from __future__ import annotations
 
@@ -26,8 +31,8 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dy
 from rrr_traj_planner.core.trajectory.maximum import Extreme, maximum_over_time
 from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 
-# Torque is analytic between knots. So many steps there, none longer than LONGEST_STEP unless the
-# motion is so slow that MOST_STEPS are enough, put every high peak in a bracket of its own.
+# Torque is analytic between knots. With this many steps there, none longer than LONGEST_STEP
+# unless MOST_STEPS are reached (slow motions), every high peak has a bracket of its own.
 STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s
@@ -38,7 +43,7 @@ UNLIMITED = JointLimits(max_effort=np.full(3, np.inf))
 
 
 class TorquePeaks(NamedTuple):
-    """What torques ask of a motion, exactly: between the points of a grid too."""
+    """Extremes of torque over the continuous motion."""
 
     effort: Extreme   # largest magnitudes of torques [N m]
     scaling: Extreme  # least factors of time at which they keep their limits
@@ -46,14 +51,14 @@ class TorquePeaks(NamedTuple):
 
 class TorqueSweep:
     """
-    Torques at close times along a motion: evaluated once, used by whoever asks for them.
+    Torques on a dense grid of times along a motion, evaluated once.
 
     Parameters
     ----------
     model : RobotModel
         The arm.
     times : ndarray, shape (n,)
-        Increasing, close enough for every high peak to show [s].
+        Increasing; dense enough to resolve every high peak [s].
     gravity, torque : ndarray, shape (n, 3)
         Of gravity alone, and of the whole motion (5.39) [N m].
 
@@ -65,17 +70,17 @@ class TorqueSweep:
 
     def scaled(self, factor: float) -> TorqueSweep:
         """
-        Return the torques of the same motion at another rate.
+        Return the torques of the motion with time scaled by a factor.
 
         Parameters
         ----------
         factor : float
-            What every time is multiplied by: torques fall with its square, to those of gravity.
+            New over old duration.
 
         Returns
         -------
         TorqueSweep
-            Without peaks, which are to be found again.
+            Its peaks are not known yet.
 
         """
         if factor == 1.0:
@@ -123,7 +128,7 @@ class TorqueSweep:
         return self._peaks[key]
 
     def _refined(self, limits: JointLimits, trajectory: Trajectory) -> TorquePeaks:
-        """Look for the extremes between the times of the grid."""
+        """Return the extremes, refined between the times of the grid."""
         squared = self.squared_scaling(limits)
         limited = bool(np.isfinite(limits.max_effort).any()) and bool(np.isfinite(squared).all())
 
@@ -143,7 +148,7 @@ class TorqueSweep:
 
 def torque_sweep(model: RobotModel, trajectory: Trajectory) -> TorqueSweep:
     """
-    Return the torques along a motion, which stay with it (`Trajectory.cache`).
+    Return the torques along a motion, cached with it (`Trajectory.cache`).
 
     Parameters
     ----------
@@ -155,7 +160,7 @@ def torque_sweep(model: RobotModel, trajectory: Trajectory) -> TorqueSweep:
     Returns
     -------
     TorqueSweep
-        At close times.
+        On `torque_grid`.
 
     """
     found = trajectory.cache.get('torque_sweep')
@@ -178,7 +183,7 @@ def peak_torque(model: RobotModel, trajectory: Trajectory,
     trajectory : Trajectory
         The motion.
     limits : JointLimits, optional
-        Those for which `time_scale_for_torque` is or will be asked: both are found together.
+        Limits for which `time_scale_for_torque` is needed too: both are found together.
 
     Returns
     -------
@@ -191,7 +196,7 @@ def peak_torque(model: RobotModel, trajectory: Trajectory,
 
 def peak_holding_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
     """
-    Return the largest torque that gravity alone asks of each joint along a path.
+    Return the largest gravity torque of each joint along a path.
 
     Parameters
     ----------
@@ -213,7 +218,7 @@ def peak_holding_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
 def time_scale_for_torque(model: RobotModel, limits: JointLimits,
                           trajectory: Trajectory) -> Extreme:
     """
-    Return by how much each joint's torque limit asks a motion to be slowed down.
+    Return the time-scaling factor that each joint's torque limit requires of a motion.
 
     Parameters
     ----------
@@ -227,8 +232,8 @@ def time_scale_for_torque(model: RobotModel, limits: JointLimits,
     Returns
     -------
     Extreme
-        Least factors at which each joint's torque keeps its limit; below 1 the motion has torque
-        to spare. And where the factor comes from.
+        Least factors at which each joint's torque is within its limit, below 1 where there is a
+        margin; and the times at which they bind.
 
     """
     if not np.isfinite(limits.max_effort).any():
@@ -239,10 +244,9 @@ def time_scale_for_torque(model: RobotModel, limits: JointLimits,
 def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Array,
                        qdd: Array) -> Array:
     """
-    Return the square of the factor by which a motion must be slowed down, where it is so.
+    Return the square of the time-scaling factor that torque limits require at given states.
 
-    Run through more slowly by a factor f, the part of the torque that is not gravity falls
-    with f squared. Limits below what gravity takes give an infinite factor.
+    Infinite where the torque of gravity alone exceeds its limit.
 
     Parameters
     ----------
@@ -261,25 +265,25 @@ def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Arr
 
 
 def _torques(model: RobotModel, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array]:
-    """Return the torques of gravity and of the motion, of terms at q that are there once."""
+    """Return the torques of gravity and of the motion; the terms at q are evaluated once."""
     rest = np.zeros_like(q)
     gravity, torque = inverse_dynamics(model, q, np.stack((rest, qd)), np.stack((rest, qdd)))
     return gravity, torque
 
 
 def _squared_scaling(limits: JointLimits, gravity: Array, torque: Array) -> Array:
-    """Return the square of the factor of time at which torques keep their limits."""
+    """Return the square of the time-scaling factor at which torques are within their limits."""
     motion = torque - gravity
-    left = limits.max_effort - np.sign(motion) * gravity
+    margin = limits.max_effort - np.sign(motion) * gravity
     holds = np.abs(gravity) <= limits.max_effort * (1.0 + TORQUE_TOLERANCE)
     with np.errstate(divide='ignore', invalid='ignore'):
-        factor = np.where(holds & (left > 0.0), np.abs(motion) / left, np.inf)
+        factor = np.where(holds & (margin > 0.0), np.abs(motion) / margin, np.inf)
     return np.where(np.isinf(limits.max_effort), 0.0, factor)
 
 
 def torque_grid(trajectory: Trajectory) -> Array:
     """
-    Return times close enough for every high peak of the torque to show.
+    Return times dense enough to resolve every high peak of the torque.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A motion of all joints over time: what every planner returns and everything else reads."""
+"""Interface of trajectories: joint positions and derivatives as functions of time."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
-ROUNDING = 1e-12  # of a motion's duration, by which sums of its parts may differ from it
+ROUNDING = 1e-12  # relative, of a sum of durations
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,16 +40,16 @@ class Peaks(ReadOnlyArrays):
 
 
 class Scalable(Protocol):
-    """A result about a motion that is known of the same motion at another rate too."""
+    """A result about a motion that can be converted for the time-scaled motion."""
 
     def scaled(self, factor: float) -> Scalable:
         """
-        Return the result for the motion at another rate.
+        Return the result for the motion with time scaled by a factor.
 
         Parameters
         ----------
         factor : float
-            By which every time is multiplied.
+            New over old duration.
 
         Returns
         -------
@@ -70,7 +70,7 @@ class Trajectory(ReadOnlyArrays, ABC):
     via_times : ndarray
         When each via point is passed [s], never decreasing; at the end the duration exactly.
     note : str
-        What there is to be said of how the motion was made; mostly empty.
+        Remark on how the motion was planned; mostly empty.
 
     """
 
@@ -86,14 +86,14 @@ class Trajectory(ReadOnlyArrays, ABC):
 
     def pass_cache(self, slower: Trajectory, factor: float) -> None:
         """
-        Hand on what has been computed to the same motion at another rate.
+        Copy cached results to the time-scaled motion.
 
         Parameters
         ----------
         slower : Trajectory
             That motion.
         factor : float
-            What every time was multiplied by.
+            New over old duration.
 
         """
         slower.cache.update((name, of.scaled(factor)) for name, of in self.cache.items())
@@ -136,12 +136,12 @@ class Trajectory(ReadOnlyArrays, ABC):
     @abstractmethod
     def time_scaled(self, factor: float) -> Trajectory:
         """
-        Return the same path run through at another rate.
+        Return the same path with time scaled by a factor.
 
         Parameters
         ----------
         factor : float
-            What every time is multiplied by, positive.
+            New over old duration, positive.
 
         Returns
         -------
@@ -153,7 +153,7 @@ class Trajectory(ReadOnlyArrays, ABC):
 
 def ending_at_duration(times: Array, duration: float) -> Array:
     """
-    Return times of which those at the end of a motion are its duration exactly.
+    Return times, those equal to the duration up to rounding replaced by it.
 
     Parameters
     ----------
@@ -165,7 +165,7 @@ def ending_at_duration(times: Array, duration: float) -> Array:
     Returns
     -------
     ndarray, shape (n,)
-        Read-only; rounding is more than a nanosecond in a motion of a week.
+        Read-only. In a motion of a week rounding exceeds a nanosecond.
 
     """
     found = np.where(np.abs(times - duration) <= ROUNDING * duration, duration, times)
@@ -201,5 +201,5 @@ def times_within(trajectory: Trajectory, per_interval: int, spacing: float = np.
     ends = np.cumsum(steps)
     within = np.arange(1, ends[-1] + 1) - np.repeat(ends - steps, steps)
     grid = np.repeat(knots[:-1], steps) + np.repeat(widths / steps, steps) * within
-    grid[ends - 1] = knots[1:]  # not to rounding, but exactly
+    grid[ends - 1] = knots[1:]  # exactly, without rounding
     return np.concatenate((knots[:1], grid))

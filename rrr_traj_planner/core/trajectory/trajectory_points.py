@@ -13,9 +13,9 @@
 # limitations under the License.
 
 """
-Points of a motion and the polynomials between them, as joint_trajectory_controller has them.
+Points of a commanded trajectory, and the polynomials of joint_trajectory_controller between them.
 
-Between two points runs a line, a cubic or a quintic, by what both of them carry.
+Two points are joined by a line, a cubic or a quintic, by the derivatives that both have.
 """
 
 from __future__ import annotations
@@ -29,25 +29,25 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.interpolation import hermite
 
-ORDERS = (1, 3, 5)
+ORDERS = (1, 3, 5)  # degrees of the polynomials
 
-# std::numeric_limits<float>::epsilon(), below which the controller takes a velocity for zero.
+# std::numeric_limits<float>::epsilon(): the controller treats smaller velocities as zero [rad/s].
 FLOAT_EPSILON = float(np.finfo(np.float32).eps)
 
 
 @dataclass(frozen=True, eq=False)
 class CommandedPoints(ReadOnlyArrays):
     """
-    Points to move through, each with a velocity and an acceleration or without.
+    Points of a commanded trajectory, each with or without velocity and acceleration.
 
     Parameters
     ----------
     times : array_like, shape (n,)
         Strictly increasing [s].
     positions, velocities, accelerations : array_like, shape (n, 3)
-        [rad], [rad/s], [rad/s^2]; zero where a point carries none.
+        [rad], [rad/s], [rad/s^2]; zero where a point has none.
     has_velocity, has_acceleration : array_like, shape (n,)
-        Whether a point carries them.
+        Whether a point has them.
 
     Raises
     ------
@@ -78,21 +78,21 @@ class CommandedPoints(ReadOnlyArrays):
 def with_start_state(points: CommandedPoints, time: float,
                      state: tuple[Array, Array, Array]) -> CommandedPoints:
     """
-    Return points with a state before them, from which a segment leads to the first one.
+    Return points preceded by a state, from which a segment leads to the first one.
 
     Parameters
     ----------
     points : CommandedPoints
         The points.
     time : float
-        When the state is, on the points' time; before the first of them [s].
+        Time of the state, on the points' clock; before the first of them [s].
     state : tuple of ndarray, shape (3,)
         Position [rad], velocity [rad/s], acceleration [rad/s^2].
 
     Returns
     -------
     CommandedPoints
-        One point more; the first has velocity and acceleration.
+        With one point more, which has velocity and acceleration.
 
     """
     q, qd, qdd = state
@@ -104,10 +104,11 @@ def with_start_state(points: CommandedPoints, time: float,
 
 def segment_orders(points: CommandedPoints) -> NDArray[np.int_]:
     """
-    Return the order of the polynomial between each two points.
+    Return the degree of the polynomial between each two points.
 
-    Velocities and accelerations count where both points carry them; accelerations without
-    velocities do not (joint_trajectory_controller then commands zero positions: not followed).
+    Velocities and accelerations are used where both points have them; accelerations without
+    velocities are not (joint_trajectory_controller then commands zero positions, which is not
+    reproduced).
 
     Parameters
     ----------

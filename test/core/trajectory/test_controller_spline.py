@@ -62,7 +62,7 @@ def test_what_exceeds_a_limit_asks_to_be_slowed_by_its_ratio(joint, limit, large
         bound[joint] = part * largest
         found = spline_excess(ARM, replace(WIDE, **{limit: bound}), there())
         expected = 1.0 if part > 0.999 else part ** -power
-        assert found.stretch == pytest.approx([1.0, expected, 1.0], rel=1e-3)
+        assert found.time_scale == pytest.approx([1.0, expected, 1.0], rel=1e-3)
         if expected > 1.0:
             assert np.abs(found.place[1] - places).min() <= 0.02
 
@@ -86,7 +86,7 @@ def test_what_exceeds_a_torque_fits_once_it_is_slowed_as_asked(joint):
     holding = np.abs([arm.gravity_torque(s[0]) for s in states]).max(axis=0)
     limit = NONE.copy()
     limit[joint] = 0.5 * (largest[joint] + holding[joint])
-    factor = spline_excess(ARM, replace(WIDE, max_effort=limit), there()).stretch[1]
+    factor = spline_excess(ARM, replace(WIDE, max_effort=limit), there()).time_scale[1]
     assert factor > 1.0
     slowed = np.abs([arm.inverse_dynamics(q, qd / factor, qdd / factor ** 2)
                      for q, qd, qdd in states]).max(axis=0)
@@ -95,7 +95,7 @@ def test_what_exceeds_a_torque_fits_once_it_is_slowed_as_asked(joint):
 
 def test_gravity_beyond_a_torque_asks_for_infinite_time():
     found = spline_excess(ARM, replace(WIDE, max_effort=[np.inf, 1.0, np.inf]), there())
-    assert np.isinf(found.stretch).all()
+    assert np.isinf(found.time_scale).all()
 
 
 def test_what_leaves_a_range_is_told():
@@ -108,7 +108,7 @@ def test_what_leaves_a_range_is_told():
     found = spline_excess(ARM, replace(WIDE, max_position=np.zeros(3)),
                           Interpolant(TrajectoryPoints([0.0, 0.5], zero, v, zero)))
     assert found.outside == pytest.approx([beyond], rel=1e-2)
-    assert found.stretch.tolist() == [1.0]  # no slower motion would stay within
+    assert found.time_scale.tolist() == [1.0]  # no slower motion would stay within
 
 
 @pytest.mark.parametrize('side', [1.0, -1.0])
@@ -123,7 +123,7 @@ def test_how_far_a_joint_turns_back_outside_its_range_is_told_to_a_nanorad(side)
                          min_position=[-1.0, beyond if side < 0.0 else -99.0, -1.0])
         found = spline_excess(ARM, limits, Interpolant(TrajectoryPoints([0.0, T], *states)))
         assert found.outside == pytest.approx([beyond], abs=1e-9)
-        assert found.stretch.tolist() == [1.0]
+        assert found.time_scale.tolist() == [1.0]
 
 
 def test_a_range_is_left_by_the_cube_of_the_time_between_points():
