@@ -193,8 +193,9 @@ def in_ranges_that_the_motion_touches(seed, planner_id, period):
     request = asked(forward_kinematics(ARM, q), planner_id=planner_id, elbow='up',
                     sample_period=period, max_deviation=0.02)
     free = plan(ARM, wide, request)
-    limits = replace(wide, min_position=free.peaks.min_position - 1e-9,
-                     max_position=free.peaks.max_position + 1e-9)
+    exact = 1e-8  # to which the peaks of motions along paths are known [rad]
+    limits = replace(wide, min_position=free.peaks.min_position - exact,
+                     max_position=free.peaks.max_position + exact)
     return limits, free, plan(ARM, limits, request)
 
 

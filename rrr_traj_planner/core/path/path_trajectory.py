@@ -213,7 +213,7 @@ class PathTrajectory(Trajectory):
 
     @property
     def peak_speed(self) -> float:
-        """The tip's largest speed over the continuous motion [m/s]."""
+        """Return the tip's largest speed over the continuous motion [m/s]."""
         return self._measured().speed
 
     def _measured(self) -> PathPeaks:
