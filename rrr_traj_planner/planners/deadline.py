@@ -23,7 +23,7 @@ from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import TimeLimitError
 
 IMPROVING = 0.8  # part of the limit after which a motion is not improved any more
-GRACE = 0.25     # s after the limit until which points and checks of the answer may take
+GRACE = 0.2      # s after the limit until which points and checks of the answer may take
 
 
 class Deadline:

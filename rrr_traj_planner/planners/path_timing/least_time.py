@@ -258,7 +258,9 @@ def _exact_time_scale(task: PathTask, trajectory: PathTrajectory) -> float:
     """Return the least factor on all times with which limits hold, by the motion's own peaks."""
     limits = task.limits
     peaks, speed = trajectory.peaks(), trajectory.peak_speed
+    task.should_stop()
     torque = time_scale_for_torque(task.arm_path.model, limits, trajectory).value
+    task.should_stop()
     return float(max((peaks.velocity / limits.max_velocity).max(), speed / task.max_tip_speed,
                      np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
                      np.cbrt((peaks.jerk / limits.max_jerk).max()), torque.max()))

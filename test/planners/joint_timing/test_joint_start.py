@@ -107,9 +107,9 @@ def test_a_blocked_way_is_gone_around_within_ranges_and_torques(seed):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_there_is_a_start_where_cells_with_room_connect_the_poses_and_nowhere_else(seed):
     task, _, m = started(blocked_task(seed))
-    if is_connected(task, room=2.0):
+    if is_connected(task, margin=2.0):
         assert m is not None
-    if not is_connected(task, room=-2.0):
+    if not is_connected(task, margin=-2.0):
         assert m is None
 
 
@@ -162,7 +162,7 @@ def test_where_no_way_is_found_there_is_none_and_the_error_names_segment_joint_a
     task, constraints = blocked(45.0)
     task = replace(task, limits=replace(
         task.limits, min_position=[-2.9, 1.2, -2.9], max_position=[3.1, 1.6, 3.1]))
-    assert not is_connected(task, room=-2.0)
+    assert not is_connected(task, margin=-2.0)
     assert rest_to_rest(task, constraints) is None
     error = cannot_be_held(replace(task, segment_numbers=np.array([4])), constraints.grid)
     assert isinstance(error, LimitViolationError)
@@ -182,7 +182,7 @@ def test_detours_stay_in_the_ranges(joint, side, end):
     limits = replace(task.limits, **{side: narrow})
     task = replace(task, limits=limits)
     constraints = bounds(limits, Grid(20), task.points)
-    assert is_connected(task, room=2.0)
+    assert is_connected(task, margin=2.0)
     q = constraints.grid.states(task.points, rest_to_rest(task, constraints)).q
     assert (q <= limits.max_position + 1e-9).all()
     assert (q >= limits.min_position - 1e-9).all()

@@ -229,7 +229,7 @@ def segment(task, k):
 def test_tasks_are_refused_only_where_no_cells_with_room_connect_the_poses():
     for task, error in outcomes()[1].values():
         k = int(re.match(r'segment (\d+)', str(error))[1])
-        assert not is_connected(segment(task, k), room=2.0)
+        assert not is_connected(segment(task, k), margin=2.0)
 
 
 @pytest.mark.parametrize('seed', range(12))
@@ -238,9 +238,9 @@ def test_where_straight_is_no_way_it_goes_around_if_there_is_another(seed):
     try:
         trajectory = time_optimal.plan(task)
     except LimitViolationError:
-        assert not is_connected(task, room=2.0)
+        assert not is_connected(task, margin=2.0)
         return
-    assert is_connected(task, room=-2.0)
+    assert is_connected(task, margin=-2.0)
     q, qd, qdd, _ = trajectory(np.linspace(0.0, trajectory.duration, 2001))
     assert q[[0, -1]] == pytest.approx(task.points, abs=HIT)
     assert (q >= task.limits.min_position - HIT).all()
