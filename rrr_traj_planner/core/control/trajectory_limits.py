@@ -24,7 +24,6 @@ Farouki, The Bernstein polynomial basis: a centennial retrospective, CAGD 29 (20
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import comb
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +31,7 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
 from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints, with_start_state
 
@@ -42,9 +42,6 @@ POSITION_TOLERANCE, LIMIT_TOLERANCE = 1e-4, 2e-3
 
 # Extremes are found to this part of the bound that they exceed.
 ACCURACY = 1e-6
-
-# From coefficients of 1, s, ..., s^5 to Bernstein's on [0, 1]: C(i, k) / C(5, k).
-BERNSTEIN = np.array([[comb(i, k) / comb(5, k) for i in range(6)] for k in range(6)])
 
 
 class Excess(NamedTuple):
@@ -165,12 +162,10 @@ def _lead_in_forms(points: CommandedPoints, time: float, command: ArrayLike) -> 
 
 def _bernstein_forms(motion: ReferenceTrajectory) -> tuple[Array, Array, Array]:
     """Return Bernstein coefficients of position, velocity, acceleration, (n, 3, 6 to 4)."""
-    T = np.diff(motion.knots)[:, np.newaxis, np.newaxis]
-    q = (motion.coefficients * T ** np.arange(6.0)) @ BERNSTEIN
-    qd = 5.0 * np.diff(q) / T
+    q, qd, qdd = bernstein_forms(motion.coefficients, np.diff(motion.knots))
     last = [np.broadcast_to(x[:, np.newaxis], (1, 3, 6 - order))
             for order, x in enumerate((motion.final, motion.final_velocity))]
-    return np.concatenate((q, last[0])), np.concatenate((qd, last[1])), 4.0 * np.diff(qd) / T
+    return np.concatenate((q, last[0])), np.concatenate((qd, last[1])), qdd
 
 
 def _with_tolerance(quantity: str, low: ArrayLike, high: ArrayLike) -> tuple[Array, Array]:

@@ -30,6 +30,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, through_samples
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.core.trajectory.torque import squared_time_scale
 
@@ -38,11 +39,10 @@ from rrr_traj_planner.core.trajectory.torque import squared_time_scale
 SPLINE_TOLERANCE = 8e-4  # relative
 RANGE_TOLERANCE = 8e-7   # rad
 
-# Steps of an interval in the coarse and in the dense check. Between samples a smooth quantity
-# exceeds them by an eighth of its second difference; where twice that might exceed a limit, the
-# interval is checked densely.
+# Steps of an interval in the coarse and in the dense check. An interval is checked densely where a
+# limit is below a Bernstein coefficient of position, velocity, acceleration or of the polynomial
+# through the coarse samples of torque.
 STEPS, FINE_STEPS = 4, 64
-RISE = 0.25
 
 
 class SplineExcess(NamedTuple):
@@ -95,13 +95,15 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
     tau = inverse_dynamics(model, q, qd, qdd)
     effort = np.abs(tau).max(axis=(0, 1))
     should_stop()
+    forms = bernstein_forms(np.moveaxis(spline.coefficients, 0, -1), np.diff(spline.points.times))
+    bounds = [np.abs(form).max(axis=2) for form in forms[1:]]
+    bounds.append(np.abs(through_samples(tau)).max(axis=0))
     doubtful = np.zeros(q.shape[1], dtype=bool)
-    for values, limit in ((qd, limits.max_velocity), (qdd, limits.max_acceleration),
-                          (tau, limits.max_effort)):
-        doubtful |= (_most(np.abs(values), values) > limit * (1.0 + SPLINE_TOLERANCE)).any(axis=1)
-    doubtful |= (_most(np.abs(tau), tau) > effort * (1.0 + SPLINE_TOLERANCE)).any(axis=1)
-    doubtful |= (_most(q, q) > limits.max_position + RANGE_TOLERANCE).any(axis=1)
-    doubtful |= (_most(-q, q) > -limits.min_position + RANGE_TOLERANCE).any(axis=1)
+    for most, limit in zip(bounds, (
+            limits.max_velocity, limits.max_acceleration, np.minimum(limits.max_effort, effort))):
+        doubtful |= (most > limit * (1.0 + SPLINE_TOLERANCE)).any(axis=1)
+    doubtful |= (forms[0].max(axis=2) > limits.max_position + RANGE_TOLERANCE).any(axis=1)
+    doubtful |= (forms[0].min(axis=2) < limits.min_position - RANGE_TOLERANCE).any(axis=1)
     should_stop()
     none = np.zeros(q.shape[1])
     found = SplineExcess(none + 1.0, none, none.copy(), effort, spline.peak_jerks())
@@ -112,12 +114,6 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
             all_of_them[index] = some
         found = found._replace(effort=np.maximum(effort, most))
     return found
-
-
-def _most(values: Array, smooth: Array) -> Array:
-    """Return upper bounds of values in each interval, by second differences, (k, 3)."""
-    second = np.abs(smooth[2:] - 2.0 * smooth[1:-1] + smooth[:-2]).max(axis=0)
-    return np.asarray(values.max(axis=0) + RISE * second)
 
 
 def _dense_check(model: RobotModel, limits: JointLimits, spline: Interpolant,
