@@ -67,22 +67,26 @@ def test_what_exceeds_a_limit_asks_to_be_slowed_by_its_ratio(joint, limit, large
             assert np.abs(found.place[1] - places).min() <= 0.02
 
 
-def test_no_peak_between_the_coarse_samples_is_missed():
-    # Quintics whose acceleration changes quickly near an end, as beside a singular position:
-    # their exact peak velocities are at roots of the acceleration.
-    rng = np.random.default_rng(11)
-    for _ in range(300):
-        q, v, a = rng.normal(0.0, [[[0.3]], [[1.0]], [[4.0]]], (3, 2, 3))
-        spline = Interpolant(TrajectoryPoints([0.0, 1.0], q, v, a))
-        joint = int(rng.integers(3))
+@pytest.mark.parametrize('joint', range(3))
+def test_no_peak_between_the_coarse_samples_is_missed(joint):
+    # Acceleration that changes quickly near one end, as beside a singular position; the exact peak
+    # of velocity is at a root of the acceleration. The second interval has the largest torques.
+    rng = np.random.default_rng(joint)
+    for _ in range(100):
+        q, v, a = np.zeros((3, 3, 3))
+        v0, v1, a0, a1, mean = np.array([-0.765, -0.949, 0.072, 1.238, -0.794]) * rng.uniform(
+            0.97, 1.03, 5)
+        q[1:, joint], v[:, joint], a[:2, joint] = mean, (v0, v1, v1), (a0, a1)
+        a[2] = 1000.0
+        spline = Interpolant(TrajectoryPoints([0.0, 1.0, 1.02], q, v, a))
         velocity = np.polynomial.Polynomial(spline.coefficients[:, 0, joint]).deriv()
         stationary = [x.real for x in velocity.deriv().roots()
                       if abs(x.imag) < 1e-12 and 0.0 < x.real < 1.0]
         peak = np.abs(velocity(np.array([0.0, 1.0, *stationary]))).max()
         bound = NONE.copy()
-        bound[joint] = 0.995 * peak
+        bound[joint] = 0.997 * peak
         found = spline_excess(ARM, replace(WIDE, max_velocity=bound), spline)
-        assert found.time_scale == pytest.approx([1.0 / 0.995], rel=2e-3)
+        assert found.time_scale[0] == pytest.approx(1.0 / 0.997, rel=5e-4)
 
 
 def test_largest_torque_is_pinocchio_s():
