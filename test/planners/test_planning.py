@@ -291,3 +291,11 @@ def test_a_planner_that_breaks_a_limit_is_caught(monkeypatch):
             r'^planner cycloid broke a limit: joint_\d jerk reaches [\d.]+ rad/s\^3, '
             r'limit 1 rad/s\^3$')):
         plan(ARM, tight, table('6.1'))
+
+
+@pytest.mark.parametrize('planner_id', ['cycloid', 'time_optimal', 'poly_434', 'line_arc'])
+@pytest.mark.parametrize('factor', [1e308, 1e154, 5e-324, 1e-154])
+def test_time_scaling_that_no_float_holds_is_refused(planner_id, factor):
+    trajectory = plan(ARM, LIMITS, table('6.1', planner_id=planner_id)).trajectory
+    with pytest.raises(InvalidInputError, match=r'^factor is .*, must be in \[1e-30, 1e\+30\]$'):
+        trajectory.time_scaled(factor)

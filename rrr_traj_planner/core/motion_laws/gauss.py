@@ -30,7 +30,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.conversion import float_array
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, shown
 from rrr_traj_planner.core.motion_laws.transition_shape import Curve, TransitionShape
 from rrr_traj_planner.core.scalars import positive, whole_number
 from scipy.special import erf
@@ -39,6 +39,10 @@ from scipy.special import erf
 # the peak, the accuracy that appendix A asks for.
 HALF_WIDTH = 2.0
 NEEDED_ORDER = 9
+
+# Beyond these half widths rounding spoils the lowered function or powers of them overflow; the
+# last coefficient of the highest order is 1e-188.
+LEAST_WIDTH, MOST_WIDTH, MOST_ORDER = 0.1, 100.0, 100
 
 
 def maclaurin(u: Any, order: int) -> Array:
@@ -60,10 +64,16 @@ def maclaurin(u: Any, order: int) -> Array:
     Raises
     ------
     InvalidInputError
-        If the order is negative.
+        If the order is negative or above 100, or the sum is too large for a float.
 
     """
-    return np.asarray(_series(order)(float_array('u', u)))
+    u = float_array('u', u)
+    with np.errstate(over='ignore', invalid='ignore'):
+        found = np.asarray(_series(order)(u))
+    if not np.isfinite(found).all():
+        raise InvalidInputError(f'u is {shown(u.tolist())}, must be finite and small enough for '
+                                f'a series of order {order}')
+    return found
 
 
 def maclaurin_error(order: int, half_width: float = HALF_WIDTH) -> float:
@@ -85,10 +95,10 @@ def maclaurin_error(order: int, half_width: float = HALF_WIDTH) -> float:
     Raises
     ------
     InvalidInputError
-        If the order is negative.
+        If the order is negative or above 100, or the half width not within 0.1 and 100.
 
     """
-    half_width = positive('half_width', half_width, 'sigma')
+    half_width = _width(half_width)
     return float(abs(maclaurin(half_width, order) - exp(-0.5 * half_width ** 2)))
 
 
@@ -112,11 +122,11 @@ def gauss(half_width: float = HALF_WIDTH, order: int | None = None) -> Transitio
     Raises
     ------
     InvalidInputError
-        If the half width is not positive and finite, or the series of this order does not fall
-        from its middle to its ends.
+        If the half width is not within 0.1 and 100, or the series of this order, of at most 100,
+        does not fall from its middle to its ends.
 
     """
-    half_width = positive('half_width', half_width, 'sigma')
+    half_width = _width(half_width)
     if order is None:
         steepest = min(1.0, half_width)
         return _lowered('gauss', half_width, steepest, (
@@ -192,11 +202,22 @@ def _second_integral(u: Any) -> Array:
 def _series(order: int) -> Polynomial:
     """Return sum (-1/2)^n u^2n / n! up to n = order."""
     order = whole_number('order', order, least=0)
+    if order > MOST_ORDER:
+        raise InvalidInputError(f'order is {shown(order)}, must be at most {MOST_ORDER}')
     coefficients, term = np.zeros(2 * order + 1), 1.0
     for n in range(order + 1):
         coefficients[2 * n] = term
         term *= -0.5 / (n + 1)
     return Polynomial(coefficients)
+
+
+def _width(half_width: Any) -> float:
+    """Return a half width if it is within what floats can do [sigma]."""
+    width = positive('half_width', half_width, 'sigma')
+    if LEAST_WIDTH <= width <= MOST_WIDTH:
+        return width
+    raise InvalidInputError(
+        f'half_width is {width} sigma, must be in [{LEAST_WIDTH}, {MOST_WIDTH}] sigma')
 
 
 def _inner_zeros(polynomial: Polynomial, end: float) -> Array:

@@ -36,12 +36,12 @@ from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
-from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory.maximum import maximum_over_time
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory.trajectory import (
     ending_at_duration,
     Peaks,
+    time_factor,
     times_within,
     Trajectory,
 )
@@ -239,7 +239,7 @@ class PathTrajectory(Trajectory):
 
     def time_scaled(self, factor: float) -> PathTrajectory:
         """Return the same path run through at another rate; see `Trajectory`."""
-        factor = positive('factor', factor)
+        factor = time_factor(factor)
         slower = PathTrajectory(self.arm_path, self.progress.time_scaled(factor),
                                 self.via_times * factor, self.join_times * factor, self.note)
         self.pass_cache(slower, factor)

@@ -25,9 +25,13 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, parameter_values
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
-from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.trajectory.pieces import Pieces
-from rrr_traj_planner.core.trajectory.trajectory import ending_at_duration, Peaks, Trajectory
+from rrr_traj_planner.core.trajectory.trajectory import (
+    ending_at_duration,
+    Peaks,
+    time_factor,
+    Trajectory,
+)
 
 # Safeguarded Newton iteration for zeros in [0, 1] (Press et al., Numerical Recipes, section 9.4):
 # a step that leaves the bracket is replaced by a bisection. At a zero of velocity an error e of
@@ -154,8 +158,13 @@ class JointProfile(ReadOnlyArrays):
         JointProfile
             The slower or faster motion.
 
+        Raises
+        ------
+        InvalidInputError
+            If the factor is not within 1e-30 and 1e30.
+
         """
-        return JointProfile(self.pieces.time_scaled(factor))
+        return JointProfile(self.pieces.time_scaled(time_factor(factor)))
 
     def _at(self, index: Any) -> Pieces:
         return self.pieces.made_of(f[index] for f in self.pieces.arrays().values())
@@ -253,7 +262,7 @@ class PiecewiseTrajectory(Trajectory):
 
     def time_scaled(self, factor: float) -> PiecewiseTrajectory:
         """Return the same path with time scaled by a factor; see `Trajectory`."""
-        factor = positive('factor', factor)
+        factor = time_factor(factor)
         slower = PiecewiseTrajectory([p.time_scaled(factor) for p in self.profiles],
                                      self.via_times * factor, self.note)
         self.pass_cache(slower, factor)

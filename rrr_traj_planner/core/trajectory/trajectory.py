@@ -18,14 +18,19 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
+from rrr_traj_planner.core.scalars import positive
 
 ROUNDING = 1e-12  # relative, of a sum of durations
+
+# A motion can be slowed and sped up so much: the factor's fourth power stays a float.
+LEAST_FACTOR, MOST_FACTOR = 1e-30, 1e30
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +153,39 @@ class Trajectory(ReadOnlyArrays, ABC):
         Trajectory
             With velocities divided by the factor, accelerations by its square.
 
+        Raises
+        ------
+        InvalidInputError
+            If the factor is not within 1e-30 and 1e30 (`time_factor`).
+
         """
+
+
+def time_factor(factor: Any) -> float:
+    """
+    Return a factor by which the times of a motion can be multiplied.
+
+    Parameters
+    ----------
+    factor : float
+        The factor.
+
+    Returns
+    -------
+    float
+        The factor.
+
+    Raises
+    ------
+    InvalidInputError
+        If it is not within 1e-30 and 1e30: powers of it that divide derivatives would overflow.
+
+    """
+    number = positive('factor', factor)
+    if not LEAST_FACTOR <= number <= MOST_FACTOR:
+        raise InvalidInputError(
+            f'factor is {number}, must be in [{LEAST_FACTOR}, {MOST_FACTOR}]')
+    return number
 
 
 def ending_at_duration(times: Array, duration: float) -> Array:

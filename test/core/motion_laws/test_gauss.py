@@ -118,6 +118,10 @@ def test_series_of_order_1_is_paul_s_function():
 @pytest.mark.parametrize(('arguments', 'message'), [
     ((-1.0,), r'^half_width is -1\.0 sigma, must be positive$'),
     ((np.inf,), r'^half_width is inf sigma, must be finite$'),
+    ((1e308,), r'^half_width is 1e\+308 sigma, must be in \[0\.1, 100\.0\] sigma$'),
+    ((5e-324,), r'^half_width is 5e-324 sigma, must be in \[0\.1, 100\.0\] sigma$'),
+    ((5e-324, 9), r'^half_width is 5e-324 sigma, must be in '),
+    ((2.0, 10 ** 11), r'^order is 100000000000, must be at most 100$'),
     ((2.0, -1), '^order is -1, must be at least 0$'),
     ((2.0, 0), r'^order 0 of the series does not fall up to 2\.0 sigma$'),
     ((3.0, 4), r'^order 4 of the series does not fall up to 3\.0 sigma$')])
@@ -142,3 +146,15 @@ def test_document_s_figures_of_half_widths_and_orders_are_right():
     assert {int(n) for n, _ in orders} >= {8, 9, 10}
     for n, error in orders:
         assert float(error) == pytest.approx(maclaurin_error(int(n)), rel=0.05)
+
+
+@pytest.mark.parametrize('u', [1e308, [0.0, -1e200], np.inf, np.nan])
+def test_series_that_no_float_holds_is_refused(u):
+    with pytest.raises(InvalidInputError, match='^u is .*, must be finite and small enough for a'):
+        maclaurin(u, 9)
+
+
+@pytest.mark.parametrize('half_width', [1e308, 5e-324, 1e154])
+def test_error_of_a_series_over_a_width_that_no_float_holds_is_refused(half_width):
+    with pytest.raises(InvalidInputError, match='^half_width is .* sigma, must be in '):
+        maclaurin_error(9, half_width)
