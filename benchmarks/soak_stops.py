@@ -94,6 +94,49 @@ def points_of(answer) -> CommandedPoints:
     return CommandedPoints(p.times, p.positions, p.velocities, p.accelerations, known, known)
 
 
+def motion_states(motion, arm: ControlledArm) -> np.ndarray:
+    """Return the states that a motion still commands an arm, (n, 9)."""
+    return np.array([motion(t) for t in np.arange(arm.time, motion.end, arm.settings.step)]
+                    or [arm.desired])
+
+
+def at_the_end(arm: ControlledArm, state: np.ndarray, limits: JointLimits) -> list[str]:
+    """Return what is wrong with an arm that should be at rest."""
+    found, q = [], state[:3]
+    if ((q < limits.min_position - BEYOND) | (q > limits.max_position + BEYOND)).any():
+        found.append(f'rests outside, at {q}')
+    if ((arm.motion.final < limits.min_position)
+            | (arm.motion.final > limits.max_position)).any():
+        found.append(f'is to rest outside, at {arm.motion.final}')
+    if np.abs(arm.torque - gravity_torque(MODEL, q)).max() > PUSHING:
+        found.append(f'pushes with {arm.torque - gravity_torque(MODEL, q)} N m')
+    if np.abs(state[3:]).max() > STILL:
+        found.append(f'moves at {state[3:]}')
+    if arm.stop_warnings:
+        found.append(f'warns: {arm.stop_warnings}')
+    return found
+
+
+def over_limits(commanded: np.ndarray, planned: np.ndarray, limits: JointLimits,
+                before: np.ndarray) -> list[str]:
+    """Return the limits that a stop exceeds, and the motion before it or its rest does not."""
+    torque, own_torque = (np.abs(inverse_dynamics(MODEL, x[:, :3], x[:, 3:6], x[:, 6:])).max(
+        axis=0) for x in (commanded, planned))
+    step = ArmSettings(MODEL, limits, ControllerGains()).step
+    found = []
+    acceleration = np.abs(np.diff(commanded[:, 3:6], axis=0)).max(
+        axis=0, initial=0.0) / step
+    for name, value, limit, own in (
+            ('velocity', np.abs(commanded[:, 3:6]).max(axis=0), limits.max_velocity,
+             before[3:6]),
+            ('acceleration', acceleration, limits.max_acceleration, before[6:]),
+            ('torque', torque, limits.max_effort, own_torque)):
+        share = value / np.maximum(limit, own)
+        if (share > SLACK).any():
+            found.append(f'{name} at {share.max():.4f} of the limit')
+    return found
+
+
 class Judge:
     """What has become of the stops."""
 
@@ -115,45 +158,16 @@ class Judge:
         arm.hold()
         self.seconds.append(perf_counter() - started)
         self.durations.append(arm.motion.end - arm.time)
-        commanded = np.array([arm.motion(t) for t in np.arange(
-            arm.time, arm.motion.end, arm.settings.step)] or [arm.desired])
-        torque = np.abs(inverse_dynamics(
-            MODEL, commanded[:, :3], commanded[:, 3:6], commanded[:, 6:]))
-        planned = np.array([followed(t) for t in np.arange(
-            arm.time, followed.end, arm.settings.step)] or [arm.desired])
-        planned = np.abs(inverse_dynamics(
-            MODEL, planned[:, :3], planned[:, 3:6], planned[:, 6:])).max(axis=0)
+        commanded = motion_states(arm.motion, arm)
+        exceeded = over_limits(commanded, motion_states(followed, arm), limits, before)
         states = [arm.state]
         for _ in range(int((self.durations[-1] + AFTER) / arm.settings.step)):
             arm.advance(1)
             states.append(arm.state)
         states = np.array(states)
-        found = []
-        q = states[-1, :3]
-        if ((q < limits.min_position - BEYOND) | (q > limits.max_position + BEYOND)).any():
-            found.append(f'rests outside, at {q}')
-        if ((arm.motion.final < limits.min_position)
-                | (arm.motion.final > limits.max_position)).any():
-            found.append(f'is to rest outside, at {arm.motion.final}')
-        if np.abs(arm.torque - gravity_torque(MODEL, q)).max() > PUSHING:
-            found.append(f'pushes with {arm.torque - gravity_torque(MODEL, q)} N m')
-        if np.abs(states[-1, 3:]).max() > STILL:
-            found.append(f'moves at {states[-1, 3:]}')
-        if arm.stop_warnings:
-            found.append(f'warns: {arm.stop_warnings}')
         self.measured.append((np.abs(np.diff(states[:, 3:], axis=0)).max(axis=0) / (
             arm.settings.step * np.maximum(limits.max_acceleration, before[6:]))).max())
-        acceleration = np.abs(np.diff(commanded[:, 3:6], axis=0)).max(
-            axis=0, initial=0.0) / arm.settings.step
-        for name, value, limit, own in (
-                ('velocity', np.abs(commanded[:, 3:6]).max(axis=0), limits.max_velocity,
-                 before[3:6]),
-                ('acceleration', acceleration, limits.max_acceleration, before[6:]),
-                ('torque', torque.max(axis=0), limits.max_effort, planned)):
-            share = value / np.maximum(limit, own)
-            if (share > SLACK).any():
-                found.append(f'{name} at {share.max():.4f} of the limit')
-        for text in found:
+        for text in (*at_the_end(arm, states[-1], limits), *exceeded):
             self.counts[text.split()[0]] += 1
             print(f'{label}, stopped at {instant:.3f} s: {text}', flush=True)
 
