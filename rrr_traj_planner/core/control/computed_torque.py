@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Computed-torque control: the torques that make the arm follow a desired state."""
+"""
+Computed-torque control of the arm.
+
+Siciliano et al., Robotics, 2009, section 8.5.2; Lynch and Park, Modern Robotics, 2017, section
+11.4.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +31,7 @@ from rrr_traj_planner.core.states import Desired, State, Triple
 @dataclass(frozen=True)
 class ControllerGains:
     """
-    How the tracking error decays: as a second-order system, the same for every joint.
+    Gains: the tracking error of every joint is a second-order system.
 
     Parameters
     ----------
@@ -64,10 +69,10 @@ class ControllerGains:
 def computed_torque(t: Terms, stiffness: float, damping: float, state: State,
                     desired: Desired) -> Triple:
     """
-    Return H (qdd_des + 2 zeta wn ed + wn^2 e) + h + g, with e = q_des - q.
+    Return M (qdd_des + 2 zeta wn ed + wn^2 e) + C qd + g, with e = q_des - q.
 
-    With a true model the error then obeys edd + 2 zeta wn ed + wn^2 e = 0: gravity leaves no
-    sag. Saturation is the caller's (`saturated`).
+    With an exact model the error satisfies edd + 2 zeta wn ed + wn^2 e = 0, without a steady-state
+    error under gravity. The result is not saturated (`saturated`).
 
     Parameters
     ----------
@@ -96,12 +101,12 @@ def computed_torque(t: Terms, stiffness: float, damping: float, state: State,
 
 def saturated(torque: Triple, limit: Triple) -> Triple:
     """
-    Return torques cut to what the motors can give.
+    Return torques saturated at the motors' limits.
 
     Parameters
     ----------
     torque : tuple of 3 floats
-        Wanted [N m].
+        Commanded [N m].
     limit : tuple of 3 floats
         Largest magnitude of each [N m]; may be infinite.
 

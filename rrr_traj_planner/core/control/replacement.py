@@ -13,15 +13,14 @@
 # limitations under the License.
 
 """
-How a new trajectory takes over from the running one without a jump in what is commanded.
+Trajectory replacement: a new trajectory takes over without a jump in the command.
 
-Where its first point lies ahead, one segment leads there from the present command, as in
-joint_trajectory_controller, if it keeps the limits. Where it does not, or the first point is due
-or past (that controller then jumps onto the trajectory), we are gentler, here and here alone: the
-command joins by a quintic the earliest later point that can be met on schedule within the ranges
-and the velocity, acceleration and torque limits. Where none can, it goes to the last point as soon
-as the limits allow, by one quintic or by a stop and a move; where that point is outside a range,
-the arm stops.
+If its first point lies ahead, one segment leads there from the present command, as in
+joint_trajectory_controller, provided that it satisfies the limits. If it does not, or if the first
+point is due or past (where that controller jumps onto the trajectory), a quintic joins the command
+to the earliest later point that can be met on schedule within ranges and velocity, acceleration
+and torque limits. If there is none, the arm goes to the last point as soon as the limits allow, by
+one quintic or by a stop and a move; if that point is outside a range, the arm stops.
 """
 
 from __future__ import annotations
@@ -50,16 +49,16 @@ from rrr_traj_planner.core.trajectory.trajectory_points import (
     with_start_state,
 )
 
-# A command this near to a trajectory is on it [rad], [rad/s].
+# Distance up to which a command counts as on a trajectory [rad], [rad/s].
 POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
 
-# Limits are kept on this many steps of a join, to this relative tolerance.
+# Sampling steps of a joining polynomial, and relative tolerance of the limits on it.
 STEPS, LIMIT_TOLERANCE = 32, 1e-6
 
 # Points that are tried at once.
 BATCH = 256
 
-# Times in which the last point is gone to late, from the time on that it has [s].
+# Factors on the time left until the last point, tried in order if it cannot be met on schedule.
 LATER = 1.15 ** np.arange(64.0)
 
 
@@ -75,7 +74,7 @@ class Takeover:
     command : tuple of 9 floats
         Positions [rad], velocities [rad/s], accelerations [rad/s^2] commanded now.
     limits : JointLimits
-        Kept where a trajectory has to be joined.
+        Limits of joining motions.
     model : RobotModel
         The arm.
     running : ReferenceTrajectory, optional
@@ -98,12 +97,12 @@ class Takeover:
 
 class Replacement(NamedTuple):
     """
-    What the arm follows from now on.
+    The reference trajectory from now on.
 
     Attributes
     ----------
     motion : ReferenceTrajectory
-        Starting from the command, or already under way where the command is on it.
+        From the command on, or the new trajectory itself if the command is on it.
     warnings : tuple of str
         What a stop on the way could not keep.
     holds : bool
@@ -119,23 +118,23 @@ class Replacement(NamedTuple):
 def replacement(takeover: Takeover, points: CommandedPoints, origin_ns: int,
                 least_lead: float) -> Replacement:
     """
-    Return what the arm follows from now on.
+    Return the reference trajectory from now on.
 
     Parameters
     ----------
     takeover : Takeover
-        The present.
+        The present state.
     points : CommandedPoints
         The new trajectory.
     origin_ns : int
-        What the points' times are counted from [ns].
+        Origin of the points' times [ns].
     least_lead : float
         A first point no further ahead than this is due now [s].
 
     Returns
     -------
     Replacement
-        The motion, and what it breaks.
+        The motion, and warnings.
 
     """
     motion = through(points, origin_ns)
@@ -151,10 +150,10 @@ def replacement(takeover: Takeover, points: CommandedPoints, origin_ns: int,
 
 def _lead_keeps_limits(takeover: Takeover, whole: CommandedPoints) -> bool:
     """
-    Return whether the segment that leads in does.
+    Return whether the segment from the command to the first point satisfies the limits.
 
-    Lines step in velocity by their nature, those of a stream of single points all the time;
-    others must not step by more than the acceleration limit gives in the segment's time.
+    The velocity of lines steps, with a stream of single points continually, which is allowed. For
+    several points the step may not exceed the acceleration limit times the segment's time.
     """
     T = np.diff(whole.times[:2])
     known = int(segment_orders(whole)[0] + 1) // 2
@@ -167,7 +166,7 @@ def _lead_keeps_limits(takeover: Takeover, whole: CommandedPoints) -> bool:
 
 
 def _is_on(takeover: Takeover, motion: ReferenceTrajectory, points: CommandedPoints) -> bool:
-    """Return whether the command is on the motion now; on a line, its velocity may differ."""
+    """Return whether the command is on the motion now; on a line its velocity may differ."""
     state = motion.end_state if motion.end <= takeover.now else motion(takeover.now)
     gap = np.abs(np.subtract(state, takeover.command))
     if gap[:3].max() > POSITION_TOLERANCE:
@@ -194,10 +193,10 @@ def _first_in_reach(takeover: Takeover, motion: ReferenceTrajectory) -> int:
 
 def _within_limits(takeover: Takeover, T: Array, ends: tuple[Array, ...]) -> BoolArray:
     """
-    Return which ends can be met after times T (n,) within the limits.
+    Return which end states can be met after times T (n,) within the limits.
 
-    By quintics, or by cubics or lines where less is known of the ends. Where the command or an
-    end itself exceeds a limit, that much is allowed.
+    By quintics, or by cubics or lines if the ends have fewer derivatives. Limits are extended to
+    the values of the command and of the end itself.
     """
     starts = takeover.states[:len(ends)]
     x = (np.linspace(0.0, 1.0, STEPS + 1) * T[:, np.newaxis])[..., np.newaxis]

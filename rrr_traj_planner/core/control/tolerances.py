@@ -13,10 +13,10 @@
 # limitations under the License.
 
 """
-How far the arm may be from what it follows: joint_trajectory_controller's tolerances.
+Tolerances of trajectory execution, as in joint_trajectory_controller.
 
-Names, meaning and texts are those of that controller, for an arm commanded by position and
-velocity. As there, a tolerance of 0 is none.
+Names, meaning and texts are those of its `tolerances.hpp`, for position and velocity commands. As
+there, a tolerance of 0 is none.
 """
 
 from __future__ import annotations
@@ -38,19 +38,19 @@ TIMED_OUT = 'Aborted due to command timeout'
 @dataclass(frozen=True, eq=False)
 class Tolerances(ReadOnlyArrays):
     """
-    What is watched while a trajectory is followed.
+    Tolerances while and after a trajectory is followed.
 
     Parameters
     ----------
     trajectory, goal : array_like, shape (3,)
-        Largest position error of each joint on the way, and from the end on [rad].
+        Largest position error of each joint during the trajectory, and from its end on [rad].
     stopped_velocity : float
         Largest velocity error from the end on [rad/s].
     goal_time : float
-        How long after the end the goal's tolerances may still be exceeded [s]; 0: for ever.
+        Time after the end until the goal tolerances apply [s]; 0: never.
     cmd_timeout : float
-        How long after the end the position measured then is held instead [s]; 0: never. It must
-        be larger than goal_time, or is ignored.
+        Time after the end at which the measured position is held instead [s]; 0: never. Ignored
+        unless larger than goal_time.
 
     Raises
     ------
@@ -79,29 +79,29 @@ class Tolerances(ReadOnlyArrays):
 
     @property
     def are_none(self) -> bool:
-        """Whether nothing is watched; without a goal time, the goal's tolerances are not."""
+        """Whether no tolerance applies; without a goal time, the goal's do not."""
         return not self.trajectory.any() and self.goal_time == 0.0 and self.cmd_timeout == 0.0
 
     def violation(self, seen: State, desired: Desired, since_end: float,
                   first: bool = False) -> tuple[str, ...]:
         """
-        Return what is wrong, in joint_trajectory_controller's words.
+        Return the violated tolerances, in joint_trajectory_controller's words.
 
         Parameters
         ----------
         seen : tuple of 6 floats
             Measured positions [rad] and velocities [rad/s].
         desired : tuple of 9 floats
-            What is followed.
+            The reference.
         since_end : float
-            Time since the trajectory's end [s]; negative on the way.
+            Time since the trajectory's end [s]; negative before it.
         first : bool
-            Whether this is the first check of a trajectory, which is watched as on the way.
+            Whether this is the first check of a trajectory, to which path tolerances apply.
 
         Returns
         -------
         tuple of str
-            A line for each finding, the consequence last; empty where all is well.
+            A line for each violation, the consequence last; empty if there is none.
 
         """
         lines: list[str] = []

@@ -13,11 +13,10 @@
 # limitations under the License.
 
 """
-Where a trajectory leaves the joints' ranges or limits, at its points and between them.
+Excesses of a commanded trajectory over ranges and limits, at its points and between them.
 
-Between points run polynomials, which may go beyond the points. Their extremes are found by their
-Bernstein form: on an interval a polynomial is never beyond its Bernstein coefficients, and an
-interval whose coefficients may hold an extreme is halved (de Casteljau) until they meet it; see
+Extremes of the polynomials between points are bounded by their Bernstein coefficients; an interval
+whose coefficients exceed the best value found is bisected (de Casteljau) until they agree. See
 Farouki, The Bernstein polynomial basis: a centennial retrospective, CAGD 29 (2012), section 4.
 """
 
@@ -35,17 +34,16 @@ from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
 from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints, with_start_state
 
-# What is beyond a range by no more than this part of its end, or of 1 rad, or beyond a limit by no
-# more than this part of it, is not worth a word: positions are rounded to four digits, and the
-# quintics through samples of a motion at its limit exceed it by up to 0.1 %.
+# Excesses up to these are not reported: relative to the larger of the range's end and 1 rad, since
+# positions may have been rounded to four digits; and relative to a limit, since quintics through
+# samples of a motion at its limit exceed it by up to 0.1 %.
 POSITION_TOLERANCE, LIMIT_TOLERANCE = 1e-4, 2e-3
 
-# Extremes are found to this part of the bound that they exceed.
-ACCURACY = 1e-6
+ACCURACY = 1e-6  # of extremes, relative to the bound that they exceed
 
 
 class Excess(NamedTuple):
-    """A range or limit that a joint leaves."""
+    """An excess of a joint over a range or limit."""
 
     joint: int
     quantity: str
@@ -62,7 +60,7 @@ class Excess(NamedTuple):
 
     def text(self, joint_names: Sequence[str]) -> str:
         """
-        Return a sentence for people.
+        Return the excess as a sentence.
 
         Parameters
         ----------
@@ -86,7 +84,7 @@ class Excess(NamedTuple):
 def excesses(points: CommandedPoints, limits: JointLimits, time: float = np.inf,
              command: ArrayLike = ()) -> list[Excess]:
     """
-    Return the ranges and limits that a trajectory leaves: position, velocity, acceleration.
+    Return the excesses of a trajectory in position, velocity and acceleration.
 
     The segment that leads from the command to a first point ahead is looked at too, for position
     and velocity: `replacement` does not follow one that leaves limits. Lines have no
@@ -100,7 +98,7 @@ def excesses(points: CommandedPoints, limits: JointLimits, time: float = np.inf,
     limits : JointLimits
         Ranges and limits.
     time : float
-        When it takes over, on its own time [s].
+        Time of the take-over, on the points' clock [s].
     command : array_like, shape (9,)
         Positions [rad], velocities [rad/s], accelerations [rad/s^2] commanded then.
 

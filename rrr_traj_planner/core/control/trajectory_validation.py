@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-Which trajectories the arm accepts: joint_trajectory_controller's rules, in its words.
+Validation of received trajectories by joint_trajectory_controller's rules, in its words.
 
-The checks, their order and their texts are those of the Jazzy controller, for an arm that is not
-commanded by effort. Beyond them, names that repeat, a negative first time and values that are not
-finite, or beyond what any arm does, are refused.
+The checks, their order and their texts are those of the Jazzy controller's
+`validate_trajectory_msg`, without effort commands. In addition repeated names, a negative first
+time, and values that are not finite or absurdly large are refused.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints, FLOAT_EPSILON
 
-# Larger values only serve to make numbers overflow [rad], [rad/s], [rad/s^2].
+# Largest value accepted [rad], [rad/s], [rad/s^2]: excludes overflow in later computations.
 LARGEST = 1e6
 
 FIELDS = ('positions', 'velocities', 'accelerations')
 
 
 class IncomingPoint(NamedTuple):
-    """A point as it arrives: any of its sequences may be of the wrong size."""
+    """A point as received: its sequences may have the wrong size."""
 
     time: int  # ns from the trajectory's start
     positions: Sequence[float]
@@ -49,7 +49,7 @@ class IncomingPoint(NamedTuple):
 
 
 class IncomingTrajectory(NamedTuple):
-    """A trajectory as it arrives, nothing checked."""
+    """A trajectory as received, not yet validated."""
 
     joint_names: Sequence[str]
     stamp: int  # ns on the clock of the arm; 0: starts on arrival
@@ -61,7 +61,7 @@ class MovingEndError(InvalidInputError):
 
 
 class Rules(NamedTuple):
-    """What is allowed, by the names of joint_trajectory_controller's parameters."""
+    """Options, with the names of joint_trajectory_controller's parameters."""
 
     allow_partial_joints_goal: bool = False
     allow_nonzero_velocity_at_trajectory_end: bool = False
@@ -78,13 +78,13 @@ def check_trajectory(trajectory: IncomingTrajectory, joint_names: Sequence[str],
     Parameters
     ----------
     trajectory : IncomingTrajectory
-        What arrived.
+        As received.
     joint_names : sequence of str
         The arm's joints.
     now : int
         The clock [ns].
     rules : Rules
-        What is allowed.
+        Options.
 
     Raises
     ------
@@ -111,11 +111,11 @@ def commanded_points(trajectory: IncomingTrajectory, joint_names: Sequence[str],
     Parameters
     ----------
     trajectory : IncomingTrajectory
-        What arrived and was checked.
+        As received, validated.
     joint_names : sequence of str
         The arm's joints.
     held : sequence of float
-        Where joints stay that the trajectory does not name [rad].
+        Positions of joints that the trajectory does not name [rad].
 
     Returns
     -------
@@ -135,7 +135,7 @@ def commanded_points(trajectory: IncomingTrajectory, joint_names: Sequence[str],
 
 
 def _rows(values: list[Sequence[float]], columns: list[int], missing: Sequence[float]) -> Array:
-    """Return one row of joint values a point, with others where a joint or a point has none."""
+    """Return joint values, a row for each point; `missing` for joints or points without."""
     rows: Array = np.tile(np.asarray(missing, dtype=float), (len(values), 1))
     given = [i for i, v in enumerate(values) if len(v)]
     if given:

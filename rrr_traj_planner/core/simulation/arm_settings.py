@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the simulated arm and its controller are made of."""
+"""Settings of the simulated arm and its controller."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from rrr_traj_planner.core.simulation.encoder import EncoderSettings
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.step_stability import check_step
 
-LONGEST_STEP = 1.0  # s: no controller works with more
+LONGEST_STEP = 1.0  # s, beyond which no controller works
 
 KINDS = {'model': RobotModel, 'limits': JointLimits, 'gains': ControllerGains,
          'payload': Payload, 'friction': Friction, 'soft_stops': SoftStops,
@@ -41,7 +41,7 @@ KINDS = {'model': RobotModel, 'limits': JointLimits, 'gains': ControllerGains,
 @dataclass(frozen=True, eq=False)
 class ArmSettings:
     """
-    What the arm and its controller are made of.
+    Settings of the arm and its controller.
 
     Parameters
     ----------
@@ -61,9 +61,9 @@ class ArmSettings:
     soft_stops : SoftStops
         Bumpers behind the position limits.
     encoder : EncoderSettings
-        What the controller sees.
+        Sensors of the controller.
     tolerances : Tolerances
-        Of following a trajectory.
+        For following a trajectory.
 
     Raises
     ------

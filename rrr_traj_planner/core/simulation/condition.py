@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What strains the simulated arm: motors at their limits, joints on their stops."""
+"""Monitoring of the simulated arm: saturated motors, joints on their stops."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.simulation.joint_stops import Contact
 from rrr_traj_planner.core.states import Triple
 
-# A motor is saturated where more than this is wanted of it, as a part of its limit. A motion that
-# is planned at the limit wants up to 1.004 of it while it is followed.
+# Commanded torque over the limit from which a motor counts as saturated. Following a motion
+# planned at the limit takes up to 1.004.
 SATURATED = 1.01
 
 # A joint hits its stop at this speed [rad/s], and is pressed against it with this part of its
@@ -43,7 +43,7 @@ STOP_TEXTS = {'hit': 'hit {} at {:.4g} rad/s', 'pressed': 'is pressed against {}
 
 
 class Finding(NamedTuple):
-    """Something to be told of a joint."""
+    """A message about a joint."""
 
     kind: str
     joint: str
@@ -51,7 +51,7 @@ class Finding(NamedTuple):
 
 
 class Condition(NamedTuple):
-    """What strained the arm during some steps, for each joint."""
+    """Saturation and stop contacts during some steps, for each joint."""
 
     saturated: tuple[int, int, int] = (0, 0, 0)  # steps with a saturated motor
     wanted: Triple = NONE                        # the largest torque that was wanted then [N m]
@@ -60,7 +60,7 @@ class Condition(NamedTuple):
 
     def joined(self, other: Condition) -> Condition:
         """
-        Return what strained the arm during these steps and others.
+        Return the condition over these steps and others.
 
         Parameters
         ----------
@@ -132,7 +132,7 @@ SOUND = Condition()
 
 class ConditionMonitor:
     """
-    Takes note of what strains an arm until it is asked.
+    Accumulates the condition of an arm until it is read.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class ConditionMonitor:
 
     def take(self) -> Condition:
         """
-        Return what has strained the arm since the last call.
+        Return the condition since the last call.
 
         Returns
         -------
@@ -160,7 +160,7 @@ class ConditionMonitor:
 
     def cut(self, wanted: Triple) -> None:
         """
-        Note a step for which motors could not give all that was wanted.
+        Record a step in which motors saturate.
 
         Parameters
         ----------
@@ -176,7 +176,7 @@ class ConditionMonitor:
     def touched(self, at: Contact, before: Contact, velocity: Triple, reaction: Triple,
                 torque: Triple) -> None:
         """
-        Note a step at whose end joints touch their stops.
+        Record a step at whose end joints touch their stops.
 
         Parameters
         ----------
@@ -187,7 +187,7 @@ class ConditionMonitor:
         reaction : tuple of 3 floats
             The stops' torques, mean over the step [N m].
         torque : tuple of 3 floats
-            What acted on the joints besides [N m].
+            Other torques on the joints [N m].
 
         """
         hit = [side and not was and -side * qd > HIT
@@ -206,7 +206,7 @@ class ConditionMonitor:
 
 
 def _where(chosen: Sequence[object], values: Triple) -> Triple:
-    """Return the values that are chosen, and 0 for the others."""
+    """Return the chosen values, and 0 for the others."""
     a, b, c = (x if choice else 0.0 for choice, x in zip(chosen, values))
     return a, b, c
 

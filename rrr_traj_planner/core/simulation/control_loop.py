@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Physics and controller of the arm, one step after another towards a desired motion."""
+"""The control loop: controller, encoders and physics of the arm in fixed steps."""
 
 from __future__ import annotations
 
@@ -56,9 +56,9 @@ class ControlLoop:
     disturbance : tuple of 3 floats
         Torques on the joints besides the motors' [N m]; may be set at any time.
     ledger : EnergyLedger
-        Work and losses since the arm was last put somewhere.
+        Work and losses since the position was last set.
     monitor : ConditionMonitor
-        What has strained the arm.
+        Saturation and stop contacts.
 
     """
 
@@ -100,7 +100,7 @@ class ControlLoop:
 
     def put(self, q: Array) -> None:
         """
-        Put the arm somewhere, at rest, and open a new account of its energy.
+        Set the arm's position, at rest, and reset the energy ledger.
 
         Parameters
         ----------
@@ -115,7 +115,7 @@ class ControlLoop:
 
     def enforce(self, settings: ArmSettings) -> None:
         """
-        Make the physics and the controller's model of settings.
+        Apply settings to the physics and the controller's model.
 
         Parameters
         ----------
@@ -135,17 +135,17 @@ class ControlLoop:
 
     def advance_plainly(self, motion: ReferenceTrajectory, steps: int) -> None:
         """
-        Simulate an arm that is plain.
+        Simulate several steps of an arm that `is_plain`.
 
         Parameters
         ----------
         motion : ReferenceTrajectory
-            What to follow.
+            The reference trajectory.
         steps : int
-            How many steps.
+            Number of steps.
 
         """
-        # The inner loop of nearly everything that runs an arm: local names, floats, no numpy.
+        # The inner loop of nearly every simulation: local names and floats for speed, no NumPy.
         physics, desired, limit = self._physics, motion.elapsed, self._max_effort
         h, gains = self.settings.step, self.settings.gains
         stiffness, damping, cut = gains.stiffness, gains.damping, self.monitor.cut
@@ -168,7 +168,7 @@ class ControlLoop:
 
     def advance_fully(self, desired: Desired) -> None:
         """
-        Simulate a step of whatever arm it is.
+        Simulate a step of any arm.
 
         Parameters
         ----------
@@ -216,7 +216,7 @@ class ControlLoop:
         self._encoder = self._new_encoder()
 
     def _new_encoder(self) -> Encoder | None:
-        """Return encoders that begin now, or none where they would tell the truth."""
+        """Return encoders that begin now, or None for ideal ones."""
         settings = self.settings
         return None if settings.encoder.is_true else Encoder(
             settings.encoder, settings.step, self.state)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm at work: which motion it follows, when it stops, what it watches meanwhile."""
+"""The simulated arm with its trajectory controller: following, replacing, stopping, tolerances."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class ControlledArm(ControlLoop):
     Attributes
     ----------
     motion : ReferenceTrajectory
-        What is followed.
+        The reference trajectory.
     violation : tuple of str
         What was wrong when a tolerance was last exceeded; empty where none was.
     stop_warnings : tuple of str
@@ -66,7 +66,7 @@ class ControlledArm(ControlLoop):
 
     def configure(self, settings: ArmSettings) -> None:
         """
-        Change what the arm is made of from the next step on.
+        Change the settings from the next step on.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ class ControlledArm(ControlLoop):
 
     def reset(self, q: ArrayLike) -> None:
         """
-        Put the arm somewhere, at rest, to hold its position there; open a new account.
+        Set the arm's position, at rest, hold it, and reset the energy ledger.
 
         Parameters
         ----------
@@ -113,14 +113,14 @@ class ControlledArm(ControlLoop):
 
     def follow(self, points: CommandedPoints, origin_ns: int) -> bool:
         """
-        Take over a new trajectory, without a jump in what is commanded.
+        Follow a new trajectory, without a jump in the command.
 
         Parameters
         ----------
         points : CommandedPoints
             The trajectory.
         origin_ns : int
-            What its times are counted from, on the arm's own time [ns].
+            Origin of its times, on the arm's own clock [ns].
 
         Returns
         -------
@@ -148,7 +148,7 @@ class ControlledArm(ControlLoop):
         Parameters
         ----------
         steps : int
-            How many steps.
+            Number of steps.
 
         """
         while self.motion.ends_moving and steps > 0:
@@ -160,7 +160,7 @@ class ControlledArm(ControlLoop):
             self._advance(steps)
 
     def _brake_at_end(self) -> None:
-        """Brake a motion that has come to its end while moving."""
+        """Brake a motion that ends with a velocity, at its end."""
         motion = self.motion
         if motion.ends_moving and self.now >= motion.end_ns:
             moving = self._what_moves()
@@ -168,7 +168,7 @@ class ControlledArm(ControlLoop):
                 moving, motion.end if moving is motion else self.time)
 
     def _advance(self, steps: int) -> None:
-        """Simulate control and physics, with a motion that does not end moving meanwhile."""
+        """Simulate control and physics, while no motion ends with a velocity."""
         if self.is_plain and (not self._watched or self.settings.tolerances.are_none):
             self.advance_plainly(self.motion, steps)
         else:
@@ -177,7 +177,7 @@ class ControlledArm(ControlLoop):
                 self.advance_fully(self.desired)
 
     def _watch(self) -> None:
-        """Give up a trajectory whose tolerances are exceeded, and hold where the arm is."""
+        """Abort a trajectory whose tolerances are exceeded, and hold the arm's position."""
         if self._watched:
             lines = self.settings.tolerances.violation(
                 self.seen, self.desired, self.time - self.motion.end, self._first_check)
@@ -187,7 +187,7 @@ class ControlledArm(ControlLoop):
                 self.violation = lines
 
     def _keep_ranges(self) -> None:
-        """Stop a motion that leaves the ranges, which have become smaller."""
+        """Stop a motion that leaves ranges made smaller."""
         if time_inside(self.motion, self.time, self.settings.limits) < self.motion.end:
             self._stop(self._what_moves())
             self.stop_warnings = (OUTSIDE_NEW_RANGES, *self.stop_warnings)
@@ -197,7 +197,7 @@ class ControlledArm(ControlLoop):
         return what_moves(self.motion, self.now, self.seen, self.settings.limits)
 
     def _stop(self, motion: ReferenceTrajectory) -> None:
-        """Stop what is a motion now."""
+        """Stop a motion now."""
         stopped, warnings = self._stopped(motion, self.time)
         self._stay(stopped)
         self.stop_warnings = warnings
@@ -207,7 +207,7 @@ class ControlledArm(ControlLoop):
         return stop(motion, time, self.settings.limits, self.settings.controller_model)
 
     def _stay(self, motion: ReferenceTrajectory) -> None:
-        """Follow a motion that is no trajectory: nothing is watched."""
+        """Follow a motion other than a trajectory: tolerances do not apply."""
         self.motion = motion
         self._watched = self._first_check = False
         self.stop_warnings = ()

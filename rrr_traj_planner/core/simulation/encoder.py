@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The joints' encoders: what the controller sees of the arm."""
+"""The joints' encoders: quantised, noisy positions, and velocities from a tracking loop."""
 
 from __future__ import annotations
 
@@ -29,18 +29,18 @@ UNITS = {'resolution': 'rad', 'noise': 'rad', 'bandwidth': 'rad/s'}
 @dataclass(frozen=True)
 class EncoderSettings:
     """
-    The encoders of all joints; without resolution and noise they tell the truth.
+    Encoders of all joints, ideal without resolution and noise.
 
     Parameters
     ----------
     resolution : float
-        Positions come in multiples of it [rad]; 0: any.
+        Quantisation step of positions [rad]; 0: none.
     noise : float
-        Standard deviation of what is added before [rad].
+        Standard deviation of the noise added before quantisation [rad].
     seed : int
         Of the noise.
     bandwidth : float
-        Of the velocities that are estimated from positions [rad/s], positive.
+        Of the velocity estimate [rad/s], positive.
 
     Raises
     ------
@@ -63,17 +63,17 @@ class EncoderSettings:
 
     @property
     def is_true(self) -> bool:
-        """Whether positions and velocities are seen as they are."""
+        """Whether the encoders are ideal."""
         return self.resolution == 0.0 and self.noise == 0.0
 
 
 class Encoder:
     """
-    Encoders that are read once a step.
+    Encoders read once a step.
 
-    Velocities come from a tracking loop over the positions read: second order, critically
-    damped, so that a steady velocity is seen without error and a steady acceleration a late by
-    2 a / bandwidth.
+    Velocities are estimated by a tracking loop (alpha-beta filter) over the positions read:
+    critically damped, without error at constant velocity; at constant acceleration a the estimate
+    lags by 2 a / bandwidth.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ class Encoder:
 
     def restart(self, state: State) -> None:
         """
-        Read an arm that has been put somewhere.
+        Restart at a state.
 
         Parameters
         ----------
@@ -116,7 +116,7 @@ class Encoder:
 
     def read(self, state: State) -> State:
         """
-        Return what is seen of the arm a step later.
+        Return the reading one step later.
 
         Parameters
         ----------
@@ -133,9 +133,9 @@ class Encoder:
         for i in range(3):
             reading = self._reading(state[i])
             expected = self._tracked[i] + self._step * velocities[i]
-            surprise = reading - expected
-            self._tracked[i] = expected + self._position_gain * surprise
-            velocities[i] += self._velocity_gain * surprise
+            residual = reading - expected
+            self._tracked[i] = expected + self._position_gain * residual
+            velocities[i] += self._velocity_gain * residual
             readings.append(reading)
         (q1, q2, q3), (qd1, qd2, qd3) = readings, velocities
         self.seen = (q1, q2, q3, qd1, qd2, qd3)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Where the arm's energy comes from and goes to."""
+"""Energy balance of the arm: work, losses, kinetic energy."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rrr_traj_planner.core.states import Triple
 @dataclass
 class EnergyLedger:
     """
-    Work done on the arm, and energy lost, since the account was opened [J].
+    Work done on the arm, and energy dissipated, since the last `clear` [J].
 
     The energy in the arm (motion, height, bumpers' springs) changes by `supplied - dissipated`.
 
@@ -34,7 +34,7 @@ class EnergyLedger:
     motors, disturbance : float
         Work of the motors and of the disturbance.
     payload : float
-        Energy that came with changes of the arm itself (its payload, its bumpers), less what went.
+        Net energy brought by changes of the arm itself (payload, bumpers).
     viscous, coulomb : float
         Lost in friction.
     stops : float
@@ -51,16 +51,16 @@ class EnergyLedger:
 
     @property
     def supplied(self) -> float:
-        """All that came in."""
+        """Total energy supplied."""
         return self.motors + self.disturbance + self.payload
 
     @property
     def dissipated(self) -> float:
-        """All that was lost."""
+        """Total energy dissipated."""
         return self.viscous + self.coulomb + self.stops
 
     def clear(self) -> None:
-        """Open the account anew."""
+        """Set all entries to zero."""
         for entry in fields(self):
             setattr(self, entry.name, 0.0)
 
@@ -90,7 +90,7 @@ def kinetic(t: Terms, qd: tuple[float, ...]) -> float:
 
 def work(torque: Triple, before: tuple[float, ...], after: tuple[float, ...]) -> float:
     """
-    Return the work of torques that are held while the joints move.
+    Return the work of constant torques.
 
     Parameters
     ----------

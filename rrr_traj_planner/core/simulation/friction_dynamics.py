@@ -13,12 +13,13 @@
 # limitations under the License.
 
 """
-A time step of an arm with friction, bumpers and hard stops, from event to event.
+Dynamics with friction, bumpers and hard stops: event-driven time steps of a hybrid system.
 
-Between events no joint changes between rest and motion, reaches a hard stop, or meets or leaves
-its bumper, so that the motion is smooth. Events are located to 1e-12 rad or rad/s; friction and
-stops then decide together which joints rest (`stiction`). A joint that rests breaks loose at the
-start of a step only: up to a step late, without any error of energy, since rest does no work.
+Between events no joint starts or stops sliding, reaches a hard stop, or meets or leaves its
+bumper, so that the motion is smooth (event-driven schemes: Acary and Brogliato, Numerical Methods
+for Nonsmooth Dynamical Systems, 2008). Events are located to 1e-12 rad or rad/s; friction and
+stops together then determine which joints rest (`stiction`). A resting joint breaks loose only at
+the start of a step: up to a step late, without an error of energy, since nothing moves.
 """
 
 from __future__ import annotations
@@ -37,15 +38,15 @@ from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.stiction import Range, resting_accelerations
 from rrr_traj_planner.core.states import State, Triple
 
-# A step is interrupted by at most this many events; what touches or rests then waits for its end.
+# Largest number of events in a step; joints in contact or at rest then stay so until its end.
 MOST_EVENTS = 16
 
-# A joint that would be back at its hard stop within this part of a step has not left it.
+# A joint that would return to its hard stop within this part of a step counts as in contact.
 SHORTEST_REBOUND = 0.05
 
 
 class Bounds(NamedTuple):
-    """Where joints' ranges end [rad]."""
+    """Ends of the joints' ranges [rad]."""
 
     low: Triple
     high: Triple
@@ -53,7 +54,7 @@ class Bounds(NamedTuple):
 
 class FrictionDynamics:
     """
-    What torques do to an arm with friction and bumpers.
+    Time stepping of an arm with friction and bumpers.
 
     Parameters
     ----------
@@ -68,7 +69,7 @@ class FrictionDynamics:
     bumper : SoftStops
         Of all joints.
     ledger : EnergyLedger
-        Where losses are entered.
+        Receives the losses.
 
     """
 
@@ -116,14 +117,14 @@ class FrictionDynamics:
         return state[:3] + _at_rest(qd, self._coulomb)
 
     def _hard_stops(self, state: State) -> Bounds:
-        """Return where the arm may be: one beyond a stop (it was moved) may not go further."""
+        """Return the hard stops; a joint beyond one (which was moved) may not go further."""
         (l1, l2, l3), (u1, u2, u3), x = self._low, self._high, self._bumper.width
         q1, q2, q3 = state[:3]
         return Bounds((min(l1 - x, q1), min(l2 - x, q2), min(l3 - x, q3)),
                       (max(u1 + x, q1), max(u2 + x, q2), max(u3 + x, q3)))
 
     def _after_impact(self, t: Terms, qd: Triple, at: Contact) -> Triple:
-        """Return the velocities that hard stops permit, and enter what that takes."""
+        """Return the velocities after impacts on hard stops, and record the energy lost."""
         if at == FREE:
             return qd
         after = permitted(t, qd, at)
@@ -132,7 +133,7 @@ class FrictionDynamics:
 
     def _settled(self, t: Terms, state: State, torque: Triple, hard: Bounds,
                  shortest: float) -> tuple[State, Load, Contact]:
-        """Return the state after impacts, what acts from there on, and which joints slide."""
+        """Return the state after impacts, the load from there on, and the sliding directions."""
         at = contact(state, *hard)
         qd = _at_rest(self._after_impact(t, state[3:], at), self._coulomb)
         (qd1, qd2, qd3), (c1, c2, c3) = qd, self._coulomb
@@ -156,14 +157,14 @@ class FrictionDynamics:
         """Return velocities with the joints that rest at rest, and those joints."""
         after = held(t, qd, lock)
         if (at[1] and at[1] * after[1] < 0.0) or (at[2] and at[2] * after[2] < 0.0):
-            # stopping one joint has thrown the other into its stop
+            # the impulse that stops one joint drives the other into its stop
             lock, after = (lock[0], 1, 1), (after[0], 0.0, 0.0)
         if after != qd:
             self._ledger.stops += kinetic(t, qd) - kinetic(t, after)
         return after, lock
 
     def _load(self, state: State, torque: Triple, slip: Contact) -> Load:
-        """Return what acts while joints slide as they do."""
+        """Return the load for given sliding directions."""
         (c1, c2, c3), (s1, s2, s3), (n1, n2, n3) = self._coulomb, slip, torque
         sides = self._bumper.sides(state, self._low, self._high)
         edges = self._low
@@ -176,36 +177,36 @@ class FrictionDynamics:
 
     def _until_event(self, t: Terms, state: State, load: Load, slip: Contact, h: float,
                      hard: Bounds) -> tuple[float, State]:
-        """Return the time until something changes, or h, and the state then."""
+        """Return the time of the next event, or h, and the state then."""
         def trial(x: float) -> tuple[State, Lost]:
             return friction_step(self._constants, t, state, load, x)
 
         taken, (after, lost) = h, trial(h)
-        room = self._room(after, load, slip, hard)
-        if room < 0.0:
-            first = max(self._room(state, load, slip, hard), 0.0)
+        margin = self._margin(after, load, slip, hard)
+        if margin < 0.0:
+            first = max(self._margin(state, load, slip, hard), 0.0)
             taken, (after, lost) = event(
-                trial, lambda s: self._room(s[0], load, slip, hard), first, h, room)
+                trial, lambda s: self._margin(s[0], load, slip, hard), first, h, margin)
         self._enter(lost, slip, state, after)
         return taken, _inside(after, hard)
 
-    def _room(self, state: State, load: Load, slip: Contact, hard: Bounds) -> float:
-        """Return how far the arm is from the next event [rad], [rad/s]; negative past it."""
-        room = min(s * qd if s else inf for s, qd in zip(slip, state[3:]))
+    def _margin(self, state: State, load: Load, slip: Contact, hard: Bounds) -> float:
+        """Return the distance to the next event [rad], [rad/s]; negative past it."""
+        margin = min(s * qd if s else inf for s, qd in zip(slip, state[3:]))
         for i, q in enumerate(state[:3]):
             if load.lock[i]:
                 continue
-            room = min(room, q - hard.low[i], hard.high[i] - q)
+            margin = min(margin, q - hard.low[i], hard.high[i] - q)
             if self._bumper.width:
                 side = load.sides[i]
                 if side:
-                    room = min(room, side * (load.edges[i] - q))
+                    margin = min(margin, side * (load.edges[i] - q))
                 else:
-                    room = min(room, q - self._low[i], self._high[i] - q)
-        return room
+                    margin = min(margin, q - self._low[i], self._high[i] - q)
+        return margin
 
     def _waited(self, t: Terms, state: State, torque: Triple, h: float, hard: Bounds) -> State:
-        """Return the state after a time in which all that touches or rests stays still."""
+        """Return the state after a time with all joints in contact or at rest held still."""
         at = contact(state, *hard)
         c, qd = self._coulomb, state[3:]
         lock = (int(at[0] or c[0] and abs(qd[0]) <= PAST),
@@ -219,7 +220,7 @@ class FrictionDynamics:
         return _inside(after, hard)
 
     def _enter(self, lost: Lost, slip: Contact, before: State, after: State) -> None:
-        """Enter what a stretch of motion has lost."""
+        """Record the energy lost over an interval of motion."""
         (c1, c2, c3), (s1, s2, s3), ledger = self._coulomb, slip, self._ledger
         ledger.viscous += lost.viscous
         ledger.stops += lost.bumpers
@@ -228,7 +229,7 @@ class FrictionDynamics:
 
 
 def _at_rest(qd: Triple, coulomb: Triple) -> Triple:
-    """Return velocities, exactly zero where they are next to it and friction can hold them."""
+    """Return velocities, exactly zero where they are so up to `PAST` and there is friction."""
     (qd1, qd2, qd3), (c1, c2, c3) = qd, coulomb
     return (0.0 if c1 and -PAST <= qd1 <= PAST else qd1,
             0.0 if c2 and -PAST <= qd2 <= PAST else qd2,
@@ -236,7 +237,7 @@ def _at_rest(qd: Triple, coulomb: Triple) -> Triple:
 
 
 def _range(coulomb: float, qd: float, x: float, side: int, shortest: float) -> Range:
-    """Return the reactions that friction and a hard stop can give a joint [N m]."""
+    """Return the range of reactions of friction and a hard stop [N m]."""
     friction = coulomb if qd == 0.0 else 0.0
     if qd != 0.0 and side * qd > -side * x * 0.5 * shortest:  # it is leaving its stop
         side = 0

@@ -13,10 +13,9 @@
 # limitations under the License.
 
 """
-One step in time with friction and bumpers, while no joint changes between rest and motion.
+Integration step with friction and bumpers, between events.
 
-The method is that of `time_step`; the energy lost is integrated along with the state, to the same
-order.
+The Nyström method of `time_step`; the energy dissipated is integrated with it, to the same order.
 """
 
 from __future__ import annotations
@@ -31,18 +30,18 @@ from rrr_traj_planner.core.states import State, Triple
 
 
 class Load(NamedTuple):
-    """What acts on the joints, and how, until something changes."""
+    """Torques and constraints on the joints until the next event."""
 
     torque: Triple    # constant: motors and disturbance, less Coulomb friction [N m]
     viscous: Triple   # [N m s/rad]
-    lock: Contact     # not 0 for each joint that is held still
+    lock: Contact     # not 0 for each joint held at rest
     sides: Contact    # 1 for each joint in its lower bumper, -1 in its upper one
     edges: Triple     # where those bumpers begin [rad]
     bumper: SoftStops
 
 
 class Lost(NamedTuple):
-    """Energy that became heat during a step [J], or the power [W]."""
+    """Energy dissipated during a step [J], or the power [W]."""
 
     viscous: float
     bumpers: float

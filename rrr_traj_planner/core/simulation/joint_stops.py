@@ -13,13 +13,12 @@
 # limitations under the License.
 
 """
-Hard joint stops: the arm may leave them, never pass them, and loses energy when it hits them.
+Hard joint stops: unilateral constraints with inelastic impacts.
 
-A stop gives whatever impulse or torque keeps its joint from moving on, and no more. Both cases
-are one problem: the permitted velocities (at an impact) or accelerations (at rest against a
-stop) that are nearest to the free ones, measured by kinetic energy. That is Moreau's law of
-inelastic impact and Gauss's principle of least constraint; since it is a projection, a stop
-never adds energy.
+The velocities after an impact, or the accelerations in contact, are the permitted ones nearest to
+the unconstrained ones in the kinetic metric: Moreau's law of inelastic impact (Moreau, Unilateral
+contact and dry friction in finite freedom dynamics, 1988) and Gauss's principle of least
+constraint. Since this is a projection, a stop never adds energy.
 """
 
 from __future__ import annotations
@@ -35,14 +34,14 @@ FREE: Contact = (0, 0, 0)
 
 def contact(state: State, low: Triple, high: Triple) -> Contact:
     """
-    Return which joints are at, or beyond, a stop.
+    Return the contacts of joints at or beyond a stop.
 
     Parameters
     ----------
     state : tuple of 6 floats
         Positions [rad] and velocities [rad/s].
     low, high : tuple of 3 floats
-        Where the stops are [rad].
+        Positions of the stops [rad].
 
     Returns
     -------
@@ -83,7 +82,7 @@ def permitted(t: Terms, x: Triple, at: Contact) -> Triple:
     if not (stopped_2 or stopped_3):
         return x1, x2, x3
     if stopped_2:
-        other = x3 + t.M23 / t.M33 * x2  # the rate that joint 3's own momentum keeps
+        other = x3 + t.M23 / t.M33 * x2  # keeps the generalised momentum of joint 3
         if s3 * other >= 0.0:
             return x1, 0.0, other
     if stopped_3:
@@ -95,7 +94,7 @@ def permitted(t: Terms, x: Triple, at: Contact) -> Triple:
 
 def held(t: Terms, x: Triple, lock: Contact) -> Triple:
     """
-    Return accelerations with some joints held still, whatever that takes.
+    Return accelerations with some joints held at rest by constraint torques of any size.
 
     Parameters
     ----------

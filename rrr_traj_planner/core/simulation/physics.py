@@ -15,8 +15,8 @@
 """
 The arm's physics: forward dynamics in fixed steps, between hard joint stops.
 
-A step that meets a stop is taken up to the impact exactly, and goes on from there without the
-energy that the stop has taken. An arm with friction or bumpers is `friction_dynamics`'s.
+A step that meets a stop is integrated up to the impact, located by bisection, and continued from
+the state after it. Friction and bumpers are in `friction_dynamics`.
 """
 
 from __future__ import annotations
@@ -40,35 +40,35 @@ from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.time_step import free_step, held_step
 from rrr_traj_planner.core.states import State, Triple
 
-# A step is interrupted by at most this many impacts; joints at a stop then wait there for its end.
+# Largest number of impacts in a step; joints at a stop are then held there until its end.
 MOST_IMPACTS = 8
 
 # Bisections of a step at an impact: 1 ms / 2^40 is 1e-15 s.
 BISECTIONS = 40
 
-# A joint that would be back at its stop within this part of a step has not left it. Without this
-# bound, two joints at their stops hand an ever smaller velocity to and fro.
+# A joint that would return to its stop within this part of a step counts as in contact. Without
+# this bound, two joints at their stops exchange ever smaller velocities (Zeno behaviour).
 SHORTEST_REBOUND = 0.05
 
 
 class ArmPhysics:
     """
-    An arm between its stops: what a torque does to its state over a time step.
+    An arm between its stops: the state after a time step under given torques.
 
     Parameters
     ----------
     model : RobotModel
         The arm.
     low, high : tuple of 3 floats
-        Where the stops are [rad]; infinite where there is none.
+        Positions of the stops [rad]; infinite for none.
     friction : Friction, optional
         Of the joints; none by default.
     soft_stops : SoftStops, optional
         Bumpers, from low and high on outwards; none by default.
     ledger : EnergyLedger, optional
-        Where losses are entered.
+        Receives the losses.
     monitor : ConditionMonitor, optional
-        What is told of stops that are touched.
+        Receives the contacts with stops.
 
     Attributes
     ----------
@@ -86,12 +86,13 @@ class ArmPhysics:
         self._constants = constants(model)
         self._bumper, friction = soft_stops or SoftStops(), friction or Friction()
         self._viscous, self._coulomb = friction.viscous.tolist(), friction.coulomb.tolist()
-        self._resisted = None if friction.is_none and not self._bumper.width else FrictionDynamics(
-            self._constants, self.terms, Bounds(low, high), friction, self._bumper, self.ledger)
+        self._with_friction = None if friction.is_none and not self._bumper.width else (
+            FrictionDynamics(self._constants, self.terms, Bounds(low, high), friction,
+                             self._bumper, self.ledger))
 
     def bumper_energy(self, state: State) -> float:
         """
-        Return what the bumpers' springs hold.
+        Return the energy of the bumpers' springs.
 
         Parameters
         ----------
@@ -144,8 +145,8 @@ class ArmPhysics:
             Positions and velocities; no joint further beyond a stop than it was before.
 
         """
-        if self._resisted is not None:
-            return self._watched(t, state, self._resisted.step(state, torque, h), torque, h)
+        if self._with_friction is not None:
+            return self._watched(t, state, self._with_friction.step(state, torque, h), torque, h)
         (l1, l2, l3), (u1, u2, u3) = self.low, self.high
         q1, q2, q3 = state[:3]
         if l1 < q1 < u1 and l2 < q2 < u2 and l3 < q3 < u3:
@@ -156,7 +157,7 @@ class ArmPhysics:
         return self._watched(t, state, self._step_with_stops(state, torque, h), torque, h)
 
     def _watched(self, t: Terms, state: State, after: State, torque: Triple, h: float) -> State:
-        """Tell the monitor of stops that are touched after a step, and return the state then."""
+        """Report contacts with stops to the monitor, and return the state after the step."""
         (q1, q2, q3, qd1, qd2, qd3), low, high = state, self.low, self.high
         freely = (q1 + h * qd1, q2 + h * qd2, q3 + h * qd3, qd1, qd2, qd3)
         a, b = contact(after, low, high), contact(freely, low, high)  # b: it may have left again
@@ -172,8 +173,8 @@ class ArmPhysics:
         return after
 
     def _step_with_stops(self, state: State, torque: Triple, h: float) -> State:
-        """Step from stop to stop: up to each impact exactly, and on without the lost energy."""
-        # A joint that starts beyond a stop (the stop was moved) may stay there, not go further.
+        """Return the state after a step with impacts on stops."""
+        # A joint that starts beyond a stop (which was moved) may stay there, not go further.
         (l1, l2, l3), (u1, u2, u3), (q1, q2, q3) = self.low, self.high, state[:3]
         low = (min(l1, q1), min(l2, q2), min(l3, q3))
         high = (max(u1, q1), max(u2, q2), max(u3, q3))
@@ -200,7 +201,7 @@ class ArmPhysics:
         return state[:3] + qd
 
     def _enter_impact(self, t: Terms, before: Triple, after: Triple) -> None:
-        """Enter the energy that stops have taken."""
+        """Record the energy lost in an impact."""
         if after != before:
             self.ledger.stops += kinetic(t, before) - kinetic(t, after)
 
@@ -225,10 +226,10 @@ class ArmPhysics:
 def _after_impact(t: Terms, state: State, torque: Triple, at: Contact,
                   shortest: float) -> tuple[State, Contact]:
     """
-    Return the state after what impacts there are, and the joints that rest at their stops.
+    Return the state after impacts, and the joints at rest on their stops.
 
-    A joint rests that is pressed into its stop and has no velocity, or leaves it with so little
-    that it would be back within the shortest time [s].
+    A joint is at rest if it is pressed into its stop without velocity, or with one so small that
+    it would return within the shortest time [s].
     """
     if at == FREE:
         return state, FREE
@@ -242,18 +243,18 @@ def _after_impact(t: Terms, state: State, torque: Triple, at: Contact,
     lock = (s1 if slow[0] and pressed[0] == 0.0 else 0, s2 if slow[1] and pressed[1] == 0.0 else 0,
             s3 if slow[2] and pressed[2] == 0.0 else 0)
     qd1, qd2, qd3 = held(t, (qd1, qd2, qd3), lock)
-    if s2 * qd2 < 0.0 or s3 * qd3 < 0.0:  # stopping one joint has thrown the other into its stop
+    if s2 * qd2 < 0.0 or s3 * qd3 < 0.0:  # one joint's impulse drives the other into its stop
         lock, qd2, qd3 = (lock[0], s2, s3), 0.0, 0.0
     return state[:3] + (qd1, qd2, qd3), lock
 
 
 def _beyond(torque: float, friction: float) -> float:
-    """Return the part of a torque that friction cannot account for."""
+    """Return the part of a torque beyond friction."""
     return copysign(max(abs(torque) - friction, 0.0), torque)
 
 
 def _overshoot(state: State, low: Triple, high: Triple) -> float:
-    """Return by how much the joint furthest beyond a stop is beyond it [rad]."""
+    """Return the largest distance beyond a stop [rad]; negative if all are inside."""
     return max(max(q - u, d - q) for q, d, u in zip(state, low, high))
 
 

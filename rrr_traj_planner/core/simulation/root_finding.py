@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Finding when something happens during a step, by false position."""
+"""
+Time of an event within a step, by the Illinois variant of false position.
+
+Dowell and Jarratt, A modified regula falsi method for computing the root of an equation, BIT 11,
+1971.
+"""
 
 from __future__ import annotations
 
@@ -21,51 +26,50 @@ from typing import TypeVar
 
 Outcome = TypeVar('Outcome')
 
-# An event is found when the arm is past it by no more than this [rad], [rad/s].
+# Accuracy of an event: largest distance past it [rad], [rad/s].
 PAST = 1e-12
 
-# About ten trials are needed. Every fourth halves the interval, so that all together suffice.
+# About ten trials are needed; since every fourth is a bisection, this number always suffices.
 MOST_TRIALS = 200
 
-# No trial is nearer to an end of the interval than this part of it.
-MARGIN = 0.02
+CLEARANCE = 0.02  # of the interval, between a trial and either end
 
 
-def event(trial: Callable[[float], Outcome], room: Callable[[Outcome], float], first: float,
+def event(trial: Callable[[float], Outcome], margin: Callable[[Outcome], float], first: float,
           h: float, last: float) -> tuple[float, Outcome]:
     """
-    Return when an event happens, and the state of things then.
+    Return the time of an event, and the outcome then.
 
     Parameters
     ----------
     trial : callable
-        The state of things after a time [s].
-    room : callable
-        How far a state is from the event; negative past it.
+        Outcome (state and more) after a time [s].
+    margin : callable
+        Distance of an outcome from the event; negative past it.
     first, last : float
-        Room at the beginning and after h; not negative, and negative.
+        Margins at the beginning, not negative, and after h, negative.
     h : float
-        When it has happened at the latest [s].
+        End of the step [s].
 
     Returns
     -------
     time : float
         [s].
     outcome : object
-        The state then, past the event by no more than `PAST`.
+        At that time, past the event by no more than `PAST`.
 
     """
     low, high, at_low, at_high, now, outcome = 0.0, h, first, last, last, trial(h)
     for n in range(MOST_TRIALS):
         if now >= -PAST:
             break
-        share = min(max(at_low / (at_low - at_high), MARGIN), 1.0 - MARGIN)
+        share = min(max(at_low / (at_low - at_high), CLEARANCE), 1.0 - CLEARANCE)
         if n % 4 == 3:
             share = 0.5
         middle = low + share * (high - low)
         attempt = trial(middle)
-        value = room(attempt)
-        if value < 0.0:  # Illinois's rule: the end that stays counts half
+        value = margin(attempt)
+        if value < 0.0:  # Illinois rule: the value at the retained end is halved
             high, now, outcome, at_low, at_high = middle, value, attempt, 0.5 * at_low, value
         else:
             low, at_low, at_high = middle, value, 0.5 * at_high

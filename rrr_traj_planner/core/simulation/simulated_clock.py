@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How fast simulated time runs where the simulation is the clock, and when it is looked at."""
+"""Simulated time against wall time, and schedules of periodic instants."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from rrr_traj_planner.core.nanoseconds import SECOND
 
 class SimulatedClock:
     """
-    Simulated time against steady wall time: at a rate, as fast as can be, or standing.
+    Simulated time against steady wall time: at a rate, as fast as possible, or paused.
 
     Parameters
     ----------
     factor : float
-        Simulated time to wall time; 0: as fast as can be.
+        Simulated time over wall time; 0: as fast as possible.
     now : int
         Steady wall time [ns].
 
@@ -35,7 +35,7 @@ class SimulatedClock:
     factor : float
         As given, or as last changed.
     paused : bool
-        Whether simulated time stands.
+        Whether simulated time is paused.
 
     """
 
@@ -46,7 +46,7 @@ class SimulatedClock:
 
     def due(self, now: int, reached: int, most: int) -> int:
         """
-        Return up to when to simulate.
+        Return the simulated time that is due.
 
         Parameters
         ----------
@@ -55,7 +55,7 @@ class SimulatedClock:
         reached : int
             Simulated time that has been reached [ns].
         most : int
-            How far to simulate at once where there is no rate [ns].
+            Largest advance at once without a rate [ns].
 
         Returns
         -------
@@ -72,7 +72,7 @@ class SimulatedClock:
     def restart(self, now: int, reached: int, factor: float | None = None,
                 paused: bool | None = None) -> None:
         """
-        Go on from here, with another rate, or to or from a pause; what was missed is let go.
+        Continue from here with another rate, or to or from a pause; missed time is dropped.
 
         Parameters
         ----------
@@ -83,7 +83,7 @@ class SimulatedClock:
         factor : float, optional
             The new rate.
         paused : bool, optional
-            Whether time stands from now on.
+            Whether time is paused from now on.
 
         """
         self._reached, self._since = reached, now
@@ -93,7 +93,7 @@ class SimulatedClock:
 
 class Schedule:
     """
-    Instants at a steady rate, any rate: the k-th is k / rate after the first.
+    Periodic instants: the k-th is k / rate after the first, without accumulated rounding.
 
     Parameters
     ----------

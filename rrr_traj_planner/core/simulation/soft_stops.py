@@ -15,8 +15,8 @@
 """
 Soft joint stops: bumpers between the end of a joint's range and its hard stop.
 
-A bumper pressed in by x pushes back with k x (1 + lambda xd), after Hunt and Crossley: the
-torque begins at zero, whatever the speed, and a bumper never pulls.
+A bumper compressed by x reacts with k x (1 + lambda xd) (Hunt and Crossley, ASME J. Applied
+Mechanics 42, 1975): the torque is continuous at contact, and a bumper never pulls.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class SoftStops:
 
     def sides(self, state: State, low: Triple, high: Triple) -> Contact:
         """
-        Return which joints press their bumpers.
+        Return the joints that compress their bumpers.
 
         Parameters
         ----------
@@ -83,12 +83,12 @@ class SoftStops:
 
     def push(self, depth: float, rate: float) -> tuple[float, float]:
         """
-        Return what a pressed bumper does.
+        Return the reaction of a compressed bumper.
 
         Parameters
         ----------
         depth : float
-            x, how far it is pressed in [rad].
+            x, its compression [rad].
         rate : float
             xd [rad/s].
 
@@ -97,7 +97,7 @@ class SoftStops:
         torque : float
             Outwards [N m].
         dissipated : float
-            Power that it turns into heat [W].
+            Power dissipated [W].
 
         """
         spring = self.stiffness * depth
@@ -106,7 +106,7 @@ class SoftStops:
 
     def energy(self, state: State, low: Triple, high: Triple) -> float:
         """
-        Return what the bumpers' springs hold.
+        Return the energy of the bumpers' springs.
 
         Parameters
         ----------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Whether a time step is short enough for friction and bumpers."""
+"""Stability of the integration step with viscous friction and bumpers."""
 
 from __future__ import annotations
 
@@ -24,17 +24,18 @@ from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix
 from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 
-# The method is stable up to 2.8 times the inverse of a decay's rate, or of a frequency; at 1 it
-# is also accurate.
+# Step times decay rate, or times angular frequency. The method is stable up to 2.8 (for a decay as
+# the classical Runge-Kutta method: Hairer and Wanner, Solving Ordinary Differential Equations II,
+# section IV.2) and accurate up to 1.
 LARGEST = 1.0
 
-POSES = 24
+POSES = 24  # of joints 2 and 3 each, over a full turn
 
 
 def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
                step: float) -> None:
     """
-    Refuse friction or bumpers that a time step cannot follow.
+    Refuse friction or bumpers that are too stiff for a time step.
 
     Parameters
     ----------
@@ -50,8 +51,8 @@ def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
     Raises
     ------
     InvalidInputError
-        If viscous friction slows a joint in some pose within less than a step, or a bumper throws
-        it back so.
+        If the time constant of viscous friction, or the inverse frequency of a bumper, is shorter
+        than a step in some pose.
 
     """
     bumper = soft_stops.stiffness if soft_stops.width else 0.0
@@ -73,7 +74,7 @@ def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
 
 
 def _poses() -> Array:
-    """Return positions of the joints that inertia depends on, all round, shape (n, 3)."""
+    """Return a grid of the joints on which inertia depends, shape (n, 3)."""
     angles = np.linspace(-np.pi, np.pi, POSES, endpoint=False)
     q2, q3 = (x.ravel() for x in np.meshgrid(angles, angles))
     return np.column_stack((np.zeros_like(q2), q2, q3))

@@ -13,13 +13,13 @@
 # limitations under the License.
 
 """
-Joints at rest: whether friction and stops keep them there, and else how they set off.
+Stiction: whether friction and stops hold joints at rest, and the accelerations if they do not.
 
-Each joint's reaction lies in a range: Coulomb friction gives a resting joint anything in
-[-c, c], a stop pushes away from itself as hard as it must. A joint stays at rest with a reaction
-inside its range, or moves against the reaction at the range's end. Both are the conditions of
-one strictly convex problem (Gauss's principle of least constraint with dry friction), which has
-exactly one solution; with two coupled joints, nine cases hold it.
+Each joint's reaction lies in a range: [-c, c] for Coulomb friction at rest, one-sided and
+unbounded for a stop. A joint stays at rest with a reaction inside its range, or accelerates
+against the reaction at the end of the range. These are the optimality conditions of a strictly
+convex problem (Gauss's principle of least constraint with dry friction), which has exactly one
+solution; for two coupled joints it is found among nine cases.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ NO_REACTION: Range = (0.0, 0.0)
 
 def resting_accelerations(t: Terms, x: Triple, ranges: tuple[Range, Range, Range]) -> Triple:
     """
-    Return the accelerations of an arm some of whose joints may stay at rest.
+    Return the accelerations of an arm with joints that may stay at rest.
 
     Finds a with r = M (a - x) such that a_i = 0 and r_i in its range, or a_i > 0 and r_i at the
     lower end, or a_i < 0 and r_i at the upper one.
@@ -65,7 +65,7 @@ def resting_accelerations(t: Terms, x: Triple, ranges: tuple[Range, Range, Range
 
 
 def _single(inertia: float, x: float, limits: Range) -> float:
-    """Return the acceleration of one joint that nothing is coupled to."""
+    """Return the acceleration of an inertially uncoupled joint."""
     low, high = limits
     reaction = -inertia * x
     if reaction < low:
@@ -92,7 +92,7 @@ def _pair(M: Triple, x: tuple[float, float], range_2: Range,
 
 def _both_moving(M: Triple, x: tuple[float, float], range_2: Range,
                  range_3: Range) -> tuple[float, float]:
-    """Return the case whose directions fit; on the edge between two, the one that fits best."""
+    """Return the case with consistent directions; up to rounding, the most consistent one."""
     M22, M23, M33 = M
     det = M22 * M33 - M23 * M23
     best, least = (0.0, 0.0), float('inf')

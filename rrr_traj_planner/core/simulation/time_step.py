@@ -13,11 +13,12 @@
 # limitations under the License.
 
 """
-One step in time of qdd = f(q, qd): the equations of motion integrated to fourth order.
+Integration step of qdd = f(q, qd), of fourth order.
 
-Nyström's method, the Runge-Kutta method for second-order equations: its two inner stages share
-one position, so that three evaluations of the equations' terms make a step. The joints' torques
-are held over a step, as a digital controller holds them.
+Nyström's method for second-order equations (Hairer, Nørsett and Wanner, Solving Ordinary
+Differential Equations I, section II.14): the two inner stages share one position, so that a step
+takes three evaluations of the equations' terms. Torques are constant over a step (zero-order
+hold).
 """
 
 from __future__ import annotations
@@ -74,7 +75,7 @@ def free_step(k: Constants, t: Terms, state: State, torque: Triple, h: float) ->
 def held_step(k: Constants, t: Terms, state: State, torque: Triple, h: float,
               lock: Contact) -> State:
     """
-    Return the state after a time step in which stops hold some joints still.
+    Return the state after a time step in which stops hold some joints at rest.
 
     The same method as `free_step`, with the held joints' accelerations zero.
 
