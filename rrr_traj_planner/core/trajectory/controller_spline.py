@@ -51,7 +51,7 @@ class SplineExcess(NamedTuple):
     time_scale: Array  # least factor that satisfies the limits; 1 where they are, (n - 1,)
     outside: Array     # distance beyond a joint's range [rad], 0 within tolerance, (n - 1,)
     place: Array       # of the largest excess, as a fraction of the interval, (n - 1,)
-    effort: Array      # largest torque over all intervals [N m], (3,)
+    effort: Array      # largest torque over all intervals to 1e-3 [N m], (3,)
     jerk: Array        # largest jerk of each interval [rad/s^3], exact, (n - 1, 3)
 
     @property
@@ -127,13 +127,13 @@ def _dense_check(model: RobotModel, limits: JointLimits, spline: Interpolant,
         np.abs(tau) / limits.max_effort])
     factors = np.stack([ratios[0], np.sqrt(ratios[1]), np.sqrt(
         squared_time_scale(model, limits, q, qd, qdd))])
-    peaks = ratios + _between(ratios)
+    peaks = _between(ratios)
     factors = np.where(ratios > 1.0 + SPLINE_TOLERANCE, factors, np.where(
         peaks > 1.0 + SPLINE_TOLERANCE, np.sqrt(peaks), 1.0)).max(axis=(0, 3))
     q = _at_reversals(q, qd, qdd, np.diff(spline.points.times)[index] / FINE_STEPS)
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max(axis=(0, 2))
     return (factors.max(axis=0), np.where(outside > RANGE_TOLERANCE, outside, 0.0),
-            shares[factors.argmax(axis=0)], np.abs(tau).max(axis=(0, 1)))
+            shares[factors.argmax(axis=0)], _between(np.abs(tau)).max(axis=(0, 1)))
 
 
 def _at_reversals(q: Array, qd: Array, qdd: Array, step: Array) -> Array:
@@ -145,7 +145,10 @@ def _at_reversals(q: Array, qd: Array, qdd: Array, step: Array) -> Array:
 
 
 def _between(values: Array) -> Array:
-    """Return the excess over a sample of the parabola through it and its neighbours."""
-    rise = np.zeros_like(values)
-    rise[:, 1:-1] = np.abs(values[:, 2:] - 2.0 * values[:, 1:-1] + values[:, :-2]) / 8.0
-    return rise
+    """Return samples; for those beside a peak, that of the parabola through three samples."""
+    peaks = values.copy()
+    left, middle, right = values[:-2], values[1:-1], values[2:]
+    bend, slope = 2.0 * middle - left - right, 0.5 * (right - left)
+    peak = (bend > 0.0) & (np.abs(slope) <= bend)
+    peaks[1:-1][peak] += 0.5 * slope[peak] ** 2 / bend[peak]
+    return peaks
