@@ -23,7 +23,12 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.cancellation import step
-from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError, RrrPlannerError
+from rrr_traj_planner.core.errors import (
+    ConvergenceError,
+    InvalidInputError,
+    RrrPlannerError,
+    TimingError,
+)
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
@@ -243,7 +248,12 @@ def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, via_times: Array) -> Plan:
     """Return the plan of a trajectory, after checks that are independent of the planner."""
     with step('the choice of points for the answer'):
-        found = answer_points(model, limits, request, trajectory)
+        try:
+            found = answer_points(model, limits, request, trajectory)
+        except InvalidInputError as error:
+            if not request.should_stop():
+                raise
+            raise TimingError(f'planning ended early, with a slow motion: {error}') from error
     trajectory = found.trajectory
     with step('the final checks'):
         request.should_stop()

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import count
 import pickle
 import re
@@ -25,7 +26,7 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.cancellation import step
-from rrr_traj_planner.core.errors import TimeLimitError
+from rrr_traj_planner.core.errors import InvalidInputError, TimeLimitError, TimingError
 from rrr_traj_planner.planners.deadline import Deadline, GRACE, part_of
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
@@ -134,6 +135,23 @@ def test_a_path_through_many_points_is_given_up_in_time_and_says_in_which_step()
             r'^planning_time_limit 0.02 s: given up after 0\.\d\d s, during ')):
         plan(RobotModel(), LIMITS, PlanningRequest(
             circle(1000), planner_id='line_arc', should_stop=deadline))
+
+
+@pytest.mark.parametrize('planner_id', ['time_optimal', 'line_arc', 'line_polynomial'])
+def test_time_is_to_blame_where_a_motion_is_too_slow_for_its_points(planner_id):
+    request = PlanningRequest([0.6, 0.0, 1.0] + [0.1, 0.15, 0.1] * lissajous(12),
+                              planner_id=planner_id, sample_period=0.01)
+    fast, slow = (len(plan(RobotModel(), LIMITS, replace(
+        request, should_stop=lambda early=early: early)).points.times) for early in (False, True))
+    assert fast < slow - 5
+    few = replace(request, max_points=(fast + slow) // 2)
+    plan(RobotModel(), LIMITS, few)
+    with pytest.raises(TimingError, match=(
+            r'^planning ended early, with a slow motion: a motion of [\d.]+ s with a point every '
+            rf'0\.01 s has more than {few.max_points} points$')):
+        plan(RobotModel(), LIMITS, replace(few, should_stop=lambda: True))
+    with pytest.raises(InvalidInputError, match='^a motion of'):
+        plan(RobotModel(), LIMITS, replace(few, max_points=fast // 2))
 
 
 def saving(note):
