@@ -110,7 +110,7 @@ class Client(Node):
         self._wait(lambda: len(self._claimed()) == len(NODES), 'planner and arm to start')
         self._wait(self._plan.service_is_ready, 'the planner')
         self._wait(lambda: self._states and self._send.get_subscription_count(), 'the arm')
-        self._check_alone()
+        self.check_alone()
         if bag is not None:
             self._wait(demo_recorder(self, bag).is_connected, 'the topics to record')
         config = self._planner_config()
@@ -138,18 +138,30 @@ class Client(Node):
         for name in self._claimed():
             raise StartError(f'a node {name} runs already: {KEEP_APART}')
 
+    def check_alone(self) -> None:
+        """
+        Refuse to run beside the same nodes on another machine: all would answer and move.
+
+        Raises
+        ------
+        StartError
+            If two nodes of the same name are found, or two of what only one of them has.
+
+        """
+        names = self.get_node_names_and_namespaces()
+        found = {
+            'nodes named ' + node: names.count((node, self.get_namespace())) for node in NODES}
+        found['subscriptions of joint_trajectory'] = self._send.get_subscription_count()
+        found['publishers of joint_states'] = self.count_publishers('joint_states')
+        more = ', '.join(f'{n} {what}' for what, n in found.items() if n > 1)
+        if more:
+            raise StartError(f'another planner or arm is running here ({more}): {KEEP_APART}')
+
     def _claimed(self) -> list[str]:
         """Return which of the two nodes run on this machine."""
         prefix, domain = self.get_namespace().rstrip('/'), self.context.get_domain_id()
         names = [f'{prefix}/{node}' for node in NODES]
         return [name for name in names if is_claimed(domain, name)]
-
-    def _check_alone(self) -> None:
-        """Refuse to run beside the same nodes on another machine: all would answer and move."""
-        found = self.get_node_names_and_namespaces()
-        if max(self._send.get_subscription_count(), self.count_publishers('joint_states'),
-               *(found.count((node, self.get_namespace())) for node in NODES)) > 1:
-            raise StartError(f'another planner or arm is running here: {KEEP_APART}')
 
     def _planner_config(self) -> PlannerConfig:
         """Return the planner's configuration, read from the running node."""

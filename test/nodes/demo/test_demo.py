@@ -18,10 +18,16 @@ from __future__ import annotations
 
 import re
 import signal
+from time import monotonic, sleep
 
 from helpers.scripts import DEADLINE, Script, script
 from matplotlib.image import imread
 import pytest
+import rclpy
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rrr_traj_planner.nodes.demo.client import Client
+from rrr_traj_planner.nodes.process.entry import StartError
 
 UNREACHABLE = 'via_points: [[1.02, 0.59, 0.97], [3.0, 0.0, 0.5]]\n'
 PNG = b'\x89PNG\r\n\x1a\n'
@@ -117,6 +123,23 @@ def test_node_that_dies_ends_the_demo(tmp_path):
         assert all(child.has_ended() for child in children)
     assert code == 1
     assert errors.endswith('demo: simulated_arm was killed by SIGKILL\n')
+
+
+def test_nodes_of_another_machine_are_counted(ros):
+    for _ in range(2):  # such do not claim their names on this machine
+        ros.add(Node('trajectory_planner', context=ros.context))
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        client, deadline = Client(), monotonic() + DEADLINE
+        client.check_free()
+        while client.get_node_names().count('trajectory_planner') < 2 and monotonic() < deadline:
+            sleep(0.05)
+        with pytest.raises(StartError, match=(
+                r'^another planner or arm is running here \(2 nodes named trajectory_planner\)')):
+            client.check_alone()
+        client.destroy_node()
+    finally:
+        rclpy.shutdown()
 
 
 @pytest.mark.parametrize(('arguments', 'code', 'text'), [
