@@ -145,10 +145,10 @@ def _at_reversals(q: Array, qd: Array, qdd: Array, step: Array) -> Array:
 
 
 def _between(values: Array) -> Array:
-    """Return samples; for those beside a peak, that of the parabola through three samples."""
+    """Return samples, (..., m, n, 3); beside a peak, that of the parabola through three."""
     peaks = values.copy()
-    left, middle, right = values[:-2], values[1:-1], values[2:]
+    left, middle, right = (values[..., k:values.shape[-3] - 2 + k, :, :] for k in range(3))
     bend, slope = 2.0 * middle - left - right, 0.5 * (right - left)
     peak = (bend > 0.0) & (np.abs(slope) <= bend)
-    peaks[1:-1][peak] += 0.5 * slope[peak] ** 2 / bend[peak]
+    peaks[..., 1:-1, :, :][peak] += 0.5 * slope[peak] ** 2 / bend[peak]
     return peaks

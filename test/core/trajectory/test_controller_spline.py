@@ -24,6 +24,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.trajectory.controller_spline import (
     RANGE_TOLERANCE,
     spline_excess,
+    SPLINE_TOLERANCE,
 )
 from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
 
@@ -100,7 +101,7 @@ def test_largest_torque_is_pinocchio_s():
 
 
 @pytest.mark.parametrize('seed', range(10))
-def test_largest_torque_between_dense_samples_is_told(seed):
+def test_largest_torque_between_dense_samples_is_told_and_slowed(seed):
     # A short step of joint 1 from rest to rest: its torque is I D/T^2 (60 x - 180 x^2 + 120 x^3)
     # but for the rise of I, largest at x = 0.2113 and 0.7887, between 64ths of the interval.
     step, duration = np.random.default_rng(seed).uniform([1e-4, 0.1], [1e-3, 1.0])
@@ -108,9 +109,14 @@ def test_largest_torque_between_dense_samples_is_told(seed):
     q = np.array([FROM, FROM])
     q[1, 0] += step
     inertia = PinocchioArm(ARM).inertia_matrix(FROM)[0, 0]
-    found = spline_excess(ARM, WIDE, Interpolant(TrajectoryPoints([0.0, duration], q, rest, rest)))
-    assert found.effort[0] == pytest.approx(
-        inertia * step / duration ** 2 * 10.0 / np.sqrt(3.0), rel=5e-5)
+    largest = inertia * step / duration ** 2 * 10.0 / np.sqrt(3.0)
+    spline = Interpolant(TrajectoryPoints([0.0, duration], q, rest, rest))
+    for over in (1.0 + 7e-4, 1.0 + 9e-4):  # on either side of SPLINE_TOLERANCE
+        bound = np.array([largest / over, np.inf, np.inf])
+        found = spline_excess(ARM, replace(WIDE, max_effort=bound), spline)
+        assert found.effort[0] == pytest.approx(largest, rel=5e-5)
+        expected = np.sqrt(over) if over > 1.0 + SPLINE_TOLERANCE else 1.0
+        assert found.time_scale[0] == pytest.approx(expected, abs=3e-5)
 
 
 @pytest.mark.parametrize('joint', [0, 1])  # of joint 3 gravity asks most on this way
