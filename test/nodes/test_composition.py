@@ -25,8 +25,10 @@ from helpers.places import CONFIG
 from helpers.plan_requests import NEAR, patient, plan_request
 from helpers.scripts import Script, script
 import numpy as np
+import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
@@ -92,6 +94,15 @@ def assert_drives(robot, points, model=None):
     q = robot.drive(robot.plan(points))
     tip = forward_kinematics(model or RobotModel(), q)
     assert np.linalg.norm(tip - points[-1]) <= REACHED
+
+
+@pytest.mark.parametrize('kind', [TrajectoryPlanner, SimulatedArm])
+def test_a_node_with_a_wrong_parameter_does_not_appear(ros, kind):
+    names = set(ros.node.get_node_names())
+    with pytest.raises(InvalidInputError) as caught:  # holds the half-made node
+        kind(**options(ros, {'joint_limits.joint_1.max_velocity': -1.0}))
+    assert 'joint_1' in str(caught.value)
+    assert set(ros.node.get_node_names()) == names
 
 
 def test_both_nodes_work_in_one_process_and_executor(ros):

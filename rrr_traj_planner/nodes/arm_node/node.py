@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from time import monotonic_ns
 from typing import Any
 
@@ -44,7 +45,7 @@ from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.table import ARM
 from rrr_traj_planner.nodes.process.node_start import NodeStart
-from rrr_traj_planner.nodes.process.service_node import ServiceNode
+from rrr_traj_planner.nodes.process.service_node import destroyed_on_error, ServiceNode
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory
@@ -85,6 +86,10 @@ class SimulatedArm(ServiceNode):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('simulated_arm', **kwargs)
+        with destroyed_on_error(self):
+            self._set_up(kwargs.get('cli_args'))
+
+    def _set_up(self, arguments: Sequence[str] | None) -> None:
         self._parameters_declared = DeclaredParameters(
             self, ARM, ArmConfig.from_values, self._configure)
         config = self._parameters_declared.config
@@ -112,7 +117,7 @@ class SimulatedArm(ServiceNode):
             self._period(config), self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._start = NodeStart(
             self, self._parameters_declared, config.settings.limits,
-            f'follows {self.resolve_topic_name("joint_trajectory")}', kwargs.get('cli_args'))
+            f'follows {self.resolve_topic_name("joint_trajectory")}', arguments)
 
     def _tick(self) -> None:
         """Simulate up to the present, and log warnings."""

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from time import perf_counter
 import traceback
@@ -43,7 +43,7 @@ from rrr_traj_planner.nodes.planner_node.request_statistics import RequestStatis
 from rrr_traj_planner.nodes.planner_node.scheduler import Job
 from rrr_traj_planner.nodes.planner_node.worker_pool import WorkerPool
 from rrr_traj_planner.nodes.process.node_start import NodeStart
-from rrr_traj_planner.nodes.process.service_node import ServiceNode
+from rrr_traj_planner.nodes.process.service_node import destroyed_on_error, ServiceNode
 from rrr_traj_planner.planners.deadline import Deadline
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning import plan
@@ -98,6 +98,10 @@ class TrajectoryPlanner(ServiceNode):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('trajectory_planner', **kwargs)
+        with destroyed_on_error(self):
+            self._set_up(kwargs.get('cli_args'))
+
+    def _set_up(self, arguments: Sequence[str] | None) -> None:
         self._parameters_declared = DeclaredParameters(
             self, PLANNER, PlannerConfig.from_values, lambda config: None)
         self._trajectory = self.create_publisher(JointTrajectory, 'planned_trajectory', LATCHED)
@@ -117,7 +121,7 @@ class TrajectoryPlanner(ServiceNode):
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._start = NodeStart(
             self, self._parameters_declared, self._parameters_declared.config.limits,
-            f'serves {self.resolve_service_name("plan_trajectory")}', kwargs.get('cli_args'))
+            f'serves {self.resolve_service_name("plan_trajectory")}', arguments)
 
     async def _plan(self, request: PlanTrajectory.Request,
                     _: PlanTrajectory.Response) -> PlanTrajectory.Response:
