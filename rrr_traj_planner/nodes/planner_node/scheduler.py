@@ -80,16 +80,14 @@ class Job:
         self._before, self._since = self.run_time(), perf_counter()
         self._processor += thread_time()
 
-    def level(self, running: bool, now: float) -> float:
+    def work(self, running: bool = False) -> float:
         """
-        Return the priority level at a time: 0 for a new short job, lower is more urgent.
+        Return the priority level by the work done: 0 for a new short job, lower is more urgent.
 
         Parameters
         ----------
         running : bool
             Whether the job runs, in the calling thread; else it waits.
-        now : float
-            The time, as of `perf_counter` [s].
 
         Returns
         -------
@@ -99,8 +97,24 @@ class Job:
         """
         processor = self._processor + (thread_time() if running else 0.0)
         done = max(self._expected, processor, 0.5 * FIRST_LEVEL)
-        waited = 0.0 if running else now - self._since
-        return floor(1.0 + log2(done / FIRST_LEVEL)) - waited / AGING_PERIOD
+        return floor(1.0 + log2(done / FIRST_LEVEL))
+
+    def level(self, now: float) -> float:
+        """
+        Return the priority level of a waiting job: by its work and by how long it has waited.
+
+        Parameters
+        ----------
+        now : float
+            The time, as of `perf_counter` [s].
+
+        Returns
+        -------
+        float
+            The level.
+
+        """
+        return self.work() - (now - self._since) / AGING_PERIOD
 
 
 class Scheduler:
@@ -185,7 +199,10 @@ class Scheduler:
 
     def preempt(self, job: Job) -> None:
         """
-        Suspend a running job while jobs that are more urgent by a level wait.
+        Suspend a running job while jobs wait that have done less work by a level.
+
+        Jobs that have waited long run before others that wait, not before one that runs: a short
+        job is over soon, and is not overtaken by its like.
 
         Parameters
         ----------
@@ -194,9 +211,7 @@ class Scheduler:
 
         """
         with self._changed:
-            now = perf_counter()
-            if self._ended or not any(
-                    w.level(False, now) <= job.level(True, now) - 1.0 for w in self._waiting):
+            if self._ended or not any(w.work() < job.work(running=True) for w in self._waiting):
                 return
             job.suspend()
             self._waiting.append(job)
@@ -221,4 +236,4 @@ class Scheduler:
 
     def _most_urgent(self) -> Job:
         now = perf_counter()
-        return min(self._waiting, key=lambda w: w.level(False, now))
+        return min(self._waiting, key=lambda w: w.level(now))

@@ -18,6 +18,7 @@ from threading import Event, Thread
 from time import perf_counter, sleep, thread_time
 
 import pytest
+from rrr_traj_planner.nodes.planner_node import scheduler as scheduling
 from rrr_traj_planner.nodes.planner_node.scheduler import FIRST_LEVEL, Scheduler
 
 DEADLINE = 20.0  # s
@@ -69,7 +70,9 @@ def test_short_work_goes_before_long_work_that_came_first():
     assert short.ended < min(w.ended for w in long_ones)
 
 
-def test_short_work_that_other_programs_delay_keeps_its_turn():
+@pytest.mark.parametrize('period', [1.0, 0.02])  # of aging [s]; the delay is 0.3 s
+def test_short_work_that_other_programs_delay_keeps_its_turn(monkeypatch, period):
+    monkeypatch.setattr(scheduling, 'AGING_PERIOD', period)
     scheduler, order = Scheduler(), []
 
     def delayed():
