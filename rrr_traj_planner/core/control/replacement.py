@@ -41,7 +41,8 @@ from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
 from rrr_traj_planner.core.stopping.point_to_point import moved_on
 from rrr_traj_planner.core.stopping.stop import Stop, stop
 from rrr_traj_planner.core.stopping.task import from_state
-from rrr_traj_planner.core.trajectory.interpolation import hermite
+from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, leaves
+from rrr_traj_planner.core.trajectory.interpolation import hermite, polynomial
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
 from rrr_traj_planner.core.trajectory.trajectory_points import (
     CommandedPoints,
@@ -52,7 +53,7 @@ from rrr_traj_planner.core.trajectory.trajectory_points import (
 # Distance up to which a command counts as on a trajectory [rad], [rad/s].
 POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
 
-# Sampling steps of a joining polynomial, and relative tolerance of the limits on it.
+# Steps in which a joining polynomial's torque is sampled; tolerance of limits, relative and [rad].
 STEPS, LIMIT_TOLERANCE = 32, 1e-6
 
 # Points that are tried at once.
@@ -199,25 +200,18 @@ def _within_limits(takeover: Takeover, T: Array, ends: tuple[Array, ...]) -> Boo
     the values of the command and of the end itself.
     """
     starts = takeover.states[:len(ends)]
-    x = (np.linspace(0.0, 1.0, STEPS + 1) * T[:, np.newaxis])[..., np.newaxis]
-    c = np.stack(np.broadcast_arrays(*hermite(T[:, np.newaxis], starts, ends)))
-    values = []  # position, velocity, acceleration, (n, STEPS + 1, 3) each
-    for _ in range(3):
-        value = np.zeros((len(T), STEPS + 1, 3))
-        for coefficient in c[::-1]:
-            value = value * x + coefficient[:, np.newaxis]
-        values.append(value)
-        c = c[1:] * np.arange(1, len(c))[:, np.newaxis, np.newaxis]  # the next derivative
+    c = np.stack(np.broadcast_arrays(*hermite(T[:, np.newaxis], starts, ends)), axis=-1)
+    c = np.pad(c, ((0, 0), (0, 0), (0, 6 - c.shape[-1])))
     met = np.ones(len(T), dtype=bool)
-    for value, (low, high) in zip(values, _bounds(takeover, ends)):
-        met &= ((value >= low[:, np.newaxis] - LIMIT_TOLERANCE)
-                & (value <= high[:, np.newaxis] + LIMIT_TOLERANCE)).all(axis=(1, 2))
+    for form, (low, high) in zip(bernstein_forms(c, T), _bounds(takeover, ends)):
+        met &= ~leaves(form, low - LIMIT_TOLERANCE, high + LIMIT_TOLERANCE).any(axis=1)
     i = np.flatnonzero(met)
-    q, qd, qdd = (v[i] for v in values)
+    times = np.linspace(0.0, 1.0, STEPS + 1)[:, np.newaxis, np.newaxis] * T[i, np.newaxis]
+    q, qd, qdd = (polynomial(np.moveaxis(c[i], -1, 0), times, order) for order in range(3))
     torque = np.abs(inverse_dynamics(takeover.model, q, qd, qdd))
-    allowed = np.maximum(torque[:, :1], torque[:, -1:])
+    allowed = np.maximum(torque[:1], torque[-1:])
     met[i] = (torque <= np.maximum(takeover.limits.max_effort, allowed)
-              * (1.0 + LIMIT_TOLERANCE)).all(axis=(1, 2))
+              * (1.0 + LIMIT_TOLERANCE)).all(axis=(0, 2))
     return met
 
 

@@ -30,7 +30,7 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms
+from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, halved
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
 from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints, with_start_state
 
@@ -191,14 +191,4 @@ def _largest(form: Array, least: float) -> float:
         form = form[form.max(axis=1, initial=-np.inf) > best + ACCURACY * abs(best)]
         if len(form) == 0:
             return best
-        form = _halved(form)
-
-
-def _halved(form: Array) -> Array:
-    """Return Bernstein coefficients on both halves of the interval (de Casteljau)."""
-    left, right = [form[:, 0]], [form[:, -1]]
-    while form.shape[1] > 1:
-        form = 0.5 * (form[:, 1:] + form[:, :-1])
-        left.append(form[:, 0])
-        right.append(form[:, -1])
-    return np.concatenate((np.stack(left, axis=1), np.stack(right[::-1], axis=1)))
+        form = halved(form)

@@ -19,7 +19,10 @@ from __future__ import annotations
 from math import comb
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
+
+# Bisections after which a polynomial that touches a bound counts as within it.
+MOST_BISECTIONS = 24
 
 # From coefficients of 1, s, ..., s^5 to Bernstein's on [0, 1]: C(i, k) / C(5, k).
 QUINTIC = np.array([[comb(i, k) / comb(5, k) for i in range(6)] for k in range(6)])
@@ -71,3 +74,56 @@ def through_samples(samples: Array) -> Array:
     k = np.arange(m + 1)
     basis = np.array([comb(m, i) for i in k]) * s ** k * (1.0 - s) ** (m - k)
     return np.tensordot(np.linalg.inv(basis), samples, axes=1)
+
+
+def halved(form: Array) -> Array:
+    """
+    Return the Bernstein coefficients of polynomials on both halves of the interval (de Casteljau).
+
+    Parameters
+    ----------
+    form : ndarray, shape (n, m + 1)
+        On the whole interval.
+
+    Returns
+    -------
+    ndarray, shape (2 n, m + 1)
+        On all first halves, then on all second halves.
+
+    """
+    left, right = [form[:, 0]], [form[:, -1]]
+    while form.shape[1] > 1:
+        form = 0.5 * (form[:, 1:] + form[:, :-1])
+        left.append(form[:, 0])
+        right.append(form[:, -1])
+    return np.concatenate((np.stack(left, axis=1), np.stack(right[::-1], axis=1)))
+
+
+def leaves(form: Array, low: Array, high: Array) -> BoolArray:
+    """
+    Return which polynomials leave their bounds on [0, 1].
+
+    Parameters
+    ----------
+    form : ndarray, shape (..., m + 1)
+        Bernstein coefficients.
+    low, high : ndarray, shape (...)
+        The bounds.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+        Exact but for polynomials that touch a bound from outside by less than rounding.
+
+    """
+    low, high = (np.broadcast_to(x, form.shape[:-1]).reshape(-1, 1) for x in (low, high))
+    out = np.zeros(len(low), dtype=bool)
+    index, parts = np.arange(len(low)), form.reshape(len(low), -1)
+    for _ in range(MOST_BISECTIONS):
+        beyond = (parts < low[index]) | (parts > high[index])
+        out[index[beyond[:, 0] | beyond[:, -1]]] = True
+        doubtful = beyond.any(axis=1) & ~out[index]
+        if not doubtful.any():
+            break
+        parts, index = halved(parts[doubtful]), np.tile(index[doubtful], 2)
+    return out.reshape(form.shape[:-1])

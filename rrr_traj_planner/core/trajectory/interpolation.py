@@ -105,8 +105,8 @@ class Interpolant:
         c = self.coefficients[:, index]
         x = (clipped - knots[index])[..., np.newaxis]
         resting = ((times < knots[0]) | (times > knots[-1]))[..., np.newaxis]
-        return (_polynomial(c, x, 0), np.where(resting, 0.0, _polynomial(c, x, 1)),
-                np.where(resting, 0.0, _polynomial(c, x, 2)))
+        return (polynomial(c, x, 0), np.where(resting, 0.0, polynomial(c, x, 1)),
+                np.where(resting, 0.0, polynomial(c, x, 2)))
 
     def within(self, shares: ArrayLike,
                segments: IntArray | slice = slice(None)) -> tuple[Array, Array, Array]:
@@ -129,7 +129,7 @@ class Interpolant:
         c = self.coefficients[:, segments]
         widths = np.diff(self.points.times)[segments]
         x = np.asarray(shares, dtype=float)[:, np.newaxis, np.newaxis] * widths[:, np.newaxis]
-        return _polynomial(c, x, 0), _polynomial(c, x, 1), _polynomial(c, x, 2)
+        return polynomial(c, x, 0), polynomial(c, x, 1), polynomial(c, x, 2)
 
     def peaks(self, per_segment: int = 16) -> tuple[Array, Array]:
         """
@@ -150,7 +150,7 @@ class Interpolant:
         if len(widths) == 0:  # a single point rests
             return np.zeros(3), np.zeros(3)
         velocity = self.within(np.linspace(0.0, 1.0, per_segment + 1))[1]
-        accelerations = [_polynomial(self.coefficients, x, 2)
+        accelerations = [polynomial(self.coefficients, x, 2)
                          for x in (0.0 * widths, widths, *self._zeros_of_jerk(widths))]
         return np.abs(velocity).max(axis=(0, 1)), np.abs(accelerations).max(axis=(0, 1))
 
@@ -171,7 +171,7 @@ class Interpolant:
                 top = -0.2 * self.coefficients[4] / self.coefficients[5]
             places.append(np.clip(np.nan_to_num(top), 0.0, widths))
         return np.asarray(np.abs(
-            [_polynomial(self.coefficients, x, 3) for x in places]).max(axis=0))
+            [polynomial(self.coefficients, x, 3) for x in places]).max(axis=0))
 
     def _zeros_of_jerk(self, widths: Array) -> tuple[Array, ...]:
         """Return times since each knot, within its segment, at which the jerk is zero."""
@@ -227,8 +227,25 @@ def _coefficients(points: TrajectoryPoints) -> Array:
     return np.stack(hermite(T, tuple(s[:-1] for s in states), tuple(s[1:] for s in states)))
 
 
-def _polynomial(c: Array, x: Array, derivative: int) -> Array:
-    """Return a derivative of sum c[n] x^n."""
+def polynomial(c: Array, x: Array, derivative: int) -> Array:
+    """
+    Return a derivative of the polynomials c[0] + c[1] x + c[2] x^2 + ...
+
+    Parameters
+    ----------
+    c : ndarray, shape (m + 1, ...)
+        Coefficients.
+    x : ndarray
+        Of a shape that broadcasts with a coefficient's.
+    derivative : int
+        0: the value itself.
+
+    Returns
+    -------
+    ndarray
+        Of the common shape.
+
+    """
     value = np.zeros(np.broadcast_shapes(c.shape[1:], x.shape))
     for n in range(len(c) - 1, derivative - 1, -1):
         factor = 1.0

@@ -26,7 +26,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.control.replacement import replacement, Takeover
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.nanoseconds import nanoseconds
-from rrr_traj_planner.core.trajectory.reference_trajectory import through
+from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
 from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
 
 LIMITS = JointLimits(max_effort=np.full(3, inf))
@@ -245,6 +245,44 @@ def test_trajectory_out_of_reach_is_left_for_its_end_without_leaving_a_range():
     assert states[:, 0].min() >= -1e-9
     assert np.abs(states[:, 6:]).max() <= 1.0 + 1e-6
     np.testing.assert_allclose(states[-1, :3], (0.01, 1.0, 0.2), atol=1e-12)
+
+
+def turning_points(motion):
+    """Return where joint 1 turns back, and the ends of each polynomial, (n,) [rad]."""
+    found = []
+    for c, T in zip(motion.coefficients[:, 0], np.diff(motion.knots)):
+        p = np.polynomial.Polynomial(c)
+        found += [p(x.real) for x in p.deriv().roots() if 0.0 < x.real < T and abs(x.imag) < 1e-9]
+        found += [p(0.0), p(T)]
+    return np.array(found)
+
+
+def down_and_up(end, way, duration, n=201):
+    """Return points on which joint 1 goes to an end of its range and turns back there."""
+    t, w = np.linspace(0.0, duration, n), 2.0 * np.pi / duration
+    first = (end + 0.5 * way * (1.0 + np.cos(w * t)), -0.5 * way * w * np.sin(w * t),
+             -0.5 * way * w ** 2 * np.cos(w * t))
+    states = np.tile(np.array([(0.0, 1.0, 0.2), (0.0,) * 3, (0.0,) * 3])[:, np.newaxis], (1, n, 1))
+    states[..., 0] = first
+    return CommandedPoints(t, *states, np.full(n, True), np.full(n, True))
+
+
+@pytest.mark.parametrize('end', [0.0, np.pi / 2])
+def test_no_join_leaves_a_range_between_samples(end):
+    inward = 1.0 if end == 0.0 else -1.0
+    joined = 0
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        way, duration, away, late = rng.uniform([0.01, 1.0, 0.0, 0.0], [0.3, 4.0, 0.1, 0.5])
+        command = (end + inward * away, 1.0 + rng.uniform(-0.5, 0.5), 0.2, *(0.0,) * 6)
+        motion = replaced(takeover(command), down_and_up(end, inward * way, duration),
+                          NOW_NS - nanoseconds(late * duration), LEAD)
+        if isinstance(motion, ReferenceTrajectory):
+            joined += 1
+            first = ReferenceTrajectory(
+                motion.knots[:2], motion.coefficients[:1], motion.final, motion.origin_ns)
+            assert (inward * (turning_points(first) - end)).min() >= -3e-6
+    assert joined > 30
 
 
 @pytest.mark.parametrize(('q', 'text'), [
