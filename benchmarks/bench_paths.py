@@ -31,7 +31,8 @@ from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.path_trajectory import ArmPath
 from rrr_traj_planner.core.path.workspace_check import check_workspace
-from rrr_traj_planner.planners.path_timing.least_time import fastest_along, PathTask
+from rrr_traj_planner.planners.path_timing.least_time import fastest_along
+from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
 from tasks import gentle, NONE, STRONG, Task, WEAK

@@ -22,7 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
-from rrr_traj_planner.planners.joint_timing.tightening import tightened, WORTH_IT
+from rrr_traj_planner.planners.joint_timing.tightening import SCHEDULE, tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
@@ -75,7 +75,7 @@ def _refined(problem: JointProblem, solved: Solved) -> Solved:
         if not tries or solved.gap < POOR * solved.cost or problem.task.should_stop():
             break
         again = _solved_from(problem, solved, tries[0])
-        if again is None or again.cost > (1.0 - WORTH_IT) * solved.cost:
+        if again is None or again.cost > (1.0 - SCHEDULE.tolerance) * solved.cost:
             tries.pop(0)
         solved = min((s for s in (solved, again) if s is not None), key=lambda s: s.cost)
     return solved

@@ -13,12 +13,9 @@
 # limitations under the License.
 
 """
-Solve under growing margins until the motion keeps its limits between the points too.
+Joint motions that keep their limits between the points too: margins, starts, the best so far.
 
-The solver bounds states at the points of the problem only. Where a dense check finds that a limit
-is exceeded between them, margins at the points beside are enlarged and the problem is solved again
-(an exchange method of semi-infinite programming: Hettich & Kortanek, SIAM Review 35, 1993),
-starting from the last point near the central path that satisfies the new margins.
+Each round starts from the last point near the central path that satisfies its margins.
 """
 
 from __future__ import annotations
@@ -29,14 +26,13 @@ from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
 from rrr_traj_planner.planners.solver.interior_point import Centre, Outcome
 from rrr_traj_planner.planners.solver.ramps import Variables
+from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 
 # Without unit.
-ROUNDS = 20              # of solving, at most
+SCHEDULE = Schedule(rounds=20, tolerance=1e-3, patience=4, growth=2.0)
 PARTS_OF_MARGINS = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)  # tried in turn where the whole is infeasible
 APPROACHES = 5           # rounds towards margins that no centre satisfies, at most, each with a
 HIGHER = 10.0            # barrier parameter larger by this factor
-WORTH_IT = 1e-3          # part by which a motion is slowed rather than solved again,
-PATIENCE = 4             # doubled in every round after so many
 RESTARTED_SEGMENTS = 60  # number of restarts from rest, times segments, at most
 
 
@@ -57,53 +53,97 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion) -> Solved | 
         The best motion found; None where there is none to start from.
 
     """
-    task, grid, durations = problem.task, problem.grid, problem.durations
-    margins = Margins.none(grid, len(durations.free))._replace(at_rest=durations.fixed_velocities)
-    centres: list[Centre] = []
-    slow: Variables | None = None
-    approaches, restarts = 0, RESTARTED_SEGMENTS
-    outcomes: list[tuple[Outcome, Variables]] = []  # each with its start
-    for round_ in range(ROUNDS):
-        task.should_stop()
-        worth_it = WORTH_IT * 2.0 ** max(round_ - PATIENCE, 0)
-        before, constraints = margins, problem.constraints(margins)
-        start = _last_within(constraints, centres)
-        if start is None and centres and approaches < APPROACHES:
-            nearer = _nearer(problem, margins, centres, HIGHER ** approaches)
-            if nearer:
-                centres += nearer
-                approaches += 1
-                continue
-        approaches = 0
+    rounds = _Rounds(problem, initial_motion)
+    if rounds.started():
+        tighten(rounds, SCHEDULE, problem.task.should_stop)
+    return rounds.best or rounds.best_that_fits()
+
+
+class _Rounds:
+    """The rounds of one problem; see `solver.tightening.TightenedProblem`."""
+
+    def __init__(self, problem: JointProblem, initial_motion: InitialMotion) -> None:
+        self._problem, self._initial_motion = problem, initial_motion
+        durations = problem.durations
+        self._margins = Margins.none(problem.grid, len(durations.free))._replace(
+            at_rest=durations.fixed_velocities)
+        self._constraints = problem.constraints(self._margins)
+        self._start: Centre | None = None
+        self._slow: Variables | None = None  # the first start
+        self._centres: list[Centre] = []
+        self._approaches, self._restarts = 0, RESTARTED_SEGMENTS
+        self._outcomes: list[tuple[Outcome, Variables]] = []  # each with its start
+        self.best: Solved | None = None
+
+    def started(self) -> bool:
+        """Return whether there is a motion from rest to rest to start from."""
+        started = _start_from_rest(self._problem, self._margins, self._initial_motion)
+        if started is not None:
+            self._margins, self._constraints, self._start = started
+        return started is not None
+
+    def solved(self) -> Outcome | None:
+        start = self._start or _last_within(self._constraints, self._centres)
         if start is None:
-            started = _start_from_rest(problem, margins, initial_motion)
-            if started is None:
-                break
-            margins, constraints, start = started
-        slow = slow or start.motion
-        outcome = problem.minimised(constraints, margins, start)
-        task.should_stop()
-        check = DenseCheck(task, grid, outcome.motion)
-        if check.time_scale() <= 1.0 + worth_it and not check.beyond_range.any():
+            return None
+        self._start, self._approaches = None, 0
+        self._slow = self._slow or start.motion
+        outcome = self._problem.minimised(self._constraints, self._margins, start)
+        self._outcomes.append((outcome, start.motion))
+        return outcome
+
+    def eased(self) -> bool:
+        if self._centres and self._approaches < APPROACHES:
+            nearer = _nearer(self._problem, self._margins, self._centres,
+                             HIGHER ** self._approaches)
+            if nearer:
+                self._centres = self._centres + nearer
+                self._approaches += 1
+                return True
+        return self.started()
+
+    def finished(self, outcome: Outcome, tolerance: float) -> bool:
+        task, durations = self._problem.task, self._problem.durations
+        self._check = DenseCheck(task, self._problem.grid, outcome.motion)
+        if self._check.time_scale() <= 1.0 + tolerance and not self._check.beyond_range.any():
             task.should_stop()
-            fits = problem.fitting(outcome, outcome.motion)
-            if fits is not None and fits.cost <= (1.0 + worth_it) * durations.cost(
+            fits = self._problem.fitting(outcome, outcome.motion)
+            if fits is not None and fits.cost <= (1.0 + tolerance) * durations.cost(
                     outcome.motion.T):
-                return fits
-        outcomes.append((outcome, start.motion))
+                self.best = fits
+                return True
         if task.should_stop():
-            found = _best_that_fits(problem, outcomes)
-            if found is not None:
-                return found
-        margins = margins.widened(task, grid, slow, check)
+            self.best = self.best_that_fits()
+        return self.best is not None
+
+    def tightened(self) -> bool:
+        problem, before = self._problem, self._margins
+        assert self._slow is not None
+        self._margins = before.widened(problem.task, problem.grid, self._slow, self._check)
+        self._constraints = problem.constraints(self._margins)
+        segments = len(problem.durations.free)
         # where a joint leaves its range the solution is not near the former one
-        if check.beyond_range.any() and restarts >= len(durations.free):
-            centres, restarts = [], restarts - len(durations.free)
+        if self._check.beyond_range.any() and self._restarts >= segments:
+            self._centres, self._restarts = [], self._restarts - segments
         else:
-            centres = centres + outcome.centres
-        if not centres and margins.is_same(before):
-            break  # the next round would repeat this one
-    return _best_that_fits(problem, outcomes)
+            self._centres = self._centres + self._outcomes[-1][0].centres
+        return bool(self._centres) or not self._margins.is_same(before)
+
+    def best_that_fits(self) -> Solved | None:
+        """Return the fastest of all outcomes, centres and starts, slowed as limits require."""
+        best: Solved | None = None
+        durations = self._problem.durations
+        for outcome, start in sorted(
+                self._outcomes, key=lambda t: durations.cost(t[0].motion.T)):
+            for motion in (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start):
+                cost = durations.cost(motion.T)
+                if best is not None and best.cost <= cost:
+                    break
+                self._problem.task.should_stop()
+                fits = self._problem.fitting(outcome, motion)
+                if fits is not None and (best is None or fits.cost < best.cost):
+                    best = fits
+        return best
 
 
 def _last_within(constraints: JointConstraints, centres: list[Centre]) -> Centre | None:
@@ -140,20 +180,3 @@ def _start_from_rest(
         if constraints.problem.is_within(motion):
             return reduced, constraints, Centre(motion, None)
     return None
-
-
-def _best_that_fits(problem: JointProblem,
-                    outcomes: list[tuple[Outcome, Variables]]) -> Solved | None:
-    """Return the fastest of all outcomes, centres and starts, each slowed as limits require."""
-    best: Solved | None = None
-    durations = problem.durations
-    for outcome, start in sorted(outcomes, key=lambda t: durations.cost(t[0].motion.T)):
-        for motion in (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start):
-            cost = durations.cost(motion.T)
-            if best is not None and best.cost <= cost:
-                break
-            problem.task.should_stop()
-            fits = problem.fitting(outcome, motion)
-            if fits is not None and (best is None or fits.cost < best.cost):
-                best = fits
-    return best

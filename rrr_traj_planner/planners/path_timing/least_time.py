@@ -22,62 +22,23 @@ pieces of the path are its segments, and the joints' limits are functions of s, 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
+from rrr_traj_planner.core.arrays import BoolArray
+from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import place_on_path
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
-from rrr_traj_planner.planners.path_timing.constraints import (
-    all_bounds,
-    PathConstraints,
-    progress_at,
-    QUANTITIES,
-)
-from rrr_traj_planner.planners.path_timing.dense_check import (
-    dense_check,
-    DenseCheck,
-    least_time_scale,
-)
-from rrr_traj_planner.planners.path_timing.initial_speeds import initial_speeds_of
-from rrr_traj_planner.planners.path_timing.start import motion_with_speeds, uniform_along
 from rrr_traj_planner.planners.path_timing.table import PathTable
-from rrr_traj_planner.planners.solver.interior_point import (
-    Centre,
-    minimise,
-    Outcome,
-    RELATIVE_GAP,
-)
-from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, time_scaled, Variables
-from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
+from rrr_traj_planner.planners.path_timing.task import PathTask
+from rrr_traj_planner.planners.path_timing.tightening import tightened
+from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, Variables
 from rrr_traj_planner.planners.via_points import holding_error
 
 # Without unit.
 MOST_RAMPS, FEWEST_RAMPS = 16, 8  # in a piece of the path: the most for up to
 PIECES, RAMP_EXPONENT = 11, 2.0   # so many pieces, beyond fewer by this power of their number
-DURATION_MARGIN = 1.02  # durations of the start / least durations: it is strictly feasible
-HOLDING_MARGIN = 1e-6   # part of the effort limits that gravity must leave along the path
-ROUNDS = 8              # of solving with larger margins, at most
-WORTH_IT = 2e-3         # part by which a motion is slowed rather than solved again,
-PATIENCE = 1            # after so many rounds multiplied in each round by
-WORTH_IT_GROWTH = 1.7
-ROUGH_GAP = 0.3         # part of the total time: the gap to which the first round converges
-CENTRES_BACK = 3        # which of the last centres a round with larger margins starts from
-
-
-class PathTask(NamedTuple):
-    """A path and the limits of the motion along it."""
-
-    arm_path: ArmPath
-    limits: JointLimits
-    cruise: float                      # part of a ramp during which the change of sdd is constant
-    max_tip_speed: float               # [m/s], infinite: none
-    steady_zones: bool                 # whether the tip keeps its speed on curved zones (5.58)
-    should_stop: Callable[[], bool]
+HOLDING_MARGIN = 1e-6  # part of the effort limits that gravity must leave along the path
 
 
 class Timed(NamedTuple):
@@ -135,42 +96,12 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     task.should_stop()
     N = len(table.ends) - 1
     grid = grid_of(_ramps(N), task.cruise)
-    bounds = all_bounds(task.limits, task.max_tip_speed)
     _check_held(task, table)
-    durations = DurationConstraints.all_free(N, 1)
     steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
-
-    workspace = Workspace()
-
-    def limits(margins: Array) -> PathConstraints:
-        return PathConstraints(
-            table, task.limits, task.max_tip_speed, grid, margins, steady, workspace)
-
     task.should_stop()
-    constraints, previous = limits(np.zeros((N, 2 * grid.n + 1, QUANTITIES))), None
-    start = Centre(_slow_start(task, table, constraints, steady), None)
-    found = [(float(start.motion.T.sum()), start.motion, -np.inf)]  # no motion takes less than
+    motion, gap = tightened(task, table, grid, steady)
     task.should_stop()
-    for round_ in range(ROUNDS if constraints.problem.is_within(start.motion) else 0):
-        outcome = minimise(constraints.problem, start, durations, task.should_stop,
-                           previous=previous.problem if previous else None,
-                           relative_gap=RELATIVE_GAP if previous else ROUGH_GAP)
-        if previous and not outcome.within:  # margins were enlarged too much at once
-            constraints = limits(0.5 * (previous.margins + constraints.margins))
-            continue
-        task.should_stop()
-        outcome, check = _last_forward(outcome, start, constraints.problem, bounds)
-        found.append(_slowed(outcome, check.time_scale))
-        worth_it = WORTH_IT * WORTH_IT_GROWTH ** max(round_ - PATIENCE, 0)
-        fits = previous and check.time_scale <= 1.0 + worth_it
-        if fits or task.should_stop() or not outcome.centres:
-            break
-        start = outcome.centres[-CENTRES_BACK if previous else -1:][0]
-        previous, constraints = constraints, limits(constraints.margins + check.excess)
-    task.should_stop()
-    T, motion, _ = min(found, key=lambda f: f[0])
-    least = max(least for *_, least in found)
-    return Timed(_trajectory(task, table, grid, motion), max(T - least, 0.0))
+    return Timed(_trajectory(task, table, grid, motion), gap)
 
 
 def _ramps(pieces: int) -> int:
@@ -210,24 +141,6 @@ def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
     return np.asarray(inside)
 
 
-def _last_forward(outcome: Outcome, start: Centre, problem: TimingProblem,
-                  bounds: Array) -> tuple[Outcome, DenseCheck]:
-    """Return the last motion on which the tip never moves backward, as when cancelled it may."""
-    passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion)
-    for motion in passed:
-        check = dense_check(problem, motion, bounds)
-        if check.is_forward:
-            break
-    lost = float(motion.T.sum() - outcome.motion.T.sum())
-    return outcome._replace(motion=motion, gap=outcome.gap + lost), check
-
-
-def _slowed(outcome: Outcome, time_scale: float) -> tuple[float, Variables, float]:
-    """Return the duration of a motion slowed to its limits, the motion, and a lower bound."""
-    T, factor = float(outcome.motion.T.sum()), max(time_scale, 1.0)
-    return factor * T, time_scaled(outcome.motion, factor), T - outcome.gap
-
-
 def _check_held(task: PathTask, table: PathTable) -> None:
     """Raise an error if gravity's torque exceeds an effort limit along the path."""
     share = np.abs(table.values.g) / task.limits.max_effort
@@ -239,19 +152,6 @@ def _check_held(task: PathTask, table: PathTable) -> None:
     where, nearest = place_on_path(task.arm_path.path, float(table.places[piece, place]))
     name = task.arm_path.model.joint_names[joint]
     raise holding_error(f'{where}:', name, needed, limit, nearest)
-
-
-def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
-                steady: BoolArray) -> Variables:
-    """Return a feasible motion to start from, of constant speed if any piece is to have it."""
-    grid, bounds = constraints.grid, all_bounds(task.limits, task.max_tip_speed)
-    if steady.any():
-        m = uniform_along(grid, table.ends)
-    else:
-        m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))
-    at = progress_at(grid, constraints.points, m)
-    return time_scaled(m, DURATION_MARGIN * least_time_scale(
-        constraints.terms(at.s), at, bounds - constraints.margins))
 
 
 def _exact_time_scale(task: PathTask, trajectory: PathTrajectory) -> float:

@@ -33,9 +33,9 @@ from rrr_traj_planner.planners.deadline import part_of
 from rrr_traj_planner.planners.path_timing.least_time import (
     fitted,
     nearly_fastest_along,
-    PathTask,
     Timed,
 )
+from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.request import CartesianTask
 from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note

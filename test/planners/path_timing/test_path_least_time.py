@@ -22,7 +22,8 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.planners.path_timing.least_time import fastest_along, PathTask
+from rrr_traj_planner.planners.path_timing.least_time import fastest_along
+from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.request import PlanningRequest
 
 SEEDS = range(12)

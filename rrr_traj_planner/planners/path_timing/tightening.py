@@ -1,0 +1,173 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Motions along a path that keep their limits between the points too.
+
+The first round is rough, under the limits themselves; each later one starts from a point near the
+central path of the one before, and its constraints are shifted from those limits to its own.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.planners.path_timing.constraints import (
+    all_bounds,
+    PathConstraints,
+    progress_at,
+    QUANTITIES,
+)
+from rrr_traj_planner.planners.path_timing.dense_check import (
+    dense_check,
+    DenseCheck,
+    least_time_scale,
+)
+from rrr_traj_planner.planners.path_timing.initial_speeds import initial_speeds_of
+from rrr_traj_planner.planners.path_timing.start import motion_with_speeds, uniform_along
+from rrr_traj_planner.planners.path_timing.table import PathTable
+from rrr_traj_planner.planners.path_timing.task import PathTask
+from rrr_traj_planner.planners.solver.interior_point import (
+    Centre,
+    minimise,
+    Outcome,
+    RELATIVE_GAP,
+)
+from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled, Variables
+from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
+
+# Without unit.
+SCHEDULE = Schedule(rounds=8, tolerance=2e-3, patience=1, growth=1.7)
+ROUGH_GAP = 0.3         # part of the total time: the gap to which the first round converges
+CENTRES_BACK = 3        # which of the last centres a round with larger margins starts from
+DURATION_MARGIN = 1.02  # durations of the start / least durations: it is strictly feasible
+
+
+def tightened(task: PathTask, table: PathTable, grid: Grid,
+              steady: BoolArray) -> tuple[Variables, float]:
+    """
+    Return the fastest motion along a path, and a bound on the time that the optimum saves.
+
+    Parameters
+    ----------
+    task : PathTask
+        Path and limits.
+    table : PathTable
+        The path's.
+    grid : Grid
+        The family of motions.
+    steady : ndarray, shape (N,)
+        Pieces along which the tip's speed is constant.
+
+    Returns
+    -------
+    motion : Variables
+        Within the limits, by the table.
+    gap : float
+        [s].
+
+    """
+    rounds = _Rounds(task, table, grid, steady)
+    if rounds.may_begin():
+        tighten(rounds, SCHEDULE, task.should_stop)
+    T, motion, _ = min(rounds.found, key=lambda f: f[0])
+    return motion, max(T - max(least for *_, least in rounds.found), 0.0)
+
+
+class _Rounds:
+    """The rounds of one path; see `solver.tightening.TightenedProblem`."""
+
+    def __init__(self, task: PathTask, table: PathTable, grid: Grid, steady: BoolArray) -> None:
+        self._task, self._table, self._grid, self._steady = task, table, grid, steady
+        self._bounds = all_bounds(task.limits, task.max_tip_speed)
+        self._durations = DurationConstraints.all_free(len(steady), 1)
+        self._workspace = Workspace()
+        self._previous: PathConstraints | None = None
+        self._constraints = self._within(np.zeros((len(steady), 2 * grid.n + 1, QUANTITIES)))
+        self._start = Centre(_slow_start(task, table, self._constraints, steady), None)
+        # each with its duration and a lower bound of all durations [s]
+        self.found = [(float(self._start.motion.T.sum()), self._start.motion, -np.inf)]
+
+    def may_begin(self) -> bool:
+        """Return whether the start is within the limits."""
+        self._task.should_stop()
+        return self._constraints.problem.is_within(self._start.motion)
+
+    def solved(self) -> Outcome | None:
+        previous = self._previous
+        outcome = minimise(self._constraints.problem, self._start, self._durations,
+                           self._task.should_stop,
+                           previous=previous.problem if previous else None,
+                           relative_gap=RELATIVE_GAP if previous else ROUGH_GAP)
+        return None if previous and not outcome.within else outcome
+
+    def eased(self) -> bool:
+        """Take back half of margins that were enlarged too much at once."""
+        assert self._previous is not None
+        self._constraints = self._within(
+            0.5 * (self._previous.margins + self._constraints.margins))
+        return True
+
+    def finished(self, outcome: Outcome, tolerance: float) -> bool:
+        self._outcome, self._check = _last_forward(
+            outcome, self._start, self._constraints.problem, self._bounds)
+        self.found.append(_slowed(self._outcome, self._check.time_scale))
+        fits = self._previous is not None and self._check.time_scale <= 1.0 + tolerance
+        return fits or self._task.should_stop()
+
+    def tightened(self) -> bool:
+        centres, constraints = self._outcome.centres, self._constraints
+        if not centres:
+            return False
+        self._start = centres[-CENTRES_BACK if self._previous else -1:][0]
+        self._previous, self._constraints = constraints, self._within(
+            constraints.margins + self._check.excess)
+        return True
+
+    def _within(self, margins: Array) -> PathConstraints:
+        return PathConstraints(self._table, self._task.limits, self._task.max_tip_speed,
+                               self._grid, margins, self._steady, self._workspace)
+
+
+def _last_forward(outcome: Outcome, start: Centre, problem: TimingProblem,
+                  bounds: Array) -> tuple[Outcome, DenseCheck]:
+    """Return the last motion on which the tip never moves backward, as when cancelled it may."""
+    passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion)
+    for motion in passed:
+        check = dense_check(problem, motion, bounds)
+        if check.is_forward:
+            break
+    lost = float(motion.T.sum() - outcome.motion.T.sum())
+    return outcome._replace(motion=motion, gap=outcome.gap + lost), check
+
+
+def _slowed(outcome: Outcome, time_scale: float) -> tuple[float, Variables, float]:
+    """Return the duration of a motion slowed to its limits, the motion, and a lower bound."""
+    T, factor = float(outcome.motion.T.sum()), max(time_scale, 1.0)
+    return factor * T, time_scaled(outcome.motion, factor), T - outcome.gap
+
+
+def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
+                steady: BoolArray) -> Variables:
+    """Return a feasible motion to start from, of constant speed if any piece is to have it."""
+    grid, bounds = constraints.grid, all_bounds(task.limits, task.max_tip_speed)
+    if steady.any():
+        m = uniform_along(grid, table.ends)
+    else:
+        m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))
+    at = progress_at(grid, constraints.points, m)
+    return time_scaled(m, DURATION_MARGIN * least_time_scale(
+        constraints.terms(at.s), at, bounds - constraints.margins))
