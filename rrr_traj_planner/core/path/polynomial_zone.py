@@ -45,6 +45,9 @@ ACROSS = np.array([[10.0, 5.0], [10.0, -15.0], [-20.0, 10.0]]) / 16.0
 
 # Terms of the series of the zone's length: exact to rounding up to turns of 179 degrees.
 LENGTH_TERMS = 30
+# Half turn below which a zone is taken to have this one [rad]: a straight zone has no length.
+LEAST_ANGLE = 1e-12
+
 INVERSIONS = 30
 LAST_STEP = 1e-5  # of the parameter, whose cube is what is left after it
 
@@ -157,6 +160,7 @@ class PolynomialZones(ReadOnlyArrays):
 
 def _quintic(angle: Array) -> _Quintic:
     """Return the zone of least radius 1 for each half turn."""
+    angle = np.maximum(angle, LEAST_ANGLE)
     c, s = np.cos(angle), np.sin(angle)
     alpha = 1.0 - c * np.polynomial.polynomial.polyval(c, ALPHA)
     beta = 1.0 - c * np.polynomial.polynomial.polyval(c, BETA)
