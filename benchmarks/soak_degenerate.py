@@ -65,8 +65,9 @@ def violations(task: Task, found: Plan) -> list[str]:
         broken.append(f'torque at the points: {effort}, told {found.effort}')
     q = found.points.positions
     inside = np.minimum(q - limits.min_position, limits.max_position - q).min(axis=1)
-    free = np.abs(found.points.times[:, np.newaxis] - found.via_times).min(axis=1) > (
-        2.0 * NANOSECOND)
+    # a motion of months: its times are no finer than some nanoseconds
+    tick = max(NANOSECOND, 8.0 * float(np.spacing(motion.duration)))
+    free = np.abs(found.points.times[:, np.newaxis] - found.via_times).min(axis=1) > 2.0 * tick
     gap = np.diff(found.points.times)[free[1:] & (inside[1:] > NEAR_END)]
     if task.request.segment_durations is None and gap.min(initial=np.inf) < (
             LEAST_GAP * task.request.sample_period - 3.0 * NANOSECOND):
@@ -83,7 +84,7 @@ def violations(task: Task, found: Plan) -> list[str]:
     if np.abs(np.array([points.velocities[[0, -1]], points.accelerations[[0, -1]]])).max() > 0.0:
         broken.append('not at rest at an end')
     away = np.abs(stamps[:, np.newaxis] * NANOSECOND - found.via_times).min(axis=0).max()
-    if away > 1.5 * NANOSECOND:
+    if away > 1.5 * tick:
         broken.append(f'no point at a via time: {away:.3g} s from it')
     return broken
 
