@@ -45,6 +45,7 @@ ACROSS = np.array([[10.0, 5.0], [10.0, -15.0], [-20.0, 10.0]]) / 16.0
 
 # Terms of the series of the zone's length: exact to rounding up to turns of 179 degrees.
 LENGTH_TERMS = 30
+
 # Half turn below which a zone is taken to have this one [rad]: a straight zone has no length.
 LEAST_ANGLE = 1e-12
 

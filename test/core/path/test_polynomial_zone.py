@@ -45,6 +45,16 @@ def rise(x, y, u):
     return np.abs(np.diff(k) / np.diff(s)).max() * s[-1] / k.max()
 
 
+@pytest.mark.parametrize('angle', [0.0, 1e-300, 1e-15, 1e-9])
+def test_zone_of_no_turn_is_a_line_of_no_length(angle):
+    zones = PolynomialZones([angle])
+    assert 0.0 < zones.after[0] < 1e-8
+    r = zones.at(np.zeros(11, dtype=int), np.linspace(-zones.after[0], zones.after[0], 11))
+    assert np.isfinite(r).all()
+    assert np.abs(r[0]).max() < 1e-8
+    assert r[1] == pytest.approx(np.tile([[1.0], [0.0]], (1, 11)), abs=1e-8)
+
+
 @pytest.mark.parametrize('angle', ANGLES)
 def test_zone_turns_by_its_angle_and_curvature_falls_from_one_at_the_middle_to_zero(angle):
     zones = PolynomialZones([angle])
