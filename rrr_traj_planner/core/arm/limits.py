@@ -99,3 +99,25 @@ class JointLimits(ReadOnlyArrays):
         return replace(
             self, max_velocity=self.max_velocity * share('velocity', velocity),
             max_acceleration=self.max_acceleration * share('acceleration', acceleration))
+
+    def time_scale(self, velocity: Array, acceleration: Array, jerk: Array) -> float:
+        """
+        Return the least factor on all times with which a motion keeps these limits.
+
+        Velocity falls with the factor, acceleration with its square, jerk with its cube
+        (Hollerbach, Dynamic scaling of manipulator trajectories, 1984).
+
+        Parameters
+        ----------
+        velocity, acceleration, jerk : ndarray, shape (..., 3)
+            Magnitudes [rad/s, rad/s^2, rad/s^3].
+
+        Returns
+        -------
+        float
+            At most 1 where the motion keeps them as it is.
+
+        """
+        return float(max((velocity / self.max_velocity).max(),
+                         np.sqrt((acceleration / self.max_acceleration).max()),
+                         np.cbrt((jerk / self.max_jerk).max())))

@@ -81,12 +81,9 @@ class DenseCheck:
 
         """
         limits, tau = self._task.limits, self.tau
-        factor = max(
-            (np.abs(self.qd) / limits.max_velocity).max(),
-            np.sqrt((np.abs(self.qdd) / limits.max_acceleration).max()),
-            np.cbrt((self._peak_jerk / limits.max_jerk).max()))
+        factor = limits.time_scale(np.abs(self.qd), np.abs(self.qdd), self._peak_jerk)
         if tau is None or (np.abs(tau) <= limits.max_effort * (1.0 + ROUNDING)).all():
-            return float(factor)
+            return factor
         gravity = gravity_torque(self._task.model, self.q)
         motion = tau - gravity
         margin = limits.max_effort - np.sign(motion) * gravity

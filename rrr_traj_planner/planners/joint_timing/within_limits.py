@@ -117,12 +117,10 @@ def kinematic_time_scale(task: JointTask, trajectory: PiecewiseTrajectory) -> fl
         At most 1 where they hold as it is.
 
     """
-    limits, profiles = task.limits, trajectory.profiles
-    velocity = np.array([p.peak_velocity for p in profiles])
+    profiles = trajectory.profiles
     acceleration, jerk = np.array([[v.max() for v in p.pieces.peaks()] for p in profiles]).T
-    return float(max((velocity / limits.max_velocity).max(),
-                     np.sqrt((acceleration / limits.max_acceleration).max()),
-                     np.cbrt((jerk / limits.max_jerk).max())))
+    return task.limits.time_scale(
+        np.array([p.peak_velocity for p in profiles]), acceleration, jerk)
 
 
 def torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:

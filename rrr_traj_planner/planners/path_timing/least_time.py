@@ -161,9 +161,8 @@ def _exact_time_scale(task: PathTask, trajectory: PathTrajectory) -> float:
     task.should_stop()
     torque = time_scale_for_torque(task.arm_path.model, limits, trajectory).value
     task.should_stop()
-    return float(max((peaks.velocity / limits.max_velocity).max(), speed / task.max_tip_speed,
-                     np.sqrt((peaks.acceleration / limits.max_acceleration).max()),
-                     np.cbrt((peaks.jerk / limits.max_jerk).max()), torque.max()))
+    return max(limits.time_scale(peaks.velocity, peaks.acceleration, peaks.jerk),
+               float(speed / task.max_tip_speed), float(torque.max()))
 
 
 def _trajectory(task: PathTask, table: PathTable, grid: Grid, m: Variables) -> PathTrajectory:

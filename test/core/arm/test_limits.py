@@ -91,3 +91,16 @@ def test_scaling_factor_outside_0_to_1_is_refused(name, factor):
     with pytest.raises(InvalidInputError, match=(
             rf'^{name} is {factor}, must be in \(0, 1\]$')):
         JointLimits().scaled(**{name: factor})
+
+
+def test_a_motion_scaled_in_time_just_keeps_its_limits():
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        limits = JointLimits(max_velocity=rng.uniform(0.5, 3.0, 3), max_jerk=rng.uniform(5, 50, 3),
+                             max_acceleration=rng.choice([1.0, 4.0, np.inf], 3))
+        v, a, j = rng.uniform(0.1, 10.0, (3, 20, 3)) * rng.choice([0.1, 1.0, 10.0], (3, 1, 1))
+        z = limits.time_scale(v, a, j)
+        used = np.array([(v / z / limits.max_velocity).max(),
+                         (a / z ** 2 / limits.max_acceleration).max(),
+                         (j / z ** 3 / limits.max_jerk).max()])
+        assert used.max() == pytest.approx(1.0, rel=1e-12)
