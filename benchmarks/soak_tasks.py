@@ -28,7 +28,7 @@ from scipy import ndimage
 from tasks import ARM, is_usable, NONE, random_pose, Task
 
 KINDS = ('plain', 'close pair', 'repeated point', 'at a limit', 'next to a limit',
-         'joint at rest', 'heavy', 'reversal', 'long chain', 'two points')
+         'joint at rest', 'heavy', 'reversal', 'many points', 'two points')
 CLOSE = 1e-4       # rad between the points of a close pair
 NEXT_TO = 1e-5     # rad from the end of a range
 HEAVY = 0.99       # of an effort limit, at the heaviest via point
@@ -43,7 +43,7 @@ def soak_task(seed: int) -> Task:
     kind = KINDS[seed % len(KINDS)]
     model = ARM if rng.random() < 0.6 else random_arm(rng)
     elbow = 'up' if rng.random() < 0.5 else 'down'
-    n = {'two points': 2, 'long chain': int(rng.integers(*LONG))}.get(
+    n = {'two points': 2, 'many points': int(rng.integers(*LONG))}.get(
         kind, int(rng.integers(3, 9)))
     period = float(rng.choice([0.005, 0.01, 0.01, 0.01, 0.02]))
     while True:

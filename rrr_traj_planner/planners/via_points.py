@@ -109,11 +109,12 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
 
     """
     low, high = limits.min_position, limits.max_position
-    room = max(tolerance, JOINT_ROUNDING)
-    for j in np.flatnonzero((start < low - room) | (start > high + room)).tolist():
+    allowance = max(tolerance, JOINT_ROUNDING)
+    for j in np.flatnonzero((start < low - allowance) | (start > high + allowance)).tolist():
         at, lowest, highest, *_ = told_apart(
-            start[j], low[j], high[j], low[j] - room, high[j] + room)
-        allowed = f', start_state_tolerance {room:g} rad' if room > JOINT_ROUNDING else ''
+            start[j], low[j], high[j], low[j] - allowance, high[j] + allowance)
+        allowed = (f', start_state_tolerance {allowance:g} rad'
+                   if allowance > JOINT_ROUNDING else '')
         hint = HINT if any(map(explained_by_degrees, start, low, high)) else ''
         raise StartStateError(f'start state: {model.joint_names[j]} is at {at} rad, limits '
                               f'{lowest} to {highest} rad{allowed}{hint}')

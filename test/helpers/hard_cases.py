@@ -17,7 +17,7 @@
 import numpy as np
 
 
-def _smooth_chain(n):
+def _smooth_points(n):
     """Return n points close together on a smooth curve through joint space."""
     s = np.linspace(0.0, 2.0 * np.pi, n)
     return np.stack((0.8 + 0.5 * np.sin(s), 1.5 + 0.3 * np.cos(2.0 * s), 0.3 * np.sin(3.0 * s)),
@@ -26,8 +26,9 @@ def _smooth_chain(n):
 
 # name: joint positions, and limits that differ from the thesis arm's.
 HARD_CASES = {
-    'dense smooth chain of 80 points': (_smooth_chain(80), {}),
-    'dense chain with a tight jerk limit': (_smooth_chain(40), {'max_jerk': [2.0, 2.0, 2.0]}),
+    '80 points close together, smooth': (_smooth_points(80), {}),
+    '40 points close together, tight jerk limit': (
+        _smooth_points(40), {'max_jerk': [2.0, 2.0, 2.0]}),
     'steps of a microradian between large ones': (
         [[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [1.0, 1.8 + 1e-6, 0.3], [0.4, 1.5, -0.4]], {}),
     'one joint moves alone, there and back': (

@@ -52,7 +52,7 @@ def joined(pieces):
     return CycloidPiece(*(np.array(field, dtype=float) for field in zip(*pieces)))
 
 
-def random_chain(rng, durations):
+def random_pieces(rng, durations):
     """Return pieces of every kind, from rest to rest, with continuous acceleration."""
     pieces = []
     position, velocity, acceleration = rng.uniform(-1.0, 1.0), 0.0, 0.0
@@ -80,7 +80,7 @@ def random_trajectory(rng, duration=None, via_times=None):
     profiles = []
     for _ in range(3):
         shares = rng.dirichlet(np.full(rng.integers(3, 10), 2.0))
-        profiles.append(JointProfile(random_chain(rng, duration * shares)))
+        profiles.append(JointProfile(random_pieces(rng, duration * shares)))
     if via_times is None:
         between = np.sort(rng.uniform(0.0, duration, rng.integers(0, 5)))
         via_times = np.concatenate(([0.0], between, [duration]))

@@ -107,19 +107,19 @@ def test_law_is_the_cycloid_s_peaks_over_the_limits():
 def test_via_velocity_is_bounded_by_the_room_to_the_range():
     # Joint 1, 0.02 rad from its end at 1 rad/s^2: it stops in v^2 / 1 (a cycloid's mean is half
     # its peak): v^2 = 0.02.
-    chain = via_problem_of(task_of(points=((0.3, 1.4, 0.0), (0.02, 1.8, 0.3), (0.2, 1.3, -0.5))))
-    assert chain.highest[0, 0] == pytest.approx(np.sqrt(0.02))
-    assert chain.lowest[0].tolist() == (-chain.highest[0]).tolist()
-    assert chain.highest[0, 1] == 1.0
+    problem = via_problem_of(task_of(points=((0.3, 1.4, 0.0), (0.02, 1.8, 0.3), (0.2, 1.3, -0.5))))
+    assert problem.highest[0, 0] == pytest.approx(np.sqrt(0.02))
+    assert problem.lowest[0].tolist() == (-problem.highest[0]).tolist()
+    assert problem.highest[0, 1] == 1.0
 
 
 def test_joint_at_the_end_of_its_range_has_all_but_no_via_velocity():
-    chain = via_problem_of(task_of(points=((0.3, 1.4, 0.0), (0.0, 1.8, 0.3), (0.2, 1.3, -0.5))))
-    assert 0.0 < chain.highest[0, 0] <= 1e-8
+    problem = via_problem_of(task_of(points=((0.3, 1.4, 0.0), (0.0, 1.8, 0.3), (0.2, 1.3, -0.5))))
+    assert 0.0 < problem.highest[0, 0] <= 1e-8
 
 
 def test_missing_velocity_limit_bounds_nothing_that_a_motion_could_reach():
-    chain = via_problem_of(task_of(JointLimits(max_velocity=[np.inf] * 3)))
-    D = np.abs(chain.displacements).sum(axis=0)
-    assert np.isfinite(chain.max_velocity).all()
-    assert (chain.max_velocity > np.sqrt(D)).all()  # 1 rad/s^2, half of it in the mean
+    problem = via_problem_of(task_of(JointLimits(max_velocity=[np.inf] * 3)))
+    D = np.abs(problem.displacements).sum(axis=0)
+    assert np.isfinite(problem.max_velocity).all()
+    assert (problem.max_velocity > np.sqrt(D)).all()  # 1 rad/s^2, half of it in the mean

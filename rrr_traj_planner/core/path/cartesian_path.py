@@ -199,8 +199,8 @@ class CartesianPath(ReadOnlyArrays):
 
     def _on_path(self, s: Array) -> Array:
         """Return places moved onto the path where rounding put them outside."""
-        room = ROUNDING * self.length
-        bad = ~((s >= -room) & (s <= self.length + room))
+        tolerance = ROUNDING * self.length
+        bad = ~((s >= -tolerance) & (s <= self.length + tolerance))
         if bad.any():
             place, first, last = told_apart(s[bad][0], 0.0, self.length)
             raise InvalidInputError(f's is {place} m, must be on the path, {first} to {last} m')

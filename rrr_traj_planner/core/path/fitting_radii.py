@@ -34,7 +34,7 @@ from rrr_traj_planner.core.path.zone_kind import ZoneKind
 FASTEST = 1.5    # radii, from one step to the next
 SLOWEST = 1.005  # a zone that cannot grow by this much touches a neighbour
 REACH = 12       # zones up to so many from a line that overlaps them take smaller steps with it
-THAWED = 1.05    # growth to begin with where there may be room again
+THAWED = 1.05    # growth to begin with where they may be able to grow again
 BLAMED = 0.5     # of the largest miss, of lines whose zones are too large to have tangents
 TIE = 1e-4       # of a line, by which zones may differ that stop together
 PASSES = 2       # of growth: zones that were stopped grow again where neighbours grew later
@@ -168,13 +168,13 @@ def _free_alone(points: Array, radii: Array, kind: ZoneKind, share: Array, lines
 
 
 def _tightest(points: Array, lines: Tangents, zones: BoolArray) -> BoolArray:
-    """Return those of some zones that have no more room to grow than any other within reach."""
+    """Return those of some zones that can grow no more than any other within reach."""
     left = lines.length / np.linalg.norm(np.diff(points, axis=0), axis=1)
-    # A zone has room on the shorter of its lines, and in what is left to half a revolution.
-    room = np.minimum(np.minimum(left[:-1], left[1:]), np.cos(lines.angle))
-    room = np.where(zones, room, np.inf)
-    around = sliding_window_view(np.pad(room, REACH, constant_values=np.inf), 2 * REACH + 1)
-    return np.asarray(zones & (room <= around.min(axis=1) + TIE))
+    # A zone can grow by the shorter of its lines, and by what is left to half a revolution.
+    slack = np.minimum(np.minimum(left[:-1], left[1:]), np.cos(lines.angle))
+    slack = np.where(zones, slack, np.inf)
+    around = sliding_window_view(np.pad(slack, REACH, constant_values=np.inf), 2 * REACH + 1)
+    return np.asarray(zones & (slack <= around.min(axis=1) + TIE))
 
 
 def _near(lines: BoolArray, zones: BoolArray) -> BoolArray:

@@ -128,7 +128,7 @@ def _adjusted(family: Family, points: Array, radii: Array, most: Array, max_devi
             factor = max_deviation * (1.0 - 0.5 * TOLERANCE) / path.deviation
         wanted = np.minimum(path.radii * np.clip(factor, 0.5, 2.0) ** (1.0 / power), most)
         kept = path.deviation <= max_deviation
-        # Neighbours may rob each other of room: after some time radii only shrink.
+        # Neighbours may take from each other: after some time radii only shrink.
         settled = settled or should_stop() or round_ >= ROUNDS
         if kept.all() and (settled or (wanted <= path.radii * (1.0 + TOLERANCE)).all()):
             yield path

@@ -99,12 +99,12 @@ def least_radius(model: RobotModel, limits: JointLimits, q: ArrayLike, tangent: 
     J = _regular_jacobian(model, q)
     qd = speed * np.linalg.solve(J, T)
     straight = np.linalg.solve(J, -jacobian_rate(model, q, qd) @ qd)
-    bend = speed ** 2 * np.linalg.solve(J, N)
+    by_turning = speed ** 2 * np.linalg.solve(J, N)
     M = inertia_matrix(model, q)
     torque = M @ straight + coriolis_torque(model, q, qd) + gravity_torque(model, q)
     rows = (_rows('velocity', 'rad/s', qd, np.zeros(3), limits.max_velocity)
-            + _rows('acceleration', 'rad/s^2', straight, bend, limits.max_acceleration)
-            + _rows('effort', 'N m', torque, M @ bend, limits.max_effort))
+            + _rows('acceleration', 'rad/s^2', straight, by_turning, limits.max_acceleration)
+            + _rows('effort', 'N m', torque, M @ by_turning, limits.max_effort))
     most = _largest(model, rows, f'at {speed:.6g} m/s')
     return most._replace(value=1.0 / most.value if most.value > 0.0 else np.inf)
 
@@ -175,10 +175,10 @@ def _largest(model: RobotModel, rows: list[_Row], where: str) -> Bound:
 
 def _interval(row: _Row) -> tuple[float, float]:
     """Return between which x a row keeps its limit; an empty interval where it never does."""
-    room = row.limit * (1.0 + ROUNDING)
+    most = row.limit * (1.0 + ROUNDING)
     if row.slope == 0.0:
-        return (-np.inf, np.inf) if abs(row.base) <= room else (np.inf, -np.inf)
-    ends = (-room - row.base) / row.slope, (room - row.base) / row.slope
+        return (-np.inf, np.inf) if abs(row.base) <= most else (np.inf, -np.inf)
+    ends = (-most - row.base) / row.slope, (most - row.base) / row.slope
     return min(ends), max(ends)
 
 

@@ -66,7 +66,7 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
     """
     Refuse a path that leaves the workspace or a joint's range anywhere, between points too.
 
-    Every interval in which a bound on the second derivative leaves room for an excursion is
+    Every interval in which a bound on the second derivative allows an excursion is
     halved until none is left.
 
     Parameters
@@ -110,10 +110,10 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
         joints = unlimited_joint_path(model, planes.points(path, grid), posture)
         from_left = unlimited_joint_path(model, planes.points(path, grid, left=True), posture)
         h = np.diff(grid)[:, np.newaxis]
-        bend = np.maximum(np.abs(joints.ddq[:-1]), np.abs(from_left.ddq[1:]))
-        room = 0.125 * SAFETY * h ** 2 * bend
-        low = np.minimum(joints.q[:-1], joints.q[1:]) - room
-        high = np.maximum(joints.q[:-1], joints.q[1:]) + room
+        second_derivative = np.maximum(np.abs(joints.ddq[:-1]), np.abs(from_left.ddq[1:]))
+        excursion = 0.125 * SAFETY * h ** 2 * second_derivative
+        low = np.minimum(joints.q[:-1], joints.q[1:]) - excursion
+        high = np.maximum(joints.q[:-1], joints.q[1:]) + excursion
         least, most = joints.q.min(axis=0), joints.q.max(axis=0)
         # Only where an extreme may be higher than the highest sample is a finer grid needed.
         open_ = ((low < least - FINEST_ANGLE) | (high > most + FINEST_ANGLE)).any(axis=1)
@@ -180,10 +180,10 @@ def _grid(path: CartesianPath) -> Array:
 def _peak(quantity: Quantity, grid: Array) -> tuple[float, float]:
     """Return the largest value, where it is positive to FINEST, and its place."""
     for _ in range(ROUNDS):
-        value, bend = quantity(grid)
+        value, second_derivative = quantity(grid)
         h = np.diff(grid)
         bound = np.maximum(value[:-1], value[1:]) + (
-            0.125 * SAFETY * h ** 2 * np.maximum(bend[:-1], bend[1:]))
+            0.125 * SAFETY * h ** 2 * np.maximum(second_derivative[:-1], second_derivative[1:]))
         open_ = (bound > max(float(value.max()), 0.0) + 1e-3 * FINEST) & (h > SHORTEST_STEP)
         if not open_.any():
             break
@@ -199,13 +199,14 @@ def _squared_distance(p: Array, dp: Array, ddp: Array) -> tuple[Array, Array]:
 
 def _two_sided(path: CartesianPath, s: Array, origin: tuple[float, float, float],
                axes: slice) -> tuple[Array, Array]:
-    """Return the squared distance from a point or an axis, with both sides' bends at a join."""
-    value, bends = np.zeros(0), []
+    """Return the squared distance from a point or an axis, and bounds on its second derivative."""
+    value, of_sides = np.zeros(0), []
     for left in (False, True):
         p, dp, ddp, _ = path(s, left)
-        value, bend = _squared_distance((p - origin)[:, axes], dp[:, axes], ddp[:, axes])
-        bends.append(bend)
-    return value, np.maximum(*bends)
+        value, second_derivative = _squared_distance(
+            (p - origin)[:, axes], dp[:, axes], ddp[:, axes])
+        of_sides.append(second_derivative)
+    return value, np.maximum(*of_sides)
 
 
 def _check_reach(model: RobotModel, path: CartesianPath) -> None:
@@ -214,12 +215,12 @@ def _check_reach(model: RobotModel, path: CartesianPath) -> None:
     shoulder = (0.0, 0.0, model.d1)
 
     def beyond(s: Array) -> tuple[Array, Array]:
-        squared, bend = _two_sided(path, s, shoulder, slice(3))
-        return squared - (most - LEAST_CLEARANCE) ** 2, bend
+        squared, second_derivative = _two_sided(path, s, shoulder, slice(3))
+        return squared - (most - LEAST_CLEARANCE) ** 2, second_derivative
 
     def inside(s: Array) -> tuple[Array, Array]:
-        squared, bend = _two_sided(path, s, shoulder, slice(3))
-        return (least + LEAST_CLEARANCE) ** 2 - squared, bend
+        squared, second_derivative = _two_sided(path, s, shoulder, slice(3))
+        return (least + LEAST_CLEARANCE) ** 2 - squared, second_derivative
 
     for quantity, bound, what in ((beyond, most, "beyond the arm's reach of"),
                                   (inside, least, 'nearer than the arm can fold,')):
@@ -244,8 +245,8 @@ def _check_axis(model: RobotModel, path: CartesianPath, planes: AxisPlanes) -> N
         return
 
     def near(s: Array) -> tuple[Array, Array]:
-        squared, bend = _two_sided(path, s, (0.0, 0.0, 0.0), slice(2))
-        return AXIS_CLEARANCE ** 2 - squared, bend
+        squared, second_derivative = _two_sided(path, s, (0.0, 0.0, 0.0), slice(2))
+        return AXIS_CLEARANCE ** 2 - squared, second_derivative
 
     excess, s = _peak(near, grid)
     if excess > 0.0:

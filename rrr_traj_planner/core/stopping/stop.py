@@ -235,10 +235,10 @@ def _as_hard_as_needed(task: StopTask) -> tuple[ReferenceTrajectory, list[str]]:
     """Return a brake that ends inside the ranges, whatever it takes, and what that is."""
     q, qd, qdd = (x[0] for x in _delays(task)[1])
     low, high = task.ranges(q)
-    room = np.maximum(np.where(qd > 0.0, high - q, q - low), 0.0)
-    at_once = 2.0 * room < np.abs(qd) * INSTANT
+    distance = np.maximum(np.where(qd > 0.0, high - q, q - low), 0.0)
+    at_once = 2.0 * distance < np.abs(qd) * INSTANT
     v, a = np.where(at_once, 0.0, qd), np.where(at_once, 0.0, qdd)
-    needed = np.divide(0.5 * v ** 2, room, out=np.zeros(3), where=v != 0.0)
+    needed = np.divide(0.5 * v ** 2, distance, out=np.zeros(3), where=v != 0.0)
     unlimited, n = np.full(3, inf), len(RATES)
     greatest = greatest_deceleration(v, a, task.limits.max_acceleration, unlimited)
     brakes = JointBrakes(task, np.zeros(n), tuple(np.tile(x, (n, 1)) for x in (q, v, a)),

@@ -148,7 +148,7 @@ def _between(values: Array) -> Array:
     """Return samples, (..., m, n, 3); beside a peak, that of the parabola through three."""
     peaks = values.copy()
     left, middle, right = (values[..., k:values.shape[-3] - 2 + k, :, :] for k in range(3))
-    bend, slope = 2.0 * middle - left - right, 0.5 * (right - left)
-    peak = (bend > 0.0) & (np.abs(slope) <= bend)
-    peaks[..., 1:-1, :, :][peak] += 0.5 * slope[peak] ** 2 / bend[peak]
+    curvature, slope = 2.0 * middle - left - right, 0.5 * (right - left)
+    peak = (curvature > 0.0) & (np.abs(slope) <= curvature)
+    peaks[..., 1:-1, :, :][peak] += 0.5 * slope[peak] ** 2 / curvature[peak]
     return peaks

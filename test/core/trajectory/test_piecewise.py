@@ -14,7 +14,7 @@
 
 """Trajectories of cycloid pieces: evaluation, exact extremes, stretching, refusals."""
 
-from helpers.random_cases import dense_times, joined, random_chain, random_trajectory
+from helpers.random_cases import dense_times, joined, random_pieces, random_trajectory
 import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
@@ -41,7 +41,7 @@ def single(*pieces):
 def test_profile_is_its_pieces_one_after_the_other():
     rng = np.random.default_rng(81)
     durations = rng.uniform(0.1, 1.0, 6)
-    pieces = random_chain(rng, durations)
+    pieces = random_pieces(rng, durations)
     profile = JointProfile(pieces)
     assert profile.duration == pytest.approx(durations.sum(), abs=ROUNDING)
     for i, start in enumerate(np.concatenate(([0.0], np.cumsum(durations)[:-1]))):

@@ -107,15 +107,15 @@ def test_shortest_transitions_are_those_of_the_joint_that_needs_most():
 
 def test_excess_is_that_of_velocity_change_and_room():
     law = TransitionLaw(np.full(3, 2.0), np.zeros(3))
-    chain = via_problem_of(law, limit=0.5)
+    problem = via_problem_of(law, limit=0.5)
     v = np.diff(POINTS, axis=0) / TIMING.lines[:, np.newaxis]
     changes = np.diff(np.vstack((np.zeros(3), v, np.zeros(3))), axis=0)
-    found = excess(chain, TIMING)
+    found = excess(problem, TIMING)
     assert found[0] == pytest.approx(np.abs(v).max() / 0.5)
     assert found[1] == pytest.approx(
         (2.0 * np.abs(changes) / TIMING.transitions[:, np.newaxis]).max())
     assert found[2] == pytest.approx(max(0.9 / 1.1, 1.1 / 1.3, 0.85 / 1.2))
-    assert not is_within_limits(chain, TIMING)
+    assert not is_within_limits(problem, TIMING)
     assert is_within_limits(via_problem_of(TransitionLaw(np.full(3, 0.2), np.zeros(3))), TIMING)
 
 

@@ -30,7 +30,7 @@ def never():
     return False
 
 
-def random_chain(seed, n, jerk=True):
+def random_problem(seed, n, jerk=True):
     rng = np.random.default_rng(700 + seed)
     law = TransitionLaw(rng.uniform(0.5, 3.0, 3), rng.uniform(0.1, 1.5, 3) * jerk)
     limit = rng.uniform(0.3, 2.0, 3)
@@ -38,39 +38,40 @@ def random_chain(seed, n, jerk=True):
                       np.ones((n - 1, 3)))
 
 
-def searched(chain, transitions=None):
+def searched(problem, transitions=None):
     """Return the least total time of two lines on a grid of their times."""
-    steps = chain.rest_to_rest_times().max() * np.geomspace(0.03, 1.5, GRID)
+    steps = problem.rest_to_rest_times().max() * np.geomspace(0.03, 1.5, GRID)
     first, second = (t.ravel()[:, np.newaxis] for t in np.meshgrid(steps, steps))
-    v0, v1 = chain.displacements[0] / first, chain.displacements[1] / second
+    v0, v1 = problem.displacements[0] / first, problem.displacements[1] / second
 
     def lasting(change):
         change = np.abs(change)
-        return np.maximum(chain.law.slope * change, chain.law.root * np.sqrt(change)).max(axis=1)
+        return np.maximum(
+            problem.law.slope * change, problem.law.root * np.sqrt(change)).max(axis=1)
 
     need = np.stack([lasting(v0), lasting(v1 - v0), lasting(v1)])
     t = need if transitions is None else np.tile(transitions[:, np.newaxis], need.shape[1])
-    fits = ((np.abs(v0) <= chain.max_velocity).all(axis=1)
-            & (np.abs(v1) <= chain.max_velocity).all(axis=1) & (need <= t).all(axis=0)
+    fits = ((np.abs(v0) <= problem.max_velocity).all(axis=1)
+            & (np.abs(v1) <= problem.max_velocity).all(axis=1) & (need <= t).all(axis=0)
             & (t[0] + t[1] <= 2.0 * first[:, 0]) & (t[1] + t[2] <= 2.0 * second[:, 0]))
     return (first + second)[fits, 0] + 0.5 * (t[0] + t[2])[fits]
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_no_times_of_a_search_are_better(seed):
-    chain = random_chain(seed, 2)
-    found, grid = total_time(fastest(chain, None, never)), searched(chain).min()
+    problem = random_problem(seed, 2)
+    found, grid = total_time(fastest(problem, None, never)), searched(problem).min()
     assert found <= grid * (1.0 + 1e-5)
     assert found >= grid * (1.0 - 0.03)  # the grid's steps are of 1 %
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_no_times_of_a_search_are_better_with_given_transitions(seed):
-    chain = random_chain(seed, 2)
+    problem = random_problem(seed, 2)
     transitions = np.random.default_rng(seed).uniform(0.5, 1.5, 3)
-    found = fastest(chain, transitions, never)
+    found = fastest(problem, transitions, never)
     assert found.transitions.tolist() == transitions.tolist()
-    grid = searched(chain, transitions)
+    grid = searched(problem, transitions)
     if len(grid):
         assert total_time(found) <= grid.min() * (1.0 + 1e-5)
 
@@ -79,26 +80,26 @@ def test_no_times_of_a_search_are_better_with_given_transitions(seed):
 @pytest.mark.parametrize('given', [False, True])
 def test_limits_are_kept(n, given):
     for seed in range(5):
-        chain = random_chain(30 + seed, n)
+        problem = random_problem(30 + seed, n)
         transitions = np.full(n + 1, 0.7) if given else None
-        assert (excess(chain, fastest(chain, transitions, never)) <= ROUNDING).all()
+        assert (excess(problem, fastest(problem, transitions, never)) <= ROUNDING).all()
 
 
 def test_one_line_takes_two_transitions_from_rest_to_rest():
     for seed in SEEDS:
-        chain = random_chain(60 + seed, 1)
-        assert total_time(fastest(chain, None, never)) == pytest.approx(
-            chain.rest_to_rest_times().sum(), rel=1e-4)
+        problem = random_problem(60 + seed, 1)
+        assert total_time(fastest(problem, None, never)) == pytest.approx(
+            problem.rest_to_rest_times().sum(), rel=1e-4)
 
 
 def test_never_slower_than_stops_at_every_via_point():
     for seed in SEEDS:
-        chain = random_chain(80 + seed, 6)
-        assert total_time(fastest(chain, None, never)) < chain.rest_to_rest_times().sum()
+        problem = random_problem(80 + seed, 6)
+        assert total_time(fastest(problem, None, never)) < problem.rest_to_rest_times().sum()
 
 
 def test_a_search_that_is_stopped_at_once_keeps_the_limits_all_the_same():
-    chain = random_chain(5, 4)
-    stopped, free = fastest(chain, None, lambda: True), fastest(chain, None, never)
-    assert (excess(chain, stopped) <= ROUNDING).all()
+    problem = random_problem(5, 4)
+    stopped, free = fastest(problem, None, lambda: True), fastest(problem, None, never)
+    assert (excess(problem, stopped) <= ROUNDING).all()
     assert total_time(stopped) > total_time(free)

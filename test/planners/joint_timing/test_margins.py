@@ -33,10 +33,10 @@ from rrr_traj_planner.planners.solver.ramps import restored, time_scaled
 
 SEEDS = range(8)
 KINDS = ('torque', 'velocity', 'range')
-LESS = 0.2         # of what was exceeded, that is exceeded after room was made
+LESS = 0.2         # of what was exceeded, that is exceeded after margins were enlarged
 COUNTS = 1e-4      # relative, that was exceeded
 BETWEEN = 2e-3     # of what was exceeded, that a dense grid may miss
-LOOKS = 100        # of the dense grid from point to point
+CHECKS = 100        # of the dense grid from point to point
 NEAR = 0.02        # relative: chains of 8 ramps exceed a limit far between the points
 KEPT = 1e-6        # relative: by so little more, a limit counts as kept
 
@@ -62,33 +62,33 @@ def constraints_with(margins, task, grid, floor=None):
 
 
 class Case:
-    """A least-time motion that keeps its limits at the points, and the room made for it."""
+    """A least-time motion that keeps its limits at the points, and the margins found for it."""
 
     def __init__(self, kind, seed):
         self.grid, self.points, _ = random_motion(seed, n=8)
         self.task = JointTask(ARM, limits_of(kind, self.points), self.points, None, 0.01)
         self.none = Margins.none(self.grid, len(self.points) - 1)
         self.slow, self.motion = self.solved(self.none)
-        self.room = self.none.widened(self.task, self.grid, self.slow, self.look(self.motion))
+        self.margins = self.none.widened(self.task, self.grid, self.slow, self.check(self.motion))
 
-    def solved(self, room):
-        """Return the motion to begin with and the fastest one, with room."""
-        constraints = constraints_with(room, self.task, self.grid)
-        start, freedom = rest_to_rest(self.task, constraints), all_free(len(self.points) - 1)
+    def solved(self, margins):
+        """Return the motion to begin with and the fastest one, with margins."""
+        constraints = constraints_with(margins, self.task, self.grid)
+        start, durations = rest_to_rest(self.task, constraints), all_free(len(self.points) - 1)
         assert constraints.problem.is_within(start)
         return start, minimise(constraints.problem, Centre(start, None),
-                               freedom._replace(fixed_velocities=room.at_rest), never).motion
+                               durations._replace(fixed_velocities=margins.at_rest), never).motion
 
-    def look(self, m):
+    def check(self, m):
         return DenseCheck(self.task, self.grid, m)
 
     def trajectory(self, m):
         return self.grid.trajectory(self.points, m)
 
     def excess(self, m):
-        """Return what range, velocity and torque are exceeded by, each (N, looks, 3), densely."""
+        """Return what range, velocity and torque are exceeded by, each (N, samples, 3)."""
         ends = np.concatenate(([0.0], np.cumsum(m.T)))
-        t = np.linspace(ends[:-1], ends[1:], 2 * self.grid.n * LOOKS + 1, axis=1)
+        t = np.linspace(ends[:-1], ends[1:], 2 * self.grid.n * CHECKS + 1, axis=1)
         q, qd, qdd, _ = (f.reshape(*t.shape, 3) for f in self.trajectory(m)(t.ravel()))
         limits = self.task.limits
         return (q - limits.max_position, limits.min_position - q, np.abs(qd) - limits.max_velocity,
@@ -96,16 +96,16 @@ class Case:
 
     def near(self, excess, width):
         """Return the largest excess so far around every point, points in the order of time."""
-        looks = excess.shape[1]
+        samples = excess.shape[1]
         rows = [excess[:, max(i - width, 0):i + width + 1].max(axis=1)
-                for i in range(0, looks, LOOKS)]
+                for i in range(0, samples, CHECKS)]
         return np.stack(rows, axis=1)
 
-    def in_time(self, room):
-        """Return room at the points in the order of time."""
+    def in_time(self, margins):
+        """Return margins at the points in the order of time."""
         n = self.grid.n
         order = np.stack((np.arange(n), n + 1 + np.arange(n)), axis=1).ravel()
-        return room[..., np.append(order, n), :]
+        return margins[..., np.append(order, n), :]
 
 
 case = cache(Case)
@@ -113,7 +113,7 @@ every = pytest.mark.parametrize(('kind', 'seed'), [(k, s) for k in KINDS for s i
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_no_room_leaves_the_limits_as_they_are(seed):
+def test_no_margins_leave_the_limits_as_they_are(seed):
     grid, points, m = random_motion(seed)
     task = JointTask(ARM, LIMITS, points, None, 0.01)
     for floor in (None, 0.5 * m.T):
@@ -122,52 +122,52 @@ def test_no_room_leaves_the_limits_as_they_are(seed):
 
 
 @every
-def test_room_is_made_of_what_is_exceeded_around_each_point(kind, seed):
+def test_margins_grow_by_what_is_exceeded_around_each_point(kind, seed):
     c = case(kind, seed)
     excess = c.excess(c.motion)[2:]
-    for room, x, most in ((c.room.velocities, excess[0],
-                           MOST_VELOCITY_MARGIN * c.task.limits.max_velocity),
-                          (c.room.efforts, excess[1], np.inf)):
-        near = c.near(x, LOOKS // 2)
+    for margins, x, most in ((c.margins.velocities, excess[0],
+                              MOST_VELOCITY_MARGIN * c.task.limits.max_velocity),
+                             (c.margins.efforts, excess[1], np.inf)):
+        near = c.near(x, CHECKS // 2)
         # limits do not count at a segment's first point: those beside it stand for it
         near[:, 1] = np.maximum(near[:, 1], near[:, 0])
         near[:-1, -1] = np.maximum(near[:-1, -1], near[1:, 0])
         least = np.minimum(np.maximum(near, 0.0), most)
-        assert (c.in_time(room) >= least * (1.0 - BETWEEN)).all()
-        assert (room <= most).all()
+        assert (c.in_time(margins) >= least * (1.0 - BETWEEN)).all()
+        assert (margins <= most).all()
 
 
 @every
-def test_room_is_made_nowhere_else(kind, seed):
+def test_margins_grow_nowhere_else(kind, seed):
     c = case(kind, seed)
     limits, excess = c.task.limits, c.excess(c.motion)[2:]
-    for room, x, limit in ((c.room.velocities, excess[0], limits.max_velocity),
-                           (c.room.efforts, excess[1], limits.max_effort)):
+    for margins, x, limit in ((c.margins.velocities, excess[0], limits.max_velocity),
+                              (c.margins.efforts, excess[1], limits.max_effort)):
         if np.isinf(limit).all():
-            assert (room == 0.0).all()
+            assert (margins == 0.0).all()
             continue
-        near = c.near(x, LOOKS // 2 + LOOKS // 4)
+        near = c.near(x, CHECKS // 2 + CHECKS // 4)
         near[:, 1] = np.maximum(near[:, 1], near[:, 0])
         near[:-1, -1] = np.maximum(near[:-1, -1], near[1:, 0])
         far = near < -BETWEEN * limit
-        assert (c.in_time(room)[far] == 0.0).all()
+        assert (c.in_time(margins)[far] == 0.0).all()
         assert far.any()
         # no more than the factor, of what is exceeded by more than rounding
         most = LARGER * np.maximum(near, 0.0) * 1.3 + BETWEEN * limit
-        assert (c.in_time(room) <= most).all()
+        assert (c.in_time(margins) <= most).all()
 
 
 @every
-def test_positions_have_room_in_the_segments_joints_and_directions_that_leave_a_range(kind, seed):
+def test_positions_have_margins_where_and_in_the_direction_that_a_range_is_left(kind, seed):
     c = case(kind, seed)
     beyond = np.stack(c.excess(c.motion)[:2]).max(axis=2)        # (2, N, 3)
-    made = c.room.positions.max(axis=2)
+    made = c.margins.positions.max(axis=2)
     assert (made[beyond > 1e-7] > 0.0).all()
     assert (made[beyond < 0.0] == 0.0).all()
-    # a slow motion still has half of its own room
+    # a slow motion still has half of its own distance to the ends
     q = c.grid.states(c.points, c.slow).q
     own = np.stack((c.task.limits.max_position - q, q - c.task.limits.min_position))
-    assert (c.room.positions <= 0.5 * np.maximum(own, 0.0)).all()
+    assert (c.margins.positions <= 0.5 * np.maximum(own, 0.0)).all()
 
 
 def test_ranges_velocities_and_torques_are_all_exceeded_by_some_motion():
@@ -178,20 +178,20 @@ def test_ranges_velocities_and_torques_are_all_exceeded_by_some_motion():
 
 
 @every
-def test_a_motion_planned_again_with_room_exceeds_much_less(kind, seed):
+def test_a_motion_planned_again_with_margins_exceeds_much_less(kind, seed):
     c = case(kind, seed)
-    _, again = c.solved(c.room)
+    _, again = c.solved(c.margins)
     scales = (1.0, 1.0, *(np.where(np.isinf(x), 1.0, x) for x in (
         c.task.limits.max_velocity, c.task.limits.max_effort)))
     before, after = (np.array([(x / scale).max() for x, scale in zip(c.excess(m), scales)])
                      for m in (c.motion, again))
     # Where a joint is to stop at a via point from now on, the motion takes another course, which
     # exceeds limits in other places: what the first round makes of it says nothing.
-    assert (after <= np.maximum(LESS * before, COUNTS)).all() or c.room.at_rest.any()
+    assert (after <= np.maximum(LESS * before, COUNTS)).all() or c.margins.at_rest.any()
 
 
 @every
-def test_rounds_of_room_end_near_the_optimum_within_every_limit(kind, seed):
+def test_rounds_of_tightening_end_near_the_optimum_within_every_limit(kind, seed):
     c = case(kind, seed)
     found = fastest(c.task, c.grid)
     assert found.gap <= NEAR * found.cost
@@ -205,26 +205,26 @@ def test_rounds_of_room_end_near_the_optimum_within_every_limit(kind, seed):
 
 
 @every
-def test_room_stays_as_it_was_where_no_limit_is_broken(kind, seed):
+def test_margins_stay_as_they_were_where_no_limit_is_broken(kind, seed):
     c = case(kind, seed)
-    again = c.room.widened(c.task, c.grid, c.slow, c.look(c.slow))
+    again = c.margins.widened(c.task, c.grid, c.slow, c.check(c.slow))
     assert max(x.max() for x in c.excess(c.slow)) <= 1e-9
     for name in ('positions', 'velocities', 'efforts', 'at_rest'):
-        assert (getattr(again, name) == getattr(c.room, name)).all()
+        assert (getattr(again, name) == getattr(c.margins, name)).all()
 
 
 @every
-def test_room_never_shrinks(kind, seed):
+def test_margins_never_shrink(kind, seed):
     c = case(kind, seed)
-    more = c.room.widened(c.task, c.grid, c.slow, c.look(c.motion))
+    more = c.margins.widened(c.task, c.grid, c.slow, c.check(c.motion))
     for name in ('velocities', 'efforts', 'positions'):
-        assert (getattr(more, name) >= getattr(c.room, name)).all()
+        assert (getattr(more, name) >= getattr(c.margins, name)).all()
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_a_part_of_room_is_a_part_of_every_margin(seed):
+def test_a_part_of_margins_is_a_part_of_every_margin(seed):
     c = case('torque', seed)
-    none, half, whole = (constraints_with(c.room.part(x), c.task, c.grid).problem.slacks(
+    none, half, whole = (constraints_with(c.margins.part(x), c.task, c.grid).problem.slacks(
         c.slow) for x in (0.0, 0.5, 1.0))
     assert half == pytest.approx(0.5 * (none + whole))
     assert (none == bounds(c.task.limits, c.grid, c.points).problem.slacks(c.slow)).all()
@@ -233,7 +233,7 @@ def test_a_part_of_room_is_a_part_of_every_margin(seed):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_what_is_kept_leaves_a_slow_motion_half_of_what_gravity_does(seed):
     c = case('torque', seed)
-    large = c.room._replace(efforts=c.room.efforts + 1e3).of_slow_motion()
+    large = c.margins._replace(efforts=c.margins.efforts + 1e3).of_slow_motion()
     bound = constraints_with(large, c.task, c.grid).effort
     q = c.grid.states(c.points, c.slow).q[:, 1:]
     tau = np.abs(inverse_dynamics(ARM, q, np.zeros_like(q), np.zeros_like(q)))
@@ -251,9 +251,9 @@ def test_joints_that_leave_their_range_beside_a_via_point_at_its_end_stop_there(
             np.arange(3) == j, points[k, j], LIMITS.max_position))
         task = JointTask(ARM, limits, points, None, 0.01)
         m = restored(grid, points, m)
-        room = Margins.none(grid, 3)
-        slow = rest_to_rest(task, constraints_with(room, task, grid))
-        at_rest = room.widened(task, grid, slow, DenseCheck(task, grid, m)).at_rest
+        margins = Margins.none(grid, 3)
+        slow = rest_to_rest(task, constraints_with(margins, task, grid))
+        at_rest = margins.widened(task, grid, slow, DenseCheck(task, grid, m)).at_rest
         beside = grid.states(points, m).q[[k - 1, k], :, j].max() > points[k, j] + 1e-6
         assert not beside or at_rest[k - 1, j]
         assert not np.delete(at_rest, j, axis=1).any()

@@ -31,8 +31,8 @@ SEEDS = range(8)
 SOLVED = 1e-4  # relative, to which SLSQP agrees: where laws meet, constraints have kinks
 
 
-def random_chain(seed, most=12):
-    """Return a chain of 1 to 12 segments, with or without a jerk limit, some joints still."""
+def random_problem(seed, most=12):
+    """Return a problem of 1 to 12 segments, with or without a jerk limit, some joints still."""
     rng = np.random.default_rng(4300 + seed)
     n = int(rng.integers(1, most + 1))
     root = rng.uniform(0.3, 1.5, 3) * (rng.random() < 0.7)
@@ -43,17 +43,17 @@ def random_chain(seed, most=12):
     return ViaProblem(D, law, np.full(3, 1.2), -highest, highest)
 
 
-def slacks(chain, v, T):
+def slacks(problem, v, T):
     """Return what is left of every constraint."""
     v0, v1, t = np.vstack((np.zeros(3), v)), np.vstack((v, np.zeros(3))), T[:, np.newaxis]
-    change = chain.law.largest_change(t)
+    change = problem.law.largest_change(t)
     return np.concatenate([x.ravel() for x in (
-        reach(chain.law, chain.max_velocity, v0, v1, t) - chain.displacements,
-        reach(chain.law, chain.max_velocity, -v0, -v1, t) + chain.displacements,
-        change - (v1 - v0), change + (v1 - v0), chain.highest - v, v - chain.lowest)])
+        reach(problem.law, problem.max_velocity, v0, v1, t) - problem.displacements,
+        reach(problem.law, problem.max_velocity, -v0, -v1, t) + problem.displacements,
+        change - (v1 - v0), change + (v1 - v0), problem.highest - v, v - problem.lowest)])
 
 
-def by_slsqp(chain, start, floor=0.0):
+def by_slsqp(problem, start, floor=0.0):
     """Return the least total time that a general solver finds."""
     vias = start.velocities.size
 
@@ -62,33 +62,33 @@ def by_slsqp(chain, start, floor=0.0):
 
     x = minimize(lambda x: x[vias:].sum(), np.append(start.velocities, 1.2 * start.durations),
                  method='SLSQP', constraints=[
-                     {'type': 'ineq', 'fun': lambda x: slacks(chain, *parts(x))},
+                     {'type': 'ineq', 'fun': lambda x: slacks(problem, *parts(x))},
                      {'type': 'ineq', 'fun': lambda x: x[vias:] - floor}],
                  options={'maxiter': 500, 'ftol': 1e-10})
-    kept = slacks(chain, *parts(x.x)).min() >= -1e-6
+    kept = slacks(problem, *parts(x.x)).min() >= -1e-6
     return x.fun if kept else np.inf
 
 
 @pytest.mark.parametrize('seed', SEEDS[:4])
 def test_no_general_solver_finds_less_time_and_it_agrees_where_it_converges(seed):
-    chain = random_chain(seed, most=3)
-    found = least_time(chain)
-    assert slacks(chain, found.velocities, found.durations).min() > 0.0
-    assert by_slsqp(chain, found) >= (1.0 - SOLVED) * found.durations.sum()
+    problem = random_problem(seed, most=3)
+    found = least_time(problem)
+    assert slacks(problem, found.velocities, found.durations).min() > 0.0
+    assert by_slsqp(problem, found) >= (1.0 - SOLVED) * found.durations.sum()
     floor = found.durations * np.random.default_rng(seed).uniform(0.5, 1.5, len(found.durations))
-    floored = least_time(chain, floor)
+    floored = least_time(problem, floor)
     assert (floored.durations > floor).all()
-    assert by_slsqp(chain, floored, floor) >= (1.0 - SOLVED) * floored.durations.sum()
+    assert by_slsqp(problem, floored, floor) >= (1.0 - SOLVED) * floored.durations.sum()
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_at_the_end_the_gradient_of_objective_and_barrier_vanishes(seed):
     # The condition of optimality of the last centre: with multipliers 1 / (weight slack) these are
     # the conditions of Karush, Kuhn and Tucker, but for a gap of the constraints over the weight.
-    chain = random_chain(seed)
-    found = least_time(chain)
+    problem = random_problem(seed)
+    found = least_time(problem)
     weight = (12 * len(found.durations) + 6 * len(found.velocities)) / found.gap
-    end = ViaBarrier(chain, found.velocities, found.durations)
+    end = ViaBarrier(problem, found.velocities, found.durations)
     KERNELS.via_attempt(end.at, weight)
     assert end.found.decrement <= 1e-5
     assert found.gap < RELATIVE_GAP * found.durations.sum()
@@ -96,21 +96,21 @@ def test_at_the_end_the_gradient_of_objective_and_barrier_vanishes(seed):
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_the_least_stretch_of_the_least_durations_is_one_and_halves_for_twice_as_long(seed):
-    chain = random_chain(seed)
-    T = least_time(chain).durations
-    factor, found = least_time_scale(chain, T)
+    problem = random_problem(seed)
+    T = least_time(problem).durations
+    factor, found = least_time_scale(problem, T)
     assert factor <= 1.0 + 1e-6
-    assert slacks(chain, found.velocities, found.durations).min() > 0.0
+    assert slacks(problem, found.velocities, found.durations).min() > 0.0
     assert found.durations == pytest.approx(factor * T, rel=1e-12)
-    assert least_time_scale(chain, 2.0 * T)[0] == pytest.approx(0.5 * factor, rel=1e-5)
+    assert least_time_scale(problem, 2.0 * T)[0] == pytest.approx(0.5 * factor, rel=1e-5)
 
 
 def test_one_segment_takes_its_closed_form():
     # 1 rad/s^2: 0.5 rad takes sqrt(D slope) twice, 2 s.
-    chain = ViaProblem(np.array([[0.5, 0.1, 0.0]]), TransitionLaw(np.full(3, 2.0), np.zeros(3)),
-                       np.ones(3), np.zeros((0, 3)), np.zeros((0, 3)))
-    assert least_time(chain).durations == pytest.approx([2.0], rel=1e-6)
-    assert least_time_scale(chain, np.array([4.0]))[0] == pytest.approx(0.5, rel=1e-6)
+    problem = ViaProblem(np.array([[0.5, 0.1, 0.0]]), TransitionLaw(np.full(3, 2.0), np.zeros(3)),
+                         np.ones(3), np.zeros((0, 3)), np.zeros((0, 3)))
+    assert least_time(problem).durations == pytest.approx([2.0], rel=1e-6)
+    assert least_time_scale(problem, np.array([4.0]))[0] == pytest.approx(0.5, rel=1e-6)
 
 
 def test_a_line_through_a_via_point_takes_as_long_as_without_it():
@@ -118,8 +118,8 @@ def test_a_line_through_a_via_point_takes_as_long_as_without_it():
     D = np.full((2, 3), 1.0)
     room = np.full((1, 3), 9.0)
     law = TransitionLaw(np.full(3, 2.0), np.zeros(3))
-    chain = ViaProblem(D, law, np.full(3, 9.0), -room, room)
-    found = least_time(chain)
+    problem = ViaProblem(D, law, np.full(3, 9.0), -room, room)
+    found = least_time(problem)
     assert found.durations == pytest.approx([2.0, 2.0], rel=1e-5)
     assert found.velocities == pytest.approx(np.full((1, 3), 1.0), rel=1e-3)
 
@@ -127,10 +127,10 @@ def test_a_line_through_a_via_point_takes_as_long_as_without_it():
 @pytest.mark.parametrize('steps', [0, 1, 7])
 def test_it_asks_before_every_step_and_cancelled_it_keeps_its_feasible_iterate(steps):
     calls = count()
-    chain = random_chain(3)
-    found = least_time(chain, should_stop=lambda: next(calls) == steps)
+    problem = random_problem(3)
+    found = least_time(problem, should_stop=lambda: next(calls) == steps)
     assert next(calls) == steps + 1
-    assert slacks(chain, found.velocities, found.durations).min() > 0.0
+    assert slacks(problem, found.velocities, found.durations).min() > 0.0
 
 
 def test_what_the_callback_raises_goes_on_to_the_caller():
@@ -138,4 +138,4 @@ def test_what_the_callback_raises_goes_on_to_the_caller():
         raise KeyboardInterrupt('now')
 
     with pytest.raises(KeyboardInterrupt, match='now'):
-        least_time(random_chain(3), should_stop=should_stop)
+        least_time(random_problem(3), should_stop=should_stop)

@@ -45,7 +45,7 @@ def never():
     return False
 
 
-def solve(limits, grid, points, should_stop=never, freedom=None):
+def solve(limits, grid, points, should_stop=never, durations=None):
     constraints, m = slow_start(limits, grid, points)
     problem, seen = constraints.problem, []
 
@@ -53,7 +53,7 @@ def solve(limits, grid, points, should_stop=never, freedom=None):
         seen.append(problem.motion(problem.arrays['variables'].copy()))
         return should_stop()
 
-    outcome = minimise(problem, Centre(m, None), freedom or all_free(len(m.T)), stop)
+    outcome = minimise(problem, Centre(m, None), durations or all_free(len(m.T)), stop)
     return problem, m, seen, outcome
 
 
@@ -68,7 +68,7 @@ def reference(limits, grid, points, start):
         at = grid.states(points, motion(x))
         return [at.q[0, grid.n, 0] - points[1, 0], at.qd[0, grid.n, 0]]
 
-    def room(x):
+    def slacks(x):
         at = grid.states(points, motion(x))
         return np.concatenate([(bound[0] - sign * value[0, :, 0]) for sign in (-1.0, 1.0)
                                for value, bound in ((at.qd, limits.max_velocity),
@@ -76,7 +76,7 @@ def reference(limits, grid, points, start):
                                                     (at.jerk, limits.max_jerk))])
 
     x = minimize(lambda x: x[-1], np.append(start.inner[0, :, 0], start.T), method='SLSQP',
-                 constraints=[{'type': 'eq', 'fun': ends}, {'type': 'ineq', 'fun': room}],
+                 constraints=[{'type': 'eq', 'fun': ends}, {'type': 'ineq', 'fun': slacks}],
                  options={'maxiter': 500, 'ftol': 1e-10})
     assert x.success
     return x.fun
@@ -128,7 +128,7 @@ def test_limits_that_come_closer_are_kept_from_the_first_centre_on(seed, limits,
     close, free = bounds(closer(limits, part), grid, points).problem, all_free(len(points) - 1)
     anew = solve(closer(limits, part), grid, points)[3].motion.T.sum()
     assert part > 0.9 or not close.is_within(passed.centres[-3].motion)
-    for centre in passed.centres[:-2]:  # others have next to no room to come from
+    for centre in passed.centres[:-2]:  # others are next to their limits
         found = minimise(close, centre, free, never, previous=wide)
         assert found.within
         for m in (found.motion, *(c.motion for c in found.centres)):
@@ -180,11 +180,11 @@ def test_fixed_durations_stay_and_tied_ones_keep_their_ratio(seed):
     at_rest = np.zeros((2, 3), bool)
     fixed = DurationConstraints(np.array([True, False, True]), np.zeros(3),
                                 np.array([1.0, 0.0, 1.0]), at_rest)
-    _, start, _, outcome = solve(FREE, grid, points, freedom=fixed)
+    _, start, _, outcome = solve(FREE, grid, points, durations=fixed)
     assert outcome.motion.T[1] == start.T[1]
     assert outcome.motion.T[[0, 2]].sum() < start.T[[0, 2]].sum()
     tied = DurationConstraints(np.zeros(3, bool), start.T, np.ones(3), at_rest)
-    _, start, _, outcome = solve(FREE, grid, points, freedom=tied)
+    _, start, _, outcome = solve(FREE, grid, points, durations=tied)
     ratio = outcome.motion.T / start.T
     assert ratio == pytest.approx(np.full(3, ratio[0]), rel=1e-9)
     assert ratio[0] < 1.0
@@ -193,8 +193,8 @@ def test_fixed_durations_stay_and_tied_ones_keep_their_ratio(seed):
 def test_velocities_at_rest_stay_zero():
     grid, points, _ = random_motion(4, segments=3)
     at_rest = np.array([[True, False, False], [False, False, True]])
-    freedom = all_free(3)._replace(fixed_velocities=at_rest)
-    found = solve(FREE, grid, points, freedom=freedom)[3].motion
+    durations = all_free(3)._replace(fixed_velocities=at_rest)
+    found = solve(FREE, grid, points, durations=durations)[3].motion
     assert np.abs(found.v[at_rest]).max() <= 1e-12
     assert np.abs(found.v[~at_rest]).min() > 1e-3
 
@@ -230,11 +230,11 @@ def test_centres_are_strictly_within_limits_slowest_first_and_as_near_as_their_b
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_centres_leave_more_room_the_higher_their_barrier(seed):
+def test_centres_leave_more_slack_the_higher_their_barrier(seed):
     grid, points, _ = random_motion(seed)
     problem, _, _, outcome = solve(LIMITS, grid, points)
-    room = [problem.slacks(c.motion).min() for c in outcome.centres]
-    assert (np.diff(room) < 0.0).all()
+    least = [problem.slacks(c.motion).min() for c in outcome.centres]
+    assert (np.diff(least) < 0.0).all()
 
 
 @pytest.mark.parametrize('limits', ALL, ids=NAMES)

@@ -181,7 +181,7 @@ def test_straight_motions_stop_at_every_point_and_never_turn_back(n):
 
 
 def stops_on_the_way(seed):
-    """Return points to stop at, and which nodes of the chain through them are at rest at each."""
+    """Return points to stop at, and which nodes of the motion through them are at rest at each."""
     rng = np.random.default_rng(9000 + seed)
     grid, rest = Grid(int(rng.integers(8, 41))), np.zeros((0, 3))
     legs = int(rng.integers(1, grid.n // LEAST_RAMPS + 1))

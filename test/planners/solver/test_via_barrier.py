@@ -27,23 +27,23 @@ from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 SEEDS = range(8)
 
 
-def chain_and_point(seed):
-    """Return a chain, least durations or none, and a strictly feasible point."""
+def problem_and_point(seed):
+    """Return a problem, least durations or none, and a strictly feasible point."""
     rng = np.random.default_rng(1500 + seed)
     n = int(rng.integers(2, 6))
     law = TransitionLaw(rng.uniform(0.5, 3.0, 3),
                         rng.uniform(0.3, 1.5, 3) * (rng.random(3) < 0.5))
     highest = rng.uniform(0.5, 1.0, (n - 1, 3))
-    chain = ViaProblem(rng.normal(0.0, 0.5, (n, 3)), law, np.full(3, 1.2), -highest, highest)
-    T = chain.rest_to_rest_times() * rng.uniform(1.3, 2.0, n)
+    problem = ViaProblem(rng.normal(0.0, 0.5, (n, 3)), law, np.full(3, 1.2), -highest, highest)
+    T = problem.rest_to_rest_times() * rng.uniform(1.3, 2.0, n)
     v = 0.05 * rng.uniform(-1.0, 1.0, (n - 1, 3))
-    return chain, 0.8 * T if seed % 2 else None, v, T
+    return problem, 0.8 * T if seed % 2 else None, v, T
 
 
-def value(chain, floor, x):
+def value(problem, floor, x):
     """Return the barrier at a point."""
-    n = len(chain.displacements)
-    barrier = ViaBarrier(chain, x[:3 * n - 3].reshape(-1, 3), x[3 * n - 3:], floor)
+    n = len(problem.displacements)
+    barrier = ViaBarrier(problem, x[:3 * n - 3].reshape(-1, 3), x[3 * n - 3:], floor)
     return barrier.arrays['before'].sum()
 
 
@@ -66,19 +66,19 @@ def dense(barrier):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_value_is_the_sum_of_logarithms_of_what_is_left_of_each_limit(seed):
     # each slack by brute force over cruise velocities, as a limit on the displacement
-    chain, floor, v, T = chain_and_point(seed)
+    problem, floor, v, T = problem_and_point(seed)
     n = len(T)
     v0, v1 = np.vstack((np.zeros(3), v)), np.vstack((v, np.zeros(3)))
-    u = np.linspace(-chain.max_velocity, chain.max_velocity, 8001)[:, np.newaxis]
-    t0, t1 = chain.law.least_time(u - v0), chain.law.least_time(u - v1)
+    u = np.linspace(-problem.max_velocity, problem.max_velocity, 8001)[:, np.newaxis]
+    t0, t1 = problem.law.least_time(u - v0), problem.law.least_time(u - v1)
     covered = 0.5 * (v0 + u) * t0 + u * (T[:, np.newaxis] - t0 - t1) + 0.5 * (u + v1) * t1
     fits = t0 + t1 <= T[:, np.newaxis]
-    D = chain.displacements
-    change = chain.law.largest_change(T[:, np.newaxis])
+    D = problem.displacements
+    change = problem.law.largest_change(T[:, np.newaxis])
     slacks = (np.where(fits, covered, -np.inf).max(axis=0) - D,
               D - np.where(fits, covered, np.inf).min(axis=0),
               change - (v1 - v0), change + (v1 - v0))
-    parts = ViaBarrier(chain, v, T, floor).arrays['before']
+    parts = ViaBarrier(problem, v, T, floor).arrays['before']
     segments, velocities, durations = np.split(parts, (3 * n, 6 * n - 3))
     # the grid of cruises misses the best one by a bit, which hardly counts where much is left
     enough = np.minimum(slacks[0], slacks[1]) > 0.05
@@ -86,28 +86,29 @@ def test_value_is_the_sum_of_logarithms_of_what_is_left_of_each_limit(seed):
     assert segments.reshape(n, 3)[enough] == pytest.approx(
         -sum(np.log(s) for s in slacks)[enough], abs=0.02)
     assert velocities.reshape(-1, 3) == pytest.approx(
-        -np.log(v - chain.lowest) - np.log(chain.highest - v), rel=1e-12)
+        -np.log(v - problem.lowest) - np.log(problem.highest - v), rel=1e-12)
     assert durations == pytest.approx(
         np.zeros(n) if floor is None else -np.log(T - floor), rel=1e-12)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_gradient_is_the_finite_difference_of_the_value(seed):
-    chain, floor, v, T = chain_and_point(seed)
-    x, (g, _) = np.append(v, T), dense(ViaBarrier(chain, v, T, floor))
+    problem, floor, v, T = problem_and_point(seed)
+    x, (g, _) = np.append(v, T), dense(ViaBarrier(problem, v, T, floor))
     for k, unit in enumerate(np.eye(len(x))):
         assert g[k] == pytest.approx(central_difference(
-            lambda z, unit=unit: value(chain, floor, x + z * unit), 0.0, 1e-5), rel=1e-5, abs=1e-4)
+            lambda z, unit=unit: value(problem, floor, x + z * unit), 0.0, 1e-5),
+            rel=1e-5, abs=1e-4)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_hessian_is_the_finite_difference_of_the_gradient_where_the_barrier_is_convex(seed):
-    chain, floor, v, T = chain_and_point(seed)
+    problem, floor, v, T = problem_and_point(seed)
     x = np.append(v, T)
-    _, H = dense(ViaBarrier(chain, v, T, floor))
+    _, H = dense(ViaBarrier(problem, v, T, floor))
 
     def gradient(x):
-        return dense(ViaBarrier(chain, x[:v.size].reshape(v.shape), x[v.size:], floor))[0]
+        return dense(ViaBarrier(problem, x[:v.size].reshape(v.shape), x[v.size:], floor))[0]
 
     difference = np.array([central_difference(
         lambda z, unit=unit: gradient(x + z * unit), 0.0, 1e-5) for unit in np.eye(len(x))])
@@ -121,17 +122,17 @@ def test_hessian_is_the_finite_difference_of_the_gradient_where_the_barrier_is_c
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_hessian_is_positive_definite_where_much_time_is_to_spare_too(seed):
-    chain, floor, v, T = chain_and_point(seed)
+    problem, floor, v, T = problem_and_point(seed)
     for spare in (1.0, 4.0):
-        _, H = dense(ViaBarrier(chain, v, spare * T, floor))
+        _, H = dense(ViaBarrier(problem, v, spare * T, floor))
         assert np.linalg.eigvalsh(H).min() > 0.0
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 @pytest.mark.parametrize('common', [False, True])
 def test_newton_step_is_that_of_a_dense_solve(seed, common):
-    chain, floor, v, T = chain_and_point(seed)
-    barrier = ViaBarrier(chain, v, T, floor, T if common else None)
+    problem, floor, v, T = problem_and_point(seed)
+    barrier = ViaBarrier(problem, v, T, floor, T if common else None)
     n, rng = len(T), np.random.default_rng(seed)
     barrier.arrays['damping'][:] = rng.choice([0.0, 0.5, 8.0], 7 * n - 3)
     weight = 7.0
@@ -153,27 +154,27 @@ def test_newton_step_is_that_of_a_dense_solve(seed, common):
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_an_attempt_tells_how_the_merit_changes_and_accepting_it_moves_the_iterate(seed):
-    chain, floor, v, T = chain_and_point(seed)
-    barrier, weight = ViaBarrier(chain, v, T, floor), 7.0
+    problem, floor, v, T = problem_and_point(seed)
+    barrier, weight = ViaBarrier(problem, v, T, floor), 7.0
     start, a = np.append(v, T), barrier.arrays
     a['damping'][:] = 8.0
     change = KERNELS.via_attempt(barrier.at, weight)
     moved = start + a['step']
     assert change == pytest.approx(weight * a['step'][v.size:].sum() + value(
-        chain, floor, moved) - value(chain, floor, start), rel=1e-9, abs=1e-12)
+        problem, floor, moved) - value(problem, floor, start), rel=1e-9, abs=1e-12)
     assert (a['point'] == start).all()
     KERNELS.via_accept(barrier.at, 0.25)
     assert (a['point'] == moved).all() and (a['damping'] == 2.0).all()
     assert barrier.found.objective == pytest.approx(moved[v.size:].sum())
-    there = ViaBarrier(chain, barrier.velocities, barrier.durations, floor)
+    there = ViaBarrier(problem, barrier.velocities, barrier.durations, floor)
     for name in ('before', 'gradient', 'hessian', 'bound'):
         assert (a[name] == there.arrays[name]).all()
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_parts_that_an_attempt_breaks_are_damped_and_none_else_once_they_are_stiff(seed):
-    chain, floor, v, T = chain_and_point(seed)
-    barrier = ViaBarrier(chain, v, T, floor)
+    problem, floor, v, T = problem_and_point(seed)
+    barrier = ViaBarrier(problem, v, T, floor)
     a = barrier.arrays
     assert KERNELS.via_attempt(barrier.at, 1e3) == np.inf  # much too far
     broken = np.isinf(a['after'])
@@ -187,18 +188,18 @@ def test_parts_that_an_attempt_breaks_are_damped_and_none_else_once_they_are_sti
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_value_is_infinite_where_a_constraint_is_broken(seed):
-    chain, floor, v, T = chain_and_point(seed)
+    problem, floor, v, T = problem_and_point(seed)
     too_fast = v.copy()
-    too_fast[0, 1] = 1.01 * chain.highest[0, 1]
+    too_fast[0, 1] = 1.01 * problem.highest[0, 1]
     too_short = T.copy()
     too_short[-1] = 1e-3
     none = T.copy()
     none[0] = 0.0
-    assert np.isfinite(value(chain, floor, np.append(v, T)))
-    assert value(chain, floor, np.append(too_fast, T)) == np.inf
-    assert value(chain, floor, np.append(v, too_short)) == np.inf
-    assert value(chain, floor, np.append(v, none)) == np.inf
-    assert value(chain, 1.001 * T, np.append(v, T)) == np.inf
+    assert np.isfinite(value(problem, floor, np.append(v, T)))
+    assert value(problem, floor, np.append(too_fast, T)) == np.inf
+    assert value(problem, floor, np.append(v, too_short)) == np.inf
+    assert value(problem, floor, np.append(v, none)) == np.inf
+    assert value(problem, 1.001 * T, np.append(v, T)) == np.inf
 
 
 def test_rest_to_rest_times_are_what_a_hand_calculation_gives():
@@ -206,9 +207,9 @@ def test_rest_to_rest_times_are_what_a_hand_calculation_gives():
     law = TransitionLaw(np.full(3, 2.0), np.zeros(3))
     D = np.array([[0.5, 0.1, 0.0], [0.0, -3.0, 0.2], [0.0, 0.0, 0.0]])
     none = np.zeros((2, 3))
-    chain = ViaProblem(D, law, np.ones(3), none, none)
-    assert chain.rest_to_rest_times() == pytest.approx([2.0, 5.0, 0.0])
+    problem = ViaProblem(D, law, np.ones(3), none, none)
+    assert problem.rest_to_rest_times() == pytest.approx([2.0, 5.0, 0.0])
     # Jerk alone, root 2: D = u t, t = 2 sqrt(u): u = (D / 2)^(2/3); 2 rad: 2 t = 4 s.
-    jerky = replace(chain, law=TransitionLaw(np.full(3, 1e-9), np.full(3, 2.0)),
+    jerky = replace(problem, law=TransitionLaw(np.full(3, 1e-9), np.full(3, 2.0)),
                     max_velocity=np.full(3, 9.0), displacements=np.full((1, 3), 2.0))
     assert jerky.rest_to_rest_times() == pytest.approx([4.0])

@@ -26,17 +26,17 @@ GAP = 1e-6            # relative: the solver promises 2e-7
 SECOND_SOLVER = 2e-3  # relative: a direct search stops short of the optimum's kinks
 
 
-def chain_through(points, velocity=1.0, acceleration=1.0, jerk=np.inf):
+def problem_through(points, velocity=1.0, acceleration=1.0, jerk=np.inf):
     D = np.diff(np.asarray(points), axis=0)
     law = TransitionLaw(np.full(3, 2.0 / acceleration), np.full(3, np.sqrt(2.0 * np.pi / jerk)))
     highest = np.full((len(D) - 1, 3), float(velocity))
     return ViaProblem(D, law, np.full(3, float(velocity)), -highest, highest)
 
 
-def random_chain(seed, n):
+def random_problem(seed, n):
     rng = np.random.default_rng(1700 + seed)
-    return chain_through(np.cumsum(rng.normal(0.0, 0.6, (n + 1, 3)), axis=0),
-                         rng.uniform(0.4, 1.5), rng.uniform(0.5, 2.0))
+    return problem_through(np.cumsum(rng.normal(0.0, 0.6, (n + 1, 3)), axis=0),
+                           rng.uniform(0.4, 1.5), rng.uniform(0.5, 2.0))
 
 
 def table(name):
@@ -45,7 +45,7 @@ def table(name):
 
 @pytest.mark.parametrize(('name', 'seconds'), [('6.1', 2.850), ('6.3', 3.490)])
 def test_tables_take_the_least_times_that_are_known(name, seconds):
-    assert least_time(chain_through(table(name))).durations.sum() == pytest.approx(
+    assert least_time(problem_through(table(name))).durations.sum() == pytest.approx(
         seconds, abs=5.1e-4)
 
 
@@ -81,10 +81,10 @@ def least_segment_time(v0, v1, D, limit, slope):
     return high
 
 
-def direct_search(chain, seed, starts=4):
+def direct_search(problem, seed, starts=4):
     """Return the least total time that Nelder-Mead finds from several starts."""
-    limit, slope = chain.max_velocity[0], chain.law.slope[0]
-    D = chain.displacements
+    limit, slope = problem.max_velocity[0], problem.law.slope[0]
+    D = problem.displacements
     rng = np.random.default_rng(seed)
 
     def total(x):
@@ -105,23 +105,23 @@ def direct_search(chain, seed, starts=4):
 
 @pytest.mark.parametrize('seed', range(3))
 def test_no_direct_search_finds_less_time_through_one_via_point(seed):
-    chain = random_chain(seed, 2)
-    assert least_time(chain).durations.sum() <= direct_search(chain, seed, 2) * (1.0 + GAP)
+    problem = random_problem(seed, 2)
+    assert least_time(problem).durations.sum() <= direct_search(problem, seed, 2) * (1.0 + GAP)
 
 
 @pytest.mark.parametrize('seed', range(12))
 def test_every_joint_can_cover_its_segments_in_the_least_durations(seed):
-    chain = random_chain(20 + seed, 2 + seed % 6)
-    v, T, _ = least_time(chain)
+    problem = random_problem(20 + seed, 2 + seed % 6)
+    v, T, _ = least_time(problem)
     v = np.vstack((np.zeros(3), v, np.zeros(3)))
-    for k, j in np.ndindex(chain.displacements.shape):
-        assert is_feasible(v[k, j], v[k + 1, j], T[k], chain.displacements[k, j],
-                           chain.max_velocity[j], chain.law.slope[j])
+    for k, j in np.ndindex(problem.displacements.shape):
+        assert is_feasible(v[k, j], v[k + 1, j], T[k], problem.displacements[k, j],
+                           problem.max_velocity[j], problem.law.slope[j])
 
 
-def cone_program(chain, seed):
+def cone_program(problem, seed):
     """Return the least total time from SLSQP on durations, via and cruise velocities at once."""
-    D, slope, limit = chain.displacements, chain.law.slope[0], chain.max_velocity[0]
+    D, slope, limit = problem.displacements, problem.law.slope[0], problem.max_velocity[0]
     n, rng = len(D), np.random.default_rng(seed)
 
     def split(x):
@@ -140,7 +140,7 @@ def cone_program(chain, seed):
     bounds = [(1e-2, 50.0)] * n + [(-limit, limit)] * (6 * n - 3)
     best = np.inf
     for _ in range(6):
-        T = chain.rest_to_rest_times() * 1.2
+        T = problem.rest_to_rest_times() * 1.2
         u = D / T[:, np.newaxis] * rng.uniform(1.0, 1.4)
         v = 0.5 * (u[1:] + u[:-1]) * (u[1:] * u[:-1] > 0.0) * rng.uniform(0.0, 1.0)
         found = minimize(
@@ -156,8 +156,8 @@ def cone_program(chain, seed):
 def test_slsqp_from_many_starts_finds_no_less_time(n):
     gaps = []
     for seed in range(6):
-        chain = random_chain(10 * n + seed, n)
-        theirs, ours = cone_program(chain, seed), least_time(chain).durations.sum()
+        problem = random_problem(10 * n + seed, n)
+        theirs, ours = cone_program(problem, seed), least_time(problem).durations.sum()
         assert ours <= theirs * (1.0 + GAP)
         gaps.append(theirs / ours - 1.0)
     # And it is no idle bound: SLSQP comes as near as it can get, on some of them at least.
@@ -166,16 +166,16 @@ def test_slsqp_from_many_starts_finds_no_less_time(n):
 
 def test_single_segment_takes_the_rest_to_rest_time():
     for seed in range(10):
-        chain = random_chain(100 + seed, 1)
-        assert least_time(chain).durations == pytest.approx(
-            chain.rest_to_rest_times(), rel=1e-6)
+        problem = random_problem(100 + seed, 1)
+        assert least_time(problem).durations == pytest.approx(
+            problem.rest_to_rest_times(), rel=1e-6)
 
 
 @pytest.mark.parametrize('factor', [0.5, 3.0])
 def test_limits_scaled_as_a_clock_is_scale_the_time(factor):
     points = np.cumsum(np.random.default_rng(1800).normal(0.0, 0.5, (6, 3)), axis=0)
-    slow = least_time(chain_through(points, 0.8, 1.1, 4.0)).durations
-    fast = least_time(chain_through(
+    slow = least_time(problem_through(points, 0.8, 1.1, 4.0)).durations
+    fast = least_time(problem_through(
         points, 0.8 * factor, 1.1 * factor ** 2, 4.0 * factor ** 3)).durations
     assert fast * factor == pytest.approx(slow, rel=1e-4)
     assert fast.sum() * factor == pytest.approx(slow.sum(), rel=GAP)
@@ -185,7 +185,7 @@ def test_limits_scaled_as_a_clock_is_scale_the_time(factor):
 def test_points_in_reverse_order_and_mirrored_take_the_same_time(seed):
     points = np.cumsum(np.random.default_rng(1900 + seed).normal(0.0, 0.5, (6, 3)), axis=0)
     forwards, backwards, mirrored = (
-        least_time(chain_through(p, jerk=8.0)) for p in (points, points[::-1], -points))
+        least_time(problem_through(p, jerk=8.0)) for p in (points, points[::-1], -points))
     assert backwards.durations.sum() == pytest.approx(forwards.durations.sum(), rel=GAP)
     assert mirrored.durations.sum() == pytest.approx(forwards.durations.sum(), rel=GAP)
     assert mirrored.velocities == pytest.approx(-forwards.velocities, abs=1e-4)
@@ -193,41 +193,41 @@ def test_points_in_reverse_order_and_mirrored_take_the_same_time(seed):
 
 @pytest.mark.parametrize('seed', range(10))
 def test_floor_is_kept_and_costs_no_more_than_it_adds(seed):
-    chain = random_chain(200 + seed, 5)
-    free = least_time(chain).durations
+    problem = random_problem(200 + seed, 5)
+    free = least_time(problem).durations
     floor = free * np.random.default_rng(seed).choice([0.5, 1.0, 1.5], 5)
-    kept = least_time(chain, floor).durations
+    kept = least_time(problem, floor).durations
     assert (kept >= floor).all()
     assert kept.sum() >= free.sum() * (1.0 - GAP)
 
 
 @pytest.mark.parametrize('seed', range(10))
 def test_least_durations_need_no_stretch_and_shorter_ones_their_shortness(seed):
-    chain = random_chain(300 + seed, 4)
-    durations = least_time(chain).durations
-    assert least_time_scale(chain, durations)[0] == pytest.approx(1.0, abs=2e-6)
+    problem = random_problem(300 + seed, 4)
+    durations = least_time(problem).durations
+    assert least_time_scale(problem, durations)[0] == pytest.approx(1.0, abs=2e-6)
     # The same proportions: the stretch undoes any common factor.
-    assert least_time_scale(chain, 0.4 * durations)[0] == pytest.approx(2.5, rel=4e-6)
-    factor, solution = least_time_scale(chain, 0.4 * durations)
+    assert least_time_scale(problem, 0.4 * durations)[0] == pytest.approx(2.5, rel=4e-6)
+    factor, solution = least_time_scale(problem, 0.4 * durations)
     assert solution.durations == pytest.approx(factor * 0.4 * durations, rel=1e-12)
 
 
 @pytest.mark.parametrize('seed', range(6))
 def test_stretch_is_the_least_that_bisection_over_floors_finds(seed):
     # Durations d f are feasible where the least time with that floor is their own sum.
-    chain = random_chain(400 + seed, 3)
+    problem = random_problem(400 + seed, 3)
     d = np.random.default_rng(seed).uniform(0.5, 2.0, 3)
-    factor = least_time_scale(chain, d)[0]
+    factor = least_time_scale(problem, d)[0]
 
     def excess(f):
-        return least_time(chain, f * d).durations.sum() / (f * d.sum()) - 1.0 - 1e-4
+        return least_time(problem, f * d).durations.sum() / (f * d.sum()) - 1.0 - 1e-4
 
     assert brentq(excess, 0.3 * factor, 3.0 * factor, xtol=1e-4) == pytest.approx(
         factor, rel=2e-2)
 
 
-def newton_steps(chain):
-    """Return how often the solver asks whether to stop: once a step, linear in the chain."""
+def newton_steps(problem):
+    """Return how often the solver asks whether to stop: once a step, linear in the problem."""
     count = 0
 
     def counted():
@@ -235,26 +235,26 @@ def newton_steps(chain):
         count += 1
         return False
 
-    least_time(chain, should_stop=counted)
+    least_time(problem, should_stop=counted)
     return count
 
 
 def test_newton_steps_hardly_grow_with_the_number_of_via_points():
-    few = [newton_steps(random_chain(500 + s, 5)) for s in range(4)]
-    many = [newton_steps(random_chain(500 + s, 160)) for s in range(4)]
+    few = [newton_steps(random_problem(500 + s, 5)) for s in range(4)]
+    many = [newton_steps(random_problem(500 + s, 160)) for s in range(4)]
     assert max(many) <= 4 * max(few)
 
 
 @pytest.mark.parametrize('seed', range(4))
 def test_stopped_early_it_has_a_motion_that_is_feasible_and_says_how_far_it_may_be_off(seed):
-    chain = random_chain(600 + seed, 4)
-    best = least_time(chain).durations.sum()
+    problem = random_problem(600 + seed, 4)
+    best = least_time(problem).durations.sum()
     for most in (0, 5, 20):
         asked = iter(range(most + 1))
-        v, T, gap = least_time(chain, should_stop=lambda a=asked, most=most: next(a) == most)
+        v, T, gap = least_time(problem, should_stop=lambda a=asked, most=most: next(a) == most)
         assert next(asked, None) is None
         ends = np.vstack((np.zeros(3), v, np.zeros(3)))
-        for k, j in np.ndindex(chain.displacements.shape):
-            assert is_feasible(ends[k, j], ends[k + 1, j], T[k], chain.displacements[k, j],
-                               chain.max_velocity[j], chain.law.slope[j])
+        for k, j in np.ndindex(problem.displacements.shape):
+            assert is_feasible(ends[k, j], ends[k + 1, j], T[k], problem.displacements[k, j],
+                               problem.max_velocity[j], problem.law.slope[j])
         assert best <= T.sum() <= best + 2.0 * gap
