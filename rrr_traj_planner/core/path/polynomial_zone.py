@@ -47,7 +47,7 @@ ACROSS = np.array([[10.0, 5.0], [10.0, -15.0], [-20.0, 10.0]]) / 16.0
 LENGTH_TERMS = 30
 
 # Half turn below which a zone is taken to have this one [rad]: a straight zone has no length.
-LEAST_ANGLE = 1e-12
+LEAST_ANGLE = 1e-60
 
 INVERSIONS = 30
 LAST_STEP = 1e-5  # of the parameter, whose cube is what is left after it
