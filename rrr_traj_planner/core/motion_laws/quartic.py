@@ -24,8 +24,9 @@ from __future__ import annotations
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.transition_shape import TransitionShape
 
-PEAK_ACCELERATION = 1.5
-PEAK_JERK = 6.0
+# Of a transition of 1 rad/s in 1 s: velocity 3 s^2 - 2 s^3, at s = 1/2 and at the ends.
+PEAK_ACCELERATION = 1.5  # rad/s^2
+PEAK_JERK = 6.0          # rad/s^3
 
 
 def _acceleration(s: Array) -> Array:

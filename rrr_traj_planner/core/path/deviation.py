@@ -23,7 +23,7 @@ from rrr_traj_planner.core.arrays import Array, IntArray
 
 SAMPLES = 33        # on each half of a zone
 ZOOM_POINTS = 9     # each round narrows the bracket of the largest distance to a quarter
-ZOOM_ROUNDS = 8
+ZOOM_ROUNDS = 8      # to 1e-7 of the distance between two samples, whose error is its square
 
 
 def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s: Array,

@@ -49,6 +49,7 @@ LENGTH_TERMS = 30
 # Half turn below which a zone is taken to have this one [rad]: a straight zone has no length.
 LEAST_ANGLE = 1e-60
 
+# Halley steps from length to parameter at most; two are taken, for turns up to 179.9 degrees.
 INVERSIONS = 30
 LAST_STEP = 1e-5  # of the parameter, whose cube is what is left after it
 

@@ -38,13 +38,14 @@ from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.path.joint_path import LEAST_CLEARANCE
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
-STEPS_PER_PIECE = 24
+STEPS_PER_PIECE = 24  # of the first grid; intervals that may hide an excursion are halved,
+ROUNDS = 40           # at most so often,
+SHORTEST_STEP = 1e-9  # m, down to this
+
 # The tip may pass joint axis 1 no nearer than this: joint 1 would turn as good as at once.
 AXIS_CLEARANCE = 1e-6   # m
 FINEST = 1e-8           # m^2: no excursion larger than this is missed
 FINEST_ANGLE = 0.01 * JOINT_ROUNDING  # the same of a joint: none that later checks would find
-ROUNDS = 40
-SHORTEST_STEP = 1e-9    # m
 # A second derivative between two samples is taken to be no more than this times theirs.
 SAFETY = 2.0
 

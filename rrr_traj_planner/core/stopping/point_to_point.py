@@ -38,7 +38,7 @@ PEAK_VELOCITY, PEAK_ACCELERATION, PEAK_JERK = 15.0 / 8.0, 10.0 / 3.0 ** 0.5, 60.
 # the quickest is taken that asks hardly more than the gentlest.
 SLOWING, SLOWINGS, HARDLY_MORE = 1.2, 40, 1.1
 
-SAMPLES = 41
+SAMPLES = 41  # of a move, at which torques are compared
 
 
 class Move(NamedTuple):

@@ -50,7 +50,7 @@ from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory
 
-QUEUE_DEPTH = 10
+QUEUE_DEPTH = 10  # messages of each topic, ROS's usual depth
 
 WARNING_PERIOD = 1.0  # s between warnings of stops
 

@@ -70,7 +70,7 @@ class Row(NamedTuple):
         return f'in [{self.low:g}, {self.high:g}]' + (f' {self.unit}' if self.unit else '')
 
 
-MAX_SEED = 2 ** 31 - 1
+MAX_SEED = 2 ** 31 - 1  # of the noise: positive in 32 bits
 
 
 def _joint_limit(name: str, kind: str, values: tuple[Any, ...], unit: str, low: float,
