@@ -104,54 +104,91 @@ def minimise(problem: TimingProblem, start: Centre, durations: DurationConstrain
 
     """
     problem.begin(start.motion, durations)
-    at, count = problem.at, KERNELS.timing_constraint_count(problem.at)
-    iterate, slack = (problem.arrays.addresses[name] for name in ('variables', 'slack'))
-    cost = best_cost = KERNELS.timing_cost(at, iterate)
-    best, gap, centres = problem.arrays['variables'].copy(), math.inf, []
-    barrier = start.barrier or START * cost / count
-    if previous is None:
-        barrier = _first_barrier(problem, barrier)
-    else:
-        problem.shift(previous.limits)
-        _central(problem, barrier)
-    merits: list[float] = []  # at this barrier
-    log = math.nan            # the sum of the iterate's slacks' logarithms; not known yet
+    run = _Run(problem, start.barrier, previous)
     for _ in range(ITERATIONS):
         if should_stop():
             break
-        KERNELS.timing_linearise(at, barrier)
-        closing = problem.shifted
-        if math.isnan(log) and not closing:
-            log = KERNELS.timing_log_sum(at, slack)
-        found = best_step(problem, barrier, None if closing else cost - barrier * log)
-        if found is None:
+        run.iterate()
+        if run.ended or run.converged(least_barrier, relative_gap):
             break
+    return run.outcome()
+
+
+class _Run:
+    """The iterates of one problem, and the best motion so far."""
+
+    def __init__(self, problem: TimingProblem, barrier: float | None,
+                 previous: TimingProblem | None) -> None:
+        self._problem, self._at = problem, problem.at
+        self._count = KERNELS.timing_constraint_count(problem.at)
+        self._cost = self._best_cost = KERNELS.timing_cost(
+            problem.at, problem.arrays.addresses['variables'])
+        self._best, self._gap = problem.arrays['variables'].copy(), math.inf
+        self._centres: list[Centre] = []
+        self._barrier = barrier or START * self._cost / self._count
+        if previous is None:
+            self._barrier = _first_barrier(problem, self._barrier)
+        else:
+            problem.shift(previous.limits)
+            _central(problem, self._barrier)
+        self._merits: list[float] = []  # at this barrier
+        self._log = math.nan            # of the iterate's slacks, summed; not known yet
+        self._gain = math.inf           # of the merit function, as the last step promised
+        self._moved = True
+        self.ended = False
+
+    def iterate(self) -> None:
+        """Take one Newton step, as far as the line search allows; `ended` if there is none."""
+        problem, at = self._problem, self._at
+        KERNELS.timing_linearise(at, self._barrier)
+        closing = problem.shifted
+        if math.isnan(self._log) and not closing:
+            self._log = KERNELS.timing_log_sum(at, problem.arrays.addresses['slack'])
+        found = best_step(problem, self._barrier, None if closing else self._merit())
+        if found is None:
+            self.ended = True
+            return
         size, step = found.size, found.step
-        moved = size > 0.0
-        if closing and moved:
+        self._moved = size > 0.0
+        if closing and self._moved:
             KERNELS.timing_reduce_shifts(at, step.at, size, SMALL_SHIFT)
-        KERNELS.timing_accept(at, step.at, moved, barrier, TO_BOUNDARY, DUAL_CORRIDOR)
-        if moved:
-            cost, log = step.found.cost, math.nan if closing else step.found.log
-            if not problem.shifted and (closing or cost < best_cost):
-                best, best_cost = problem.arrays['variables'].copy(), cost
+        KERNELS.timing_accept(at, step.at, self._moved, self._barrier, TO_BOUNDARY, DUAL_CORRIDOR)
+        if self._moved:
+            self._cost, self._log = step.found.cost, math.nan if closing else step.found.log
+            if not problem.shifted and (closing or self._cost < self._best_cost):
+                self._best, self._best_cost = problem.arrays['variables'].copy(), self._cost
+        self._gain = step.found.gain
         if closing:
-            if not moved:
-                break
-            continue
-        merits.append(cost - barrier * log)
+            self.ended = not self._moved
+            return
+        self._merits.append(self._merit())
         # predicted decrease at this barrier, plus the duality gap of its centre
-        gap = min(gap, step.found.gain * (1.0 - 0.5 * size) + count * barrier)
-        stalled = not moved or len(merits) > PATIENCE and (
-            merits[-1 - PATIENCE] - merits[-1] < STALL * cost)
-        if stalled or step.found.gain < CENTRED * count * barrier:
-            centres.append(Centre(
-                problem.motion(problem.arrays['variables'].copy()), barrier))
-            if barrier <= least_barrier or count * barrier < relative_gap * cost:
-                break
-            barrier, merits = barrier * BARRIER_REDUCTION, []
-    return Outcome(problem.motion(best), gap, gap < CONVERGED * best_cost, centres,
-                   not problem.shifted)
+        self._gap = min(self._gap, self._gain * (1.0 - 0.5 * size) + self._count * self._barrier)
+
+    def converged(self, least_barrier: float, relative_gap: float) -> bool:
+        """Lower the barrier parameter at a centre; return whether the method has converged."""
+        if not self._merits:
+            return False
+        complementarity = self._count * self._barrier
+        stalled = not self._moved or len(self._merits) > PATIENCE and (
+            self._merits[-1 - PATIENCE] - self._merits[-1] < STALL * self._cost)
+        if not stalled and self._gain >= CENTRED * complementarity:
+            return False
+        self._centres.append(Centre(
+            self._problem.motion(self._problem.arrays['variables'].copy()), self._barrier))
+        if self._barrier <= least_barrier or complementarity < relative_gap * self._cost:
+            return True
+        self._barrier, self._merits = self._barrier * BARRIER_REDUCTION, []
+        return False
+
+    def outcome(self) -> Outcome:
+        """Return the best motion so far."""
+        return Outcome(self._problem.motion(self._best), self._gap,
+                       self._gap < CONVERGED * self._best_cost, self._centres,
+                       not self._problem.shifted)
+
+    def _merit(self) -> float:
+        return float(self._cost - self._barrier * self._log)
 
 
 def _central(problem: TimingProblem, barrier: float) -> None:
