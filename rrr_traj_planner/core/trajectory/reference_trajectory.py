@@ -22,6 +22,7 @@ from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.conversion import float_array
 from rrr_traj_planner.core.nanoseconds import nanoseconds, SECOND
 from rrr_traj_planner.core.states import Desired
+from rrr_traj_planner.core.trajectory.interpolation import polynomial
 from rrr_traj_planner.core.trajectory.quintic_cursor import QuinticCursor
 from rrr_traj_planner.core.trajectory.trajectory_points import (
     CommandedPoints,
@@ -173,14 +174,7 @@ class ReferenceTrajectory:
         i = np.clip(np.searchsorted(self.knots, t, side='right') - 1, 0,
                     len(self.coefficients) - 1)
         c, x = np.moveaxis(self.coefficients[i], -1, 0), (t - self.knots[i])[..., np.newaxis]
-        derivatives = []
-        for _ in range(4):
-            value = np.zeros(c.shape[1:])
-            for coefficient in c[::-1]:
-                value = value * x + coefficient
-            derivatives.append(value)
-            c = c[1:] * np.arange(1, len(c)).reshape((-1,) + (1,) * (c.ndim - 1))
-        q, qd, qdd, qddd = derivatives
+        q, qd, qdd, qddd = (polynomial(c, x, derivative) for derivative in range(4))
         return q, qd, qdd, qddd
 
     def states(self) -> tuple[Array, Array, Array]:
