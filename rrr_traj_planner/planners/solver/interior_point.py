@@ -26,7 +26,7 @@ problem nonconvex it is an estimate.
 
 When limits are tightened so that the last iterate violates them, the constraints are first shifted
 out to the previous limits, and the steps reduce the shifts to zero (shifted barriers: Freund,
-Mathematical Programming 51, 1991).
+Linear Algebra and its Applications 152, 1991).
 """
 
 from __future__ import annotations
