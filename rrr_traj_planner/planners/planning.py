@@ -103,11 +103,18 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
             answer = _planned_path(method.plan_path, model, limits, request, start)
         else:
             answer = _planned_joints(method, model, limits, request, start)
-    if start is not None and np.abs(answer.points.positions[0] - start).max() > JOINT_ROUNDING:
+    return answer if start is None else _from_exactly(start, answer, request.planner_id)
+
+
+def _from_exactly(start: Array, answer: Plan, planner_id: str) -> Plan:
+    """Return a plan with the start state as its first point, to the last bit."""
+    positions = answer.points.positions.copy()
+    if np.abs(positions[0] - start).max() > JOINT_ROUNDING:
         raise ConvergenceError(
-            f'planner {request.planner_id} began at {answer.points.positions[0].tolist()} rad, '
-            f'not at the start state {start.tolist()} rad')
-    return answer
+            f'planner {planner_id} began at {positions[0].tolist()} rad, not at the start state '
+            f'{start.tolist()} rad')
+    positions[0] = start
+    return replace(answer, points=replace(answer.points, positions=positions))
 
 
 def _planned_joints(method: Registered, model: RobotModel, limits: JointLimits,
