@@ -43,6 +43,9 @@ MIN_PERIOD, MAX_PERIOD = 0.001, 0.02
 
 QUEUE_DEPTH = 10  # messages of /clock, ROS's usual depth
 
+# States published at once after a delay, at most: half a second at 200 Hz, some 30 ms of work.
+MOST_STATES = 100
+
 
 class FollowedClock:
     """
@@ -56,7 +59,7 @@ class FollowedClock:
         The arm.
     publish : callable
         Publishes the arm's state; called at the first step at or after each instant of
-        publish_rate. If more are due at once than the topics' queues hold, only for the last ones.
+        publish_rate. If more than MOST_STATES are due at once, only for the last ones.
 
     """
 
@@ -105,9 +108,9 @@ class FollowedClock:
     def _advance(self, due: int) -> None:
         """Simulate up to a time of the arm's [ns], at most for `MAX_TICK`."""
         arm, step, begun = self._arm, self._arm.settings.step_ns, monotonic_ns()
-        queued = QUEUE_DEPTH * SECOND / self._states.rate  # ns, that the topics' queues hold
+        latest = MOST_STATES * SECOND / self._states.rate  # ns before the present
         while True:
-            if self._states.passed(arm.now) and due - arm.now < queued:
+            if self._states.passed(arm.now) and due - arm.now < latest:
                 self._publish()
             steps = min((due - arm.now) // step, _steps(arm, self._states.next), STEPS_PER_CHECK)
             if steps <= 0 or monotonic_ns() - begun > MAX_TICK:

@@ -21,6 +21,8 @@ from helpers.arm_in_ros import ALL, Arm, at, GOAL, rest_to_rest, SECOND, stamp
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Log
+from rclpy.clock import Clock as SteadyClock
+from rclpy.clock import ClockType
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool
 
@@ -179,3 +181,18 @@ def test_standing_clock_is_published_once(ros):
     arm.actual.wait_for(lambda m: stamp(m) == 100 * SECOND + SECOND // 10)
     stamps = [stamp(m) for m in arm.actual.messages]
     assert len(stamps) == len(set(stamps))
+
+
+def test_states_that_a_delay_has_made_due_are_all_published(ros):
+    now = [100 * SECOND]
+    publisher = ros.node.create_publisher(Clock, '/clock', 10)
+    ros.node.create_timer(0.01, lambda: publisher.publish(Clock(clock=Time(
+        sec=now[0] // SECOND, nanosec=now[0] % SECOND))), clock=SteadyClock(
+            clock_type=ClockType.STEADY_TIME))
+    arm = Arm(ros, use_sim_time=True)
+    since = now[0]
+    arm.actual.wait_for(lambda m: stamp(m) == since)
+    now[0] += 2 * SECOND // 5  # as if the arm's process had stood still for so long
+    arm.actual.wait_for(lambda m: stamp(m) == now[0])
+    assert np.diff([stamp(m) for m in arm.actual.messages if stamp(m) >= since]).tolist() == (
+        [5 * STEP] * 80)
