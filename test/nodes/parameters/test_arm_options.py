@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from helpers.arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, stamp, START
+from helpers.arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Log
@@ -154,8 +154,9 @@ def test_command_timeout_holds_what_was_reached(ros):
     arm = Arm(ros, **STRONG, **{'cmd_timeout': 0.1})
     log = ros.listen(Log, '/rosout', 100)
     arm.send(rest_to_rest(GOAL, 0.2))
-    log.wait_for(lambda m: m.msg == 'Aborted due to command timeout' and m.level == 30)
-    np.testing.assert_allclose(arm.desired.wait_for_next().position, GOAL, atol=1e-3)
+    told = log.wait_for(lambda m: m.msg == 'Aborted due to command timeout' and m.level == 30)
+    held = arm.desired.wait_for(lambda m: stamp(m) >= told.stamp.sec * SECOND + told.stamp.nanosec)
+    np.testing.assert_allclose(held.position, GOAL, atol=1e-3)
 
 
 def test_partial_goal_moves_its_joint_alone(ros):

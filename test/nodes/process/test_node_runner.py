@@ -52,7 +52,7 @@ def test_file_that_is_missing_stops_the_node():
 def test_signal_ends_a_running_arm_in_order(ros, number, arm):
     states = ros.listen(JointState, 'joint_states')
     process = arm_process('--ros-args', '--params-file', str(ROOT / 'config' / arm),
-                          '--log-level', 'warn')
+                          '--log-level', 'error')  # a busy machine is warned of
     try:
         assert states.wait_for().name == ['joint_1', 'joint_2', 'joint_3']
         process.send_signal(number)
