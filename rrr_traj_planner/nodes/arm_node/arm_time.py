@@ -41,7 +41,7 @@ MIN_RATE = 100.0
 # Bounds on the wall time between ticks if the arm is the clock [s].
 MIN_PERIOD, MAX_PERIOD = 0.001, 0.02
 
-QUEUE_DEPTH = 10  # messages of /clock, ROS's usual depth
+QUEUE_DEPTH = 10  # messages of each topic and of /clock, ROS's usual depth
 
 # States published at once after a delay, at most: half a second at 200 Hz, some 30 ms of work.
 MOST_STATES = 100

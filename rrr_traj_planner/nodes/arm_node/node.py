@@ -39,18 +39,17 @@ from rrr_traj_planner.nodes.arm_node.arm_messages import (
     incoming_trajectory,
     JointStateMessage,
 )
-from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, OwnClock
+from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, OwnClock, QUEUE_DEPTH
 from rrr_traj_planner.nodes.arm_node.arm_view import ArmView
 from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.table import ARM
+from rrr_traj_planner.nodes.process.node_construction import destroyed_on_error
 from rrr_traj_planner.nodes.process.node_start import NodeStart
-from rrr_traj_planner.nodes.process.service_node import destroyed_on_error, ServiceNode
+from rrr_traj_planner.nodes.process.service_node import ServiceNode
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory
-
-QUEUE_DEPTH = 10  # messages of each topic, ROS's usual depth
 
 WARNING_PERIOD = 1.0  # s between warnings of stops
 

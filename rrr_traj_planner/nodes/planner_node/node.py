@@ -42,8 +42,9 @@ from rrr_traj_planner.nodes.planner_node.planning_request import planning_reques
 from rrr_traj_planner.nodes.planner_node.request_statistics import RequestStatistics
 from rrr_traj_planner.nodes.planner_node.scheduler import Job
 from rrr_traj_planner.nodes.planner_node.worker_pool import WorkerPool
+from rrr_traj_planner.nodes.process.node_construction import destroyed_on_error
 from rrr_traj_planner.nodes.process.node_start import NodeStart
-from rrr_traj_planner.nodes.process.service_node import destroyed_on_error, ServiceNode
+from rrr_traj_planner.nodes.process.service_node import ServiceNode
 from rrr_traj_planner.planners.deadline import Deadline
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning import plan

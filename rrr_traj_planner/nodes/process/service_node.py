@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-Nodes whose services also answer clients that DDS has discovered only in part.
+A node whose services also answer clients that DDS has discovered only in part.
 
 A service is two DDS topics, discovered one by one: a request may arrive before the reader of its
 response is known. rmw_fastrtps and rmw_cyclonedds then wait 0.1 s and drop the response
@@ -23,8 +23,6 @@ response is known. rmw_fastrtps and rmw_cyclonedds then wait 0.1 s and drop the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import partial
 from typing import Any
 import warnings
@@ -86,21 +84,3 @@ class ServiceNode(Node):
             self._send(service, 2.0 * wait, response, header)
 
         timer = self.create_timer(wait, again, clock=Clock(clock_type=ClockType.STEADY_TIME))
-
-
-@contextmanager
-def destroyed_on_error(node: Node) -> Iterator[None]:
-    """
-    Destroy a node whose constructor fails: else others see it until Python's garbage collection.
-
-    Parameters
-    ----------
-    node : Node
-        The node, of which `Node`'s constructor has ended.
-
-    """
-    try:
-        yield
-    except BaseException:
-        Node.destroy_node(node)
-        raise
