@@ -29,6 +29,7 @@ from rclpy.parameter import Parameter
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
+from rrr_traj_planner.nodes.planner_node.scheduler import FIRST_LEVEL
 from rrr_traj_planner.planners.planning import plan as library_plan
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
@@ -48,7 +49,7 @@ def parameter(name, value):
     return ParameterMessage(name=name, value=Parameter(name, value=value).get_parameter_value())
 
 
-def test_all_requests_of_many_clients_are_answered_in_the_order_of_each(ros, planner):
+def test_short_requests_of_many_clients_are_answered_in_the_order_of_each(ros, planner):
     arrived, answers = Condition(), []
     for k in range(CLIENTS):
         node = ros.add(Node(f'client_{k}', context=ros.context))
@@ -57,15 +58,19 @@ def test_all_requests_of_many_clients_are_answered_in_the_order_of_each(ros, pla
         for i in range(REQUESTS):
             def note(future, k=k, i=i):
                 with arrived:
-                    answers.append((k, i, future.result().error_code))
+                    answers.append((k, i, future.result()))
                     arrived.notify_all()
 
             client.call_async(plan_request(NEAR)).add_done_callback(note)
     with arrived:
         assert arrived.wait_for(lambda: len(answers) == CLIENTS * REQUESTS, DEADLINE), answers
-    assert {code for *_, code in answers} == {CODES.SUCCESS}
+    assert {answer.error_code for *_, answer in answers} == {CODES.SUCCESS}
+    # A request that has taken longer, on a busy machine, rightly gives way to the others.
+    short = [(k, i) for k, i, answer in answers if answer.planning_time < FIRST_LEVEL]
+    assert len(short) > CLIENTS * REQUESTS // 2
     for k in range(CLIENTS):
-        assert [i for client, i, _ in answers if client == k] == list(range(REQUESTS))
+        order = [i for client, i in short if client == k]
+        assert order == sorted(order)
 
 
 def test_parameters_of_a_refused_whole_are_all_as_before(ros, planner):
