@@ -46,7 +46,7 @@ DEADLINE = 30.0
 
 FLOOD_SECONDS, FLOOD_RATE = 10.0, 1000.0
 
-# Shared memory of one participant; that of ports is used by others too, whatever their domain.
+# Shared memory that one participant writes; that of ports is used by all, whatever their domain.
 OF_ONE_PROCESS = re.compile('fastrtps_[0-9a-f]{16}(_el)?')
 
 # A planner that never ends, and says that it has begun.
@@ -99,6 +99,17 @@ def shared_memory(pid):
         with suppress(FileNotFoundError):  # closed meanwhile
             names.append(os.readlink(number))
     return {Path(name) for name in names if name.startswith('/dev/shm/')}
+
+
+def remove_unused(files):
+    """Remove what dead participants have left; a process also reads that of others, alive ones."""
+    used = set()
+    for place in Path('/proc').glob('[0-9]*'):
+        with suppress(OSError):  # ended meanwhile, or another user's
+            used |= shared_memory(place.name)
+    for file in files - used:
+        if OF_ONE_PROCESS.fullmatch(file.name):
+            file.unlink(missing_ok=True)
 
 
 # Killed
@@ -162,9 +173,7 @@ def test_what_killed_nodes_leave_in_shared_memory_keeps_none_from_starting(ros):
         assert plan(ros) == CODES.SUCCESS
         planner.process.send_signal(signal.SIGINT)
         assert planner.ended()[0] == 0
-    for file in left - shared_memory(os.getpid()):
-        if OF_ONE_PROCESS.fullmatch(file.name):
-            file.unlink(missing_ok=True)
+    remove_unused(left)
 
 
 # Floods
