@@ -172,8 +172,7 @@ def test_partial_goal_moves_its_joint_alone(ros):
 def test_end_with_a_velocity_is_braked_from_where_it_is_allowed(ros):
     arm = Arm(ros, allow_nonzero_velocity_at_trajectory_end=True)
     arm.send((1.5, GOAL, (0.1, 0.0, 0.0)))
-    arm.desired.wait_for(lambda m: m.position[0] > GOAL[0] and m.velocity[0] > 0.0)
-    rest = arm.desired.wait_for_next(lambda m: not np.any(m.velocity))
+    rest = arm.desired.wait_for(lambda m: m.position[0] > GOAL[0] and not np.any(m.velocity))
     assert 0.005 < rest.position[0] - GOAL[0] < 0.02  # v^2 / 2 a at least, at 1 rad/s^2
     np.testing.assert_array_equal(rest.position[1:], GOAL[1:])
     arm.actual.wait_for_next(at(rest.position))
