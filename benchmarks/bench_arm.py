@@ -27,7 +27,7 @@ from rrr_traj_planner.core.control.computed_torque import ControllerGains
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.core.simulation.encoder import EncoderSettings
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.planners.planning import plan
 from tasks import ARM, gentle, WEAK
 from tasks import table as thesis_table
@@ -41,8 +41,8 @@ def rows(repetitions: int = REPETITIONS) -> list[Row]:
     task = thesis_table('6.1', gentle(WEAK), '')
     points = plan(task.model, task.limits, task.request).points
     every = np.ones(len(points.times), bool)
-    motion = CommandedPoints(points.times, points.positions, points.velocities,
-                             points.accelerations, every, every)
+    motion = TrajectoryPoints(points.times, points.positions, points.velocities,
+                              points.accelerations, every, every)
     plain = ArmSettings(ARM, task.limits, ControllerGains(), STEP)
     real = replace(
         plain, payload=Payload(2.0), friction=Friction((5.0, 5.0, 5.0), (2.0, 2.0, 2.0)),

@@ -24,7 +24,7 @@ from copy import copy
 from measuring import in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
 from ros_processes import MISSING
-from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.planners.planning import plan
 from tasks import ARM, gentle, WEAK
 from tasks import table as thesis_table

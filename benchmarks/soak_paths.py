@@ -31,7 +31,7 @@ from path_tasks import KINDS, path_task, PLANNERS  # noqa: E402
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics  # noqa: E402
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian  # noqa: E402
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics  # noqa: E402
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant  # noqa: E402
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through  # noqa: E402
 from rrr_traj_planner.planners.plan import Plan  # noqa: E402
 from rrr_traj_planner.planners.planning import plan  # noqa: E402
 from soak_time_optimal import PERCENTILES, Result  # noqa: E402
@@ -169,7 +169,7 @@ def _samples_broken(task: Task, found: Plan) -> list[str]:
     times, limits = found.points.times, task.limits
     t = (times[:-1, np.newaxis] + np.diff(times)[:, np.newaxis]
          * np.arange(PER_SAMPLE) / PER_SAMPLE).ravel()
-    _, qd, qdd = Interpolant(found.points)(t)
+    _, qd, qdd, _ = spline_through(found.points).at(t)
     broken = []
     for name, x, bound in (('velocity', qd, limits.max_velocity),
                            ('acceleration', qdd, limits.max_acceleration)):

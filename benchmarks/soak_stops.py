@@ -39,7 +39,7 @@ from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
@@ -87,11 +87,11 @@ def random_plan(rng: np.random.Generator, planner_id: str):
             continue
 
 
-def points_of(answer) -> CommandedPoints:
+def points_of(answer) -> TrajectoryPoints:
     """Return a plan's points, as they arrive at the arm."""
     p = answer.points
     known = np.ones(len(p.times), dtype=bool)
-    return CommandedPoints(p.times, p.positions, p.velocities, p.accelerations, known, known)
+    return TrajectoryPoints(p.times, p.positions, p.velocities, p.accelerations, known, known)
 
 
 def motion_states(motion, arm: ControlledArm) -> np.ndarray:
@@ -146,7 +146,7 @@ class Judge:
         self.durations: list[float] = []
         self.measured: list[float] = []
 
-    def stop(self, label: str, points: CommandedPoints, limits: JointLimits,
+    def stop(self, label: str, points: TrajectoryPoints, limits: JointLimits,
              instant: float) -> None:
         """Follow a motion, stop it, and see."""
         arm = ControlledArm(ArmSettings(MODEL, limits, ControllerGains()), points.positions[0])

@@ -39,7 +39,7 @@ from rrr_traj_planner.core.errors import RrrPlannerError, UnreachableError
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import CartesianTask, JointTask, PlanningRequest
@@ -88,7 +88,8 @@ def values():
         ArmSettings(model, limits, ControllerGains(), friction=Friction(np.ones(3), np.ones(3)),
                     tolerances=Tolerances(np.ones(3), np.ones(3))),
         PlanningRequest(POINTS, np.ones(3), 'septic', [1.0, np.nan, 2.0], elbow='up'),
-        task, via_problem_of(task, SEPTIC), CommandedPoints([0, 1], q, zeros, zeros, flags, flags),
+        task, via_problem_of(task, SEPTIC),
+        TrajectoryPoints([0, 1], q, zeros, zeros, flags, flags),
         CartesianTask(model, limits, q, q[0], 'up', 0.05, np.inf, False, 0.01),
         Takeover(0.5, (0.1,) * 9, limits, model),
         *(plan_with(planner_id) for planner_id in planner_ids()))

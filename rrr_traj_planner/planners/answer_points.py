@@ -34,7 +34,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.trajectory.controller_spline import spline_excess, SplineExcess
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.sampling import (
     LEAST_GAP,
     NANOSECOND,
@@ -45,6 +45,7 @@ from rrr_traj_planner.core.trajectory.sampling import (
 )
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.planners.request import PlanningRequest
 
 ROUNDS = 40            # of slowing, at most
@@ -101,10 +102,10 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
     time_scale, gap = 1.0, LEAST_GAP * request.sample_period
     closest = min(gap, CLOSEST)
     for _ in range(ROUNDS):
-        spline, excess = _best_refined(model, limits, request, trajectory, gap)
+        points, excess = _best_refined(model, limits, request, trajectory, gap)
         factor = excess.slowing
         if factor <= 1.0:
-            return AnswerPoints(trajectory, spline.points, excess.effort, time_scale, _note(
+            return AnswerPoints(trajectory, points, excess.effort, time_scale, _note(
                 model, limits, request.sample_period, excess.jerk.max(axis=0), time_scale))
         cannot_be_slower = request.segment_durations is not None or np.isinf(
             time_scale_for_torque(model, limits, trajectory).value).any()
@@ -125,9 +126,9 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
 
 
 def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-                  trajectory: Trajectory, gap: float) -> tuple[Interpolant, SplineExcess]:
+                  trajectory: Trajectory, gap: float) -> tuple[TrajectoryPoints, SplineExcess]:
     """
-    Return quintics through points as close as necessary, and by how much they exceed limits.
+    Return points as close as necessary, and by how much quintics through them exceed limits.
 
     Where a limit is exceeded on one side of a step of acceleration, points are placed so that the
     quintic overshoots on the other side. If that exceeds it too, all overshoot before the step:
@@ -142,17 +143,18 @@ def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningReque
 
 def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, gap: float,
-             overshoot_before: bool) -> tuple[Interpolant, SplineExcess]:
+             overshoot_before: bool) -> tuple[TrajectoryPoints, SplineExcess]:
     """Return the same, for overshoot before steps only or on either side."""
     times = sample_times(trajectory, request.sample_period, request.max_points)
     while True:
         request.should_stop()
-        spline = Interpolant(points_at(trajectory, times))
+        points = points_at(trajectory, times)
         request.should_stop()
-        excess = spline_excess(model, limits, spline, request.should_stop)
+        excess = spline_excess(
+            model, limits, spline_through(points), request.should_stop)
         further = _between(limits, times, excess, trajectory.step_times, gap, overshoot_before)
         if not len(further) or len(times.stamps) + len(further) > request.max_points:
-            return spline, excess
+            return points, excess
         times = times.with_further(further)
 
 

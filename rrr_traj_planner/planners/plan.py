@@ -24,8 +24,8 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
-from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.trajectory.trajectory import Peaks, Trajectory
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.planners.columns import write_columns
 
 
@@ -74,7 +74,6 @@ class Plan(ReadOnlyArrays):
 
         """
         p = self.points
-        assert p.velocities is not None and p.accelerations is not None
         torque = inverse_dynamics(self.model, p.positions, p.velocities, p.accelerations)
         found = {'time [s]': p.times}
         for quantity, values in (

@@ -27,7 +27,7 @@ from rrr_traj_planner.core.arm.model import JOINT_NAMES, RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import ConvergenceError, RrrPlannerError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
 from rrr_traj_planner.nodes.planner_node.planning_answer import refusal, success
@@ -187,11 +187,10 @@ def assert_sound(request, response, config=CONFIG):
         motion.positions, motion.velocities, motion.accelerations))
     limits = config.limits.scaled(request.max_velocity_scaling_factor or 1.0,
                                   request.max_acceleration_scaling_factor or 1.0)
-    spline = Interpolant(motion)
-    velocity, acceleration = spline.peaks()
-    assert (velocity <= limits.max_velocity * (1.0 + INTERPOLATED)).all()
-    assert (acceleration <= limits.max_acceleration * (1.0 + INTERPOLATED)).all()
-    torque = np.abs(inverse_dynamics(config.model, *spline.within(np.linspace(0.0, 1.0, 9))))
+    q, qd, qdd = spline_through(motion).within(np.linspace(0.0, 1.0, 17))
+    assert (np.abs(qd) <= limits.max_velocity * (1.0 + INTERPOLATED)).all()
+    assert (np.abs(qdd) <= limits.max_acceleration * (1.0 + INTERPOLATED)).all()
+    torque = np.abs(inverse_dynamics(config.model, q, qd, qdd))
     assert (torque <= limits.max_effort * (1.0 + INTERPOLATED)).all()
     assert (torque <= np.array(response.peak_effort) * (1.0 + INTERPOLATED) + 1e-9).all()
     assert (np.array(response.peak_effort) <= limits.max_effort * (1.0 + 1e-6)).all()

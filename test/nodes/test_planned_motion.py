@@ -21,7 +21,8 @@ from helpers.scripts import Script, script
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.arm_node.arm_messages import nanoseconds
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
@@ -57,11 +58,11 @@ def test_arm_passes_every_via_point_on_its_time(ros):
     sign = np.sign(after.velocity[joint])
     begun = seconds(after) - np.interp(
         sign * after.position[joint], sign * rising, planned.times[:len(rising)])
-    driven = Interpolant(TrajectoryPoints(
+    driven = spline_through(TrajectoryPoints(
         np.array([seconds(s) for s in actual.messages]) - begun,
         np.array([s.position for s in actual.messages]),
         np.array([s.velocity for s in actual.messages])))
-    tip = forward_kinematics(RobotModel(), driven(np.array(response.via_times))[0])
+    tip = forward_kinematics(RobotModel(), driven.at(response.via_times)[0])
     assert np.linalg.norm(tip - points, axis=1).max() <= REACHED
     last = forward_kinematics(RobotModel(), np.array(desired.messages[-1].position))
     np.testing.assert_allclose(last, points[-1], atol=1e-9)

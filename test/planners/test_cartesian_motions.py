@@ -25,7 +25,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.postures import posture_of
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.planners.path_timing.planner import SMALLER, WORTH_IT
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
@@ -160,7 +160,7 @@ def test_quintic_through_the_points_keeps_velocity_acceleration_and_torque_limit
     m = measured(seed)
     times, limits = m.plan.points.times, m.case.limits
     t = (times[:-1, np.newaxis] + np.diff(times)[:, np.newaxis] * np.linspace(0, 1, 21)).ravel()
-    q, qd, qdd = Interpolant(m.plan.points)(t)
+    q, qd, qdd, _ = spline_through(m.plan.points).at(t)
     torque = inverse_dynamics(m.case.model, q, qd, qdd)
     assert (np.abs(torque).max(axis=0) <= limits.max_effort * (1.0 + BETWEEN_POINTS)).all()
     assert (np.abs(qd).max(axis=0) <= limits.max_velocity * (1.0 + BETWEEN_POINTS)).all()

@@ -42,11 +42,11 @@ from rrr_traj_planner.core.stopping.point_to_point import moved_on
 from rrr_traj_planner.core.stopping.stop import Stop, stop
 from rrr_traj_planner.core.stopping.task import from_state
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, leaves
-from rrr_traj_planner.core.trajectory.interpolation import hermite, polynomial
+from rrr_traj_planner.core.trajectory.quintic_spline import hermite, polynomial
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
 from rrr_traj_planner.core.trajectory.trajectory_points import (
-    CommandedPoints,
     segment_orders,
+    TrajectoryPoints,
     with_start_state,
 )
 
@@ -116,7 +116,7 @@ class Replacement(NamedTuple):
     holds: bool = False
 
 
-def replacement(takeover: Takeover, points: CommandedPoints, origin_ns: int,
+def replacement(takeover: Takeover, points: TrajectoryPoints, origin_ns: int,
                 least_lead: float) -> Replacement:
     """
     Return the reference trajectory from now on.
@@ -125,7 +125,7 @@ def replacement(takeover: Takeover, points: CommandedPoints, origin_ns: int,
     ----------
     takeover : Takeover
         The present state.
-    points : CommandedPoints
+    points : TrajectoryPoints
         The new trajectory.
     origin_ns : int
         Origin of the points' times [ns].
@@ -149,7 +149,7 @@ def replacement(takeover: Takeover, points: CommandedPoints, origin_ns: int,
     return Replacement(_joined(takeover, motion, i)) if i >= 0 else _gone_to(takeover, motion)
 
 
-def _lead_keeps_limits(takeover: Takeover, whole: CommandedPoints) -> bool:
+def _lead_keeps_limits(takeover: Takeover, whole: TrajectoryPoints) -> bool:
     """
     Return whether the segment from the command to the first point satisfies the limits.
 
@@ -166,7 +166,7 @@ def _lead_keeps_limits(takeover: Takeover, whole: CommandedPoints) -> bool:
     return bool(_within_limits(takeover, T, tuple(x[1:2] for x in ends))[0])
 
 
-def _is_on(takeover: Takeover, motion: ReferenceTrajectory, points: CommandedPoints) -> bool:
+def _is_on(takeover: Takeover, motion: ReferenceTrajectory, points: TrajectoryPoints) -> bool:
     """Return whether the command is on the motion now; on a line its velocity may differ."""
     state = motion.end_state if motion.end <= takeover.now else motion(takeover.now)
     gap = np.abs(np.subtract(state, takeover.command))

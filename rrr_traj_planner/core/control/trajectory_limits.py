@@ -32,7 +32,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, halved
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints, with_start_state
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints, with_start_state
 
 # Excesses up to these are not reported: relative to the larger of the range's end and 1 rad, since
 # positions may have been rounded to four digits; and relative to a limit, since quintics through
@@ -81,7 +81,7 @@ class Excess(NamedTuple):
                 + (HINT if self.in_degrees else ''))
 
 
-def excesses(points: CommandedPoints, limits: JointLimits, time: float = np.inf,
+def excesses(points: TrajectoryPoints, limits: JointLimits, time: float = np.inf,
              command: ArrayLike = ()) -> list[Excess]:
     """
     Return the excesses of a trajectory in position, velocity and acceleration.
@@ -93,7 +93,7 @@ def excesses(points: CommandedPoints, limits: JointLimits, time: float = np.inf,
 
     Parameters
     ----------
-    points : CommandedPoints
+    points : TrajectoryPoints
         The trajectory as it was received.
     limits : JointLimits
         Ranges and limits.
@@ -149,7 +149,7 @@ def outside_ranges(q: Array, limits: JointLimits) -> BoolArray:
     return np.asarray((q < low) | (q > high))
 
 
-def _lead_in_forms(points: CommandedPoints, time: float, command: ArrayLike) -> list[Array]:
+def _lead_in_forms(points: TrajectoryPoints, time: float, command: ArrayLike) -> list[Array]:
     """Return Bernstein coefficients of position and velocity on the segment that leads in."""
     if not time < points.times[0]:
         return [np.zeros((0, 3, 1))] * 3

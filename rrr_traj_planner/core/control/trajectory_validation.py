@@ -30,7 +30,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError, told_apart
 from rrr_traj_planner.core.nanoseconds import SECOND
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints, FLOAT_EPSILON
+from rrr_traj_planner.core.trajectory.trajectory_points import FLOAT_EPSILON, TrajectoryPoints
 
 # Largest value accepted [rad], [rad/s], [rad/s^2]: excludes overflow in later computations.
 LARGEST = 1e6
@@ -104,7 +104,7 @@ def check_trajectory(trajectory: IncomingTrajectory, joint_names: Sequence[str],
 
 
 def commanded_points(trajectory: IncomingTrajectory, joint_names: Sequence[str],
-                     held: Sequence[float] = (0.0, 0.0, 0.0)) -> CommandedPoints:
+                     held: Sequence[float] = (0.0, 0.0, 0.0)) -> TrajectoryPoints:
     """
     Return the points of an accepted trajectory, joints in the arm's order.
 
@@ -119,13 +119,13 @@ def commanded_points(trajectory: IncomingTrajectory, joint_names: Sequence[str],
 
     Returns
     -------
-    CommandedPoints
+    TrajectoryPoints
         Times from the trajectory's start [s].
 
     """
     columns = [list(joint_names).index(name) for name in trajectory.joint_names]
     points, still = trajectory.points, (0.0,) * len(joint_names)
-    return CommandedPoints(
+    return TrajectoryPoints(
         np.array([p.time / SECOND for p in points]),
         _rows([p.positions for p in points], columns, held),
         _rows([p.velocities for p in points], columns, still),

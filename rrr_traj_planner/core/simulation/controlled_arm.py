@@ -26,7 +26,7 @@ from rrr_traj_planner.core.states import Desired
 from rrr_traj_planner.core.stopping.stop import Stop, stop
 from rrr_traj_planner.core.stopping.task import MeasuredState, time_inside, what_moves
 from rrr_traj_planner.core.trajectory.reference_trajectory import holding, ReferenceTrajectory
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 OUTSIDE_NEW_RANGES = 'The motion leaves the new joint ranges: stopping'
 
@@ -111,13 +111,13 @@ class ControlledArm(ControlLoop):
         self.violation: tuple[str, ...] = ()
         self.torque = self.control(self.desired)
 
-    def follow(self, points: CommandedPoints, origin_ns: int) -> bool:
+    def follow(self, points: TrajectoryPoints, origin_ns: int) -> bool:
         """
         Follow a new trajectory, without a jump in the command.
 
         Parameters
         ----------
-        points : CommandedPoints
+        points : TrajectoryPoints
             The trajectory.
         origin_ns : int
             Origin of its times, on the arm's own clock [ns].

@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.stopping.joint_brake import joint_brake, JointBrake
 from rrr_traj_planner.core.stopping.task import POSITION_TOLERANCE, StopTask
-from rrr_traj_planner.core.trajectory.interpolation import hermite
+from rrr_traj_planner.core.trajectory.quintic_spline import hermite
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
 Indices = NDArray[np.int_]

@@ -28,7 +28,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
-from rrr_traj_planner.core.trajectory.interpolation import hermite
+from rrr_traj_planner.core.trajectory.quintic_spline import hermite
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
 # Peaks of the quintic over distance d and time T: 1.875 d/T, 5.7735 d/T^2, 60 d/T^3.

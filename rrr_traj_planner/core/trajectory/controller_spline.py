@@ -31,7 +31,7 @@ from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, through_samples
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.core.trajectory.quintic_spline import QuinticSpline
 from rrr_traj_planner.core.trajectory.torque import squared_time_scale
 
 # Tolerances promised are 0.1 % of a limit and 1e-6 rad of a range; the dense check may miss the
@@ -67,7 +67,7 @@ class SplineExcess(NamedTuple):
                    float(np.cbrt(outside / RANGE_TOLERANCE)))
 
 
-def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
+def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
                   should_stop: ShouldStop = never) -> SplineExcess:
     """
     Return by how much quintics through points exceed velocity, acceleration, torque and range.
@@ -78,7 +78,7 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
         The arm.
     limits : JointLimits
         Its limits.
-    spline : Interpolant
+    spline : QuinticSpline
         The quintics.
     should_stop : callable
         Called now and then for the exceptions it may raise; its result is ignored.
@@ -95,7 +95,7 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
     tau = inverse_dynamics(model, q, qd, qdd)
     effort = np.abs(tau).max(axis=(0, 1))
     should_stop()
-    forms = bernstein_forms(np.moveaxis(spline.coefficients, 0, -1), np.diff(spline.points.times))
+    forms = bernstein_forms(spline.coefficients, np.diff(spline.knots))
     bounds = [np.abs(form).max(axis=2) for form in forms[1:]]
     bounds.append(np.abs(through_samples(tau)).max(axis=0))
     doubtful = np.zeros(q.shape[1], dtype=bool)
@@ -116,7 +116,7 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: Interpolant,
     return found
 
 
-def _dense_check(model: RobotModel, limits: JointLimits, spline: Interpolant,
+def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
                  index: IntArray) -> tuple[Array, Array, Array, Array]:
     """Return time scale, distance outside, place and effort of some intervals, checked densely."""
     shares = np.linspace(0.0, 1.0, FINE_STEPS + 1)
@@ -130,7 +130,7 @@ def _dense_check(model: RobotModel, limits: JointLimits, spline: Interpolant,
     peaks = _between(ratios)
     factors = np.where(ratios > 1.0 + SPLINE_TOLERANCE, factors, np.where(
         peaks > 1.0 + SPLINE_TOLERANCE, np.sqrt(peaks), 1.0)).max(axis=(0, 3))
-    q = _at_reversals(q, qd, qdd, np.diff(spline.points.times)[index] / FINE_STEPS)
+    q = _at_reversals(q, qd, qdd, np.diff(spline.knots)[index] / FINE_STEPS)
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max(axis=(0, 2))
     return (factors.max(axis=0), np.where(outside > RANGE_TOLERANCE, outside, 0.0),
             shares[factors.argmax(axis=0)], _between(np.abs(tau)).max(axis=(0, 1)))

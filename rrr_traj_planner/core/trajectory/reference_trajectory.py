@@ -18,21 +18,15 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arrays import Array, finite_array
-from rrr_traj_planner.core.conversion import float_array
+from rrr_traj_planner.core.arrays import Array, bound_array, finite_array
 from rrr_traj_planner.core.nanoseconds import nanoseconds, SECOND
 from rrr_traj_planner.core.states import Desired
-from rrr_traj_planner.core.trajectory.interpolation import polynomial
 from rrr_traj_planner.core.trajectory.quintic_cursor import QuinticCursor
-from rrr_traj_planner.core.trajectory.trajectory_points import (
-    CommandedPoints,
-    FLOAT_EPSILON,
-    segment_coefficients,
-    segment_orders,
-)
+from rrr_traj_planner.core.trajectory.quintic_spline import QuinticSpline, spline_through
+from rrr_traj_planner.core.trajectory.trajectory_points import FLOAT_EPSILON, TrajectoryPoints
 
 
-class ReferenceTrajectory:
+class ReferenceTrajectory(QuinticSpline):
     """
     Piecewise polynomials in time.
 
@@ -67,7 +61,7 @@ class ReferenceTrajectory:
     def __init__(self, knots: Array, coefficients: Array, final: Array, origin_ns: int = 0,
                  final_velocity: Array | None = None,
                  final_acceleration: Array | None = None) -> None:
-        self.knots, self.coefficients, self.final = knots, coefficients, final
+        super().__init__(knots, coefficients, final)
         self.origin_ns = origin_ns
         self._knots_ns = [nanoseconds(knot) for knot in knots.tolist()]
         zero = np.zeros(3)
@@ -166,15 +160,9 @@ class ReferenceTrajectory:
             Position [rad], velocity [rad/s], acceleration [rad/s^2], jerk [rad/s^3].
 
         """
-        t = np.clip(float_array('t', t) - self.origin, self.knots[0], self.knots[-1])
+        q, qd, qdd, qddd = super().at(bound_array('t', t) - self.origin)
         if len(self.coefficients) == 0:
-            still = np.zeros(t.shape + (3,))
-            return (still + self.final, still + self.final_velocity,
-                    still + self.final_acceleration, still)
-        i = np.clip(np.searchsorted(self.knots, t, side='right') - 1, 0,
-                    len(self.coefficients) - 1)
-        c, x = np.moveaxis(self.coefficients[i], -1, 0), (t - self.knots[i])[..., np.newaxis]
-        q, qd, qdd, qddd = (polynomial(c, x, derivative) for derivative in range(4))
+            return q, qd + self.final_velocity, qdd + self.final_acceleration, qddd
         return q, qd, qdd, qddd
 
     def states(self) -> tuple[Array, Array, Array]:
@@ -193,13 +181,13 @@ class ReferenceTrajectory:
                 np.vstack((2.0 * c[:, :, 2], self.final_acceleration)))
 
 
-def through(points: CommandedPoints, origin_ns: int = 0) -> ReferenceTrajectory:
+def through(points: TrajectoryPoints, origin_ns: int = 0) -> ReferenceTrajectory:
     """
     Return the reference trajectory through points.
 
     Parameters
     ----------
-    points : CommandedPoints
+    points : TrajectoryPoints
         The points.
     origin_ns : int
         Origin of their times [ns].
@@ -210,11 +198,12 @@ def through(points: CommandedPoints, origin_ns: int = 0) -> ReferenceTrajectory:
         Lines, cubics and quintics between them.
 
     """
-    coefficients = segment_coefficients(points, segment_orders(points))
-    motion = ReferenceTrajectory(points.times, coefficients, points.positions[-1], origin_ns)
+    spline = spline_through(points)
+    motion = ReferenceTrajectory(spline.knots, spline.coefficients, spline.final, origin_ns)
     moving = np.abs(points.velocities[-1]) > FLOAT_EPSILON
     if moving.any():  # other joints are at rest, as if all were
-        acceleration = motion.at(motion.end)[2] if len(coefficients) else points.accelerations[-1]
+        acceleration = (motion.at(motion.end)[2] if len(motion.coefficients)
+                        else points.accelerations[-1])
         motion.arrive(np.where(moving, points.velocities[-1], 0.0),
                       np.where(moving, acceleration, 0.0))
     return motion

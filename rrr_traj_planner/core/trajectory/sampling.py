@@ -22,8 +22,8 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.scalars import positive, whole_number
-from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 NANOSECOND = 1e-9  # s
 

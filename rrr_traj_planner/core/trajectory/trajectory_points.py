@@ -12,42 +12,38 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""
-Points of a commanded trajectory, and the polynomials of joint_trajectory_controller between them.
-
-Two points are joined by a line, a cubic or a quintic, by the derivatives that both have.
-"""
+"""Points of a trajectory, as a trajectory_msgs/JointTrajectory carries them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
-from rrr_traj_planner.core.arrays import Array, finite_array, truth_array
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, truth_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
-from rrr_traj_planner.core.trajectory.interpolation import hermite
-
-ORDERS = (1, 3, 5)  # degrees of the polynomials
 
 # std::numeric_limits<float>::epsilon(): the controller treats smaller velocities as zero [rad/s].
 FLOAT_EPSILON = float(np.finfo(np.float32).eps)
 
 
 @dataclass(frozen=True, eq=False)
-class CommandedPoints(ReadOnlyArrays):
+class TrajectoryPoints(ReadOnlyArrays):
     """
-    Points of a commanded trajectory, each with or without velocity and acceleration.
+    Points of a trajectory, each with or without velocity and acceleration.
 
     Parameters
     ----------
     times : array_like, shape (n,)
         Strictly increasing [s].
-    positions, velocities, accelerations : array_like, shape (n, 3)
-        [rad], [rad/s], [rad/s^2]; zero where a point has none.
-    has_velocity, has_acceleration : array_like, shape (n,)
-        Whether a point has them.
+    positions : array_like, shape (n, 3)
+        [rad].
+    velocities, accelerations : array_like, shape (n, 3), optional
+        [rad/s], [rad/s^2]; zero where a point has none, and if left out.
+    has_velocity, has_acceleration : array_like of bool, shape (n,), optional
+        Whether a point has them; if left out, all points have what is given.
 
     Raises
     ------
@@ -58,31 +54,43 @@ class CommandedPoints(ReadOnlyArrays):
 
     times: Array
     positions: Array
-    velocities: Array
-    accelerations: Array
-    has_velocity: NDArray[np.bool_]
-    has_acceleration: NDArray[np.bool_]
+    velocities: Array = cast(Array, None)
+    accelerations: Array = cast(Array, None)
+    has_velocity: NDArray[np.bool_] = cast(NDArray[np.bool_], None)
+    has_acceleration: NDArray[np.bool_] = cast(NDArray[np.bool_], None)
 
     def __post_init__(self) -> None:
-        """Check shapes and order and make the arrays read-only."""
-        object.__setattr__(self, 'times', finite_array('times', self.times, (-1,)))
-        n = len(self.times)
-        if n == 0 or (np.diff(self.times) <= 0.0).any():
+        """Check shapes and order, fill in what is left out and make the arrays read-only."""
+        times = finite_array('times', self.times, (-1,))
+        n = len(times)
+        if n == 0 or (np.diff(times) <= 0.0).any():
             raise InvalidInputError('times must be strictly increasing, and at least one')
-        for name in ('positions', 'velocities', 'accelerations'):
-            object.__setattr__(self, name, finite_array(name, getattr(self, name), (n, 3)))
-        for name in ('has_velocity', 'has_acceleration'):
-            object.__setattr__(self, name, truth_array(name, getattr(self, name), (n,)))
+        fields: dict[str, NDArray[np.generic]] = {
+            'times': times, 'positions': finite_array('positions', self.positions, (n, 3))}
+        for name, known in (('velocities', 'has_velocity'), ('accelerations', 'has_acceleration')):
+            values, has = getattr(self, name), getattr(self, known)
+            fields[name] = (np.zeros((n, 3)) if values is None
+                            else finite_array(name, values, (n, 3)))
+            fields[known] = (np.full(n, values is not None) if has is None
+                             else truth_array(known, has, (n,)))
+        for name, array in fields.items():
+            object.__setattr__(self, name, array)
+        super().__post_init__()
+
+    @property
+    def duration(self) -> float:
+        """Time of the last point [s]."""
+        return float(self.times[-1])
 
 
-def with_start_state(points: CommandedPoints, time: float,
-                     state: tuple[Array, Array, Array]) -> CommandedPoints:
+def with_start_state(points: TrajectoryPoints, time: float,
+                     state: tuple[Array, Array, Array]) -> TrajectoryPoints:
     """
     Return points preceded by a state, from which a segment leads to the first one.
 
     Parameters
     ----------
-    points : CommandedPoints
+    points : TrajectoryPoints
         The points.
     time : float
         Time of the state, on the points' clock; before the first of them [s].
@@ -91,18 +99,18 @@ def with_start_state(points: CommandedPoints, time: float,
 
     Returns
     -------
-    CommandedPoints
+    TrajectoryPoints
         With one point more, which has velocity and acceleration.
 
     """
     q, qd, qdd = state
-    return CommandedPoints(
+    return TrajectoryPoints(
         np.append(time, points.times), np.vstack((q, points.positions)),
         np.vstack((qd, points.velocities)), np.vstack((qdd, points.accelerations)),
         np.append(True, points.has_velocity), np.append(True, points.has_acceleration))
 
 
-def segment_orders(points: CommandedPoints) -> NDArray[np.int_]:
+def segment_orders(points: TrajectoryPoints) -> IntArray:
     """
     Return the degree of the polynomial between each two points.
 
@@ -112,7 +120,7 @@ def segment_orders(points: CommandedPoints) -> NDArray[np.int_]:
 
     Parameters
     ----------
-    points : CommandedPoints
+    points : TrajectoryPoints
         The points.
 
     Returns
@@ -123,34 +131,5 @@ def segment_orders(points: CommandedPoints) -> NDArray[np.int_]:
     """
     velocity = points.has_velocity[:-1] & points.has_velocity[1:]
     acceleration = velocity & points.has_acceleration[:-1] & points.has_acceleration[1:]
-    orders: NDArray[np.int_] = 1 + 2 * velocity.astype(int) + 2 * acceleration.astype(int)
+    orders: IntArray = 1 + 2 * velocity.astype(int) + 2 * acceleration.astype(int)
     return orders
-
-
-def segment_coefficients(points: CommandedPoints, orders: NDArray[np.int_]) -> Array:
-    """
-    Return the polynomials between points.
-
-    Parameters
-    ----------
-    points : CommandedPoints
-        The points.
-    orders : ndarray of int, shape (n - 1,)
-        As from `segment_orders`.
-
-    Returns
-    -------
-    ndarray, shape (n - 1, 3, 6)
-        For each segment and joint, coefficients of 1, x, ..., x^5 with x the time since the
-        segment's start [s].
-
-    """
-    states = (points.positions, points.velocities, points.accelerations)
-    coefficients = np.zeros((len(orders), 3, 6))
-    T = np.diff(points.times)[:, np.newaxis]
-    for known, order in enumerate(ORDERS, start=1):
-        i = np.flatnonzero(orders == order)
-        polynomial = hermite(T[i], tuple(s[i] for s in states[:known]),
-                             tuple(s[i + 1] for s in states[:known]))
-        coefficients[i, :, :order + 1] = np.stack(polynomial, axis=-1)
-    return coefficients

@@ -30,7 +30,7 @@ from rclpy.time import Time
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.kinematics.postures import posture_of
-from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.demo.messages import plan_request, trajectory_points
 from rrr_traj_planner.nodes.demo.recording import demo_recorder
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig

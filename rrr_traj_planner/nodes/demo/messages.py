@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from geometry_msgs.msg import Pose, PoseArray
 import numpy as np
-from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.parameters.configuration_files import Task
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory

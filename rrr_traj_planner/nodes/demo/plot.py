@@ -30,7 +30,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.nodes.demo.client import Run
 
 COLOURS = ('#0072b2', '#d55e00', '#009e73')  # Okabe and Ito's: distinct for colour-blind people
@@ -77,8 +77,7 @@ def _profiles(figure: Any, run: Run) -> list[Any]:
     """Draw position, velocity, acceleration, jerk and torque over time, one above the other."""
     limits, names = run.config.limits, run.config.model.joint_names
     t = np.linspace(0.0, run.planned.duration, STEPS)
-    q, qd, qdd = Interpolant(run.planned)(t)
-    jerk = np.gradient(qdd, t, axis=0)
+    q, qd, qdd, jerk = spline_through(run.planned).at(t)
     torque = inverse_dynamics(run.config.model, q, qd, qdd)
     rows: list[tuple[str, Array, Array | None]] = [
         ('position [rad]', q, None), ('velocity [rad/s]', qd, limits.max_velocity),
@@ -130,8 +129,8 @@ def _cut_off(axes: Any, values: Array, limit: Array) -> None:
 def _space(axes: Any, run: Run) -> None:
     """Draw the tip's path, the via points and the arm at each of them."""
     model = run.config.model
-    q = Interpolant(run.planned)(np.linspace(0.0, run.planned.duration, STEPS))[0]
-    at_via = Interpolant(run.planned)(np.array(run.response.via_times))[0]
+    q = spline_through(run.planned).at(np.linspace(0.0, run.planned.duration, STEPS))[0]
+    at_via = spline_through(run.planned).at(np.array(run.response.via_times))[0]
     for i, pose in enumerate(at_via):
         axes.plot(*zip(*skeleton(run.config.model, pose)), color='0.65', linewidth=2.0, marker='o',
                   markersize=3, label='arm at via points' if i == 0 else None)
@@ -178,7 +177,7 @@ def _tracking(axes: Any, run: Run) -> None:
     """Draw the distance between planned and actual tip position over time."""
     t = run.recorded.times[(run.recorded.times >= 0.0)]
     driven = run.recorded.positions[run.recorded.times >= 0.0]
-    wanted = Interpolant(run.planned)(t)[0]
+    wanted = spline_through(run.planned).at(t)[0]
     error = np.linalg.norm(forward_kinematics(run.config.model, driven)
                            - forward_kinematics(run.config.model, wanted), axis=1)
     axes.plot(t, 1e6 * error, color='black', linewidth=1.0)

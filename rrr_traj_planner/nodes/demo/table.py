@@ -24,8 +24,8 @@ from rrr_traj_planner.core.errors import told_apart
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.core.path.deviation import distance_from_polyline
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.core.trajectory.limit_check import TOLERANCE
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.nodes.demo.client import Run
 from rrr_traj_planner.planners.registry import planner, Registered
 
@@ -219,7 +219,7 @@ def reached_errors(run: Run) -> list[float]:
         A distance for each via point.
 
     """
-    q = Interpolant(run.recorded)(np.array(run.response.via_times))[0]
+    q = spline_through(run.recorded).at(np.array(run.response.via_times))[0]
     tip = forward_kinematics(run.config.model, q)
     return [float(e) for e in np.linalg.norm(tip - run.task.via_points, axis=1)]
 

@@ -32,7 +32,7 @@ from rrr_traj_planner.core.errors import (
     UnreachableError,
 )
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.trajectory.interpolation import TrajectoryPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.planner_node.planning_request import FrameError
 from rrr_traj_planner.planners.plan import Plan

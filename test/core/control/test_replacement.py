@@ -27,7 +27,7 @@ from rrr_traj_planner.core.control.replacement import replacement, Takeover
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 LIMITS = JointLimits(max_effort=np.full(3, inf))
 NOW, LEAD = 50.0, 0.001
@@ -50,7 +50,7 @@ def smooth_points(start, duration=3.0, n=301):
     """Return points of a quintic from rest to rest."""
     s = np.linspace(0.0, 1.0, n)
     d = np.array([0.3, -0.4, 0.5])
-    return CommandedPoints(
+    return TrajectoryPoints(
         duration * s, start + np.outer(10 * s ** 3 - 15 * s ** 4 + 6 * s ** 5, d),
         np.outer(30 * s ** 2 - 60 * s ** 3 + 30 * s ** 4, d) / duration,
         np.outer(60 * s - 180 * s ** 2 + 120 * s ** 3, d) / duration ** 2,
@@ -58,13 +58,13 @@ def smooth_points(start, duration=3.0, n=301):
 
 
 def single(q, time):
-    return CommandedPoints([time], [q], *np.zeros((2, 1, 3)), [False], [False])
+    return TrajectoryPoints([time], [q], *np.zeros((2, 1, 3)), [False], [False])
 
 
 def positions_only(*timed):
     times, q = zip(*timed)
     n = len(times)
-    return CommandedPoints(times, q, *np.zeros((2, n, 3)), [False] * n, [False] * n)
+    return TrajectoryPoints(times, q, *np.zeros((2, n, 3)), [False] * n, [False] * n)
 
 
 def commands(motion, until):
@@ -100,11 +100,11 @@ def test_first_point_ahead_is_led_into_by_what_it_carries():
     ahead = Q + 0.1
     linear = replaced(takeover(MOVING, FAST), single(ahead, 1.0), NOW_NS, LEAD)
     np.testing.assert_allclose(linear(NOW + 0.5)[:3], Q + 0.05, atol=1e-12)
-    known = CommandedPoints([1.0], [ahead], *np.zeros((2, 1, 3)), [True], [True])
+    known = TrajectoryPoints([1.0], [ahead], *np.zeros((2, 1, 3)), [True], [True])
     quintic = replaced(takeover(MOVING, FAST), known, NOW_NS, LEAD)
     np.testing.assert_allclose(quintic(NOW), MOVING, atol=1e-12)
     np.testing.assert_allclose(quintic(NOW + 1.0 - 1e-12), (*ahead, *(0.0,) * 6), atol=1e-9)
-    cubic = replaced(takeover(MOVING, FAST), CommandedPoints(
+    cubic = replaced(takeover(MOVING, FAST), TrajectoryPoints(
         [1.0], [ahead], *np.zeros((2, 1, 3)), [True], [False]), NOW_NS, LEAD)
     np.testing.assert_allclose(cubic(NOW)[:6], MOVING[:6], atol=1e-12)
     np.testing.assert_allclose(cubic(NOW + 0.5)[:3], 0.5 * (Q + ahead) + np.array(
@@ -127,7 +127,7 @@ def test_join_is_the_earliest_within_limits():
     points = smooth_points(Q + 0.02)
     motion = replaced(takeover(), points, NOW_NS, LEAD)
     i = len(points.times) - len(motion.knots) + 1  # the point that is joined
-    early = CommandedPoints(*(getattr(points, f)[i - 1:] for f in (
+    early = TrajectoryPoints(*(getattr(points, f)[i - 1:] for f in (
         'times', 'positions', 'velocities', 'accelerations', 'has_velocity',
         'has_acceleration')))
     earlier = replaced(takeover(limits=FAST), early, NOW_NS, LEAD)  # led into
@@ -203,7 +203,7 @@ def test_line_that_would_step_too_fast_is_joined_within_the_limits():
 
 
 def test_single_point_ahead_that_is_too_far_is_reached_late():
-    known = CommandedPoints([0.1], [Q + 0.1], *np.zeros((2, 1, 3)), [True], [True])
+    known = TrajectoryPoints([0.1], [Q + 0.1], *np.zeros((2, 1, 3)), [True], [True])
     motion = replaced(takeover(), known, NOW_NS, LEAD)
     assert_smooth(REST, motion)
     # from rest to rest: sqrt(5.77 * 0.1 / 1), and at most the next time that is tried
@@ -216,8 +216,8 @@ def test_stream_of_moving_points_is_caught_up_with_within_the_limits():
     for step in range(150):  # 100 Hz, 0.3 rad/s from the first message on
         now = NOW + 0.01 * step
         leader = Q + 0.3 * 0.01 * step
-        point = CommandedPoints([0.05], [leader + 0.3 * 0.05], [np.full(3, 0.3)], np.zeros((1, 3)),
-                                [True], [True])
+        point = TrajectoryPoints(
+            [0.05], [leader + 0.3 * 0.05], [np.full(3, 0.3)], np.zeros((1, 3)), [True], [True])
         motion = replaced(Takeover(now, command, LIMITS, RobotModel()), point, nanoseconds(now),
                           LEAD)
         command = motion(now + 0.01)
@@ -264,7 +264,7 @@ def down_and_up(end, way, duration, n=201):
              -0.5 * way * w ** 2 * np.cos(w * t))
     states = np.tile(np.array([(0.0, 1.0, 0.2), (0.0,) * 3, (0.0,) * 3])[:, np.newaxis], (1, n, 1))
     states[..., 0] = first
-    return CommandedPoints(t, *states, np.full(n, True), np.full(n, True))
+    return TrajectoryPoints(t, *states, np.full(n, True), np.full(n, True))
 
 
 @pytest.mark.parametrize('end', [0.0, np.pi / 2])
@@ -315,7 +315,7 @@ def test_point_that_is_met_late_does_not_lead_the_arm_out_of_a_range(joint, end,
     q, qd = command[:3].copy(), np.zeros(3)
     q[joint], qd[joint] = end - side * before, side * speed
     # 0.3 rad in 0.1 s is too much; meanwhile the point would be so much further
-    motion, *told = replacement(takeover(tuple(command.tolist())), CommandedPoints(
+    motion, *told = replacement(takeover(tuple(command.tolist())), TrajectoryPoints(
         [0.1], [q], [qd], np.zeros((1, 3)), [True], [True]), NOW_NS, LEAD)
     states = commands(motion, motion.end + 0.1)[1]
     assert (side * (states[:, joint] - end)).max() <= 1e-4

@@ -21,7 +21,7 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.control.trajectory_limits import ACCURACY, excesses
 from rrr_traj_planner.core.trajectory.reference_trajectory import through
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 LIMITS = JointLimits()  # ranges [0, pi/2], [0, pi], [-pi, 2 pi]; 1 rad/s, 1 rad/s^2
 WIDE = JointLimits(max_velocity=[100.0] * 3, max_acceleration=[1000.0] * 3)
@@ -30,7 +30,7 @@ Q = np.array([0.5, 1.0, 0.2])
 
 
 def single(q, time=100.0):
-    return CommandedPoints([time], [q], *np.zeros((2, 1, 3)), [False], [False])
+    return TrajectoryPoints([time], [q], *np.zeros((2, 1, 3)), [False], [False])
 
 
 def two(start, end, T, v=0.0, a=0.0, order=5):
@@ -39,7 +39,7 @@ def two(start, end, T, v=0.0, a=0.0, order=5):
     q[:, 0] = start, end
     qd, qdd = np.zeros((2, 2, 3))
     qd[0, 0], qdd[0, 0] = v, a
-    return CommandedPoints([0.0, T], q, qd, qdd, [order > 1] * 2, [order > 3] * 2)
+    return TrajectoryPoints([0.0, T], q, qd, qdd, [order > 1] * 2, [order > 3] * 2)
 
 
 def texts(*arguments):
@@ -68,8 +68,8 @@ def test_degrees_are_asked_about_where_they_explain_the_numbers(q, hints):
 
 
 def test_all_numbers_of_a_joint_have_to_be_explained():
-    points = CommandedPoints([1.0, 2.0], [(34.0, 1.0, 0.2), (-34.0, 1.0, 0.2)],
-                             *np.zeros((2, 2, 3)), [False] * 2, [False] * 2)
+    points = TrajectoryPoints([1.0, 2.0], [(34.0, 1.0, 0.2), (-34.0, 1.0, 0.2)],
+                              *np.zeros((2, 2, 3)), [False] * 2, [False] * 2)
     assert not any(x.in_degrees for x in excesses(points, WIDE))
 
 
@@ -119,12 +119,12 @@ def test_segment_that_leads_in_is_looked_at_and_told_from_what_was_sent():
     assert [(x.quantity, x.leading_in) for x in outside] == [
         ('position', False), ('velocity', True)]
     # a cubic in t / T, fastest at its end
-    moving = CommandedPoints([0.3], [Q + (0.0, 0.0, 0.3)], [(0.0, 0.0, 3.0)], np.zeros((1, 3)),
-                             [True], [False])
+    moving = TrajectoryPoints([0.3], [Q + (0.0, 0.0, 0.3)], [(0.0, 0.0, 3.0)], np.zeros((1, 3)),
+                              [True], [False])
     assert [(x.value, x.leading_in) for x in excesses(moving, LIMITS, 0.0, command)] == [
         (3.0, False)]
     # 0.5 rad in 0.9 s take 10 / 3^(1/2) 0.5 / 0.9^2 = 3.6 rad/s^2, of which nothing is said
-    rest = CommandedPoints([0.95], [Q + (0.0, 0.0, 0.5)], *np.zeros((2, 1, 3)), [True], [True])
+    rest = TrajectoryPoints([0.95], [Q + (0.0, 0.0, 0.5)], *np.zeros((2, 1, 3)), [True], [True])
     assert excesses(rest, LIMITS, 0.0, command) == []
     assert excesses(single(Q + (0.0, 0.0, 0.5), 0.25), LIMITS, 0.3, command) == []  # it is past
 
@@ -134,8 +134,8 @@ def test_extremes_equal_those_of_dense_samples():
     for _ in range(30):
         n = int(rng.integers(2, 6))
         times = np.cumsum(rng.uniform(0.1, 1.0, n))
-        points = CommandedPoints(times, *rng.uniform(-1.0, 1.0, (3, n, 3)), rng.random(n) < 0.8,
-                                 rng.random(n) < 0.8)
+        points = TrajectoryPoints(times, *rng.uniform(-1.0, 1.0, (3, n, 3)), rng.random(n) < 0.8,
+                                  rng.random(n) < 0.8)
         motion = through(points)
         states = np.array([motion(t) for a, b in zip(times, times[1:])
                            for t in np.linspace(a, b - 2e-9, 1000)]).reshape(-1, 3, 3)
@@ -153,6 +153,6 @@ def test_extremes_equal_those_of_dense_samples():
 def test_many_points_take_no_time():
     s = np.linspace(0.0, 50.0, 5000)
     wave = np.sin(40.0 * s)[:, np.newaxis] * np.ones(3)
-    points = CommandedPoints(s, 1.0 + wave, np.cos(40.0 * s)[:, np.newaxis] * np.full(3, 40.0),
-                             -1600.0 * wave, np.ones(5000, bool), np.ones(5000, bool))
+    points = TrajectoryPoints(s, 1.0 + wave, np.cos(40.0 * s)[:, np.newaxis] * np.full(3, 40.0),
+                              -1600.0 * wave, np.ones(5000, bool), np.ones(5000, bool))
     assert [x.quantity for x in excesses(points, LIMITS)][:1] == ['position']

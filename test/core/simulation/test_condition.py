@@ -30,7 +30,7 @@ from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.condition import Condition, ConditionMonitor, SOUND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 MODEL, NAMES = RobotModel(), ('joint_1', 'joint_2', 'joint_3')
 SETTINGS = ArmSettings(MODEL, JointLimits(), ControllerGains())
@@ -40,7 +40,7 @@ Q = np.array([0.5, 1.1, 0.2])
 def quintic(start, end, duration, n=301):
     s = np.linspace(0.0, 1.0, n)
     d = np.subtract(end, start)
-    return CommandedPoints(
+    return TrajectoryPoints(
         duration * s, start + np.outer(10 * s ** 3 - 15 * s ** 4 + 6 * s ** 5, d),
         np.outer(30 * s ** 2 - 60 * s ** 3 + 30 * s ** 4, d) / duration,
         np.outer(60 * s - 180 * s ** 2 + 120 * s ** 3, d) / duration ** 2,

@@ -28,7 +28,7 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.core.trajectory.reference_trajectory import through
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 MODEL = RobotModel()
 SETTINGS = ArmSettings(MODEL, JointLimits(), ControllerGains())
@@ -38,7 +38,7 @@ Q = np.array([0.5, 1.1, 0.2])
 def quintic(start, end, duration, n=201):
     s = np.linspace(0.0, 1.0, n)
     d = np.subtract(end, start)
-    return CommandedPoints(
+    return TrajectoryPoints(
         duration * s, start + np.outer(10 * s ** 3 - 15 * s ** 4 + 6 * s ** 5, d),
         np.outer(30 * s ** 2 - 60 * s ** 3 + 30 * s ** 4, d) / duration,
         np.outer(60 * s - 180 * s ** 2 + 120 * s ** 3, d) / duration ** 2,
@@ -76,8 +76,8 @@ def test_arm_is_on_the_new_segment_exactly_at_every_point(step):
     arm.advance(137)
     n, slopes = 100, np.tile([0.1, -0.1], 50)[:, np.newaxis] * np.ones(3)
     q = Q + 0.01 * np.vstack((np.zeros(3), np.cumsum(slopes, axis=0)))
-    arm.follow(CommandedPoints(0.01 * np.arange(n + 1), q, *np.zeros((2, n + 1, 3)),
-                               *np.zeros((2, n + 1), dtype=bool)), arm.now)
+    arm.follow(TrajectoryPoints(0.01 * np.arange(n + 1), q, *np.zeros((2, n + 1, 3)),
+                                *np.zeros((2, n + 1), dtype=bool)), arm.now)
     for slope in slopes:
         np.testing.assert_allclose(arm.desired[3:6], slope, rtol=1e-9)
         arm.advance(round(0.01 / step))
@@ -86,8 +86,8 @@ def test_arm_is_on_the_new_segment_exactly_at_every_point(step):
 
 def test_acceleration_at_the_end_is_not_held():
     arm = ControlledArm(SETTINGS, Q)
-    arm.follow(CommandedPoints([1.0], [Q + 0.1], np.zeros((1, 3)), np.full((1, 3), -2.0),
-                               [True], [True]), 0)
+    arm.follow(TrajectoryPoints([1.0], [Q + 0.1], np.zeros((1, 3)), np.full((1, 3), -2.0),
+                                [True], [True]), 0)
     arm.advance(2000)
     # held, it would leave the arm 2 / 30^2 = 2.2 mrad off
     np.testing.assert_allclose(arm.state, (*(Q + 0.1), 0.0, 0.0, 0.0), atol=1e-6)
@@ -146,8 +146,8 @@ def test_hold_of_an_arm_that_was_sent_out_of_its_ranges_takes_the_torque_off_its
 
 def test_hold_of_an_arm_that_is_far_from_its_command_stops_it_where_it_is():
     arm = ControlledArm(replace(SETTINGS, limits=JointLimits(max_effort=(5.0, 200.0, 200.0))), Q)
-    arm.follow(CommandedPoints([0.0, 0.5, 1.0], [Q, Q + (0.4, 0.0, 0.0), Q + (0.8, 0.0, 0.0)],
-                               *np.zeros((2, 3, 3)), [False] * 3, [False] * 3), 0)
+    arm.follow(TrajectoryPoints([0.0, 0.5, 1.0], [Q, Q + (0.4, 0.0, 0.0), Q + (0.8, 0.0, 0.0)],
+                                *np.zeros((2, 3, 3)), [False] * 3, [False] * 3), 0)
     arm.advance(1000)
     where = arm.state[0]
     assert Q[0] + 0.8 - where > 0.3  # 5 N m are too weak for it
@@ -157,8 +157,8 @@ def test_hold_of_an_arm_that_is_far_from_its_command_stops_it_where_it_is():
 
 def test_end_with_a_velocity_is_braked_within_the_limits():
     arm = ControlledArm(SETTINGS, Q)
-    arm.follow(CommandedPoints([1.0], [Q + 0.15], [[0.3] * 3], np.zeros((1, 3)), [True],
-                               [True]), 0)
+    arm.follow(TrajectoryPoints([1.0], [Q + 0.15], [[0.3] * 3], np.zeros((1, 3)), [True],
+                                [True]), 0)
     velocities = []
     for _ in range(2000):
         arm.advance(1)
@@ -174,8 +174,8 @@ def test_end_with_a_velocity_is_braked_within_the_limits():
 def test_brake_at_the_end_does_not_depend_on_how_steps_are_counted(steps):
     arms = [ControlledArm(SETTINGS, Q) for _ in range(2)]
     for arm in arms:
-        arm.follow(CommandedPoints([1.0], [Q + 0.15], [[0.3] * 3], np.zeros((1, 3)), [True],
-                                   [True]), 0)
+        arm.follow(TrajectoryPoints([1.0], [Q + 0.15], [[0.3] * 3], np.zeros((1, 3)), [True],
+                                    [True]), 0)
     arms[0].advance(2002)
     arms[1].advance(steps)
     arms[1].advance(2002 - steps)
@@ -267,7 +267,7 @@ def end_of_the_trajectory(arm):
 
 def refused_join(arm):
     q = np.array(arm.desired[:3])
-    arm.follow(CommandedPoints([0.0], [q + (q - Q)], *np.zeros((2, 1, 3)), [True], [False]),
+    arm.follow(TrajectoryPoints([0.0], [q + (q - Q)], *np.zeros((2, 1, 3)), [True], [False]),
                arm.now)
 
 
@@ -281,8 +281,8 @@ def test_arm_at_a_stop_does_not_push_while_its_command_is_brought_back(means, jo
     q[:, joint] = end + np.sign(speed) * beyond - speed * np.array([T, 0.0])
     arm = ControlledArm(SETTINGS, q[0])
     arm.state = (*q[0], *qd[0])
-    arm.motion = through(CommandedPoints([0.0, T], q, qd, np.zeros((2, 3)),
-                                         *np.ones((2, 2), dtype=bool)))
+    arm.motion = through(TrajectoryPoints([0.0, T], q, qd, np.zeros((2, 3)),
+                                          *np.ones((2, 2), dtype=bool)))
     arm.advance(round(T / SETTINGS.step) - 1)
     command = q[1, joint] if means is end_of_the_trajectory else arm.desired[joint]
     means(arm)

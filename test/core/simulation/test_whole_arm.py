@@ -32,7 +32,7 @@ from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.core.simulation.encoder import EncoderSettings
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
-from rrr_traj_planner.core.trajectory.trajectory_points import CommandedPoints
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 MODEL = RobotModel()
 SETTINGS = ArmSettings(MODEL, JointLimits(max_effort=np.full(3, 400.0)), ControllerGains())
@@ -50,7 +50,7 @@ def arm_with(**changes):
 
 
 def line(end, duration):
-    return CommandedPoints([duration], [end], np.zeros((1, 3)), np.zeros((1, 3)), [True], [True])
+    return TrajectoryPoints([duration], [end], np.zeros((1, 3)), np.zeros((1, 3)), [True], [True])
 
 
 # Payload

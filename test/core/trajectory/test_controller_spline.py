@@ -26,7 +26,8 @@ from rrr_traj_planner.core.trajectory.controller_spline import (
     spline_excess,
     SPLINE_TOLERANCE,
 )
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 ARM = RobotModel()
 NONE = np.full(3, np.inf)
@@ -39,7 +40,7 @@ FROM, TO = np.array([0.3, 1.2, 0.1]), np.array([1.1, 0.7, 0.4])
 def there():
     """Return points at rest: quintics from rest to rest over 2 s, and two that stand still."""
     rest = np.zeros((4, 3))
-    return Interpolant(TrajectoryPoints(TIMES, [FROM, FROM, TO, TO], rest, rest))
+    return spline_through(TrajectoryPoints(TIMES, [FROM, FROM, TO, TO], rest, rest))
 
 
 def from_rest_to_rest(x):
@@ -79,8 +80,8 @@ def test_no_peak_between_the_coarse_samples_is_missed(joint):
             0.97, 1.03, 5)
         q[1:, joint], v[:, joint], a[:2, joint] = mean, (v0, v1, v1), (a0, a1)
         a[2] = 1000.0
-        spline = Interpolant(TrajectoryPoints([0.0, 1.0, 1.02], q, v, a))
-        velocity = np.polynomial.Polynomial(spline.coefficients[:, 0, joint]).deriv()
+        spline = spline_through(TrajectoryPoints([0.0, 1.0, 1.02], q, v, a))
+        velocity = np.polynomial.Polynomial(spline.coefficients[0, joint]).deriv()
         stationary = [x.real for x in velocity.deriv().roots()
                       if abs(x.imag) < 1e-12 and 0.0 < x.real < 1.0]
         peak = np.abs(velocity(np.array([0.0, 1.0, *stationary]))).max()
@@ -110,7 +111,7 @@ def test_largest_torque_between_dense_samples_is_told_and_slowed(seed):
     q[1, 0] += step
     inertia = PinocchioArm(ARM).inertia_matrix(FROM)[0, 0]
     largest = inertia * step / duration ** 2 * 10.0 / np.sqrt(3.0)
-    spline = Interpolant(TrajectoryPoints([0.0, duration], q, rest, rest))
+    spline = spline_through(TrajectoryPoints([0.0, duration], q, rest, rest))
     for over in (1.0 + 7e-4, 1.0 + 9e-4):  # on either side of SPLINE_TOLERANCE
         bound = np.array([largest / over, np.inf, np.inf])
         found = spline_excess(ARM, replace(WIDE, max_effort=bound), spline)
@@ -147,7 +148,7 @@ def test_what_leaves_a_range_is_told():
     x = np.linspace(0.0, 1.0, 100_001)
     beyond = 0.5 * (x - 10.0 * x ** 3 + 15.0 * x ** 4 - 6.0 * x ** 5).max()
     found = spline_excess(ARM, replace(WIDE, max_position=np.zeros(3)),
-                          Interpolant(TrajectoryPoints([0.0, 0.5], zero, v, zero)))
+                          spline_through(TrajectoryPoints([0.0, 0.5], zero, v, zero)))
     assert found.outside == pytest.approx([beyond], rel=1e-2)
     assert found.time_scale.tolist() == [1.0]  # no slower motion would stay within
 
@@ -162,7 +163,7 @@ def test_how_far_a_joint_turns_back_outside_its_range_is_told_to_a_nanorad(side)
         beyond = 3e-6
         limits = replace(WIDE, max_position=[1.0, -beyond if side > 0.0 else 99.0, 1.0],
                          min_position=[-1.0, beyond if side < 0.0 else -99.0, -1.0])
-        found = spline_excess(ARM, limits, Interpolant(TrajectoryPoints([0.0, T], *states)))
+        found = spline_excess(ARM, limits, spline_through(TrajectoryPoints([0.0, T], *states)))
         assert found.outside == pytest.approx([beyond], abs=1e-9)
         assert found.time_scale.tolist() == [1.0]
 
@@ -173,7 +174,7 @@ def test_a_range_is_left_by_the_cube_of_the_time_between_points():
         j, h = 10.0, 0.5 * T
         end = [j * h ** 3, j * h ** 2, 0.0]
         states = [np.array([[0.0] * 3, [x, 0.0, 0.0]]) for x in end]
-        q = Interpolant(TrajectoryPoints([0.0, T], *states))(h)[0][0]
+        q = spline_through(TrajectoryPoints([0.0, T], *states)).at(h)[0][0]
         return abs(q - j * h ** 3 / 6.0)
 
     assert excess(0.2) == pytest.approx(8.0 * excess(0.1), rel=1e-9)
@@ -190,7 +191,7 @@ def test_peak_jerk_is_exact():
     rng = np.random.default_rng(8)
     for _ in range(20):
         states = rng.uniform(-1.0, 1.0, (3, 2, 3))
-        spline = Interpolant(TrajectoryPoints([0.0, 0.7], *states))
+        spline = spline_through(TrajectoryPoints([0.0, 0.7], *states))
         t = np.linspace(0.0, 0.7, 4001)
-        dense = np.abs(np.gradient(spline(t)[2], t, axis=0, edge_order=2)).max(axis=0)
+        dense = np.abs(np.gradient(spline.at(t)[2], t, axis=0, edge_order=2)).max(axis=0)
         assert spline.peak_jerks()[0] == pytest.approx(dense, rel=1e-4)

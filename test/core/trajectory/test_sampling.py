@@ -19,8 +19,8 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.sampling import sample, sample_times
 
 # Times are rounded to whole nanoseconds, by half of one at most.
@@ -142,9 +142,9 @@ def test_rounding_of_times_puts_no_acceleration_into_a_controller_s_quintic(peri
     # the two not rounded together, the quintic between them would need 0.003 to 0.3 rad/s^2.
     regular = 1.5 - 1.5 % period
     trajectory = cruising(round(regular + 0.1001 * period, 9) + 0.4999e-9)
-    quintic = Interpolant(sample(trajectory, period))
+    quintic = spline_through(sample(trajectory, period))
     t = np.linspace(regular - 8.0 * period, regular + 8.0 * period, 16001)
-    assert np.abs(quintic(t)[2]).max() <= 1e-4
+    assert np.abs(quintic.at(t)[2]).max() <= 1e-4
 
 
 @pytest.mark.parametrize('seed', range(40))
@@ -154,10 +154,10 @@ def test_quintic_through_the_points_stays_within_the_motion_s_peaks(seed):
     trajectory = random_trajectory(rng, duration=rng.uniform(3.0, 6.0))
     shortest = min(p.pieces.duration.min() for p in trajectory.profiles)
     points = sample(trajectory, min(0.01, shortest / 10.0))
-    quintic = Interpolant(points)
+    quintic = spline_through(points)
     peaks = trajectory.peaks()
     t = np.linspace(0.0, trajectory.duration, 20 * len(points.times))
-    q, qd, qdd = quintic(t)
+    q, qd, qdd, _ = quintic.at(t)
     assert (np.abs(qd).max(axis=0) <= peaks.velocity * 1.001).all()
     assert (np.abs(qdd).max(axis=0) <= peaks.acceleration * 1.001).all()
     assert q == pytest.approx(trajectory(t)[0], abs=1e-6)

@@ -23,7 +23,8 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant, TrajectoryPoints
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.demo.client import Run
 from rrr_traj_planner.nodes.demo.plot import draw
 from rrr_traj_planner.nodes.demo.table import figures, table
@@ -44,7 +45,7 @@ def driven(task, off=0.0, **parameters):
         **parameters})
     found = plan(config.model, config.limits, PlanningRequest(task.via_points))
     t = np.linspace(-BEFORE, found.points.duration + AFTER, STATES)
-    q, qd, qdd = Interpolant(found.points)(t)
+    q, qd, qdd, _ = spline_through(found.points).at(t)
     torque = inverse_dynamics(config.model, q, qd, qdd)
     q = q + (off, 0.0, 0.0)
     return Run(task, config, success(found, config), found.points,

@@ -39,7 +39,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import (
 )
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, TimingError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.trajectory.interpolation import Interpolant
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.planners.methods import time_optimal
 from rrr_traj_planner.planners.planning import plan
@@ -331,7 +331,7 @@ def test_quintic_through_the_points_keeps_velocity_and_acceleration_limits():
         times = m.plan.points.times
         t = (times[:-1, np.newaxis] + np.diff(times)[:, np.newaxis] * np.linspace(
             0.0, 1.0, 21)).ravel()
-        _, qd, qdd = Interpolant(m.plan.points)(t)
+        _, qd, qdd, _ = spline_through(m.plan.points).at(t)
         room = 1.0 + BETWEEN_POINTS
         return max((np.abs(qd).max(axis=0) - room * m.task.limits.max_velocity).max(),
                    (np.abs(qdd).max(axis=0) - room * m.task.limits.max_acceleration).max())
@@ -699,7 +699,7 @@ def test_a_motion_that_hurries_past_a_pose_has_closer_points_instead_of_being_sl
     assert np.isinf(time_scale_for_torque(ARM, limits, found.trajectory).value[2])
     assert np.diff(found.points.times).min() <= 0.0055 and 'slower' not in found.note
     t = np.linspace(0.0, found.points.times[-1], 20_001)
-    q, qd, qdd = Interpolant(found.points)(t)
+    q, qd, qdd, _ = spline_through(found.points).at(t)
     assert (np.abs(qd) <= limits.max_velocity * (1.0 + BETWEEN_POINTS)).all()
     assert (np.abs(qdd) <= limits.max_acceleration * (1.0 + BETWEEN_POINTS)).all()
     assert (found.effort <= limits.max_effort * (1.0 + LIMIT_ROOM)).all()

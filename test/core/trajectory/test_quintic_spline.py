@@ -17,8 +17,9 @@
 import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.trajectory.interpolation import hermite, Interpolant, TrajectoryPoints
-from scipy.interpolate import BPoly, CubicHermiteSpline, PPoly
+from rrr_traj_planner.core.trajectory.quintic_spline import hermite, spline_through
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
+from scipy.interpolate import BPoly, CubicHermiteSpline
 
 # Relative to values that grow with the inverse square of segments of a tenth of a second.
 ROUNDING = 1e-9
@@ -41,7 +42,7 @@ def times_over(times, n=500):
 def test_positions_alone_are_joined_by_lines(seed):
     times, positions, _, _ = random_points(seed)
     t = times_over(times)
-    q, qd, qdd = Interpolant(TrajectoryPoints(times, positions))(t)
+    q, qd, qdd, _ = spline_through(TrajectoryPoints(times, positions)).at(t)
     slopes = np.diff(positions, axis=0) / np.diff(times)[:, np.newaxis]
     for j in range(3):
         assert q[:, j] == pytest.approx(np.interp(t, times, positions[:, j]), abs=1e-12)
@@ -55,7 +56,8 @@ def test_positions_and_velocities_are_joined_by_cubics(seed):
     times, positions, velocities, _ = random_points(seed)
     t = times_over(times)
     spline = CubicHermiteSpline(times, positions, velocities)
-    for order, values in enumerate(Interpolant(TrajectoryPoints(times, positions, velocities))(t)):
+    points = TrajectoryPoints(times, positions, velocities)
+    for order, values in enumerate(spline_through(points).at(t)):
         assert values == pytest.approx(spline(t, order), rel=ROUNDING, abs=ROUNDING)
 
 
@@ -64,43 +66,44 @@ def test_positions_velocities_and_accelerations_are_joined_by_quintics(seed):
     times, *states = random_points(seed)
     t = times_over(times)
     quintic = BPoly.from_derivatives(times, np.stack(states, axis=1))
-    for order, values in enumerate(Interpolant(TrajectoryPoints(times, *states))(t)):
+    for order, values in enumerate(spline_through(TrajectoryPoints(times, *states)).at(t)):
         assert values == pytest.approx(quintic(t, order), rel=ROUNDING, abs=ROUNDING * 10)
 
 
 def test_quintic_meets_every_state_at_the_points():
     times, *states = random_points(7)
-    for values, expected in zip(Interpolant(TrajectoryPoints(times, *states))(times), states):
+    spline = spline_through(TrajectoryPoints(times, *states))
+    for values, expected in zip(spline.at(times), states):
         assert values == pytest.approx(expected, abs=1e-9)
 
 
 def test_accelerations_without_velocities_are_of_no_use():
     times, positions, _, accelerations = random_points(8)
     t = times_over(times)
-    with_them = Interpolant(TrajectoryPoints(times, positions, None, accelerations))(t)
-    without = Interpolant(TrajectoryPoints(times, positions))(t)
+    with_them = spline_through(TrajectoryPoints(times, positions, None, accelerations)).at(t)
+    without = spline_through(TrajectoryPoints(times, positions)).at(t)
     for a, b in zip(with_them, without):
         assert (a == b).all()
 
 
-def test_ends_are_held_outside_the_motion():
+def test_the_end_states_apply_outside_the_motion():
     times, *states = random_points(9)
     outside = np.array([times[0] - 5.0, times[0] - 1e-9, times[-1] + 1e-9, times[-1] + 5.0])
-    q, qd, qdd = Interpolant(TrajectoryPoints(times, *states))(outside)
+    q, qd, qdd, _ = spline_through(TrajectoryPoints(times, *states)).at(outside)
     assert q == pytest.approx(states[0][[0, 0, -1, -1]], abs=1e-9)
-    assert (qd == 0.0).all()
-    assert (qdd == 0.0).all()
+    assert qd == pytest.approx(states[1][[0, 0, -1, -1]], abs=1e-9)
+    assert qdd == pytest.approx(states[2][[0, 0, -1, -1]], abs=1e-8)
 
 
 @pytest.mark.parametrize('states', [1, 2, 3])
 def test_a_single_point_is_a_place_to_rest(states):
     values = [np.array([[1.0, 2.0, 3.0]])] * states
-    still = Interpolant(TrajectoryPoints([0.5], *values))
-    q, qd, qdd = still(np.array([0.0, 0.5, 1.0]))
+    still = spline_through(TrajectoryPoints([0.5], *values))
+    q, qd, qdd, qddd = still.at(np.array([0.0, 0.5, 1.0]))
     assert q.tolist() == [[1.0, 2.0, 3.0]] * 3
     assert (qd == 0.0).all()
     assert (qdd == 0.0).all()
-    assert [peak.tolist() for peak in still.peaks()] == [[0.0] * 3] * 2
+    assert (qddd == 0.0).all()
 
 
 @pytest.mark.parametrize('degree', [1, 3, 5])
@@ -112,27 +115,6 @@ def test_hermite_gives_back_the_polynomial_that_the_states_are_taken_from(degree
         states = [exact.deriv(k) if k else exact for k in range((degree + 1) // 2)]
         start, end = (tuple(np.array(f(x)) for f in states) for x in (0.0, T))
         assert hermite(T, start, end) == pytest.approx(exact.coef, rel=1e-9, abs=1e-7)
-
-
-def test_peaks_of_a_cubic_are_exact_where_a_hand_calculation_gives_them():
-    # From rest to rest over 2 rad in 2 s: 1.5 rad/s half-way, 3 rad/s^2 at both ends.
-    points = TrajectoryPoints([0.0, 2.0], [[0.0] * 3, [2.0, -2.0, 0.0]], np.zeros((2, 3)))
-    velocity, acceleration = Interpolant(points).peaks()
-    assert velocity == pytest.approx([1.5, 1.5, 0.0], abs=1e-15)
-    assert acceleration == pytest.approx([3.0, 3.0, 0.0], abs=1e-15)
-
-
-def test_peaks_are_those_of_scipy_s_quintic():
-    times, *states = random_points(10)
-    quintic = BPoly.from_derivatives(times, np.stack(states, axis=1))
-    grid = np.concatenate([np.linspace(a, b, 9) for a, b in zip(times[:-1], times[1:])])
-    velocity, acceleration = Interpolant(TrajectoryPoints(times, *states)).peaks(per_segment=8)
-    assert velocity == pytest.approx(np.abs(quintic(grid, 1)).max(axis=0), rel=ROUNDING)
-    jerks = [PPoly.from_bernstein_basis(BPoly(quintic.c[..., j], times)).derivative(3)
-             for j in range(3)]
-    turns = [np.concatenate((jerk.roots(extrapolate=False), times)) for jerk in jerks]
-    exact = [np.nanmax(np.abs(quintic(t, 2)[:, j])) for j, t in enumerate(turns)]
-    assert acceleration == pytest.approx(exact, rel=1e-9)
 
 
 def test_points_are_read_only_copies_and_know_their_duration():
