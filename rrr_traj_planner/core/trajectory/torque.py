@@ -272,13 +272,35 @@ def _torques(model: RobotModel, q: Array, qd: Array, qdd: Array) -> tuple[Array,
 
 
 def _squared_scaling(limits: JointLimits, gravity: Array, torque: Array) -> Array:
-    """Return the square of the time-scaling factor at which torques are within their limits."""
-    motion = torque - gravity
-    margin = limits.max_effort - np.sign(motion) * gravity
+    """Return the same, from the torques of gravity and of the motion."""
     holds = np.abs(gravity) <= limits.max_effort * (1.0 + TORQUE_TOLERANCE)
+    return np.where(holds, squared_scaling(limits.max_effort, gravity, torque), np.inf)
+
+
+def squared_scaling(max_effort: Array, gravity: Array, torque: Array) -> Array:
+    """
+    Return the square of the least time-scaling factor at which torques are within their limits.
+
+    It bounds the torque in the direction of the part that is not gravity, the only part that time
+    scaling changes.
+
+    Parameters
+    ----------
+    max_effort : ndarray, shape (..., 3)
+        Limits on magnitudes, infinite where there is none [N m].
+    gravity, torque : ndarray, shape (..., 3)
+        Of gravity alone, and of the motion [N m].
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Infinite where no factor is large enough.
+
+    """
+    motion = torque - gravity
+    margin = max_effort - np.sign(motion) * gravity
     with np.errstate(divide='ignore', invalid='ignore'):
-        factor = np.where(holds & (margin > 0.0), np.abs(motion) / margin, np.inf)
-    return np.where(np.isinf(limits.max_effort), 0.0, factor)
+        return np.where(margin > 0.0, np.abs(motion) / margin, np.inf)
 
 
 def torque_grid(trajectory: Trajectory) -> Array:

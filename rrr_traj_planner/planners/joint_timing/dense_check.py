@@ -23,6 +23,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.motion_laws.ramps import RampShape
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
+from rrr_traj_planner.core.trajectory.torque import squared_scaling
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
@@ -85,12 +86,7 @@ class DenseCheck:
         if tau is None or (np.abs(tau) <= limits.max_effort * (1.0 + ROUNDING)).all():
             return factor
         gravity = gravity_torque(self._task.model, self.q)
-        motion = tau - gravity
-        margin = limits.max_effort - np.sign(motion) * gravity
-        with np.errstate(divide='ignore', invalid='ignore'):
-            share = np.where(margin > 0.0, np.abs(motion) / margin, np.inf)
-        by_torque = np.where(np.isinf(limits.max_effort), 0.0, share).max()
-        return float(max(factor, np.sqrt(by_torque)))
+        return float(max(factor, np.sqrt(squared_scaling(limits.max_effort, gravity, tau).max())))
 
     @cached_property
     def beyond_range(self) -> Array:

@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.ramps import RampShape
+from rrr_traj_planner.core.trajectory.torque import squared_scaling
 from rrr_traj_planner.planners.joint_timing.dense_check import ROUNDING
 from rrr_traj_planner.planners.path_timing.constraints import (
     ACCELERATION,
@@ -116,11 +117,7 @@ def least_time_scale(terms: PathTerms, at: Progress, bounds: Array) -> float:
     """
     x = limited(terms, at)
     share = np.abs(x) / bounds
-    moving = x[..., TORQUE] - terms.g
-    margin = bounds[..., TORQUE] - np.sign(moving) * terms.g
-    with np.errstate(divide='ignore', invalid='ignore'):
-        by_torque = np.where(moving != 0.0, np.abs(moving) / margin, 0.0)
-    by_torque = np.where((margin <= 0.0) & (moving != 0.0), np.inf, by_torque)
+    by_torque = squared_scaling(bounds[..., TORQUE], terms.g, x[..., TORQUE])
     return float(max(share[..., VELOCITY].max(), share[..., SPEED].max(),
                      np.sqrt(share[..., ACCELERATION].max()),
                      np.cbrt(share[..., JERK].max()), np.sqrt(by_torque.max())))
