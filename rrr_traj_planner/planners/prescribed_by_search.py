@@ -111,16 +111,16 @@ def motion_or_error(motion_in: Callable[[Array], PiecewiseTrajectory | None], du
     if motion is not None:
         return motion
     if fastest is None:
-        proportions, floor = durations, 0.0 * durations
+        proportions, least_T = durations, 0.0 * durations
         which = 'the least feasible in their proportion are'
     else:
-        proportions, floor, which = fastest(), durations, 'feasible are'
-    scaling = _least_scaling(motion_in, proportions, floor)
+        proportions, least_T, which = fastest(), durations, 'feasible are'
+    scaling = _least_scaling(motion_in, proportions, least_T)
     if scaling is None:
         raise TimingError(
             f'segment_durations {durations.tolist()} s are too short, and no multiple of '
             'them is feasible')
-    feasible = np.maximum(np.ceil(scaling * proportions * (1.0 + 1e-6) * 1e6) / 1e6, floor)
+    feasible = np.maximum(np.ceil(scaling * proportions * (1.0 + 1e-6) * 1e6) / 1e6, least_T)
     given, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
     raise TimingError(f'segment_durations {given} s are too short: {which} {offered} s',
                       tuple(offered))
@@ -153,10 +153,10 @@ def fastest_durations_between_stays(task: JointTask,
 
 
 def _least_scaling(motion_in: Callable[[Array], PiecewiseTrajectory | None], proportions: Array,
-                   floor: Array) -> float | None:
+                   least_T: Array) -> float | None:
     """Return the least factor >= 1 on durations, with lower bounds, that makes them feasible."""
     def has_motion(factor: float) -> bool:
-        return motion_in(np.maximum(factor * proportions, floor)) is not None
+        return motion_in(np.maximum(factor * proportions, least_T)) is not None
 
     low, high = 1.0, 1.0
     while not has_motion(high):

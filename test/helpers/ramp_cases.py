@@ -58,11 +58,11 @@ def shifted(m, step, size):
     return Variables(*(f + size * s for f, s in zip(m, step)))
 
 
-def bounds(limits, grid, points, floor=None, margin=0.0):
+def bounds(limits, grid, points, least_T=None, margin=0.0):
     """Return constraints without margins, or with margins of positions."""
     N, p = len(points) - 1, 2 * grid.n + 1
     return JointConstraints(ARM, limits, grid, points, np.full((2, N, p, 3), margin),
-                            np.zeros((N, p, 3)), np.zeros((N, p, 3)), floor)
+                            np.zeros((N, p, 3)), np.zeros((N, p, 3)), least_T)
 
 
 def closer(limits, part):
@@ -76,9 +76,9 @@ def all_free(N):
     return DurationConstraints.all_free(N, 3)
 
 
-def slow_start(limits, grid, points, floor=None):
+def slow_start(limits, grid, points, least_T=None):
     """Return constraints, and the motion with a stop at every point."""
-    constraints = bounds(limits, grid, points, floor)
+    constraints = bounds(limits, grid, points, least_T)
     task = JointTask(ARM, limits, points, None, 0.01)
     return constraints, rest_to_rest(task, constraints)
 

@@ -54,7 +54,7 @@ class JointConstraints:
         Subtracted from each joint's velocity limit at each point [rad/s].
     effort_margins : ndarray, shape (N, 2 n + 1, 3)
         Subtracted from each joint's effort limit at each point [N m].
-    floor : ndarray, shape (N,), optional
+    least_T : ndarray, shape (N,), optional
         Least durations of the segments [s].
     workspace : Workspace, optional
         Memory shared by problems that are solved one after the other.
@@ -70,8 +70,8 @@ class JointConstraints:
 
     def __init__(self, model: RobotModel, limits: JointLimits, grid: Grid, points: Array,
                  margins: Array, velocity_margins: Array, effort_margins: Array,
-                 floor: Array | None = None, workspace: Workspace | None = None) -> None:
-        self.grid, self.points, self.limits, self.floor = grid, points, limits, floor
+                 least_T: Array | None = None, workspace: Workspace | None = None) -> None:
+        self.grid, self.points, self.limits, self.least_T = grid, points, limits, least_T
         self.with_torque = bool(np.isfinite(limits.max_effort).any())
         self.effort = (np.minimum(limits.max_effort, FAR) - effort_margins)[:, 1:]
         self._workspace = workspace
@@ -87,7 +87,7 @@ class JointConstraints:
         effort = np.concatenate((np.full((N, 1, 3), FAR), self.effort), axis=1)
         return TimingProblem(self.grid, self.points, Limits(
             TORQUE if self.with_torque else BOUNDS_ALONE, lower, upper, bounded, -effort, effort,
-            general, self.floor, np.array(equations.constants(self._model))), self._workspace)
+            general, self.least_T, np.array(equations.constants(self._model))), self._workspace)
 
     def _bounds(self) -> tuple[Array, Array, BoolArray]:
         """Return lower and upper bounds on states (N, P, 12), and which are limited (P, 12)."""

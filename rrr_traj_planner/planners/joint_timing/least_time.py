@@ -33,7 +33,7 @@ RESTARTS = 8             # at most, each from the best motion so far
 SLOWER = (1e-6, 0.02)    # part by which a restart is slower than it: first just strictly feasible
 
 
-def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved | None:
+def fastest(task: JointTask, grid: Grid, least_T: Array | None = None) -> Solved | None:
     """
     Return the fastest motion.
 
@@ -46,7 +46,7 @@ def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved |
         The via points, the arm and its limits.
     grid : Grid
         The family of motions.
-    floor : ndarray, shape (N,), optional
+    least_T : ndarray, shape (N,), optional
         Least durations of the segments [s].
 
     Returns
@@ -55,7 +55,8 @@ def fastest(task: JointTask, grid: Grid, floor: Array | None = None) -> Solved |
         None where no path is found along which the motors can hold the arm.
 
     """
-    whole = JointProblem(task, grid, DurationConstraints.all_free(len(task.points) - 1, 3), floor)
+    free = DurationConstraints.all_free(len(task.points) - 1, 3)
+    whole = JointProblem(task, grid, free, least_T)
     if np.isfinite(task.limits.max_acceleration).all():
         free = replace(whole, task=replace(
             task, limits=replace(task.limits, max_effort=np.full(3, np.inf))))

@@ -170,9 +170,9 @@ def _no_stops(durations: Array) -> BoolArray:
 
 def _too_short(task: JointTask, grid: Grid, durations: Array) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
-    floor = np.nan_to_num(durations)
-    found = fastest(task, grid, floor)
-    least = np.maximum(np.diff(found.trajectory.via_times), floor) if found else floor
+    least_T = np.nan_to_num(durations)
+    found = fastest(task, grid, least_T)
+    least = np.maximum(np.diff(found.trajectory.via_times), least_T) if found else least_T
     for margin in OFFER_MARGINS:
         feasible = np.ceil(least * (1.0 + margin) * 1e6) / 1e6
         solved = _least_scaled(task, grid, feasible)

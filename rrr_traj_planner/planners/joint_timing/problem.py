@@ -59,7 +59,7 @@ class JointProblem(ReadOnlyArrays):
         The family of motions.
     durations : DurationConstraints
         Which durations may change, and their weights.
-    floor : ndarray, shape (N,), optional
+    least_T : ndarray, shape (N,), optional
         Least durations of the segments [s].
 
     """
@@ -67,7 +67,7 @@ class JointProblem(ReadOnlyArrays):
     task: JointTask
     grid: Grid
     durations: DurationConstraints
-    floor: Array | None = None
+    least_T: Array | None = None
     _workspace: Workspace = field(default_factory=Workspace)
 
     def constraints(self, margins: Margins) -> JointConstraints:
@@ -88,7 +88,7 @@ class JointProblem(ReadOnlyArrays):
         task = self.task
         return JointConstraints(
             task.model, task.limits, self.grid, task.points, margins.positions,
-            margins.velocities, margins.efforts, self.floor, self._workspace)
+            margins.velocities, margins.efforts, self.least_T, self._workspace)
 
     def minimised(self, constraints: JointConstraints, margins: Margins, start: Centre,
                   least_barrier: float = 0.0) -> Outcome:

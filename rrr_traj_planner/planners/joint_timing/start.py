@@ -98,8 +98,8 @@ def _least_durations(task: JointTask, constraints: JointConstraints,
                 np.sqrt((np.abs(at.qdd) / limits.max_acceleration).max(axis=(1, 2))),
                 np.cbrt((np.abs(at.jerk) / limits.max_jerk).max(axis=(1, 2)))], axis=0)
     T = np.maximum(DURATION_MARGIN * T, LEAST_DURATION)
-    if constraints.floor is not None:
-        T = np.maximum(T, DURATION_MARGIN * constraints.floor)
+    if constraints.least_T is not None:
+        T = np.maximum(T, DURATION_MARGIN * constraints.least_T)
     if not constraints.with_torque:
         return T, T
     gravity = gravity_torque(task.model, at.q)

@@ -106,7 +106,7 @@ def _motion(points: Array, laws: Lin434, durations: Array, note: str = '') -> Pi
 
 
 def _for_torque(task: JointTask, k: int, ratios: DisplacementRatios, law: Lin434,
-                floor: float) -> tuple[Lin434, bool]:
+                least_T: float) -> tuple[Lin434, bool]:
     """
     Return a segment's law of least time, and whether the search was completed.
 
@@ -117,21 +117,21 @@ def _for_torque(task: JointTask, k: int, ratios: DisplacementRatios, law: Lin434
 
     def total(law: Lin434) -> float:
         """Return the least duration of a law by all limits."""
-        quick = max(floor, float(kinematic_durations(task, least_time(law, ratios))))
+        quick = max(least_T, float(kinematic_durations(task, least_time(law, ratios))))
         each = Lin434(*(np.array([field]) for field in law))
         motion = _motion(points, each, np.array([quick]))
         return quick * max(1.0, torque_time_scale(task, motion))
 
     least = total(law)
-    enough = floor if task.durations is None or np.isnan(task.durations[k]) else max(
-        floor, float(task.durations[k]))
+    enough = least_T if task.durations is None or np.isnan(task.durations[k]) else max(
+        least_T, float(task.durations[k]))
     if least <= enough or np.isinf(least):
         return law, True
     segment = Segment(task.model, task.limits, points[0], points[1] - points[0], ratios)
     for start in (law, *STARTS):
         if task.should_stop():
             return law, False
-        other = law_for_torque(segment, start, least, floor)
+        other = law_for_torque(segment, start, least, least_T)
         duration = np.inf if other is None else total(other)
         if other is not None and duration < least:
             law, least = other, duration

@@ -19,10 +19,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { FLOOR_WEIGHT = 3 };      /* multiplicity of a least duration's logarithm: one per joint */
+enum { DURATION_WEIGHT = 3 };   /* multiplicity of a least duration's logarithm: one per joint */
 static const double FAR = 1e6;  /* s, upper bound of a duration: never active */
 
-static double *floors(const Problem *p, double *slack)
+static double *duration_slacks(const Problem *p, double *slack)
 {
     return slack + 2 * (size_t)p->N * constraints_of(p);
 }
@@ -62,9 +62,9 @@ void slacks_at(const Problem *p, const double *T, const double *z, double part, 
             to[0] = upper[i] - xk[i];
             to[1] = xk[i] - lower[i];
         }
-        double *floor_slack = floors(p, slack) + 2 * k;
-        floor_slack[1] = p->floor ? T[k] - p->floor[k] : 1.0;
-        floor_slack[0] = p->floor ? FAR - floor_slack[1] : 1.0;
+        double *duration_slack = duration_slacks(p, slack) + 2 * k;
+        duration_slack[1] = p->least_T ? T[k] - p->least_T[k] : 1.0;
+        duration_slack[0] = p->least_T ? FAR - duration_slack[1] : 1.0;
     }
     const size_t all = slacks_size(p);
     for (size_t i = 0; i < all && p->shifted; ++i)
@@ -74,7 +74,7 @@ void slacks_at(const Problem *p, const double *T, const double *z, double part, 
 /* The number of constraints, by multiplicity. */
 EXPORTED double timing_constraint_count(const Problem *p)
 {
-    return 2.0 * p->N * (constraints_of(p) + (p->floor ? FLOOR_WEIGHT : 0));
+    return 2.0 * p->N * (constraints_of(p) + (p->least_T ? DURATION_WEIGHT : 0));
 }
 
 /* The sum of the slacks' logarithms; most of them are taken of products, which is faster. */
@@ -94,9 +94,9 @@ EXPORTED double timing_log_sum(const Problem *p, const double *slack)
     for (; i < all; ++i)
         sum += log(slack[i]);
     sum += log(product);
-    const double *floor_slack = slack + all;
-    for (int k = 0; p->floor && k < 2 * p->N; ++k)
-        sum += FLOOR_WEIGHT * log(floor_slack[k]);
+    const double *duration_slack = slack + all;
+    for (int k = 0; p->least_T && k < 2 * p->N; ++k)
+        sum += DURATION_WEIGHT * log(duration_slack[k]);
     return sum;
 }
 
@@ -118,8 +118,8 @@ void weighted_gradient(const Problem *p, const double *weights, double *r, doubl
             for (int a = 0; a < Z; ++a)
                 to[a] += f * g[a];
         }
-        const double *floor_slack = weights + 2 * (size_t)p->N * constraints_of(p) + 2 * k;
-        r_T[k] = p->floor ? FLOOR_WEIGHT * (floor_slack[0] - floor_slack[1]) : 0.0;
+        const double *duration_slack = weights + 2 * (size_t)p->N * constraints_of(p) + 2 * k;
+        r_T[k] = p->least_T ? DURATION_WEIGHT * (duration_slack[0] - duration_slack[1]) : 0.0;
     }
 }
 
@@ -229,13 +229,13 @@ EXPORTED void timing_linearise(const Problem *p, double barrier)
             linearise_general(p, k, first + 2 * (size_t)p->bounds, barrier);
         p->gradient_T[k] = p->hessian_T[k] = 0.0;
         const size_t at = 2 * ((size_t)p->N * constraints_of(p) + k);
-        double *floor_slack = p->slack + at, *inverse = p->inverse + at;
-        floor_slack[1] = p->floor ? m.T[k] - p->floor[k] : 1.0;
-        floor_slack[0] = p->floor ? FAR - floor_slack[1] : 1.0;
-        inverse[0] = 1.0 / floor_slack[0], inverse[1] = 1.0 / floor_slack[1];
-        if (p->floor) {
-            p->gradient_T[k] = FLOOR_WEIGHT * barrier * (inverse[0] - inverse[1]);
-            p->hessian_T[k] = FLOOR_WEIGHT * (dual[at] * inverse[0] + dual[at + 1] * inverse[1]);
+        double *duration_slack = p->slack + at, *inverse = p->inverse + at;
+        duration_slack[1] = p->least_T ? m.T[k] - p->least_T[k] : 1.0;
+        duration_slack[0] = p->least_T ? FAR - duration_slack[1] : 1.0;
+        inverse[0] = 1.0 / duration_slack[0], inverse[1] = 1.0 / duration_slack[1];
+        if (p->least_T) {
+            p->gradient_T[k] = DURATION_WEIGHT * barrier * (inverse[0] - inverse[1]);
+            p->hessian_T[k] = DURATION_WEIGHT * (dual[at] * inverse[0] + dual[at + 1] * inverse[1]);
         }
     }
 }
@@ -262,9 +262,9 @@ void slack_rates(const Problem *p, const double *dT, const double *dz, double *r
             to[0] = -sum;
             to[1] = sum;
         }
-        double *floor_slack = floors(p, rate) + 2 * k;
-        floor_slack[1] = p->floor ? dT[k] : 0.0;
-        floor_slack[0] = -floor_slack[1];
+        double *duration_slack = duration_slacks(p, rate) + 2 * k;
+        duration_slack[1] = p->least_T ? dT[k] : 0.0;
+        duration_slack[0] = -duration_slack[1];
     }
     const size_t all = slacks_size(p);
     for (size_t i = 0; i < all && p->shifted; ++i)

@@ -47,7 +47,7 @@ typedef struct {
     const double *general_lower, *general_upper;  /* (N, P, E) */
     const int32_t *bound_at, *general_at;  /* the limited ones: offsets into (P, Z) and (P, E) */
     const uint8_t *has_general;            /* (P) */
-    const double *floor;    /* (N), least durations, or NULL */
+    const double *least_T;  /* (N), least durations, or NULL */
     /* A duration is free, or the multiple of a common factor, or fixed (proportion 0) */
     const uint8_t *free;    /* (N) */
     const double *proportions;      /* (N) */

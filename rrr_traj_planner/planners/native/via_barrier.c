@@ -69,7 +69,7 @@ static void part_values(const ViaProblem *p, const double *point, double *values
     }
     values += (n - 1) * JOINTS;
     for (int k = 0; k < n; ++k) {
-        const double slack = p->floor ? T[k] - p->floor[k] : 1.0;
+        const double slack = p->least_T ? T[k] - p->least_T[k] : 1.0;
         values[k] = barrier(slack, slack);
     }
 }
@@ -145,7 +145,7 @@ static void differentiate(const ViaProblem *p)
         (*bound)[1] = low * low + high * high;
     }
     for (int k = 0; k < n; ++k, ++bound) {
-        const double slack = p->floor ? 1.0 / (T[k] - p->floor[k]) : 0.0;
+        const double slack = p->least_T ? 1.0 / (T[k] - p->least_T[k]) : 0.0;
         (*bound)[0] = -slack;
         (*bound)[1] = slack * slack;
     }

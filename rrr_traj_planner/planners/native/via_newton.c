@@ -31,9 +31,9 @@ static void by_velocity(const ViaProblem *p, int i, double *first, double *secon
 
 static void by_duration(const ViaProblem *p, int k, double *first, double *second)
 {
-    const int floor = (p->n - 1) * JOINTS + k;
-    *first = p->bound[floor][0];
-    *second = p->bound[floor][1] * (1.0 + p->damping[p->n * JOINTS + floor]);
+    const int at = (p->n - 1) * JOINTS + k;
+    *first = p->bound[at][0];
+    *second = p->bound[at][1] * (1.0 + p->damping[p->n * JOINTS + at]);
     for (int i = k * JOINTS; i < (k + 1) * JOINTS; ++i) {
         *first += p->gradient[i][2];
         *second += p->hessian[i][2][2] * (1.0 + p->damping[i]);

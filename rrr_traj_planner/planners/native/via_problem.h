@@ -32,7 +32,7 @@ typedef struct {
     const double *slope, *root;        /* (3), of the transitions' law */
     const double *max_velocity;        /* (3) */
     const double *lowest, *highest;    /* (n - 1, 3) */
-    const double *floor;               /* (n), least durations, or NULL */
+    const double *least_T;             /* (n), least durations, or NULL */
     const double *proportions;         /* (n), whose common factor is sought, or NULL */
     double *point, *step, *next;       /* the iterate, a step, and the point after it */
     double *before, *after, *damping;  /* over parts: barrier before and after the step, damping */

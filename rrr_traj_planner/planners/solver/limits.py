@@ -34,7 +34,7 @@ class Limits(NamedTuple):
     general_lower: Array    # (N, P, E)
     general_upper: Array
     general: BoolArray      # (P, E), which of these are limited
-    floor: Array | None = None    # (N,), least durations
+    least_T: Array | None = None    # (N,), least durations [s]
     arm: Array | None = None      # coefficients of the equations of motion, of TORQUE
     table: Array | None = None    # (N, 4, intervals, 18), cubic coefficients, of PATH
     overshoot: Array | None = None  # (N, 2, 3), added to ddq and to c at segments' ends, of PATH

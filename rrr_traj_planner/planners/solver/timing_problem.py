@@ -47,7 +47,7 @@ class _Problem(ctypes.Structure):  # as in native/timing_problem.h
         ('ramp', _Ramp),
         *((name, ctypes.c_void_p) for name in (
             'points', 'restore', 'lower', 'upper', 'general_lower', 'general_upper', 'bound_at',
-            'general_at', 'has_general', 'floor', 'free', 'proportions', 'weights',
+            'general_at', 'has_general', 'least_T', 'free', 'proportions', 'weights',
             'fixed_velocity', 'arm', 'table', 'overshoot', 'variables', 'states', 'values',
             'jacobian', 'slack', 'inverse', 'dual', 'shift', 'hessian', 'exact', 'gradient',
             'gradient_T', 'hessian_T', 'trial_variables', 'trial_states', 'trial_values',
@@ -139,7 +139,7 @@ class TimingProblem:
         for name, values in (
                 ('points', points), ('restore', grid.restore), ('lower', limits.lower),
                 ('upper', limits.upper), ('general_lower', limits.general_lower),
-                ('general_upper', limits.general_upper), ('floor', limits.floor),
+                ('general_upper', limits.general_upper), ('least_T', limits.least_T),
                 ('arm', limits.arm), ('table', limits.table), ('overshoot', limits.overshoot)):
             if values is not None:
                 self._bind(name, contiguous(values))

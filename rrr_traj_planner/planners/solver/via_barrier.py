@@ -70,7 +70,7 @@ class ViaLimits(Protocol):
 
 class _ViaProblem(ctypes.Structure):  # as in native/via_problem.h
     _fields_ = [('n', ctypes.c_int32), *((name, ctypes.c_void_p) for name in (
-        'displacements', 'slope', 'root', 'max_velocity', 'lowest', 'highest', 'floor',
+        'displacements', 'slope', 'root', 'max_velocity', 'lowest', 'highest', 'least_T',
         'proportions', 'point', 'step', 'next', 'before', 'after', 'damping', 'gradient',
         'hessian', 'bound', 'band', 'right', 'total_gradient', 'border')),
         ('objective', ctypes.c_double), ('decrement', ctypes.c_double)]
@@ -88,7 +88,7 @@ class ViaBarrier:
         Via velocities of the first iterate [rad/s].
     T : ndarray, shape (n,)
         Its durations [s]; the point is strictly feasible.
-    floor : ndarray, shape (n,), optional
+    least_T : ndarray, shape (n,), optional
         Least durations [s].
     proportions : ndarray, shape (n,), optional
         Durations [s] whose common factor is minimised; None: durations are free, their sum is
@@ -109,14 +109,14 @@ class ViaBarrier:
 
     """
 
-    def __init__(self, limits: ViaLimits, v: Array, T: Array, floor: Array | None = None,
+    def __init__(self, limits: ViaLimits, v: Array, T: Array, least_T: Array | None = None,
                  proportions: Array | None = None) -> None:
         n = len(T)
         law = limits.law
         given = {name: array for name, array in (
             ('displacements', limits.displacements), ('slope', law.slope), ('root', law.root),
             ('max_velocity', limits.max_velocity), ('lowest', limits.lowest),
-            ('highest', limits.highest), ('floor', floor), ('proportions', proportions),
+            ('highest', limits.highest), ('least_T', least_T), ('proportions', proportions),
         ) if array is not None}
         unknowns, parts = (4 * n - 3,), (7 * n - 3,)
         self.arrays = Arena({

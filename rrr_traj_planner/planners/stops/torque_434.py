@@ -64,7 +64,7 @@ class Segment(NamedTuple):
 
 
 def law_for_torque(segment: Segment, start: Lin434, duration: float,
-                   floor: float) -> Lin434 | None:
+                   least_T: float) -> Lin434 | None:
     """
     Return the result of SLSQP from a start.
 
@@ -76,7 +76,7 @@ def law_for_torque(segment: Segment, start: Lin434, duration: float,
         Fields of shape ().
     duration : float
         The shortest duration so far [s].
-    floor : float
+    least_T : float
         Lower bound on the duration [s].
 
     Returns
@@ -88,7 +88,7 @@ def law_for_torque(segment: Segment, start: Lin434, duration: float,
     duration = max(duration, float(least_time(start, segment.ratios)))
     x0 = np.array([0.0, np.log(start.first), np.log(start.last), start.a1, start.a2])
     x0[1:3] = np.clip(x0[1:3], *PARTS)
-    bounds = [(np.log(floor / duration), None), PARTS, PARTS,
+    bounds = [(np.log(least_T / duration), None), PARTS, PARTS,
               (0.0, MOST_ACCELERATION), (-MOST_ACCELERATION, 0.0)]
     cache: dict[bytes, tuple[Array, Array]] = {}
 

@@ -30,7 +30,7 @@ from rrr_traj_planner.core.errors import ConvergenceError
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion import (
     motion_slowed_for_torque,
-    motion_with_floor,
+    motion_with_least_T,
     quickest_motion,
     segment_time_scale,
     TimedMotion,
@@ -44,7 +44,7 @@ OVERSHOOT_ROUNDS = 8       # of reducing via velocities where a joint overshoots
 BACKWARD = 1.0, 0.5        # exponents, each tried, of the factor that shortens a segment again
 
 
-def fastest(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedMotion:
+def fastest(task: JointTask, problem: ViaProblem, least_T: Array | None) -> TimedMotion:
     """
     Return the motion of least total time, slowed as its torques require.
 
@@ -54,7 +54,7 @@ def fastest(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedM
         The arm and its limits.
     problem : ViaProblem
         The via points.
-    floor : ndarray, shape (n,), optional
+    least_T : ndarray, shape (n,), optional
         Durations [s] that no segment may fall below.
 
     Returns
@@ -68,15 +68,15 @@ def fastest(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedM
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    problem, motion, scaling = _statically_feasible_motion(task, problem, floor)
+    problem, motion, scaling = _statically_feasible_motion(task, problem, least_T)
     candidates = [(motion, scaling)]
     for backward in BACKWARD:
-        candidates += _slowed(task, problem, floor, motion, scaling, backward)
+        candidates += _slowed(task, problem, least_T, motion, scaling, backward)
     totals = [m.durations.sum() * max(1.0, s.max()) for m, s in candidates]
     return motion_slowed_for_torque(task, candidates[int(np.argmin(totals))][0])
 
 
-def fastest_with_stops(task: JointTask, problem: ViaProblem, floor: Array) -> TimedMotion:
+def fastest_with_stops(task: JointTask, problem: ViaProblem, least_T: Array) -> TimedMotion:
     """
     Return the motion of least total time with a stop at every via point.
 
@@ -86,7 +86,7 @@ def fastest_with_stops(task: JointTask, problem: ViaProblem, floor: Array) -> Ti
         The arm and its limits.
     problem : ViaProblem
         The via points.
-    floor : ndarray, shape (n,)
+    least_T : ndarray, shape (n,)
         Durations [s] that no segment may fall below.
 
     Returns
@@ -101,10 +101,10 @@ def fastest_with_stops(task: JointTask, problem: ViaProblem, floor: Array) -> Ti
 
     """
     stops = at_rest(problem)
-    return motion_slowed_for_torque(task, _least_time_motion(task, stops, floor))
+    return motion_slowed_for_torque(task, _least_time_motion(task, stops, least_T))
 
 
-def _slowed(task: JointTask, problem: ViaProblem, floor: Array | None, motion: TimedMotion,
+def _slowed(task: JointTask, problem: ViaProblem, least_T: Array | None, motion: TimedMotion,
             scaling: Array, backward: float) -> Iterator[tuple[TimedMotion, Array]]:
     """
     Yield motions and their time scaling, each lengthened as the torques of the one before require.
@@ -118,14 +118,14 @@ def _slowed(task: JointTask, problem: ViaProblem, floor: Array | None, motion: T
             return
         change = np.where(scaling > 1.0, scaling, scaling ** backward)
         slow = np.where(lacking, motion.durations * change, 0.0)
-        slow = slow if floor is None else np.maximum(slow, floor)
+        slow = slow if least_T is None else np.maximum(slow, least_T)
         motion = _least_time_motion(task, problem, slow)
         scaling = segment_time_scale(task, motion)
         yield motion, scaling
 
 
 def _statically_feasible_motion(task: JointTask, problem: ViaProblem,
-                                floor: Array | None) -> tuple[ViaProblem, TimedMotion, Array]:
+                                least_T: Array | None) -> tuple[ViaProblem, TimedMotion, Array]:
     """
     Return the fastest motion whose path is statically feasible, and its segments' time scaling.
 
@@ -134,24 +134,24 @@ def _statically_feasible_motion(task: JointTask, problem: ViaProblem,
     """
     for _ in range(STRAIGHTENING_ROUNDS):
         task.should_stop()
-        motion = _least_time_motion(task, problem, floor)
+        motion = _least_time_motion(task, problem, least_T)
         scaling = segment_time_scale(task, motion)
         blocked = np.isinf(scaling)
         if not blocked.any():
             return problem, motion, scaling
         problem = slower_at(problem, np.tile(blocked[:, np.newaxis], 3))
-    motion = _least_time_motion(task, at_rest(problem), floor)
+    motion = _least_time_motion(task, at_rest(problem), least_T)
     return at_rest(problem), motion, segment_time_scale(task, motion)
 
 
-def _least_time_motion(task: JointTask, problem: ViaProblem, floor: Array | None) -> TimedMotion:
+def _least_time_motion(task: JointTask, problem: ViaProblem, least_T: Array | None) -> TimedMotion:
     """Return the motion of least total time within the kinematic limits."""
     for round_ in range(OVERSHOOT_ROUNDS + 1):
         task.should_stop()
         if round_ == OVERSHOOT_ROUNDS:
             problem = at_rest(problem)
-        motion, overshoot = (quickest_motion(task, problem) if floor is None
-                             else motion_with_floor(task, problem, floor))
+        motion, overshoot = (quickest_motion(task, problem) if least_T is None
+                             else motion_with_least_T(task, problem, least_T))
         if motion is not None:
             return motion
         problem = slower_at(problem, overshoot)

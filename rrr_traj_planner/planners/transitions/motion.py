@@ -113,8 +113,8 @@ def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion |
     return motion, overshoot
 
 
-def motion_with_floor(task: JointTask, problem: ViaProblem,
-                      floor: Array) -> tuple[TimedMotion | None, BoolArray]:
+def motion_with_least_T(task: JointTask, problem: ViaProblem,
+                       least_T: Array) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return the motion of least total time with lower bounds on durations, and what overshoots.
 
@@ -124,7 +124,7 @@ def motion_with_floor(task: JointTask, problem: ViaProblem,
     ----------
     task, problem
         As in `timed_motion`.
-    floor : ndarray, shape (n,)
+    least_T : ndarray, shape (n,)
         Durations [s] that no segment may fall below.
 
     Returns
@@ -133,8 +133,8 @@ def motion_with_floor(task: JointTask, problem: ViaProblem,
         As of `timed_motion`.
 
     """
-    durations = (np.maximum(problem.rest_to_rest_times(), floor) if rests_everywhere(problem)
-                 else least_time(problem, floor, task.should_stop).durations)
+    durations = (np.maximum(problem.rest_to_rest_times(), least_T) if rests_everywhere(problem)
+                 else least_time(problem, least_T, task.should_stop).durations)
     return timed_motion(task, problem, durations * (1.0 + DURATION_MARGIN))
 
 

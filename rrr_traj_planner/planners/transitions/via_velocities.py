@@ -35,7 +35,7 @@ from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 START_MARGIN = 1.3  # the start's durations over the least ones from rest to rest
 
 
-def least_time(problem: ViaProblem, floor: Array | None = None,
+def least_time(problem: ViaProblem, least_T: Array | None = None,
                should_stop: Callable[[], bool] = never) -> Solution:
     """
     Return the via velocities and durations of least total time.
@@ -44,7 +44,7 @@ def least_time(problem: ViaProblem, floor: Array | None = None,
     ----------
     problem : ViaProblem
         The via points; no displacement zero in all joints.
-    floor : ndarray, shape (n,), optional
+    least_T : ndarray, shape (n,), optional
         Durations [s] that no segment may fall below.
     should_stop : callable
         Cancellation callback, called before every step; True ends the method with its iterate.
@@ -58,9 +58,9 @@ def least_time(problem: ViaProblem, floor: Array | None = None,
     """
     n = len(problem.displacements)
     T = problem.rest_to_rest_times()
-    if floor is not None:
-        T = np.maximum(T, floor)
-    barrier = ViaBarrier(problem, np.zeros((n - 1, 3)), START_MARGIN * T, floor)
+    if least_T is not None:
+        T = np.maximum(T, least_T)
+    barrier = ViaBarrier(problem, np.zeros((n - 1, 3)), START_MARGIN * T, least_T)
     return minimise(barrier, should_stop)
 
 

@@ -58,11 +58,11 @@ def test_slacks_are_limits_less_states(seed):
     assert q[1][:, inside] == pytest.approx(at.q[:, inside] - LIMITS.min_position, abs=1e-9)
 
 
-def test_floors_count_three_times_and_are_durations_less_their_least():
+def test_least_durations_count_three_times_and_are_durations_less_their_least():
     grid, points, m = random_motion(2)
-    floor, N = 0.5 * m.T, len(m.T)
-    problem = bounds(LIMITS, grid, points, floor).problem
-    assert problem.slacks(m)[-2 * N:].reshape(N, 2)[:, 1] == pytest.approx(m.T - floor)
+    least_T, N = 0.5 * m.T, len(m.T)
+    problem = bounds(LIMITS, grid, points, least_T).problem
+    assert problem.slacks(m)[-2 * N:].reshape(N, 2)[:, 1] == pytest.approx(m.T - least_T)
 
 
 @pytest.mark.parametrize('seed', SEEDS)

@@ -67,15 +67,15 @@ def test_start_is_slower_than_it_must_be_by_two_percent_only(seed):
     grid, points, _ = random_motion(seed)
     constraints, m = slow_start(LIMITS, grid, points)
     faster = with_durations(m, m.T / (1.001 * DURATION_MARGIN))
-    slacks = constraints.problem.slacks(faster)[:-2 * len(m.T)]  # but for floors
+    slacks = constraints.problem.slacks(faster)[:-2 * len(m.T)]  # but for least durations
     # in each segment some limit is then broken
     assert (slacks.reshape(len(m.T), -1).min(axis=1) < 0.0).all()
 
 
-def test_floors_are_kept():
+def test_least_durations_are_kept():
     grid, points, _ = random_motion(3)
-    floor = np.full(len(points) - 1, 30.0)
-    assert (slow_start(LIMITS, grid, points, floor)[1].T == DURATION_MARGIN * floor).all()
+    least_T = np.full(len(points) - 1, 30.0)
+    assert (slow_start(LIMITS, grid, points, least_T)[1].T == DURATION_MARGIN * least_T).all()
 
 
 def started(task):

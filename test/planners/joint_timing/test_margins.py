@@ -56,9 +56,9 @@ def limits_of(kind, points):
                    min_position=points.min(axis=0) - 3e-3, max_position=points.max(axis=0) + 3e-3)
 
 
-def constraints_with(margins, task, grid, floor=None):
+def constraints_with(margins, task, grid, least_T=None):
     """Return a task's limits less margins."""
-    return JointProblem(task, grid, all_free(len(task.points) - 1), floor).constraints(margins)
+    return JointProblem(task, grid, all_free(len(task.points) - 1), least_T).constraints(margins)
 
 
 class Case:
@@ -116,9 +116,10 @@ every = pytest.mark.parametrize(('kind', 'seed'), [(k, s) for k in KINDS for s i
 def test_no_margins_leave_the_limits_as_they_are(seed):
     grid, points, m = random_motion(seed)
     task = JointTask(ARM, LIMITS, points, None, 0.01)
-    for floor in (None, 0.5 * m.T):
-        found = constraints_with(Margins.none(grid, len(m.T)), task, grid, floor).problem.slacks(m)
-        assert (found == bounds(LIMITS, grid, points, floor).problem.slacks(m)).all()
+    for least_T in (None, 0.5 * m.T):
+        constraints = constraints_with(Margins.none(grid, len(m.T)), task, grid, least_T)
+        found = constraints.problem.slacks(m)
+        assert (found == bounds(LIMITS, grid, points, least_T).problem.slacks(m)).all()
 
 
 @every

@@ -53,7 +53,7 @@ def slacks(problem, v, T):
         change - (v1 - v0), change + (v1 - v0), problem.highest - v, v - problem.lowest)])
 
 
-def by_slsqp(problem, start, floor=0.0):
+def by_slsqp(problem, start, least_T=0.0):
     """Return the least total time that a general solver finds."""
     vias = start.velocities.size
 
@@ -63,7 +63,7 @@ def by_slsqp(problem, start, floor=0.0):
     x = minimize(lambda x: x[vias:].sum(), np.append(start.velocities, 1.2 * start.durations),
                  method='SLSQP', constraints=[
                      {'type': 'ineq', 'fun': lambda x: slacks(problem, *parts(x))},
-                     {'type': 'ineq', 'fun': lambda x: x[vias:] - floor}],
+                     {'type': 'ineq', 'fun': lambda x: x[vias:] - least_T}],
                  options={'maxiter': 500, 'ftol': 1e-10})
     kept = slacks(problem, *parts(x.x)).min() >= -1e-6
     return x.fun if kept else np.inf
@@ -75,10 +75,10 @@ def test_no_general_solver_finds_less_time_and_it_agrees_where_it_converges(seed
     found = least_time(problem)
     assert slacks(problem, found.velocities, found.durations).min() > 0.0
     assert by_slsqp(problem, found) >= (1.0 - SOLVED) * found.durations.sum()
-    floor = found.durations * np.random.default_rng(seed).uniform(0.5, 1.5, len(found.durations))
-    floored = least_time(problem, floor)
-    assert (floored.durations > floor).all()
-    assert by_slsqp(problem, floored, floor) >= (1.0 - SOLVED) * floored.durations.sum()
+    least_T = found.durations * np.random.default_rng(seed).uniform(0.5, 1.5, len(found.durations))
+    floored = least_time(problem, least_T)
+    assert (floored.durations > least_T).all()
+    assert by_slsqp(problem, floored, least_T) >= (1.0 - SOLVED) * floored.durations.sum()
 
 
 @pytest.mark.parametrize('seed', SEEDS)

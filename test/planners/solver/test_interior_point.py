@@ -206,7 +206,7 @@ NAMES = ['free', 'all', 'torque']
 
 
 def count_of(problem):
-    """Return the number of constraints: no floors."""
+    """Return the number of constraints: no least durations."""
     return problem.arrays['slack'].size - 2 * (len(problem.points) - 1)
 
 

@@ -38,10 +38,10 @@ SOLVED = 2e-6     # relative, to which a dense solve agrees with elimination
 class Case:
     """A problem at an iterate with multipliers and weights of its own."""
 
-    def __init__(self, kind, seed, segments=None, durations=None, floor=False):
+    def __init__(self, kind, seed, segments=None, durations=None, least_T=False):
         rng = np.random.default_rng(seed)
         self.problem, self.motion = (path_problem(seed) if kind == 'path' else joint_problem(
-            FREE if kind == 'bounds' else LIMITS, seed, segments, floor))
+            FREE if kind == 'bounds' else LIMITS, seed, segments, least_T))
         N, J = len(self.motion.T), self.motion.inner.shape[-1]
         self.durations = (durations or DurationConstraints.all_free(N, J))._replace(
             weights=rng.uniform(0.5, 2.0, N))
@@ -116,10 +116,10 @@ class Case:
         return np.column_stack((basis, tie)) if d.proportions.any() else basis
 
 
-def joint_problem(limits, seed, segments=None, floor=False):
+def joint_problem(limits, seed, segments=None, least_T=False):
     grid, points, _ = random_motion(seed, n=5 + seed % 3, segments=segments or 1 + seed % 3)
     constraints, m = slow_start(limits, grid, points)
-    if floor:
+    if least_T:
         constraints = bounds(limits, grid, points, 0.8 * m.T)
     return constraints.problem, m
 
@@ -162,7 +162,7 @@ def test_durations_tied_fixed_or_with_floors_and_stops_are_those_of_a_dense_solv
         kind, free, tie):
     still = np.zeros((3, 3), bool)
     still[1, 1] = True
-    case = Case(kind, 4, segments=4, floor=True, durations=DurationConstraints(
+    case = Case(kind, 4, segments=4, least_T=True, durations=DurationConstraints(
         np.array(free, bool), np.array(tie), np.ones(4), still))
     direction, _, gain = case.newton(0)
     expected, promised = case.dense(0)
@@ -174,7 +174,7 @@ def test_durations_tied_fixed_or_with_floors_and_stops_are_those_of_a_dense_solv
 @pytest.mark.parametrize('kind', ['bounds', 'torque', 'path'])
 @pytest.mark.parametrize('seed', SEEDS)
 def test_rates_and_gain_are_differences_along_the_followed_step(kind, seed):
-    case = Case(kind, seed, floor=kind == 'bounds')
+    case = Case(kind, seed, least_T=kind == 'bounds')
     _, rate, gain = case.newton(0)
     step, arrays = case.problem.steps[0], case.arrays
     near = arrays['slack'].copy()

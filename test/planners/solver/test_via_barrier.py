@@ -40,10 +40,10 @@ def problem_and_point(seed):
     return problem, 0.8 * T if seed % 2 else None, v, T
 
 
-def value(problem, floor, x):
+def value(problem, least_T, x):
     """Return the barrier at a point."""
     n = len(problem.displacements)
-    barrier = ViaBarrier(problem, x[:3 * n - 3].reshape(-1, 3), x[3 * n - 3:], floor)
+    barrier = ViaBarrier(problem, x[:3 * n - 3].reshape(-1, 3), x[3 * n - 3:], least_T)
     return barrier.arrays['before'].sum()
 
 
@@ -66,7 +66,7 @@ def dense(barrier):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_value_is_the_sum_of_logarithms_of_what_is_left_of_each_limit(seed):
     # each slack by brute force over cruise velocities, as a limit on the displacement
-    problem, floor, v, T = problem_and_point(seed)
+    problem, least_T, v, T = problem_and_point(seed)
     n = len(T)
     v0, v1 = np.vstack((np.zeros(3), v)), np.vstack((v, np.zeros(3)))
     u = np.linspace(-problem.max_velocity, problem.max_velocity, 8001)[:, np.newaxis]
@@ -78,7 +78,7 @@ def test_value_is_the_sum_of_logarithms_of_what_is_left_of_each_limit(seed):
     slacks = (np.where(fits, covered, -np.inf).max(axis=0) - D,
               D - np.where(fits, covered, np.inf).min(axis=0),
               change - (v1 - v0), change + (v1 - v0))
-    parts = ViaBarrier(problem, v, T, floor).arrays['before']
+    parts = ViaBarrier(problem, v, T, least_T).arrays['before']
     segments, velocities, durations = np.split(parts, (3 * n, 6 * n - 3))
     # the grid of cruises misses the best one by a bit, which hardly counts where much is left
     enough = np.minimum(slacks[0], slacks[1]) > 0.05
@@ -88,27 +88,27 @@ def test_value_is_the_sum_of_logarithms_of_what_is_left_of_each_limit(seed):
     assert velocities.reshape(-1, 3) == pytest.approx(
         -np.log(v - problem.lowest) - np.log(problem.highest - v), rel=1e-12)
     assert durations == pytest.approx(
-        np.zeros(n) if floor is None else -np.log(T - floor), rel=1e-12)
+        np.zeros(n) if least_T is None else -np.log(T - least_T), rel=1e-12)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_gradient_is_the_finite_difference_of_the_value(seed):
-    problem, floor, v, T = problem_and_point(seed)
-    x, (g, _) = np.append(v, T), dense(ViaBarrier(problem, v, T, floor))
+    problem, least_T, v, T = problem_and_point(seed)
+    x, (g, _) = np.append(v, T), dense(ViaBarrier(problem, v, T, least_T))
     for k, unit in enumerate(np.eye(len(x))):
         assert g[k] == pytest.approx(central_difference(
-            lambda z, unit=unit: value(problem, floor, x + z * unit), 0.0, 1e-5),
+            lambda z, unit=unit: value(problem, least_T, x + z * unit), 0.0, 1e-5),
             rel=1e-5, abs=1e-4)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_hessian_is_the_finite_difference_of_the_gradient_where_the_barrier_is_convex(seed):
-    problem, floor, v, T = problem_and_point(seed)
+    problem, least_T, v, T = problem_and_point(seed)
     x = np.append(v, T)
-    _, H = dense(ViaBarrier(problem, v, T, floor))
+    _, H = dense(ViaBarrier(problem, v, T, least_T))
 
     def gradient(x):
-        return dense(ViaBarrier(problem, x[:v.size].reshape(v.shape), x[v.size:], floor))[0]
+        return dense(ViaBarrier(problem, x[:v.size].reshape(v.shape), x[v.size:], least_T))[0]
 
     difference = np.array([central_difference(
         lambda z, unit=unit: gradient(x + z * unit), 0.0, 1e-5) for unit in np.eye(len(x))])
@@ -122,17 +122,17 @@ def test_hessian_is_the_finite_difference_of_the_gradient_where_the_barrier_is_c
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_hessian_is_positive_definite_where_much_time_is_to_spare_too(seed):
-    problem, floor, v, T = problem_and_point(seed)
+    problem, least_T, v, T = problem_and_point(seed)
     for spare in (1.0, 4.0):
-        _, H = dense(ViaBarrier(problem, v, spare * T, floor))
+        _, H = dense(ViaBarrier(problem, v, spare * T, least_T))
         assert np.linalg.eigvalsh(H).min() > 0.0
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 @pytest.mark.parametrize('common', [False, True])
 def test_newton_step_is_that_of_a_dense_solve(seed, common):
-    problem, floor, v, T = problem_and_point(seed)
-    barrier = ViaBarrier(problem, v, T, floor, T if common else None)
+    problem, least_T, v, T = problem_and_point(seed)
+    barrier = ViaBarrier(problem, v, T, least_T, T if common else None)
     n, rng = len(T), np.random.default_rng(seed)
     barrier.arrays['damping'][:] = rng.choice([0.0, 0.5, 8.0], 7 * n - 3)
     weight = 7.0
@@ -154,27 +154,27 @@ def test_newton_step_is_that_of_a_dense_solve(seed, common):
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_an_attempt_tells_how_the_merit_changes_and_accepting_it_moves_the_iterate(seed):
-    problem, floor, v, T = problem_and_point(seed)
-    barrier, weight = ViaBarrier(problem, v, T, floor), 7.0
+    problem, least_T, v, T = problem_and_point(seed)
+    barrier, weight = ViaBarrier(problem, v, T, least_T), 7.0
     start, a = np.append(v, T), barrier.arrays
     a['damping'][:] = 8.0
     change = KERNELS.via_attempt(barrier.at, weight)
     moved = start + a['step']
     assert change == pytest.approx(weight * a['step'][v.size:].sum() + value(
-        problem, floor, moved) - value(problem, floor, start), rel=1e-9, abs=1e-12)
+        problem, least_T, moved) - value(problem, least_T, start), rel=1e-9, abs=1e-12)
     assert (a['point'] == start).all()
     KERNELS.via_accept(barrier.at, 0.25)
     assert (a['point'] == moved).all() and (a['damping'] == 2.0).all()
     assert barrier.found.objective == pytest.approx(moved[v.size:].sum())
-    there = ViaBarrier(problem, barrier.velocities, barrier.durations, floor)
+    there = ViaBarrier(problem, barrier.velocities, barrier.durations, least_T)
     for name in ('before', 'gradient', 'hessian', 'bound'):
         assert (a[name] == there.arrays[name]).all()
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_parts_that_an_attempt_breaks_are_damped_and_none_else_once_they_are_stiff(seed):
-    problem, floor, v, T = problem_and_point(seed)
-    barrier = ViaBarrier(problem, v, T, floor)
+    problem, least_T, v, T = problem_and_point(seed)
+    barrier = ViaBarrier(problem, v, T, least_T)
     a = barrier.arrays
     assert KERNELS.via_attempt(barrier.at, 1e3) == np.inf  # much too far
     broken = np.isinf(a['after'])
@@ -188,17 +188,17 @@ def test_parts_that_an_attempt_breaks_are_damped_and_none_else_once_they_are_sti
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_value_is_infinite_where_a_constraint_is_broken(seed):
-    problem, floor, v, T = problem_and_point(seed)
+    problem, least_T, v, T = problem_and_point(seed)
     too_fast = v.copy()
     too_fast[0, 1] = 1.01 * problem.highest[0, 1]
     too_short = T.copy()
     too_short[-1] = 1e-3
     none = T.copy()
     none[0] = 0.0
-    assert np.isfinite(value(problem, floor, np.append(v, T)))
-    assert value(problem, floor, np.append(too_fast, T)) == np.inf
-    assert value(problem, floor, np.append(v, too_short)) == np.inf
-    assert value(problem, floor, np.append(v, none)) == np.inf
+    assert np.isfinite(value(problem, least_T, np.append(v, T)))
+    assert value(problem, least_T, np.append(too_fast, T)) == np.inf
+    assert value(problem, least_T, np.append(v, too_short)) == np.inf
+    assert value(problem, least_T, np.append(v, none)) == np.inf
     assert value(problem, 1.001 * T, np.append(v, T)) == np.inf
 
 

@@ -192,12 +192,12 @@ def test_points_in_reverse_order_and_mirrored_take_the_same_time(seed):
 
 
 @pytest.mark.parametrize('seed', range(10))
-def test_floor_is_kept_and_costs_no_more_than_it_adds(seed):
+def test_least_durations_are_kept_and_cost_no_more_than_they_add(seed):
     problem = random_problem(200 + seed, 5)
     free = least_time(problem).durations
-    floor = free * np.random.default_rng(seed).choice([0.5, 1.0, 1.5], 5)
-    kept = least_time(problem, floor).durations
-    assert (kept >= floor).all()
+    least_T = free * np.random.default_rng(seed).choice([0.5, 1.0, 1.5], 5)
+    kept = least_time(problem, least_T).durations
+    assert (kept >= least_T).all()
     assert kept.sum() >= free.sum() * (1.0 - GAP)
 
 
@@ -213,8 +213,8 @@ def test_least_durations_need_no_stretch_and_shorter_ones_their_shortness(seed):
 
 
 @pytest.mark.parametrize('seed', range(6))
-def test_stretch_is_the_least_that_bisection_over_floors_finds(seed):
-    # Durations d f are feasible where the least time with that floor is their own sum.
+def test_time_scale_is_the_least_that_bisection_over_least_durations_finds(seed):
+    # Durations d f are feasible where the least time with that least_T is their own sum.
     problem = random_problem(400 + seed, 3)
     d = np.random.default_rng(seed).uniform(0.5, 2.0, 3)
     factor = least_time_scale(problem, d)[0]
