@@ -57,8 +57,7 @@ FAULTS = (
      'share = np.abs(table.values.g) / task.limits.max_velocity'),
     ('np.flatnonzero(~(value <= limit * (1.0 + TOLERANCE)))',
      'np.flatnonzero(~(value <= limit * (2.0 + TOLERANCE)))'),
-    ('A, B, C = 60.0 * c[5], 24.0 * c[4], 6.0 * c[3]',
-     'A, B, C = 60.0 * c[5], 12.0 * c[4], 6.0 * c[3]'),
+    ('vertex = -0.2 * c[4] / c[5]', 'vertex = -0.4 * c[4] / c[5]'),
 )
 
 

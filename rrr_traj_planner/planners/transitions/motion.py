@@ -114,7 +114,7 @@ def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion |
 
 
 def motion_with_least_T(task: JointTask, problem: ViaProblem,
-                       least_T: Array) -> tuple[TimedMotion | None, BoolArray]:
+                        least_T: Array) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return the motion of least total time with lower bounds on durations, and what overshoots.
 
