@@ -32,7 +32,7 @@ from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, through_samples
 from rrr_traj_planner.core.trajectory.quintic_spline import QuinticSpline
-from rrr_traj_planner.core.trajectory.torque import squared_time_scale
+from rrr_traj_planner.core.trajectory.time_scaling import squared_time_scale
 
 # Tolerances promised are 0.1 % of a limit and 1e-6 rad of a range; the dense check may miss the
 # difference to these.

@@ -12,12 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""
-Motor torques along a motion: their peaks, and the time scaling that satisfies their limits.
-
-With time scaled by a factor f, the part of the torque that is not gravity falls with f^2
-(Hollerbach, Dynamic scaling of manipulator trajectories, ASME J. Dynamic Systems 106, 1984).
-"""
+"""Motor torques along a motion: their peaks, and the time scaling that satisfies their limits."""
 
 from __future__ import annotations
 
@@ -27,8 +22,12 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.trajectory.maximum import Extreme, maximum_over_time
+from rrr_traj_planner.core.trajectory.time_scaling import (
+    gravity_and_torque,
+    squared_scaling_if_held,
+)
 from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 
 # Torque is analytic between knots. With this many steps there, none longer than LONGEST_STEP
@@ -36,8 +35,6 @@ from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s
-
-TORQUE_TOLERANCE = 1e-9  # relative, for the rounding of a torque that is just at its limit
 
 UNLIMITED = JointLimits(max_effort=np.full(3, np.inf))
 
@@ -103,7 +100,7 @@ class TorqueSweep:
             As `squared_time_scale`.
 
         """
-        return _squared_scaling(limits, self.gravity, self.torque)
+        return squared_scaling_if_held(limits.max_effort, self.gravity, self.torque)
 
     def peaks(self, limits: JointLimits, trajectory: Trajectory) -> TorquePeaks:
         """
@@ -133,11 +130,14 @@ class TorqueSweep:
         limited = bool(np.isfinite(limits.max_effort).any()) and bool(np.isfinite(squared).all())
 
         def both(gravity: Array, torque: Array) -> Array:
-            of_limits = (_squared_scaling(limits, gravity, torque),) if limited else ()
-            return np.concatenate((np.abs(torque), *of_limits), axis=1)
+            magnitude = np.abs(torque)
+            if not limited:
+                return magnitude
+            scaling = squared_scaling_if_held(limits.max_effort, gravity, torque)
+            return np.concatenate((magnitude, scaling), axis=1)
 
         value, time = maximum_over_time(
-            lambda t: both(*_torques(self.model, *trajectory(t)[:3])), self.times,
+            lambda t: both(*gravity_and_torque(self.model, *trajectory(t)[:3])), self.times,
             both(self.gravity, self.torque))
         if not limited:  # none, or gravity alone exceeds one
             worst = squared.argmax(axis=0)
@@ -167,7 +167,7 @@ def torque_sweep(model: RobotModel, trajectory: Trajectory) -> TorqueSweep:
     if not isinstance(found, TorqueSweep) or found.model is not model:
         times = torque_grid(trajectory)
         found = trajectory.cache['torque_sweep'] = TorqueSweep(
-            model, times, *_torques(model, *trajectory(times)[:3]))
+            model, times, *gravity_and_torque(model, *trajectory(times)[:3]))
     return found
 
 
@@ -239,68 +239,6 @@ def time_scale_for_torque(model: RobotModel, limits: JointLimits,
     if not np.isfinite(limits.max_effort).any():
         return Extreme(np.zeros(3), np.zeros(3))
     return torque_sweep(model, trajectory).peaks(limits, trajectory).scaling
-
-
-def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Array,
-                       qdd: Array) -> Array:
-    """
-    Return the square of the time-scaling factor that torque limits require at given states.
-
-    Infinite where the torque of gravity alone exceeds its limit.
-
-    Parameters
-    ----------
-    model, limits
-        As in `time_scale_for_torque`.
-    q, qd, qdd : ndarray, shape (..., 3)
-        Positions, velocities and accelerations [rad, rad/s, rad/s^2].
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        For each joint, 0 where it has no effort limit.
-
-    """
-    return _squared_scaling(limits, *_torques(model, q, qd, qdd))
-
-
-def _torques(model: RobotModel, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array]:
-    """Return the torques of gravity and of the motion; the terms at q are evaluated once."""
-    rest = np.zeros_like(q)
-    gravity, torque = inverse_dynamics(model, q, np.stack((rest, qd)), np.stack((rest, qdd)))
-    return gravity, torque
-
-
-def _squared_scaling(limits: JointLimits, gravity: Array, torque: Array) -> Array:
-    """Return the same, from the torques of gravity and of the motion."""
-    holds = np.abs(gravity) <= limits.max_effort * (1.0 + TORQUE_TOLERANCE)
-    return np.where(holds, squared_scaling(limits.max_effort, gravity, torque), np.inf)
-
-
-def squared_scaling(max_effort: Array, gravity: Array, torque: Array) -> Array:
-    """
-    Return the square of the least time-scaling factor at which torques are within their limits.
-
-    It bounds the torque in the direction of the part that is not gravity, the only part that time
-    scaling changes.
-
-    Parameters
-    ----------
-    max_effort : ndarray, shape (..., 3)
-        Limits on magnitudes, infinite where there is none [N m].
-    gravity, torque : ndarray, shape (..., 3)
-        Of gravity alone, and of the motion [N m].
-
-    Returns
-    -------
-    ndarray, shape (..., 3)
-        Infinite where no factor is large enough.
-
-    """
-    motion = torque - gravity
-    margin = max_effort - np.sign(motion) * gravity
-    with np.errstate(divide='ignore', invalid='ignore'):
-        return np.where(margin > 0.0, np.abs(motion) / margin, np.inf)
 
 
 def torque_grid(trajectory: Trajectory) -> Array:

@@ -23,7 +23,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.motion_laws.ramps import RampShape
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
-from rrr_traj_planner.core.trajectory.torque import squared_scaling
+from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 

@@ -55,8 +55,8 @@ def fastest(task: JointTask, grid: Grid, least_T: Array | None = None) -> Solved
         None where no path is found along which the motors can hold the arm.
 
     """
-    free = DurationConstraints.all_free(len(task.points) - 1, 3)
-    whole = JointProblem(task, grid, free, least_T)
+    unconstrained = DurationConstraints.all_free(len(task.points) - 1, 3)
+    whole = JointProblem(task, grid, unconstrained, least_T)
     if np.isfinite(task.limits.max_acceleration).all():
         free = replace(whole, task=replace(
             task, limits=replace(task.limits, max_effort=np.full(3, np.inf))))

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.ramps import RampShape
-from rrr_traj_planner.core.trajectory.torque import squared_scaling
+from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
 from rrr_traj_planner.planners.joint_timing.dense_check import ROUNDING
 from rrr_traj_planner.planners.path_timing.constraints import (
     ACCELERATION,
