@@ -184,6 +184,15 @@ def test_a_range_is_left_by_the_cube_of_the_time_between_points():
     assert none.slowing == 1.0
 
 
+def test_peak_jerk_between_points_is_found():
+    # Jerk 4 J x (T - x) / T^2 is zero at both points and J half-way; integrated thrice from rest.
+    J, T = np.array([2.0, -3.0, 0.5]), 0.7
+    q, v, a = (J * T ** n * part for n, part in ((3, 1.0 / 10.0), (2, 1.0 / 3.0), (1, 2.0 / 3.0)))
+    states = [np.array([np.zeros(3), x]) for x in (q, v, a)]
+    spline = spline_through(TrajectoryPoints([0.0, T], *states))
+    assert spline.peak_jerks() == pytest.approx(np.abs([J]), rel=1e-9)
+
+
 def test_peak_jerk_is_exact():
     # 60 D/T^3 at the ends of a quintic from rest to rest.
     assert there().peak_jerks() == pytest.approx(
