@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How work is given up: a callback that is asked in every loop, and the step that it ended in."""
+"""Cooperative cancellation: a callback polled in every loop, and the interrupted step's name."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ from typing import TypeAlias
 
 from rrr_traj_planner.core.errors import TimeLimitError
 
-# Asked in every loop. Once it answers True, the best that there is is the answer; where there is
-# nothing yet, the least work that gives an answer goes on. What it raises ends the work.
+# Polled in every loop. True: return the best feasible result so far, or continue only until the
+# first one exists. Exceptions that it raises abort planning.
 ShouldStop: TypeAlias = Callable[[], bool]
 
 
 def never() -> bool:
-    """Return that there is no reason to stop."""
+    """Return False: do not stop."""
     return False
 
 
 @contextmanager
 def step(name: str) -> Iterator[None]:
     """
-    Tell of a time limit that ends a step in which step it was.
+    Add the name of the current step to a `TimeLimitError`.
 
     Parameters
     ----------
     name : str
-        What is done meanwhile; of steps within steps the inner one is told.
+        What is done meanwhile; of nested steps the innermost is named.
 
     Raises
     ------

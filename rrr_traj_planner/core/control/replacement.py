@@ -54,12 +54,13 @@ from rrr_traj_planner.core.trajectory.trajectory_points import (
 POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
 
 # Steps in which a joining polynomial's torque is sampled; tolerance of limits, relative and [rad].
-STEPS, LIMIT_TOLERANCE = 32, 1e-6
+TORQUE_STEPS, LIMIT_TOLERANCE = 32, 1e-6
 
-# Points that are tried at once.
+# Points that are tried at once; chosen.
 BATCH = 256
 
-# Factors on the time left until the last point, tried in order if it cannot be met on schedule.
+# Factors on the time left until the last point, tried in order if it cannot be met on schedule;
+# chosen.
 LATER = 1.15 ** np.arange(64.0)
 
 
@@ -79,7 +80,7 @@ class Takeover:
     model : RobotModel
         The arm.
     running : ReferenceTrajectory, optional
-        What would have to stop now (`what_moves`); None: only the command is known.
+        What would be braked now (`motion_to_brake`); None: only the command is known.
 
     """
 
@@ -105,9 +106,9 @@ class Replacement(NamedTuple):
     motion : ReferenceTrajectory
         From the command on, or the new trajectory itself if the command is on it.
     warnings : tuple of str
-        What a stop on the way could not keep.
+        Limits that a stop on the way violates.
     holds : bool
-        Whether the arm stops instead of going where the trajectory leads.
+        Whether the arm stops because the trajectory cannot be joined.
 
     """
 
@@ -206,7 +207,7 @@ def _within_limits(takeover: Takeover, T: Array, ends: tuple[Array, ...]) -> Boo
     for form, (low, high) in zip(bernstein_forms(c, T), _bounds(takeover, ends)):
         met &= ~leaves(form, low - LIMIT_TOLERANCE, high + LIMIT_TOLERANCE).any(axis=1)
     i = np.flatnonzero(met)
-    times = np.linspace(0.0, 1.0, STEPS + 1)[:, np.newaxis, np.newaxis] * T[i, np.newaxis]
+    times = np.linspace(0.0, 1.0, TORQUE_STEPS + 1)[:, np.newaxis, np.newaxis] * T[i, np.newaxis]
     q, qd, qdd = (polynomial(np.moveaxis(c[i], -1, 0), times, order) for order in range(3))
     torque = np.abs(inverse_dynamics(takeover.model, q, qd, qdd))
     allowed = np.maximum(torque[:1], torque[-1:])
@@ -263,12 +264,12 @@ def _gone_to(takeover: Takeover, motion: ReferenceTrajectory) -> Replacement:
         return Replacement(_joined(takeover, late, 0))
     stopped, warnings = _stopped(takeover)
     moved, torque = moved_on(stopped, motion.final, takeover.limits, takeover.model)
-    told = tuple(
-        f"the way to the trajectory's end takes {name} {torque[i]:.1f} N m, limit "
-        f'{takeover.limits.max_effort[i]:.1f} N m: holding'
+    unmet = tuple(
+        f'moving to the last point requires {torque[i]:.1f} N m at {name}, limit '
+        f'{takeover.limits.max_effort[i]:.1f} N m: holding position'
         for i, name in enumerate(takeover.model.joint_names)
         if torque[i] > takeover.limits.max_effort[i] * (1.0 + LIMIT_TOLERANCE))
-    return Replacement(stopped if told else moved, warnings + told, bool(told))
+    return Replacement(stopped if unmet else moved, warnings + unmet, bool(unmet))
 
 
 def _stopped(takeover: Takeover) -> Stop:
@@ -281,7 +282,7 @@ def _ends_outside(takeover: Takeover, motion: ReferenceTrajectory) -> tuple[str,
     """Return a sentence for each joint that a motion leaves outside its range."""
     q, limits = motion.final, takeover.limits
     return tuple(
-        'the trajectory would end with {} at {} rad, range [{}, {}] rad: holding'.format(
+        'the trajectory would end with {} at {} rad, range [{}, {}] rad: holding position'.format(
             name, *told_apart(*map(float, bounds)))
         for name, beyond, *bounds in zip(
             takeover.model.joint_names, outside_ranges(q, limits), q, limits.min_position,

@@ -86,9 +86,9 @@ def excesses(points: TrajectoryPoints, limits: JointLimits, time: float = np.inf
     """
     Return the excesses of a trajectory in position, velocity and acceleration.
 
-    The segment that leads from the command to a first point ahead is looked at too, for position
-    and velocity: `replacement` does not follow one that leaves limits. Lines have no
-    acceleration, and steps of velocity between them are not looked at. Where degrees explain a
+    The segment that leads from the command to a first point ahead is checked too, for position
+    and velocity: `replacement` does not follow one that exceeds limits. Lines have no
+    acceleration, and steps of velocity between them are not checked. Where degrees explain a
     joint's positions, its velocity and acceleration are left out.
 
     Parameters
@@ -106,7 +106,7 @@ def excesses(points: TrajectoryPoints, limits: JointLimits, time: float = np.inf
     -------
     list of Excess
         By quantity, then joint, with the furthest value of each; of the segment that leads in
-        where the trajectory itself is within. Empty for a sound trajectory.
+        where the trajectory itself is within. Empty if there is no excess.
 
     """
     own = _bernstein_forms(through(points))
@@ -167,7 +167,7 @@ def _bernstein_forms(motion: ReferenceTrajectory) -> tuple[Array, Array, Array]:
 
 
 def _with_tolerance(quantity: str, low: ArrayLike, high: ArrayLike) -> tuple[Array, Array]:
-    """Return bounds beyond which a value is told."""
+    """Return bounds widened by the reporting tolerance."""
     low, high = np.asarray(low), np.asarray(high)
     if quantity != 'position':
         return low * (1.0 + LIMIT_TOLERANCE), high * (1.0 + LIMIT_TOLERANCE)

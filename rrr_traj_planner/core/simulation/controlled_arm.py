@@ -24,7 +24,7 @@ from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.control_loop import ControlLoop
 from rrr_traj_planner.core.states import Desired
 from rrr_traj_planner.core.stopping.stop import Stop, stop
-from rrr_traj_planner.core.stopping.task import MeasuredState, time_inside, what_moves
+from rrr_traj_planner.core.stopping.task import MeasuredState, motion_to_brake, time_inside
 from rrr_traj_planner.core.trajectory.reference_trajectory import holding, ReferenceTrajectory
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
@@ -47,9 +47,9 @@ class ControlledArm(ControlLoop):
     motion : ReferenceTrajectory
         The reference trajectory.
     violation : tuple of str
-        What was wrong when a tolerance was last exceeded; empty where none was.
+        The tolerances violated when one last was; empty if there was no violation.
     stop_warnings : tuple of str
-        What the last stop could not keep; empty where it kept ranges and limits.
+        Limits that the last stop violates; empty if there are none.
 
     """
 
@@ -129,7 +129,7 @@ class ControlledArm(ControlLoop):
 
         """
         takeover = Takeover(self.time, self.desired, self.settings.limits,
-                            self.settings.controller_model, self._what_moves())
+                            self.settings.controller_model, self._motion_to_brake())
         self.motion, self.stop_warnings, holds = replacement(
             takeover, points, origin_ns, self.settings.step)
         self.violation = ()
@@ -139,7 +139,7 @@ class ControlledArm(ControlLoop):
 
     def hold(self) -> None:
         """Stop inside the ranges, as fast as the limits allow, and stay there."""
-        self._stop(self._what_moves())
+        self._stop(self._motion_to_brake())
 
     def advance(self, steps: int) -> None:
         """
@@ -163,7 +163,7 @@ class ControlledArm(ControlLoop):
         """Brake a motion that ends with a velocity, at its end."""
         motion = self.motion
         if motion.ends_moving and self.now >= motion.end_ns:
-            moving = self._what_moves()
+            moving = self._motion_to_brake()
             self.motion, self.stop_warnings = self._stopped(
                 moving, motion.end if moving is motion else self.time)
 
@@ -189,12 +189,12 @@ class ControlledArm(ControlLoop):
     def _keep_ranges(self) -> None:
         """Stop a motion that leaves ranges made smaller."""
         if time_inside(self.motion, self.time, self.settings.limits) < self.motion.end:
-            self._stop(self._what_moves())
+            self._stop(self._motion_to_brake())
             self.stop_warnings = (OUTSIDE_NEW_RANGES, *self.stop_warnings)
 
-    def _what_moves(self) -> ReferenceTrajectory:
-        """Return what would have to stop now."""
-        return what_moves(self.motion, self.now, self.seen, self.settings.limits)
+    def _motion_to_brake(self) -> ReferenceTrajectory:
+        """Return the motion that would be braked now."""
+        return motion_to_brake(self.motion, self.now, self.seen, self.settings.limits)
 
     def _stop(self, motion: ReferenceTrajectory) -> None:
         """Stop a motion now."""

@@ -13,10 +13,11 @@
 # limitations under the License.
 
 """
-Ways to bring the arm to rest, many at once: each joint by itself, or along the motion it is in.
+Candidate stopping motions, evaluated in batches.
 
-A family of candidates says when each would be at rest and how good that is (`cost`), and tells of
-some of them by how much they exceed the limits. The search for the best is in `stop`.
+A family gives each candidate's cost (weighted time to rest) and, on request, its largest ratio of
+a quantity to its limit. The search for the cheapest feasible one (our own) is in `stop`. Time
+scaling on a given path: Bobrow, Dubowsky and Gibson, Int. J. Robotics Research 4(3), 1985.
 """
 
 from __future__ import annotations
@@ -34,36 +35,37 @@ from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTraje
 
 Indices = NDArray[np.int_]
 
-# Points of a slowing motion are no further apart, and but for the motion's own no nearer [s].
+# Largest and least spacing of the knots of a time-scaled stop [s], chosen; the knots of the
+# original motion are retained.
 SPACING, LEAST_SPACING = 0.005, 1e-4
 
-# Its clock is inverted by linear interpolation between so many times and so many steps of Newton's
-# method with its rate, of at least so much.
+# Inversion of s(t), at the original knots: samples for linear interpolation, Newton steps, lower
+# bound on ds/dt.
 INVERSION, NEWTON_STEPS, LEAST_RATE = 2001, 2, 1e-3
 
-# What holds just before and just after a time is looked at so far from it [s].
-ASIDE = 1e-7
+# Offset for one-sided limits at a knot [s].
+ONE_SIDED = 1e-7
 
-# A motion of constant jerk, deceleration and jerk again: each jerk's share of the time.
-JERK_SHARE = 1.0 / 3.0
+# Fraction of the slow-down spent in each of its two constant-jerk phases; chosen.
+JERK_FRACTION = 1.0 / 3.0
 
 
 class JointBrakes:
     """
-    Each joint by itself, after the motion has been followed for a while.
+    Independent braking of each joint, after a delay in which the motion is followed.
 
     Parameters
     ----------
     task : StopTask
         The task.
     delays : ndarray, shape (n,)
-        How long the motion is followed before [s].
+        Times for which the motion is followed first [s].
     states : tuple of ndarray, shape (n, 3)
-        Positions, velocities and accelerations then.
+        Positions, velocities and accelerations after the delays.
     decelerations, max_jerk : ndarray, shape (n, 3)
         Of the brakes [rad/s^2], [rad/s^3].
     weight : float
-        Cost of a second until the arm rests.
+        Cost of a second until rest.
 
     """
 
@@ -75,22 +77,22 @@ class JointBrakes:
         self.durations = self.brakes.duration.max(axis=-1)
         self.cost = weight * (delays + self.durations)
 
-    def excess(self, chosen: Indices, samples: int) -> Array:
+    def limit_ratio(self, chosen: Indices, samples: int) -> Array:
         """
-        Return the largest share of a limit that candidates take; infinite outside a range.
+        Return candidates' largest ratio of a quantity to its limit; infinite outside a range.
 
         Parameters
         ----------
         chosen : ndarray of int, shape (k,)
-            Which candidates.
+            Indices of the candidates.
         samples : int
-            At how many instants they are looked at.
+            Number of time samples.
 
         Returns
         -------
         ndarray, shape (k,)
-            At most 1 where all limits are kept. Where velocity or torque exceed a limit when the
-            brake begins, that much is allowed.
+            At most 1 where all limits are satisfied. A velocity or torque that exceeds its limit
+            at the beginning of the brake takes the place of the limit.
 
         """
         task, q = self.task, self.q[chosen, np.newaxis]
@@ -98,41 +100,42 @@ class JointBrakes:
             x[:, chosen, np.newaxis] for x in self.brakes[1:]))
         t = self.durations[chosen, np.newaxis, np.newaxis] * np.linspace(
             0.0, 1.0, samples)[:, np.newaxis]
-        way, qd, qdd, _ = brakes.at(t)
+        displacement, qd, qdd, _ = brakes.at(t)
+        moved = q + displacement
         at_first = np.abs(inverse_dynamics(task.model, q, qd[:, :1], self.qdd[chosen, np.newaxis]))
-        share = np.maximum(
-            task.torque_share(q + way, qd, qdd, at_first),
+        ratio = np.maximum(
+            task.torque_ratio(moved, qd, qdd, at_first),
             np.abs(qd) / np.maximum(task.limits.max_velocity, np.abs(qd[:, :1])))
         low, high = task.ranges(q)
         least, greatest = brakes.extremes()
         outside = ((q + least < low - POSITION_TOLERANCE)
                    | (q + greatest > high + POSITION_TOLERANCE)).any(axis=(1, 2))
-        worst = np.maximum(share.max(axis=(1, 2)), task.rest_share((q + way)[:, -1]))
+        worst = np.maximum(ratio.max(axis=(1, 2)), task.holding_torque_ratio(moved[:, -1]))
         return np.where(outside, inf, worst)
 
     def motion(self, i: int) -> ReferenceTrajectory:
         """
-        Return a candidate.
+        Return candidate i: the original trajectory up to the delay, then the stop.
 
         Parameters
         ----------
         i : int
-            Which.
+            Index of the candidate.
 
         Returns
         -------
         ReferenceTrajectory
-            It includes what of the followed motion is still to come, and what has been.
+            At rest at the end.
 
         """
         brakes = JointBrake(self.brakes.velocity[i], *(x[:, i] for x in self.brakes[1:]))
         ends = np.cumsum(brakes.times, axis=0)
         knots = np.unique(np.append(0.0, ends))
         middles = 0.5 * (knots[:-1] + knots[1:])[:, np.newaxis]
-        way, qd, qdd, jerk = brakes.at(middles)
+        displacement, qd, qdd, jerk = brakes.at(middles)
         back = knots[:-1, np.newaxis] - middles  # from the middle of an interval to its start
         c = np.zeros((len(middles), 3, 6))
-        c[..., 0] = self.q[i] + way + back * (qd + back * (qdd / 2.0 + back * jerk / 6.0))
+        c[..., 0] = self.q[i] + displacement + back * (qd + back * (qdd / 2.0 + back * jerk / 6.0))
         c[..., 1] = qd + back * (qdd + back * jerk / 2.0)
         c[..., 2] = (qdd + back * jerk) / 2.0
         c[..., 3] = jerk / 6.0
@@ -142,84 +145,84 @@ class JointBrakes:
 
 class Slowdowns:
     """
-    Along the motion, which is followed ever more slowly, after a while at its own pace.
+    Time scaling of the current trajectory: nominal rate during the delay, then down to rest.
 
-    The way on the motion's own clock is s(t), its rate 1 at first and 0 at last. With ' for the
-    motion's derivatives: qd = q' sd, qdd = q'' sd^2 + q' sdd, and torque is linear in sd^2 and
-    sdd (Bobrow, Dubowsky and Gibson, Int. J. Robotics Research 4(3), 1985).
+    The path is the same; s(t) is the time on the trajectory, and its rate ds/dt falls from 1 to 0.
+    With ' for the trajectory's derivatives: qd = q' sd, qdd = q'' sd^2 + q' sdd, and torque is
+    linear in sd^2 and sdd.
 
     Parameters
     ----------
     task : StopTask
         The task.
     delays, durations : ndarray, shape (n,)
-        How long the motion is followed at its own pace, and then slowed [s].
+        Times at the nominal rate, and of the slow-down after it [s].
 
     """
 
     def __init__(self, task: StopTask, delays: Array, durations: Array) -> None:
         self.task, self.delays, self.durations = task, delays, durations
-        share = JERK_SHARE if np.isfinite(task.limits.max_jerk).any() else 0.0
-        peak = 1.0 / ((1.0 - share) * durations)
-        jerk = peak / (share * durations) if share else np.full(len(durations), inf)
+        fraction = JERK_FRACTION if np.isfinite(task.limits.max_jerk).any() else 0.0
+        peak = 1.0 / ((1.0 - fraction) * durations)
+        jerk = peak / (fraction * durations) if fraction else np.full(len(durations), inf)
         self.clock = joint_brake(np.ones(len(durations)), np.zeros(len(durations)), peak, jerk)
         self.cost = delays + durations
 
-    def excess(self, chosen: Indices, samples: int) -> Array:
+    def limit_ratio(self, chosen: Indices, samples: int) -> Array:
         """
-        Return the largest share of a limit that candidates take.
+        Return candidates' largest ratio of a quantity to its limit.
 
         Parameters
         ----------
         chosen : ndarray of int, shape (k,)
-            Which candidates.
+            Indices of the candidates.
         samples : int
-            At how many instants they are looked at.
+            Number of time samples.
 
         Returns
         -------
         ndarray, shape (k,)
-            At most 1 where all limits are kept. What the motion itself asks for at the same
-            place is allowed.
+            At most 1 where all limits are satisfied. A value that exceeds its limit on the
+            original trajectory, at the same position, takes the place of the limit.
 
         """
         limits = self.task.limits
         t = self.durations[chosen, np.newaxis] * np.linspace(0.0, 1.0, samples)
         (q, p, pp, ppp), (qd, qdd, qddd) = self._states(chosen, t)
         at_pace = np.abs(inverse_dynamics(self.task.model, q, p, pp))
-        shares = [self.task.torque_share(q, qd, qdd, at_pace),
+        ratios = [self.task.torque_ratio(q, qd, qdd, at_pace),
                   np.abs(qdd) / np.maximum(limits.max_acceleration, np.abs(pp)),
                   np.abs(qddd) / limits.max_jerk]
-        worst = np.stack(shares).max(axis=(0, 2, 3))
-        return np.asarray(np.maximum(worst, self.task.rest_share(q[:, -1])))
+        worst = np.stack(ratios).max(axis=(0, 2, 3))
+        return np.asarray(np.maximum(worst, self.task.holding_torque_ratio(q[:, -1])))
 
     def motion(self, i: int) -> ReferenceTrajectory:
         """
-        Return a candidate.
+        Return candidate i: the original trajectory up to the delay, then the stop.
 
         Parameters
         ----------
         i : int
-            Which.
+            Index of the candidate.
 
         Returns
         -------
         ReferenceTrajectory
-            It includes what of the followed motion is still to come, and what has been.
+            At rest at the end.
 
         """
         t, chosen = self._knots(i), np.array([i])
         q = self._states(chosen, t[np.newaxis])[0][0][0]
-        # Where the motion's own polynomials meet, velocity and acceleration may step.
+        # At the original knots, velocity and acceleration may step.
         starts, ends = ([x[0] for x in self._states(chosen, times[np.newaxis])[1][:2]]
-                        for times in (np.append(0.0, t[1:-1] + ASIDE), np.append(
-                            t[1:-1] - ASIDE, t[-1])))
+                        for times in (np.append(0.0, t[1:-1] + ONE_SIDED), np.append(
+                            t[1:-1] - ONE_SIDED, t[-1])))
         ends[0][-1] = 0.0
         c = hermite(np.diff(t)[:, np.newaxis], (q[:-1], *starts), (q[1:], *ends))
         return _after(self.task, float(self.delays[i]), t, np.stack(c, axis=-1), q[-1])
 
     def _knots(self, i: int) -> Array:
-        """Return times that are not far apart, and when the motion's own knots are passed."""
+        """Return the knots' times: closely spaced, and where the original knots are passed."""
         T, motion, rates = float(self.durations[i]), self.task.motion, self._rates(np.array([i]))
         t = np.linspace(0.0, T, INVERSION)
         begin = self.task.now + self.delays[i] - motion.origin
@@ -237,17 +240,18 @@ class Slowdowns:
             grid[:1], np.unique(np.concatenate((grid[1:-1][~near], passed))), grid[-1:]))
 
     def _rates(self, chosen: Indices) -> JointBrake:
-        """Return how the motion's clock slows down, shape (k, 1)."""
+        """Return s(t) of candidates, shape (k, 1)."""
         return JointBrake(self.clock.velocity[chosen, np.newaxis], *(
             x[:, chosen, np.newaxis] for x in self.clock[1:]))
 
     def _states(self, chosen: Indices, t: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
-        """Return the motion's own states where candidates are at times (k, n), and theirs."""
+        """Return the original states at s(t), for times (k, n), and those of candidates."""
         task = self.task
         s, *derivatives = self._rates(chosen).at(t)
         sd, sdd, sddd = (x[..., np.newaxis] for x in derivatives)
         q, p, pp, ppp = task.motion.at(task.now + self.delays[chosen, np.newaxis] + s)
-        J = task.limits.max_jerk  # points of a plan have more now and then: not the stop's fault
+        # Sampled plans may exceed the jerk limit; clipped so that it does not count against stops.
+        J = task.limits.max_jerk
         own = np.clip(ppp, -J, J)
         return (q, p, pp, ppp), (
             p * sd, pp * sd ** 2 + p * sdd, own * sd ** 3 + 3.0 * pp * sd * sdd + p * sddd)
@@ -255,7 +259,7 @@ class Slowdowns:
 
 def _after(task: StopTask, delay: float, knots: Array, coefficients: Array,
            final: Array) -> ReferenceTrajectory:
-    """Return the motion that is followed for a while, then others."""
+    """Return the original trajectory up to the delay, then polynomials between further knots."""
     motion = task.motion
     begin = task.now + delay - motion.origin
     n = int(np.searchsorted(motion.knots, begin)) if delay else 0

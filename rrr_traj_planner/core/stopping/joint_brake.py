@@ -13,12 +13,12 @@
 # limitations under the License.
 
 """
-The brake of one joint: jerk until it decelerates as it may, constant deceleration, jerk to rest.
+Jerk-limited braking of one joint: trapezoidal or triangular deceleration profile.
 
 Of all motions from a state to rest within bounds on acceleration and jerk, this one decelerates
-most at every velocity. It takes the least time and, unless the joint has to turn back, the
-shortest way (Kröger and Wahl, IEEE Transactions on Robotics 26(1), 2010: acceleration profiles
-NegTrap and NegTri). Arrays of any shape, an element for each joint of each candidate.
+most at every velocity. It takes the least time and, unless the joint has to reverse, the shortest
+distance (Kröger and Wahl, IEEE Transactions on Robotics 26(1), 2010: acceleration profiles NegTrap
+and NegTri). Arrays of any shape, an element for each joint of each candidate.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 
-# No joint that has limits on neither acceleration nor jerk stops in less time than this [s].
+# Least time in which a joint without limits on acceleration and jerk stops [s]; chosen.
 LEAST_TIME = 0.01
 
-# So soon after its end a brake is not over yet [s].
-ROUNDING = 1e-12
+# Times no later than this after the end count as the end [s].
+END_ROUNDING = 1e-12
 
 
 class JointBrake(NamedTuple):
@@ -62,7 +62,7 @@ class JointBrake(NamedTuple):
 
     def at(self, t: Array) -> tuple[Array, Array, Array, Array]:
         """
-        Return the way so far and its derivatives.
+        Return the displacement and its derivatives.
 
         Parameters
         ----------
@@ -77,24 +77,24 @@ class JointBrake(NamedTuple):
 
         """
         shape = np.broadcast_shapes(np.shape(t), self.velocity.shape)
-        way, acceleration, jerk = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+        displacement, acceleration, jerk = np.zeros(shape), np.zeros(shape), np.zeros(shape)
         velocity = np.broadcast_to(self.velocity, shape)
         for T, a, j in zip(self.times, self.accelerations, self.jerks):
             x = np.clip(t, 0.0, T)
-            way = way + x * (velocity + x * (a / 2.0 + x * j / 6.0))
+            displacement = displacement + x * (velocity + x * (a / 2.0 + x * j / 6.0))
             velocity = velocity + x * (a + x * j / 2.0)
-            begun = (t >= 0.0) & (T > 0.0)
-            acceleration = np.where(begun, a + x * j, acceleration)
-            jerk = np.where(begun, j, jerk)
+            started = (t >= 0.0) & (T > 0.0)
+            acceleration = np.where(started, a + x * j, acceleration)
+            jerk = np.where(started, j, jerk)
             t = t - T
-        over = t > ROUNDING
-        return way, velocity, np.where(over, 0.0, acceleration), np.where(over, 0.0, jerk)
+        over = t > END_ROUNDING
+        return displacement, velocity, np.where(over, 0.0, acceleration), np.where(over, 0.0, jerk)
 
     def extremes(self) -> tuple[Array, Array]:
         """
-        Return the least and the greatest way.
+        Return the least and the largest displacement.
 
-        A joint turns back once at most, before its first acceleration has changed its sign.
+        A joint reverses at most once, before its first acceleration has changed sign.
 
         Returns
         -------
@@ -105,13 +105,13 @@ class JointBrake(NamedTuple):
         a, j, v, T = self.accelerations[0], self.jerks[0], self.velocity, self.times[0]
         root = a + np.copysign(np.sqrt(np.maximum(a * a - 2.0 * j * v, 0.0)), a)
         t = np.clip(np.divide(-2.0 * v, root, out=np.zeros_like(T), where=root != 0.0), 0.0, T)
-        ways = np.stack((np.zeros_like(T), self.at(t)[0], self.at(self.duration)[0]))
-        return ways.min(axis=0), ways.max(axis=0)
+        displacements = np.stack((np.zeros_like(T), self.at(t)[0], self.at(self.duration)[0]))
+        return displacements.min(axis=0), displacements.max(axis=0)
 
 
 def direction(velocity: Array, acceleration: Array, max_jerk: Array) -> Array:
     """
-    Return the sign of the velocity that is left once the acceleration is gone.
+    Return the sign of the velocity that remains once the acceleration is reduced to zero.
 
     Parameters
     ----------
@@ -130,15 +130,15 @@ def direction(velocity: Array, acceleration: Array, max_jerk: Array) -> Array:
 def greatest_deceleration(velocity: Array, acceleration: Array, max_acceleration: Array,
                           max_jerk: Array) -> Array:
     """
-    Return the deceleration of the quickest brake.
+    Return the peak deceleration of the fastest brake.
 
     Parameters
     ----------
     velocity, acceleration : ndarray
         At the start [rad/s], [rad/s^2].
     max_acceleration, max_jerk : ndarray
-        Bounds on the magnitude [rad/s^2], [rad/s^3]; may be infinite. Where the acceleration
-        itself exceeds its bound, that much is allowed.
+        Bounds on the magnitude [rad/s^2], [rad/s^3]; may be infinite. An initial acceleration
+        that exceeds its bound takes the place of the bound.
 
     Returns
     -------
@@ -157,7 +157,7 @@ def greatest_deceleration(velocity: Array, acceleration: Array, max_acceleration
 def joint_brake(velocity: Array, acceleration: Array, deceleration: Array,
                 max_jerk: Array) -> JointBrake:
     """
-    Return the quickest brake whose deceleration has a given bound.
+    Return the fastest brake with a given bound on its deceleration.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@
 """
 Moves of all joints from rest to rest, on a line in joint space, as fast as the limits allow.
 
-All joints follow one quintic, 10 s^3 - 15 s^4 + 6 s^5 of the way with s = t / T.
+All joints follow one quintic: the fraction 10 s^3 - 15 s^4 + 6 s^5 of the distance, s = t / T.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTraje
 # Peaks of the quintic over distance d and time T: 1.875 d/T, 5.7735 d/T^2, 60 d/T^3.
 PEAK_VELOCITY, PEAK_ACCELERATION, PEAK_JERK = 15.0 / 8.0, 10.0 / 3.0 ** 0.5, 60.0
 
-# A move that asks too much torque is slowed by this factor, at most so often. Where none fits,
-# the quickest is taken that asks hardly more than the gentlest.
+# Slow-down factor, number of trials; if none satisfies the torque limits, the fastest whose torque
+# ratio is within HARDLY_MORE of the lowest is used. Chosen.
 SLOWING, SLOWINGS, HARDLY_MORE = 1.2, 40, 1.1
 
-SAMPLES = 41  # of a move, at which torques are compared
+TORQUE_SAMPLES = 41  # of a move, at which torques are compared; chosen
 
 
 class Move(NamedTuple):
@@ -50,7 +50,7 @@ class Move(NamedTuple):
     motion : ReferenceTrajectory
         The motion.
     peak_torque : ndarray, shape (3,)
-        Of the move [N m]; beyond the limits where no duration keeps them.
+        Of the move [N m]; beyond the limits where no duration satisfies them.
 
     """
 
@@ -70,8 +70,7 @@ def moved_on(motion: ReferenceTrajectory, target: Array, limits: JointLimits,
     target : ndarray, shape (3,)
         Positions [rad].
     limits : JointLimits
-        Velocity, acceleration and jerk limits are kept, and those of torque where that is
-        possible.
+        Velocity, acceleration and jerk limits are satisfied, and torque limits where possible.
     model : RobotModel
         The arm, for its torques.
 
@@ -91,24 +90,24 @@ def moved_on(motion: ReferenceTrajectory, target: Array, limits: JointLimits,
                                     target, motion.origin_ns), peak_torque)
 
 
-def quickest(share: Array) -> int:
+def quickest(ratio: Array) -> int:
     """
-    Return which of motions to take, the quicker ones first.
+    Return the index of the fastest acceptable motion.
 
     Parameters
     ----------
-    share : ndarray, shape (n,)
-        The largest share of a limit that each takes.
+    ratio : ndarray, shape (n,)
+        Largest ratio of a quantity to its limit for each motion, faster motions first.
 
     Returns
     -------
     int
-        The first that keeps the limits; if none does, the first that exceeds them hardly more
-        than the gentlest does.
+        The first motion within the limits; if there is none, the first whose ratio is at most
+        HARDLY_MORE times the lowest.
 
     """
-    least = float(share.min())
-    return int(np.argmax(share <= (1.0 if least <= 1.0 else HARDLY_MORE * least)))
+    least = float(ratio.min())
+    return int(np.argmax(ratio <= (1.0 if least <= 1.0 else HARDLY_MORE * least)))
 
 
 def _duration(start: Array, target: Array, limits: JointLimits,
@@ -120,12 +119,12 @@ def _duration(start: Array, target: Array, limits: JointLimits,
         np.sqrt(PEAK_ACCELERATION * distance / limits.max_acceleration),
         np.cbrt(PEAK_JERK * distance / limits.max_jerk)))))
     T = least * SLOWING ** np.arange(SLOWINGS)
-    s = np.linspace(0.0, 1.0, SAMPLES)[:, np.newaxis]
+    s = np.linspace(0.0, 1.0, TORQUE_SAMPLES)[:, np.newaxis]
     q = start + (10.0 - 15.0 * s + 6.0 * s ** 2) * s ** 3 * (target - start)
     qd = 30.0 * (s * (1.0 - s)) ** 2 * (target - start) / T[:, np.newaxis, np.newaxis]
     qdd = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) * (target - start) / (
         T[:, np.newaxis, np.newaxis] ** 2)
     torque = np.abs(inverse_dynamics(model, np.broadcast_to(q, qd.shape), qd, qdd))
-    share = (torque / limits.max_effort).max(axis=(1, 2))
-    i = quickest(share)
+    ratio = (torque / limits.max_effort).max(axis=(1, 2))
+    i = quickest(ratio)
     return float(T[i]), torque[i].max(axis=0)

@@ -13,13 +13,13 @@
 # limitations under the License.
 
 """
-Bringing the arm to rest from the motion it is in: inside its ranges, as fast as its limits allow.
+Stopping motions.
 
-Candidates are brakes of each joint by itself and the motion itself ever more slowly, either at
-once or after the motion has been followed for a while, down to its own end. Whatever the state of
-a motion that ends at rest inside the ranges, one of them keeps ranges and limits; of those that
-do, the quickest is taken. From other states each joint brakes as hard as its range asks, at once
-where it is at its end or beyond, and what that breaks is told.
+Candidates: independent jerk-limited braking of each joint, or time scaling of the current motion
+to rest (Bobrow, Dubowsky and Gibson 1985), each after an optional delay. The fastest one within
+ranges and limits is chosen; the search is our own. If the current motion ends at rest within its
+ranges, one exists. If none exists, each joint decelerates as required to stop within its range,
+instantaneously at the range's end, and warnings list the limits violated.
 """
 
 from __future__ import annotations
@@ -34,33 +34,38 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.stopping.candidates import Indices, JointBrakes, Slowdowns
 from rrr_traj_planner.core.stopping.joint_brake import greatest_deceleration
 from rrr_traj_planner.core.stopping.point_to_point import moved_on, quickest
-from rrr_traj_planner.core.stopping.stop_warnings import harder, outside, torques_beyond
+from rrr_traj_planner.core.stopping.stop_warnings import (
+    deceleration_warnings,
+    range_warnings,
+    torque_warnings,
+)
 from rrr_traj_planner.core.stopping.task import POSITION_TOLERANCE, StopTask, time_inside
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
-# Slower than this a joint is at rest where a motion ends [rad/s].
+# Velocity below which a joint counts as at rest at the end of a motion [rad/s].
 REST = 1e-6
 
-# How long a motion is followed before the brake: from the first of these times on, each so much
-# longer than the one before [s].
+# Candidate delays before braking: geometric sequence from FIRST_DELAY [s] with ratio DELAY_RATIO.
+# This and the next two sequences are chosen.
 FIRST_DELAY, DELAY_RATIO = 0.005, 1.5
 
-# Candidates brake with these parts of the greatest deceleration, where torque asks for less.
+# Decelerations of the candidates, over the largest: for torques that do not allow the largest.
 RATES = 1.3 ** -np.arange(22.0)
 
-# Times that a motion takes to slow down [s].
+# Candidate durations of a slow-down by time scaling [s].
 SLOWDOWNS = 0.01 * 1.3 ** np.arange(30.0)
 
-# Where keeping the jerk limit would take so many times as long as jerk itself asks for, jerk is
-# allowed to be so many times its limit, and a second then costs so much more.
+# If the best stop takes over PATIENCE times the bound from jerk alone, the jerk limit is relaxed
+# by the first of each pair; the second weights the duration. Chosen.
 PATIENCE = 2.5
 JERK_FACTORS = ((4.0, 1.5), (inf, 2.5))
 
-# Candidates are looked at in groups, at so many instants each, and at more before one is taken.
+# Batch size of candidates; time samples of the coarse and of the fine check.
 GROUP, COARSE, FINE = 48, 25, 241
-LIMIT_TOLERANCE = 1e-4
+LIMIT_TOLERANCE = 1e-4  # relative, up to which a limit counts as satisfied
 
-# A joint that is to stop in less time than this stands at once [s].
+# A joint that would have to stop in less time than this is stopped instantaneously (velocity
+# step) [s].
 INSTANT = 1e-3
 
 
@@ -71,9 +76,9 @@ class Stop(NamedTuple):
     Attributes
     ----------
     motion : ReferenceTrajectory
-        Starting now from the state, or already under way; at rest inside every range at last.
+        Starting now from the state, or already under way; at rest within every range at its end.
     warnings : tuple of str
-        What could not be kept, a sentence for each joint; empty where all is well.
+        A sentence for each limit violated by a joint; empty if there is none.
 
     """
 
@@ -81,7 +86,7 @@ class Stop(NamedTuple):
     warnings: tuple[str, ...] = ()
 
 
-# A motion to rest, and what it costs.
+# A motion to rest, and its cost.
 Found = tuple[ReferenceTrajectory, float]
 
 
@@ -90,84 +95,83 @@ class Family(Protocol):
 
     cost: Array
 
-    def excess(self, chosen: Indices, samples: int) -> Array:
+    def limit_ratio(self, chosen: Indices, samples: int) -> Array:
         """
-        Return the largest share of a limit that candidates take.
+        Return candidates' largest ratio of a quantity to its limit.
 
         Parameters
         ----------
         chosen : ndarray of int, shape (k,)
-            Which candidates.
+            Indices of the candidates.
         samples : int
-            At how many instants they are looked at.
+            Number of time samples.
 
         Returns
         -------
         ndarray, shape (k,)
-            At most 1 where all limits are kept.
+            At most 1 where all limits are satisfied.
 
         """
 
     def motion(self, i: int) -> ReferenceTrajectory:
         """
-        Return a candidate.
+        Return candidate i: the original trajectory up to the delay, then the stop.
 
         Parameters
         ----------
         i : int
-            Which.
+            Index of the candidate.
 
         Returns
         -------
         ReferenceTrajectory
-            A motion to rest.
+            At rest at the end.
 
         """
 
 
 def stop(motion: ReferenceTrajectory, now: float, limits: JointLimits, model: RobotModel) -> Stop:
     """
-    Return the quickest way to rest that keeps every range and limit.
+    Return the fastest stop within ranges and limits, and warnings for limits violated.
 
-    Position and velocity go on from the motion's without a jump, acceleration too where jerk is
-    limited, unless a joint has to stop at once. A joint outside its range stops and then goes back
-    to its end.
+    Position and velocity are continuous, acceleration too where jerk is limited, unless a joint
+    has to stop instantaneously. A joint outside its range stops and then returns to its end.
 
     Parameters
     ----------
     motion : ReferenceTrajectory
-        What the arm follows; of a state alone, `from_state`.
+        The current motion; for a single state, `from_state`.
     now : float
         When the stop begins [s].
     limits : JointLimits
-        The limits. Where the motion itself exceeds velocity, acceleration or torque, that much
-        is allowed.
+        The limits. A velocity, acceleration or torque of the motion itself that exceeds its limit
+        takes the place of the limit.
     model : RobotModel
         The arm, for its torques.
 
     Returns
     -------
     Stop
-        The motion, and what had to be broken where the state left no other way.
+        The motion, and warnings for limits that cannot be satisfied.
 
     """
     task = StopTask(motion, now, limits, model)
-    found, told = _within_limits(task), outside(task, motion.at(now)[0])
+    found, warnings = _within_limits(task), range_warnings(task, motion.at(now)[0])
     if found is None:
-        found, more = _as_hard_as_needed(task)
-        told += more
+        found, more = _within_ranges(task)
+        warnings += more
     target = np.clip(found.final, limits.min_position, limits.max_position)
     if np.abs(target - found.final).max() > POSITION_TOLERANCE:
         found = moved_on(found, target, limits, model).motion
     found = ReferenceTrajectory(found.knots, found.coefficients, target, found.origin_ns)
-    return Stop(found, tuple(told))
+    return Stop(found, tuple(warnings))
 
 
 def _within_limits(task: StopTask) -> ReferenceTrajectory | None:
-    """Return the cheapest candidate that keeps ranges and limits, if there is one."""
+    """Return the cheapest candidate within ranges and limits, if there is one."""
     delays, states = _delays(task)
     brakes = _joint_brakes(task, delays, states)
-    patience = PATIENCE * float(brakes.cost[0])  # the quickest at once, were there jerk alone
+    patience = PATIENCE * float(brakes.cost[0])  # first: no delay, largest deceleration
     best = _cheapest(brakes, None)
     if best is None or best[1] > brakes.cost[0]:
         best = _cheapest(_slowdowns(task, delays), best)
@@ -184,15 +188,15 @@ def _cheapest(family: Family, best: Found | None) -> Found | None:
         order = order[family.cost[order] < best[1]]
     for first in range(0, len(order), GROUP):
         group = order[first:first + GROUP]
-        for i in group[family.excess(group, COARSE) <= 1.0 + LIMIT_TOLERANCE]:
-            if family.excess(np.array([i]), FINE)[0] <= 1.0 + LIMIT_TOLERANCE:
+        for i in group[family.limit_ratio(group, COARSE) <= 1.0 + LIMIT_TOLERANCE]:
+            if family.limit_ratio(np.array([i]), FINE)[0] <= 1.0 + LIMIT_TOLERANCE:
                 return family.motion(int(i)), float(family.cost[i])
     return best
 
 
 def _joint_brakes(task: StopTask, delays: Array, states: tuple[Array, Array, Array],
                   factor: float = 1.0, weight: float = 1.0) -> JointBrakes:
-    """Return the brakes of every joint by itself: at every rate after every delay."""
+    """Return independent brakes of the joints: with every deceleration after every delay."""
     limits = task.limits
     max_jerk = factor * limits.max_jerk
     greatest = greatest_deceleration(*states[1:], limits.max_acceleration, max_jerk)
@@ -203,14 +207,14 @@ def _joint_brakes(task: StopTask, delays: Array, states: tuple[Array, Array, Arr
 
 
 def _slowdowns(task: StopTask, delays: Array) -> Slowdowns:
-    """Return the motion slowed in every time after every delay, where it lasts that long."""
+    """Return slow-downs of every duration after every delay, where the motion lasts that long."""
     delay, duration = (x.ravel() for x in np.meshgrid(delays, SLOWDOWNS))
     lasts = delay + 0.5 * duration <= delays[-1]
     return Slowdowns(task, delay[lasts], duration[lasts])
 
 
 def _delays(task: StopTask) -> tuple[Array, tuple[Array, Array, Array]]:
-    """Return how long the motion may be followed, inside the ranges, and its states then."""
+    """Return the delays for which the motion stays within the ranges, and its states then."""
     motion, now = task.motion, task.now
     left = max(time_inside(motion, now, task.limits) - now, 0.0)
     n = int(np.log(max(left / FIRST_DELAY, 1.0)) / np.log(DELAY_RATIO))
@@ -224,15 +228,15 @@ def _delays(task: StopTask) -> tuple[Array, tuple[Array, Array, Array]]:
 
 def _end(motion: ReferenceTrajectory, now: float, qd: Array,
          qdd: Array) -> tuple[Array, Array, Array]:
-    """Return the state at a motion's end, at which its last polynomial has a velocity."""
+    """Return the state at a motion's end, from which a stop there starts."""
     if motion.ends_moving:
         return motion.final, motion.final_velocity, motion.final_acceleration
     rests = now >= motion.end or bool(np.abs(qd).max() <= REST)
     return (motion.final, np.zeros(3), np.zeros(3)) if rests else (motion.final, qd, qdd)
 
 
-def _as_hard_as_needed(task: StopTask) -> tuple[ReferenceTrajectory, list[str]]:
-    """Return a brake that ends inside the ranges, whatever it takes, and what that is."""
+def _within_ranges(task: StopTask) -> tuple[ReferenceTrajectory, list[str]]:
+    """Return a stop within ranges that may exceed limits, and warnings for those violated."""
     q, qd, qdd = (x[0] for x in _delays(task)[1])
     low, high = task.ranges(q)
     distance = np.maximum(np.where(qd > 0.0, high - q, q - low), 0.0)
@@ -243,8 +247,8 @@ def _as_hard_as_needed(task: StopTask) -> tuple[ReferenceTrajectory, list[str]]:
     greatest = greatest_deceleration(v, a, task.limits.max_acceleration, unlimited)
     brakes = JointBrakes(task, np.zeros(n), tuple(np.tile(x, (n, 1)) for x in (q, v, a)),
                          np.maximum(greatest * RATES[:, np.newaxis], needed), unlimited)
-    share = brakes.excess(np.arange(n), FINE)
-    found = brakes.motion(quickest(share))
+    ratio = brakes.limit_ratio(np.arange(n), FINE)
+    found = brakes.motion(quickest(ratio))
     needed[at_once] = inf
-    return found, (harder(task, q, qd, np.where(needed > np.abs(a), needed, 0.0))
-                   + torques_beyond(task, found))
+    return found, (deceleration_warnings(task, q, qd, np.where(needed > np.abs(a), needed, 0.0))
+                   + torque_warnings(task, found))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a stop cannot keep, in words: a sentence for each joint, with values, limits and units."""
+"""Warnings of limits that a stop violates: a sentence for each joint, with values and units."""
 
 from __future__ import annotations
 
@@ -25,25 +25,24 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dy
 from rrr_traj_planner.core.stopping.task import MeasuredState, StopTask
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
-# What a joint slower than this does at the end of its range is not worth a word [rad/s], nor is
-# one so little outside its range [rad].
+# Velocities [rad/s] and range violations [rad] below these are not reported; chosen.
 SLOW, NEAR = 0.01, 1e-4
 
-# A limit is exceeded from this part of it on; torques are looked at so often.
-TOLERANCE, SAMPLES = 1e-4, 241
+# Relative excess of a limit from which it is reported; time samples of torques. As in `stop`.
+TOLERANCE, TORQUE_SAMPLES = 1e-4, 241
 
 
-def harder(task: StopTask, q: Array, qd: Array, needed: Array) -> list[str]:
+def deceleration_warnings(task: StopTask, q: Array, qd: Array, needed: Array) -> list[str]:
     """
-    Tell of joints that have to brake harder than their limits.
+    Return warnings for joints whose required deceleration exceeds the limit.
 
     Parameters
     ----------
     task : StopTask
         The task.
     q, qd, needed : ndarray, shape (3,)
-        Positions [rad], velocities [rad/s] and decelerations [rad/s^2]; of these, infinite where
-        a joint stops at once, 0 where its own is enough.
+        Positions [rad], velocities [rad/s] and required decelerations [rad/s^2]; these infinite
+        where a joint stops instantaneously, 0 where its present acceleration is enough.
 
     Returns
     -------
@@ -51,7 +50,7 @@ def harder(task: StopTask, q: Array, qd: Array, needed: Array) -> list[str]:
         A sentence for each of them.
 
     """
-    limits, told = task.limits, []
+    limits, warnings = task.limits, []
     source = 'measured' if isinstance(task.motion, MeasuredState) else 'commanded'
     for i, name in enumerate(task.model.joint_names):
         if needed[i] > limits.max_acceleration[i] * (1.0 + TOLERANCE) and (
@@ -59,14 +58,14 @@ def harder(task: StopTask, q: Array, qd: Array, needed: Array) -> list[str]:
             how = (f'brakes with {needed[i]:.4g} rad/s^2, limit '
                    f'{limits.max_acceleration[i]:.4g} rad/s^2, to rest inside it'
                    if needed[i] < inf else 'stops at once')
-            told.append(f'{name} moves at {qd[i]:.4g} rad/s at {q[i]:.6g} rad ({source}), range '
-                        f'{_range(limits, i)} rad: it {how}')
-    return told
+            warnings.append(f'{name} moves at {qd[i]:.4g} rad/s at {q[i]:.6g} rad ({source}), '
+                            f'range {_range(limits, i)} rad: it {how}')
+    return warnings
 
 
-def torques_beyond(task: StopTask, motion: ReferenceTrajectory) -> list[str]:
+def torque_warnings(task: StopTask, motion: ReferenceTrajectory) -> list[str]:
     """
-    Tell of joints whose motors cannot give what a stop asks for.
+    Return warnings for joints whose torque exceeds the limit.
 
     Parameters
     ----------
@@ -81,18 +80,18 @@ def torques_beyond(task: StopTask, motion: ReferenceTrajectory) -> list[str]:
         A sentence for each of them.
 
     """
-    q, qd, qdd, _ = motion.at(np.linspace(task.now, motion.end, SAMPLES))
+    q, qd, qdd, _ = motion.at(np.linspace(task.now, motion.end, TORQUE_SAMPLES))
     peak = np.maximum(np.abs(inverse_dynamics(task.model, q, qd, qdd)).max(axis=0),
                       np.abs(gravity_torque(task.model, motion.final)))
-    return [f'stopping asks {name} for {peak[i]:.1f} N m, limit '
+    return [f'stopping requires {peak[i]:.1f} N m at {name}, limit '
             f'{task.limits.max_effort[i]:.1f} N m'
             for i, name in enumerate(task.model.joint_names)
             if peak[i] > task.limits.max_effort[i] * (1.0 + TOLERANCE)]
 
 
-def outside(task: StopTask, q: Array) -> list[str]:
+def range_warnings(task: StopTask, q: Array) -> list[str]:
     """
-    Tell of joints outside their ranges, or commanded to be there.
+    Return warnings for joints outside their ranges, or commanded to be there.
 
     Parameters
     ----------
@@ -107,21 +106,21 @@ def outside(task: StopTask, q: Array) -> list[str]:
         A sentence for each of them.
 
     """
-    limits, told = task.limits, []
+    limits, warnings = task.limits, []
     measured = isinstance(task.motion, MeasuredState)
     command = task.motion.commanded_position if isinstance(task.motion, MeasuredState) else q
     for i, name in enumerate(task.model.joint_names):
         if _beyond(limits, q)[i] > NEAR:
-            told.append(f'{name} is {"at" if measured else "commanded to"} {q[i]:.6g} rad, '
-                        f'outside its range {_range(limits, i)} rad: it goes back inside')
+            warnings.append(f'{name} is {"at" if measured else "commanded to"} {q[i]:.6g} rad, '
+                            f'outside its range {_range(limits, i)} rad: it goes back inside')
         elif _beyond(limits, command)[i] > NEAR:
-            told.append(f'{name} is commanded to {command[i]:.6g} rad, outside its range '
-                        f'{_range(limits, i)} rad: the arm stops from where it is measured')
-    return told
+            warnings.append(f'{name} is commanded to {command[i]:.6g} rad, outside its range '
+                            f'{_range(limits, i)} rad: the arm stops from where it is measured')
+    return warnings
 
 
 def _beyond(limits: JointLimits, q: Array) -> Array:
-    """Return how far positions are outside their ranges; negative inside [rad]."""
+    """Return the distances of positions beyond their ranges; negative inside [rad]."""
     return np.maximum(q - limits.max_position, limits.min_position - q)
 
 

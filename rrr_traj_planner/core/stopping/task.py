@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What has to stop and what it must keep: a motion, the time, limits, the arm."""
+"""The stopping problem: current motion, start time, limits, arm."""
 
 from __future__ import annotations
 
@@ -27,25 +27,26 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dy
 from rrr_traj_planner.core.states import Desired, State
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
-# So far beyond a range is within it [rad]; a motion may touch its ends to the other.
+# Range violation treated as rounding, and the same for a motion touching a range's end [rad].
 POSITION_TOLERANCE, TOUCH = 1e-9, 1e-6
 
-# At so many instants it is looked whether a motion stays inside.
-LOOKS = 1001
+# Time samples of the range check.
+RANGE_SAMPLES = 1001
 
-# A command so far from the arm is not what has to stop: outside the ranges, inside [rad].
-ASTRAY_OUTSIDE, ASTRAY = 1e-4, 0.2
+# Tracking error above which the measured state is braked instead of the command: command outside
+# the ranges, inside [rad]; chosen.
+LARGE_ERROR_OUTSIDE, LARGE_ERROR = 1e-4, 0.2
 
 
 @dataclass(frozen=True, eq=False)
 class StopTask:
     """
-    What has to stop, and what it must keep.
+    The stopping problem: current motion, start time, limits, arm.
 
     Parameters
     ----------
     motion : ReferenceTrajectory
-        What the arm follows; the stop may follow it a little longer.
+        The current motion; a stop may follow it for some time.
     now : float
         When the stop begins [s].
     limits : JointLimits
@@ -60,9 +61,9 @@ class StopTask:
     limits: JointLimits
     model: RobotModel
 
-    def torque_share(self, q: Array, qd: Array, qdd: Array, allowed: Array) -> Array:
+    def torque_ratio(self, q: Array, qd: Array, qdd: Array, allowed: Array) -> Array:
         """
-        Return torques over their limits, or over what is allowed where that is more.
+        Return torques over their limits, or over allowed torques that are larger.
 
         Parameters
         ----------
@@ -80,9 +81,9 @@ class StopTask:
         torque = np.abs(inverse_dynamics(self.model, q, qd, qdd))
         return np.asarray(torque / np.maximum(self.limits.max_effort, allowed))
 
-    def rest_share(self, q: Array) -> Array:
+    def holding_torque_ratio(self, q: Array) -> Array:
         """
-        Return the torques that hold the arm over their limits, the largest of the joints.
+        Return the largest ratio of a holding torque (gravity) to its limit.
 
         Parameters
         ----------
@@ -95,12 +96,12 @@ class StopTask:
             Not negative.
 
         """
-        share = np.abs(gravity_torque(self.model, q)) / self.limits.max_effort
-        return np.asarray(share.max(axis=-1))
+        ratio = np.abs(gravity_torque(self.model, q)) / self.limits.max_effort
+        return np.asarray(ratio.max(axis=-1))
 
     def ranges(self, q: Array) -> tuple[Array, Array]:
         """
-        Return the ranges, up to where joints are that are outside, and a little further.
+        Return position bounds, widened to the present position of joints outside them.
 
         Parameters
         ----------
@@ -120,14 +121,14 @@ class StopTask:
 
 def time_inside(motion: ReferenceTrajectory, now: float, limits: JointLimits) -> float:
     """
-    Return until when a motion stays inside the ranges.
+    Return the time until which a motion stays inside the ranges.
 
     Parameters
     ----------
     motion : ReferenceTrajectory
         The motion.
     now : float
-        From when on it is looked at [s].
+        Time at which the check begins [s].
     limits : JointLimits
         With the ranges.
 
@@ -137,18 +138,18 @@ def time_inside(motion: ReferenceTrajectory, now: float, limits: JointLimits) ->
         Its end, if it never leaves them; -inf, if it is outside already [s].
 
     """
-    looks = np.linspace(now, max(now, motion.end), LOOKS)
-    q = motion.at(looks)[0]
+    times = np.linspace(now, max(now, motion.end), RANGE_SAMPLES)
+    q = motion.at(times)[0]
     outside = ((q < limits.min_position - TOUCH) | (q > limits.max_position + TOUCH)).any(axis=1)
     if not outside.any():
         return motion.end
     first = int(np.argmax(outside))
-    return float(looks[first - 1]) if first else -inf
+    return float(times[first - 1]) if first else -inf
 
 
 def from_state(state: Desired, now: int) -> ReferenceTrajectory:
     """
-    Return a motion that is over in the state in which it begins.
+    Return a reference trajectory that consists of a single state.
 
     Parameters
     ----------
@@ -169,18 +170,18 @@ def from_state(state: Desired, now: int) -> ReferenceTrajectory:
 
 class MeasuredState(ReferenceTrajectory):
     """
-    A measured state as a motion that is over, for `stop`.
+    A measured state as a reference trajectory of one knot, for `stop`.
 
-    It has one knot, and no acceleration, which is not measured.
+    Its acceleration, which is not measured, is zero.
 
     Parameters
     ----------
-    seen : tuple of 6 floats
+    measured : tuple of 6 floats
         Positions [rad] and velocities [rad/s].
     now : int
         The time [ns].
     commanded : ReferenceTrajectory
-        What was commanded then.
+        The trajectory commanded then.
 
     Attributes
     ----------
@@ -189,27 +190,27 @@ class MeasuredState(ReferenceTrajectory):
 
     """
 
-    def __init__(self, seen: State, now: int, commanded: ReferenceTrajectory) -> None:
-        super().__init__(np.zeros(1), np.zeros((0, 3, 6)), np.array(seen[:3]), now,
-                         np.array(seen[3:]), np.zeros(3))
+    def __init__(self, measured: State, now: int, commanded: ReferenceTrajectory) -> None:
+        super().__init__(np.zeros(1), np.zeros((0, 3, 6)), np.array(measured[:3]), now,
+                         np.array(measured[3:]), np.zeros(3))
         self.commanded_position = np.array(commanded.command(now)[:3])
 
 
-def what_moves(motion: ReferenceTrajectory, now: int, seen: State,
+def motion_to_brake(motion: ReferenceTrajectory, now: int, measured: State,
                limits: JointLimits) -> ReferenceTrajectory:
     """
-    Return what has to stop: a motion, or the state measured where that motion is far off.
+    Return the motion to brake: the reference, or the measured state if the error is large.
 
     Parameters
     ----------
     motion : ReferenceTrajectory
-        What is followed.
+        The reference.
     now : int
         The time [ns].
-    seen : tuple of 6 floats
+    measured : tuple of 6 floats
         Measured positions [rad] and velocities [rad/s].
     limits : JointLimits
-        With the ranges: a command outside them must be near the arm to be what moves.
+        Ranges: for a command outside them, a smaller tracking error counts as large.
 
     Returns
     -------
@@ -219,5 +220,5 @@ def what_moves(motion: ReferenceTrajectory, now: int, seen: State,
     """
     q = np.array(motion.command(now)[:3])
     outside = ((q < limits.min_position - TOUCH) | (q > limits.max_position + TOUCH)).any()
-    astray = np.abs(q - seen[:3]).max() > (ASTRAY_OUTSIDE if outside else ASTRAY)
-    return MeasuredState(seen, now, motion) if astray else motion
+    large = np.abs(q - measured[:3]).max() > (LARGE_ERROR_OUTSIDE if outside else LARGE_ERROR)
+    return MeasuredState(measured, now, motion) if large else motion

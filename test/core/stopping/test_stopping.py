@@ -126,8 +126,9 @@ def test_arm_that_cannot_be_held_stops_all_the_same_and_says_so():
     limits = JointLimits(max_effort=np.full(3, 1.0))
     motion, warnings = stopped((0.5, 1.0, 0.2, 0.5, 0.5, 0.5, 0.0, 0.0, 0.0), limits)
     assert motion.end - NOW < 4.0
-    assert [w.split(' for ')[0] for w in warnings] == [
-        'stopping asks joint_1', 'stopping asks joint_2', 'stopping asks joint_3']
+    assert [w.split(', ')[0].split(' N m at ')[1] for w in warnings] == [
+        'joint_1', 'joint_2', 'joint_3']
+    assert all(w.startswith('stopping requires ') for w in warnings)
 
 
 @pytest.mark.parametrize('max_jerk', [inf, 10.0])
