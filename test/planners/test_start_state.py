@@ -111,8 +111,8 @@ def test_a_start_on_the_axis_goes_only_where_joint_1_points(planner_id):
         assert answer.points.positions[0] == pytest.approx(start, abs=1e-9)
         assert np.ptp(answer.points.positions[:, 0]) < 1e-9
     with pytest.raises(StartStateError, match=(
-            r'^start state: joint_1 is at 0\.4 rad with the tip on joint axis 1, and would have '
-            r'to turn at once to 1 rad, where the path leaves the axis')):
+            r'^start state: joint_1 is at 0\.4 rad with the tip on joint axis 1 \(singularity\): '
+            r'it would need unbounded velocity to reach 1 rad, where the path leaves the axis')):
         planned(limits, around(1.0), start=start, planner_id=planner_id)
 
 

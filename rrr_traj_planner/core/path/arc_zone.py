@@ -47,7 +47,7 @@ class ArcZones(ReadOnlyArrays):
     @staticmethod
     def ends(angle: Array) -> tuple[Array, Array]:
         """
-        Return where an arc meets the line after it.
+        Return the tangent point of an arc and the line after it.
 
         Parameters
         ----------
@@ -69,7 +69,7 @@ class ArcZones(ReadOnlyArrays):
         Parameters
         ----------
         zone : ndarray of int, shape (m,)
-            Which arc.
+            Indices of the arcs.
         sigma : ndarray, shape (m,)
             Length from the via point, in radii.
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Pieces of a path in a vertical plane through joint axis 1: there joint 1 stands still."""
+"""Pieces of a path in a vertical plane through joint axis 1, where joint 1 is constant."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
-IN_PLANE = 1e-12  # of the path's extent, by which rounding may put a point off a plane
+IN_PLANE = 1e-12  # of the path's extent: distance from a plane that counts as rounding
 
 
 class AxisPlanes(NamedTuple):
     """
-    The beginning and the end of a path where they lie in a plane through the axis.
+    The beginning and the end of a path where they lie in a vertical plane through joint axis 1.
 
-    A line that begins or ends on joint axis 1 does, a path all of whose via points do, and lines
-    that the zone beside them leaves as they are (`zone_sides`).
+    These are: a line that begins or ends on the axis; a whole path whose via points lie in such a
+    plane; and lines that the zone beside them does not shift (`zone_sides`).
     """
 
     first: float  # azimuth [rad] of the first plane, its positive side the path's
@@ -75,9 +75,9 @@ def axis_planes(path: CartesianPath, posture: Posture, theta_1: float) -> AxisPl
     path : CartesianPath
         The path.
     posture : Posture
-        In which the arm begins to follow it.
+        Posture at the beginning of the path.
     theta_1 : float
-        Where joint 1 is [rad] if all of the path lies on the axis and any angle will do.
+        Position of joint 1 [rad] if all of the path lies on the axis, where any is possible.
 
     Returns
     -------
@@ -108,11 +108,11 @@ def axis_planes(path: CartesianPath, posture: Posture, theta_1: float) -> AxisPl
 
 def zone_sides(points: Array, started: bool) -> IntArray:
     """
-    Return at which via points a zone is to leave the lines on one side as they are.
+    Return the via points at which a zone must not shift the lines on one side.
 
-    Zones move the lines beside them. Legs at the beginning or the end of a path that lie in one
-    plane through joint axis 1 stay in it only so, and must where the tip is on the axis between
-    them, or where a start state says how joint 1 stands on the axis.
+    A zone normally shifts both adjacent lines. A leg in a plane through joint axis 1 must not be
+    shifted where the tip is on the axis or the start state fixes joint 1 there; its zone is then
+    placed on the other side of the via point.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def common_plane(points: Array) -> Array | None:
 
 def passes_axis(points: Array) -> bool:
     """
-    Return whether a path may pass joint axis 1 from one side to the other, joint 1 at rest.
+    Return whether a path passes joint axis 1 from one side to the other with joint 1 at rest.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A path of the tip: straight lines and curved zones through every via point; no time in it."""
+"""Geometric path of the tip: straight lines and curved zones through via points (thesis 3.3)."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ from rrr_traj_planner.core.path.deviation import polyline_deviation
 from rrr_traj_planner.core.path.tangent_lines import Tangents
 from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 
-# A zone no longer than this, between lines that differ no more, is left out.
+# Zones of which both length and turn are no larger than these are omitted: rounding.
 SHORTEST_ZONE = 1e-13  # m
 SMALLEST_TURN = 5e-13  # rad, to either side of the via point
-ROUNDING = 1e-9        # of the path's length, by which a place may be outside
+ENDS_ROUNDING = 1e-9   # of the path's length, by which a path coordinate may be beyond its ends
+STEPS_PER_PIECE = 24   # of the path, in `grid`; chosen
 
 
 class Zones(Protocol):
@@ -70,8 +71,8 @@ class CartesianPath(ReadOnlyArrays):
     ----------
     points : ndarray, shape (n, 3)
         Via points [m].
-    radii_asked, radii : ndarray, shape (n - 2,)
-        Least radius of each zone [m]: asked for, and used where that would overlap a neighbour.
+    requested_radii, radii : ndarray, shape (n - 2,)
+        Least radius of each zone [m]: requested, and used: smaller where zones would overlap.
     lines : Tangents
         The n - 1 lines between the zones.
     tangent, normal : ndarray, shape (n - 2, 3)
@@ -80,12 +81,12 @@ class CartesianPath(ReadOnlyArrays):
     zones : Zones
         Shapes of the zones.
     side : ndarray of int, shape (n - 2,)
-        Where each zone has its via point, see `ZoneKind`.
+        Position of the via point in each zone, see `ZoneKind`.
 
     """
 
     points: Array
-    radii_asked: Array
+    requested_radii: Array
     radii: Array
     lines: Tangents
     tangent: Array
@@ -100,7 +101,7 @@ class CartesianPath(ReadOnlyArrays):
 
     @cached_property
     def _bounds(self) -> Array:
-        """Places where the pieces begin and end: line, zone, line, ..., line."""
+        """Path coordinates of the pieces' ends: line, zone, line, ..., line [m]."""
         before, after = self._zone_lengths
         widths = np.zeros(2 * len(self.lines.direction) - 1)
         widths[::2] = np.maximum(self.lines.length, 0.0)
@@ -121,7 +122,7 @@ class CartesianPath(ReadOnlyArrays):
 
     @cached_property
     def _middles(self) -> Array:
-        """Places of the zones' middles along the path [m], shape (n - 2,)."""
+        """Path coordinates of the zones' middles [m], shape (n - 2,)."""
         return np.asarray(self._bounds[1:-1:2] + self._zone_lengths[0])
 
     @cached_property
@@ -134,27 +135,35 @@ class CartesianPath(ReadOnlyArrays):
 
     @cached_property
     def via_s(self) -> Array:
-        """Places of the via points along the path [m], shape (n,)."""
+        """Path coordinates of the via points [m], shape (n,)."""
         inner = np.choose(self.side + 1, (
             self._bounds[2:-1:2], self._middles, self._bounds[1:-1:2]))
         return np.concatenate(([0.0], inner, self._bounds[-1:]))
 
     @cached_property
     def zone_ends(self) -> Array:
-        """Places where each zone begins and ends [m], shape (n - 2, 2); equal where none is."""
+        """Path coordinates of both ends of zones [m], shape (n - 2, 2); equal where none is."""
         return np.stack((self._bounds[1:-1:2], self._bounds[2:-1:2]), axis=1)
 
     @property
     def joins(self) -> Array:
-        """Places where pieces meet [m], increasing; where curvature steps if zones are arcs."""
+        """Path coordinates where pieces meet [m], increasing; curvature of arcs steps there."""
         ends = self.zone_ends[self.zone_ends[:, 1] > self.zone_ends[:, 0]]
         joins = np.unique(ends)
         return joins[(joins > 0.0) & (joins < self.length)]
 
     @property
+    def grid(self) -> Array:
+        """Path coordinates [m] that include every join and via point, with steps between them."""
+        knots = np.unique(np.concatenate((self.via_s, self.joins)))
+        fraction = np.arange(STEPS_PER_PIECE) / STEPS_PER_PIECE
+        inner = knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * fraction
+        return np.concatenate((inner.ravel(), knots[-1:]))
+
+    @property
     def shrunk(self) -> IntArray:
-        """Numbers of the via points whose radius is less than what was asked for."""
-        return np.flatnonzero(self.radii < self.radii_asked) + 1
+        """Numbers of the via points whose radius is smaller than requested."""
+        return np.flatnonzero(self.radii < self.requested_radii) + 1
 
     @cached_property
     def deviation(self) -> Array:
@@ -169,7 +178,7 @@ class CartesianPath(ReadOnlyArrays):
         Parameters
         ----------
         s : array_like, shape (m,) or ()
-            Places along the path [m].
+            Path coordinates [m].
         left : bool or ndarray of bool, shape (m,)
             At a join, the values of the piece that ends there instead of the one that begins.
 
@@ -181,37 +190,37 @@ class CartesianPath(ReadOnlyArrays):
         Raises
         ------
         InvalidInputError
-            If a place is not on the path by more than rounding.
+            If a path coordinate is beyond the path's ends by more than rounding.
 
         """
-        places = parameter_values('s', s)
-        flat = self._on_path(np.atleast_1d(places))
-        # Of pieces without length none is found: from the left and from the right alike.
+        given = parameter_values('s', s)
+        flat = self._on_path(np.atleast_1d(given))
+        # Zero-length pieces are never selected, from the left or from the right.
         inner = self._bounds[1:-1]
         piece = np.where(left, np.searchsorted(inner, flat, side='left'),
                          np.searchsorted(inner, flat, side='right'))
         values = np.zeros((4, len(flat), 3))
         self._fill_lines(values, flat, piece)
         self._fill_zones(values, flat, piece)
-        if places.ndim == 0:
+        if given.ndim == 0:
             values = values[:, 0]
         return values[0], values[1], values[2], values[3]
 
     def _on_path(self, s: Array) -> Array:
-        """Return places moved onto the path where rounding put them outside."""
-        tolerance = ROUNDING * self.length
+        """Return path coordinates, clipped to the path's ends where rounding put them beyond."""
+        tolerance = ENDS_ROUNDING * self.length
         bad = ~((s >= -tolerance) & (s <= self.length + tolerance))
         if bad.any():
-            place, first, last = told_apart(s[bad][0], 0.0, self.length)
-            raise InvalidInputError(f's is {place} m, must be on the path, {first} to {last} m')
+            wrong, first, last = told_apart(s[bad][0], 0.0, self.length)
+            raise InvalidInputError(f's is {wrong} m, must be on the path, {first} to {last} m')
         return np.clip(s, 0.0, self.length)
 
     def _fill_lines(self, values: Array, s: Array, piece: IntArray) -> None:
         """Enter the samples on lines."""
         at = np.flatnonzero(piece % 2 == 0)
         line = piece[at] // 2
-        way = (s[at] - self._bounds[piece[at]])[:, np.newaxis]
-        values[0, at] = self.lines.start[line] + way * self.lines.direction[line]
+        offset = (s[at] - self._bounds[piece[at]])[:, np.newaxis]
+        values[0, at] = self.lines.start[line] + offset * self.lines.direction[line]
         values[1, at] = self.lines.direction[line]
 
     def _fill_zones(self, values: Array, s: Array, piece: IntArray) -> None:

@@ -30,7 +30,7 @@ from rrr_traj_planner.core.path.three_point_arc import three_point_arc
 from rrr_traj_planner.core.path.zone_kind import ZoneKind
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
-REVERSAL = 1e-6        # rad, by which a turn must stay below half a revolution
+REVERSAL = 1e-6  # rad, by which a turn must stay below half a revolution; chosen
 
 
 def line_arc(points: ArrayLike, radii: ArrayLike,
@@ -47,11 +47,11 @@ def line_arc(points: ArrayLike, radii: ArrayLike,
     points : array_like, shape (n, 3)
         Via points [m], at least two.
     radii : array_like, shape (n - 2,) or ()
-        Radius at each interior point [m]; shrunk where neighbouring arcs would overlap.
+        Radius at each interior point [m]; reduced where neighbouring arcs would overlap.
     should_stop : callable
         See `fit_radii`.
     side : array_like of int, shape (n - 2,) or ()
-        Where each zone has its via point, see `ZoneKind`; 0: in its middle.
+        Position of the via point in each zone, see `ZoneKind`; 0: in its middle.
 
     Returns
     -------
@@ -66,14 +66,14 @@ def line_arc(points: ArrayLike, radii: ArrayLike,
         If no lines were found.
 
     """
-    points, asked, side = _checked(points, radii, side)
+    points, requested, side = _checked(points, radii, side)
     if len(points) == 3 and not side.any():
-        arc = three_point_arc(points, float(asked[0]))
-        return CartesianPath(points, asked, np.array([arc.radius]), arc.lines,
+        arc = three_point_arc(points, float(requested[0]))
+        return CartesianPath(points, requested, np.array([arc.radius]), arc.lines,
                              arc.tangent, arc.normal, ArcZones([arc.before], [arc.after]), side)
-    fitted = fit_radii(points, asked, ZoneKind(ArcZones.ends, side), should_stop)
+    fitted = fit_radii(points, requested, ZoneKind(ArcZones.ends, side), should_stop)
     half = fitted.lines.angle
-    return _path(points, asked, fitted.radii, fitted.lines, ArcZones(half, half), side)
+    return _path(points, requested, fitted.radii, fitted.lines, ArcZones(half, half), side)
 
 
 def line_polynomial(points: ArrayLike, radii: ArrayLike,
@@ -86,12 +86,12 @@ def line_polynomial(points: ArrayLike, radii: ArrayLike,
     points : array_like, shape (n, 3)
         Via points [m], at least two.
     radii : array_like, shape (n - 2,) or ()
-        Least radius of curvature of each zone [m], which is met at the via point; shrunk where
+        Least radius of curvature of each zone [m], which is met at the via point; reduced where
         neighbouring zones would overlap.
     should_stop : callable
         See `fit_radii`.
     side : array_like of int, shape (n - 2,) or ()
-        Where each zone has its via point, see `ZoneKind`; 0: in its middle.
+        Position of the via point in each zone, see `ZoneKind`; 0: in its middle.
 
     Returns
     -------
@@ -106,17 +106,17 @@ def line_polynomial(points: ArrayLike, radii: ArrayLike,
         If no lines were found.
 
     """
-    points, asked, side = _checked(points, radii, side)
-    fitted = fit_radii(points, asked, ZoneKind(PolynomialZones.ends, side), should_stop)
-    return _path(points, asked, fitted.radii, fitted.lines, PolynomialZones(fitted.lines.angle),
-                 side)
+    points, requested, side = _checked(points, radii, side)
+    fitted = fit_radii(points, requested, ZoneKind(PolynomialZones.ends, side), should_stop)
+    return _path(points, requested, fitted.radii, fitted.lines,
+                 PolynomialZones(fitted.lines.angle), side)
 
 
-def _path(points: Array, asked: Array, radii: Array, lines: Tangents,
+def _path(points: Array, requested: Array, radii: Array, lines: Tangents,
           zones: Zones, side: IntArray) -> CartesianPath:
     """Return the path of lines between symmetric zones."""
     T, N = frames(lines.direction[:-1], lines.direction[1:])
-    return CartesianPath(points, asked, radii, lines, T, N, zones, side)
+    return CartesianPath(points, requested, radii, lines, T, N, zones, side)
 
 
 def check_points(points: ArrayLike) -> Array:
@@ -164,8 +164,8 @@ def _checked(points: ArrayLike, radii: ArrayLike,
     given = bound_array('radii', radii)
     if given.ndim == 0:
         given = np.full(len(points) - 2, float(given))
-    asked = finite_array('radii', given, (len(points) - 2,))
-    for j in np.flatnonzero(asked <= 0.0):
+    requested = finite_array('radii', given, (len(points) - 2,))
+    for j in np.flatnonzero(requested <= 0.0):
         raise InvalidInputError(
-            f'via point {j + 1}: radius is {asked[j]:.6g} m, must be positive', int(j) + 1)
-    return points, asked, np.broadcast_to(np.asarray(side, dtype=np.intp), asked.shape)
+            f'via point {j + 1}: radius is {requested[j]:.6g} m, must be positive', int(j) + 1)
+    return points, requested, np.broadcast_to(np.asarray(side, dtype=np.intp), requested.shape)

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How far a path leaves the polyline through its via points."""
+"""
+Deviation of a path from the polyline through its via points.
+
+Our own method: sampling of each half of a zone, then repeated sampling around the largest value.
+"""
 
 from __future__ import annotations
 
@@ -21,9 +25,9 @@ from collections.abc import Callable
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, IntArray
 
-SAMPLES = 33        # on each half of a zone
-ZOOM_POINTS = 9     # each round narrows the bracket of the largest distance to a quarter
-ZOOM_ROUNDS = 8      # to 1e-7 of the distance between two samples, whose error is its square
+FIRST_SAMPLES = 33  # on each half of a zone; chosen
+ZOOM_SAMPLES = 9    # each round narrows the bracket of the largest distance to a quarter
+ZOOM_ROUNDS = 8     # to 1e-5 of the distance between two samples; the error is its square
 
 
 def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s: Array,
@@ -39,11 +43,11 @@ def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s:
     points : ndarray, shape (n, 3)
         Via points [m].
     position : callable
-        Points of the path, shape (m, 3), at places of shape (m,) [m].
+        Points of the path, shape (m, 3), at path coordinates of shape (m,) [m].
     via_s : ndarray, shape (n,)
-        Places of the via points [m].
+        Path coordinates of the via points [m].
     zone_ends : ndarray, shape (n - 2, 2)
-        Where each zone begins and ends [m].
+        Path coordinates of both ends of each zone [m].
 
     Returns
     -------
@@ -60,7 +64,7 @@ def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s:
     high = np.concatenate((middle, zone_ends[:, 1]))
     corner = np.tile(np.arange(1, k + 1), 2)
     largest = np.zeros(2 * k)
-    left, right, count = low, high, SAMPLES
+    left, right, count = low, high, FIRST_SAMPLES
     for _ in range(1 + ZOOM_ROUNDS):
         s = left[:, np.newaxis] + np.linspace(0.0, 1.0, count) * (right - left)[:, np.newaxis]
         distance = _leg_distance(points, position(s.ravel()).reshape(s.shape + (3,)), corner)
@@ -70,13 +74,13 @@ def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s:
         width = (right - left) / (count - 1)
         left = np.maximum(s[rows, best] - width, low)
         right = np.minimum(s[rows, best] + width, high)
-        count = ZOOM_POINTS
+        count = ZOOM_SAMPLES
     return np.asarray(largest.reshape(2, k).max(axis=0))
 
 
 def distance_from_polyline(points: Array, at: Array) -> Array:
     """
-    Return how far positions are from a polyline.
+    Return the distances of positions from a polyline.
 
     Parameters
     ----------
@@ -91,21 +95,21 @@ def distance_from_polyline(points: Array, at: Array) -> Array:
         Distances [m].
 
     """
-    legs = np.diff(points, axis=0)
-    from_start = at[:, np.newaxis] - points[:-1]
-    squared = np.maximum((legs * legs).sum(axis=1), np.finfo(float).tiny)
-    share = np.clip((from_start * legs).sum(axis=-1) / squared, 0.0, 1.0)
-    return np.asarray(np.linalg.norm(
-        from_start - share[..., np.newaxis] * legs, axis=-1).min(axis=1))
+    from_starts = at - points[:-1, np.newaxis]
+    return np.asarray(_segment_distance(from_starts, np.diff(points, axis=0)).min(axis=0))
 
 
 def _leg_distance(points: Array, at: Array, corner: IntArray) -> Array:
     """Return the distance of points, a row for each corner, from the nearer of its legs."""
-    nearest = np.full(at.shape[:-1], np.inf)
-    for other in (-1, 1):
-        from_corner = at - points[corner][:, np.newaxis]
-        leg = points[corner + other] - points[corner]
-        share = np.einsum('kmi,ki->km', from_corner, leg) / (leg * leg).sum(axis=1)[:, np.newaxis]
-        foot = np.clip(share, 0.0, 1.0)[..., np.newaxis] * leg[:, np.newaxis]
-        nearest = np.minimum(nearest, np.linalg.norm(from_corner - foot, axis=-1))
-    return nearest
+    from_corner = at - points[corner][:, np.newaxis]
+    before, after = (_segment_distance(from_corner, points[corner + other] - points[corner])
+                     for other in (-1, 1))
+    return np.minimum(before, after)
+
+
+def _segment_distance(offset: Array, leg: Array) -> Array:
+    """Return distances (k, m) of points (k, m, 3) from segments (k, 3), relative to its start."""
+    squared = np.maximum((leg * leg).sum(axis=1), np.finfo(float).tiny)[:, np.newaxis]
+    projection = np.clip(np.einsum('kmi,ki->km', offset, leg) / squared, 0.0, 1.0)
+    foot = projection[..., np.newaxis] * leg[:, np.newaxis]
+    return np.asarray(np.linalg.norm(offset - foot, axis=-1))

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Radii of curved zones, shrunk where neighbouring zones would overlap."""
+"""
+Radii of curved zones, reduced where neighbouring zones would overlap.
+
+Our own method: radii grow together from a feasible size until zones touch.
+"""
 
 from __future__ import annotations
 
@@ -31,22 +35,23 @@ from rrr_traj_planner.core.path.tangent_lines import (
 )
 from rrr_traj_planner.core.path.zone_kind import ZoneKind
 
-FASTEST = 1.5    # radii, from one step to the next
-SLOWEST = 1.005  # a zone that cannot grow by this much touches a neighbour
-REACH = 12       # zones up to so many from a line that overlaps them take smaller steps with it
-THAWED = 1.05    # growth to begin with where they may be able to grow again
-BLAMED = 0.5     # of the largest miss, of lines whose zones are too large to have tangents
-TIE = 1e-4       # of a line, by which zones may differ that stop together
-PASSES = 2       # of growth: zones that were stopped grow again where neighbours grew later
-LEAST = 0.5 ** 60  # of what was asked for
-STEPS, MOST_ZONE_STEPS = 1000, 60_000  # of growth, at most; the second over the number of zones
-ROUGH = Accuracy(1e-8, 1e-8, 10, 3)  # of lines while radii grow
-SHRINKING = 1.0 - 1e-3 * 2.0 ** np.arange(10)  # parts, again and again, of zones that grew too far
-SHORTEST_LINE = 1e-3  # of a leg: the time along shorter ones is ill-conditioned, for little gained
+# Growth of radii; all values are chosen.
+MAX_GROWTH = 1.5    # largest factor from one step to the next
+MIN_GROWTH = 1.005  # a zone that cannot grow by this factor touches a neighbour
+REGROWTH = 1.05     # first factor of a later pass
+NEIGHBOURHOOD = 12  # zones to either side of an infeasible line whose growth it slows
+OFFENDER_FRACTION = 0.5  # of the largest error, from which a line counts as infeasible
+TIE_TOLERANCE = 1e-4     # of a leg, by which the slack of zones that stop together may differ
+PASSES = 2               # of growth: blocked zones grow again where neighbours grew later
+LEAST_FRACTION = 0.5 ** 60  # of the requested radius, the smallest that is tried
+GROWTH_STEPS, MOST_ZONE_STEPS = 1000, 60_000  # at most; the second over the number of zones
+COARSE = Accuracy(1e-8, 1e-8, 10, 3)  # of lines while radii grow
+SHRINKING = 1.0 - 1e-3 * 2.0 ** np.arange(10)  # successive factors on radii that grew too large
+SHORTEST_LINE = 1e-3  # of a leg: the time along shorter lines is ill-conditioned
 
 
 class Fitted(NamedTuple):
-    """Radii that fit, and the lines between the zones."""
+    """Feasible radii, and the lines between the zones."""
 
     radii: Array  # [m], shape (n - 2,)
     lines: Tangents
@@ -55,138 +60,140 @@ class Fitted(NamedTuple):
 def fit_radii(points: Array, radii: Array, kind: ZoneKind,
               should_stop: ShouldStop = never) -> Fitted:
     """
-    Return the radii asked for, or the largest that fit where zones would overlap.
+    Return the requested radii, or the largest that are feasible where zones would overlap.
 
-    Too large ones are grown together from a size at which all fit. Where a step makes zones
-    overlap, they and those near them take smaller steps; a zone that touches a neighbour stops
-    growing, the others go on. What one zone does is not felt far along the path, so the number of
-    steps hardly grows with the number of points.
+    If they are too large, all radii grow together from a feasible size. Where a step makes zones
+    overlap, they and their neighbourhood take smaller steps; a zone that touches a neighbour stops
+    growing, the others continue. A change of one radius affects only nearby lines, so the number
+    of steps hardly grows with the number of points.
 
     Parameters
     ----------
     points : ndarray, shape (n, 3)
         Via points [m].
     radii : ndarray, shape (n - 2,)
-        Least radius asked for at each interior point [m].
+        Least radius requested at each interior point [m].
     kind : ZoneKind
         The kind of zone.
     should_stop : callable
-        Asked in every step; once it answers True, radii no longer grow, and those that fit nearly
-        are shrunk no more than need be.
+        Polled in every step; after True, radii stop growing and are only reduced as far as
+        feasibility requires.
 
     Returns
     -------
     Fitted
-        Radii, none larger than asked for, and the lines.
+        Radii, none larger than requested, and the lines.
 
     Raises
     ------
     ConvergenceError
-        If not even very small zones fit.
+        If not even very small zones are feasible.
 
     """
-    lines, hindered = _tried(points, radii, kind, None)
-    if not hindered.any():
+    lines, infeasible = _lines_for(points, radii, kind, None)
+    if not infeasible.any():
         return Fitted(radii, lines)
-    if should_stop():  # not to grow from radii that are much smaller than need be
-        fitted = _shrunk(points, radii, LEAST * radii, kind, lines.direction, should_stop)
+    if should_stop():  # shrink from the requested radii instead of growing from much smaller ones
+        fitted = _shrunk(points, radii, LEAST_FRACTION * radii, kind, lines.direction, should_stop)
         if fitted is not None:
             return fitted
-    smaller, accuracy = radii.copy(), ROUGH
-    while (smaller > LEAST * radii).any():
+    smaller, accuracy = radii.copy(), COARSE
+    while (smaller > LEAST_FRACTION * radii).any():
         should_stop()
-        if hindered.any():
-            smaller[_near(hindered, smaller > LEAST * radii)] *= 0.5
+        if infeasible.any():
+            smaller[_near(infeasible, smaller > LEAST_FRACTION * radii)] *= 0.5
         elif accuracy is EXACT:
             return _grown(points, radii, kind, Fitted(smaller, lines), should_stop)
-        accuracy = ROUGH if hindered.any() else EXACT
-        lines, hindered = _tried(points, smaller, kind, None, accuracy)
-    raise ConvergenceError(f'no curved zones fit, not even with radii {smaller.tolist()} m')
+        accuracy = COARSE if infeasible.any() else EXACT
+        lines, infeasible = _lines_for(points, smaller, kind, None, accuracy)
+    raise ConvergenceError(f'no curved zones are feasible, not even radii {smaller.tolist()} m')
 
 
 def _grown(points: Array, radii: Array, kind: ZoneKind, least: Fitted,
            should_stop: ShouldStop) -> Fitted:
     """Return radii grown from smaller ones until zones touch."""
-    share, lines = least.radii / radii, least.lines
-    steps = min(STEPS, MOST_ZONE_STEPS // len(share))
-    for fastest in (FASTEST,) + (PASSES - 1) * (THAWED,):
-        growing, factor = share < 1.0, np.full(len(share), fastest)
+    fraction, lines = least.radii / radii, least.lines
+    steps = min(GROWTH_STEPS, MOST_ZONE_STEPS // len(fraction))
+    for first_growth in (MAX_GROWTH,) + (PASSES - 1) * (REGROWTH,):
+        growing, factor = fraction < 1.0, np.full(len(fraction), first_growth)
         while growing.any() and steps and not should_stop():
             steps -= 1
-            larger = np.where(growing, np.minimum(share * factor, 1.0), share)
-            tried, hindered = _tried(points, larger * radii, kind, lines.direction, ROUGH)
-            if not hindered.any():
-                share, lines = larger, tried
-                growing &= share < 1.0
-                factor = np.minimum(factor ** 2, FASTEST)  # what slowed it may lie behind
+            larger = np.where(growing, np.minimum(fraction * factor, 1.0), fraction)
+            tried, infeasible = _lines_for(points, larger * radii, kind, lines.direction, COARSE)
+            if not infeasible.any():
+                fraction, lines = larger, tried
+                growing &= fraction < 1.0
+                factor = np.minimum(factor ** 2, MAX_GROWTH)  # the obstacle may be passed
                 continue
-            slower = _near(hindered, growing)
-            stuck = slower & (factor <= SLOWEST)
-            touching = stuck & ~_free_alone(points, radii, kind, share, lines, stuck)
-            growing &= ~(touching if touching.any() else _tightest(points, lines, stuck))
-            factor[slower] = np.maximum(np.sqrt(factor[slower]), SLOWEST)
-    return _shrunk(points, share * radii, least.radii, kind, lines.direction,
+            slower = _near(infeasible, growing)
+            blocked = slower & (factor <= MIN_GROWTH)
+            touching = blocked & ~_free_alone(points, radii, kind, fraction, lines, blocked)
+            growing &= ~(touching if touching.any() else _tightest(points, lines, blocked))
+            factor[slower] = np.maximum(np.sqrt(factor[slower]), MIN_GROWTH)
+    return _shrunk(points, fraction * radii, least.radii, kind, lines.direction,
                    should_stop) or least
 
 
 def _shrunk(points: Array, radii: Array, least: Array, kind: ZoneKind, near: Array,
             should_stop: ShouldStop) -> Fitted | None:
-    """Return radii that fit with exact lines, shrunk little by little where they do not."""
+    """Return radii feasible for exact lines, reduced little by little where they are not."""
     for part in SHRINKING:
-        lines, hindered = _tried(points, radii, kind, near)
-        if not hindered.any():
+        lines, infeasible = _lines_for(points, radii, kind, near)
+        if not infeasible.any():
             return Fitted(radii, lines)
         should_stop()
-        radii = np.where(_near(hindered, radii > least), np.maximum(part * radii, least), radii)
+        radii = np.where(_near(infeasible, radii > least), np.maximum(part * radii, least), radii)
     return None
 
 
-def _tried(points: Array, radii: Array, kind: ZoneKind, near: Array | None,
-           accuracy: Accuracy = EXACT) -> tuple[Tangents, BoolArray]:
-    """Return the lines between zones, and which miss them most or are too short, (n - 1,)."""
+def _lines_for(points: Array, radii: Array, kind: ZoneKind, near: Array | None,
+               accuracy: Accuracy = EXACT) -> tuple[Tangents, BoolArray]:
+    """Return the lines between zones, and which are infeasible: not tangent, or too short."""
     with np.errstate(divide='ignore', invalid='ignore', over='ignore'):
         lines, misses = nearly_tangent_lines(points, radii, kind, near, accuracy)
         worst = misses.max()
         least = SHORTEST_LINE * np.linalg.norm(np.diff(points, axis=0), axis=1)
-        return lines, np.asarray(misses >= BLAMED * worst if worst > accuracy.tolerance
+        return lines, np.asarray(misses >= OFFENDER_FRACTION * worst if worst > accuracy.tolerance
                                  else ~(lines.length >= least))
 
 
-def _free_alone(points: Array, radii: Array, kind: ZoneKind, share: Array, lines: Tangents,
+def _free_alone(points: Array, radii: Array, kind: ZoneKind, fraction: Array, lines: Tangents,
                 zones: BoolArray) -> BoolArray:
-    """Return which zones can grow while all near them stay as they are."""
+    """Return which zones can grow while all in their neighbourhood keep their radii."""
     free = zones.copy()
-    for first in range(REACH):
+    for first in range(NEIGHBOURHOOD):
         alone = np.zeros(len(zones), dtype=bool)
-        alone[first::REACH] = zones[first::REACH]
+        alone[first::NEIGHBOURHOOD] = zones[first::NEIGHBOURHOOD]
         if alone.any():
-            larger = np.where(alone, np.minimum(share * SLOWEST, 1.0), share)
-            _, hindered = _tried(points, larger * radii, kind, lines.direction, ROUGH)
-            if hindered.any():
-                free &= ~_next_to(hindered, alone)
+            larger = np.where(alone, np.minimum(fraction * MIN_GROWTH, 1.0), fraction)
+            _, infeasible = _lines_for(points, larger * radii, kind, lines.direction, COARSE)
+            if infeasible.any():
+                free &= ~_next_to(infeasible, alone)
     return free
 
 
 def _tightest(points: Array, lines: Tangents, zones: BoolArray) -> BoolArray:
-    """Return those of some zones that can grow no more than any other within reach."""
+    """Return the zones with the smallest slack in their neighbourhood."""
     left = lines.length / np.linalg.norm(np.diff(points, axis=0), axis=1)
-    # A zone can grow by the shorter of its lines, and by what is left to half a revolution.
+    # A zone's slack: the shorter of its lines, and the turn that remains to half a revolution.
     slack = np.minimum(np.minimum(left[:-1], left[1:]), np.cos(lines.angle))
     slack = np.where(zones, slack, np.inf)
-    around = sliding_window_view(np.pad(slack, REACH, constant_values=np.inf), 2 * REACH + 1)
-    return np.asarray(zones & (slack <= around.min(axis=1) + TIE))
+    padded = np.pad(slack, NEIGHBOURHOOD, constant_values=np.inf)
+    around = sliding_window_view(padded, 2 * NEIGHBOURHOOD + 1)
+    return np.asarray(zones & (slack <= around.min(axis=1) + TIE_TOLERANCE))
 
 
 def _near(lines: BoolArray, zones: BoolArray) -> BoolArray:
-    """Return which of some zones are within reach of lines; all of them where none is."""
-    reached = np.convolve(lines, np.ones(2 * REACH, dtype=int))[REACH:-REACH] > 0
-    return reached & zones if (reached & zones).any() else zones
+    """Return which of some zones are in the neighbourhood of lines; all if none is."""
+    counts = np.convolve(lines, np.ones(2 * NEIGHBOURHOOD, dtype=int))
+    nearby = (counts[NEIGHBOURHOOD:-NEIGHBOURHOOD] > 0) & zones
+    return nearby if nearby.any() else zones
 
 
 def _next_to(lines: BoolArray, zones: BoolArray) -> BoolArray:
-    """Return to which of zones that are REACH apart lines are nearest."""
+    """Return which of some zones, NEIGHBOURHOOD apart, are nearest to a line."""
     at = np.flatnonzero(zones)
     found = np.zeros(len(zones), dtype=bool)
-    places = np.flatnonzero(lines) - 0.5  # of a line: between the zones before and after it
-    found[at[np.abs(places[:, np.newaxis] - at).argmin(axis=1)]] = True
+    position = np.flatnonzero(lines) - 0.5  # of a line: between the zones before and after it
+    found[at[np.abs(position[:, np.newaxis] - at).argmin(axis=1)]] = True
     return found

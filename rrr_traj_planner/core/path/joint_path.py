@@ -27,8 +27,8 @@ from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_er
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
-# A tip this near to joint axis 1 or to an edge of the workspace would need joints that turn at
-# once for the tip to move on.
+# Distance from joint axis 1 or from an edge of the workspace below which a tip position counts as
+# a singularity: would need unbounded velocity.
 LEAST_CLEARANCE = TIP_ROUNDING  # m
 
 
@@ -36,7 +36,7 @@ def joint_path(model: RobotModel, limits: JointLimits,
                derivatives: tuple[Array, Array, Array, Array], posture: Posture,
                start: ArrayLike | None = None) -> JointPath:
     """
-    Return joint positions along a path, in one posture and without a jump.
+    Return continuous joint positions along a path, in one posture.
 
     Whole turns are added to each joint for the path as a whole, so that it is in its range.
 
@@ -72,8 +72,8 @@ def joint_path(model: RobotModel, limits: JointLimits,
     points = PathPoints(*(joint_values(n, v) for n, v in zip(PathPoints._fields, derivatives)))
     refuse_singular(model, points.p)
     path = unlimited_joint_path(model, points, posture)
-    begun = None if start is None else finite_array('start', start, (3,))
-    path = path._replace(q=path.q + whole_turns(path.q, limits, begun))
+    start_q = None if start is None else finite_array('start', start, (3,))
+    path = path._replace(q=path.q + whole_turns(path.q, limits, start_q))
     for i, j in np.argwhere(out_of_range(path.q, limits)).tolist():
         raise range_error(model, limits, f'sample {i}', j, float(path.q[i, j]), posture)
     return path
@@ -81,7 +81,7 @@ def joint_path(model: RobotModel, limits: JointLimits,
 
 def refuse_singular(model: RobotModel, p: Array) -> None:
     """
-    Refuse samples from which the arm could not move the tip on.
+    Raise if samples are unreachable or singular.
 
     Parameters
     ----------
@@ -109,5 +109,6 @@ def refuse_singular(model: RobotModel, p: Array) -> None:
     r = np.hypot(p[:, 0], p[:, 1])
     for i in np.flatnonzero(r < LEAST_CLEARANCE):
         raise LimitViolationError(
-            f'sample {i} is on joint axis 1: {model.joint_names[0]} would have to turn at once',
+            f'sample {i} is on joint axis 1 (singularity): {model.joint_names[0]} would need '
+            'unbounded velocity',
             model.joint_names[0], float(r[i]), LEAST_CLEARANCE)

@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Radii whose path stays within a deviation from the polyline: of equal shares, and largest."""
+"""
+Zone radii under a bound on the deviation from the polyline: half of each leg at most, or maximal.
+
+Our own method: the deviation is modelled as a power of the radius, and radii are corrected until
+the deviation is at its bound.
+"""
 
 from __future__ import annotations
 
@@ -29,17 +34,16 @@ from rrr_traj_planner.core.scalars import positive
 
 Family = Callable[[Array, ArrayLike], CartesianPath]
 
-# A turn so slight that its radius would be more than this many times the polyline's length.
-MOST_LENGTHS = 10.0
-ROUNDS = 30
-MOST_POWER = 4.0  # of the radius that a deviation is thought to grow with
-TOLERANCE = 1e-4  # relative, by which the deviation may stay below the one allowed
+MOST_LENGTHS = 10.0  # largest radius over the polyline's length, for slight turns; chosen
+GROWTH_ROUNDS = 30   # in which radii may grow; then as many in which they only shrink. Chosen
+MOST_POWER = 4.0     # largest exponent p in the model deviation ~ radius^p
+TOLERANCE = 1e-4     # relative, by which the deviation may stay below its bound; chosen
 
 
 def largest_radii(family: Family, points: ArrayLike, max_deviation: float,
                   should_stop: ShouldStop = never) -> CartesianPath:
     """
-    Return the path with the largest radii that keep a deviation at every point.
+    Return the path with the largest radii under a bound on the deviation at every point.
 
     Parameters
     ----------
@@ -50,13 +54,13 @@ def largest_radii(family: Family, points: ArrayLike, max_deviation: float,
     max_deviation : float
         Largest distance between path and polyline [m].
     should_stop : callable
-        Asked in every round; once it answers True, radii only shrink, and only where they must.
+        Polled in every round; after True, radii are only reduced as far as feasibility requires.
 
     Returns
     -------
     CartesianPath
-        Its `radii` are the largest; its `deviation` is at the bound but where a radius was
-        limited by a neighbouring zone, or by MOST_LENGTHS.
+        Its `radii` are the largest; its `deviation` is at the bound unless a neighbouring zone
+        or MOST_LENGTHS limits the radius.
 
     Raises
     ------
@@ -73,10 +77,10 @@ def largest_radii(family: Family, points: ArrayLike, max_deviation: float,
 def paths_within(family: Family, points: ArrayLike, max_deviation: float,
                  should_stop: ShouldStop = never) -> Iterator[CartesianPath]:
     """
-    Return paths that keep a deviation at every point.
+    Return paths under a bound on the deviation at every point.
 
     Zones of the largest radii compete for the legs: a large one may leave its neighbours little.
-    The fastest motion is often along a path whose zones share the legs equally.
+    The fastest motion is often along a path whose zones take half of each leg at most.
 
     Parameters
     ----------
@@ -111,42 +115,43 @@ def paths_within(family: Family, points: ArrayLike, max_deviation: float,
 
 def _adjusted(family: Family, points: Array, radii: Array, most: Array, max_deviation: float,
               should_stop: ShouldStop) -> Iterator[CartesianPath]:
-    """Yield the first path whose zones compete, then that whose radii use the deviation up."""
-    power, before, equal_shares = np.ones(len(radii)), None, None
+    """Yield the first path whose zones compete, then that with the largest radii."""
+    power, before, has_competing = np.ones(len(radii)), None, False
     fitting, settled = radii, False
-    for round_ in range(2 * ROUNDS):
+    for round_ in range(2 * GROWTH_ROUNDS):
         path = family(points, radii)
         if before is not None and not settled and should_stop():
-            # Growth to these radii was cut short: the former ones fit, smaller where they must.
+            # Growth to these radii was interrupted: continue from the former ones.
             settled, radii = True, fitting
             continue
         power = power if before is None else _power(before, path, power)
         before = path
-        # What was shrunk stays so: from here it can only become smaller.
-        most = np.where(path.radii < path.radii_asked, path.radii, most)
+        # A radius limited by a neighbour can only become smaller.
+        most = np.where(path.radii < path.requested_radii, path.radii, most)
         with np.errstate(divide='ignore'):
             factor = max_deviation * (1.0 - 0.5 * TOLERANCE) / path.deviation
         wanted = np.minimum(path.radii * np.clip(factor, 0.5, 2.0) ** (1.0 / power), most)
-        kept = path.deviation <= max_deviation
-        # Neighbours may take from each other: after some time radii only shrink.
-        settled = settled or should_stop() or round_ >= ROUNDS
-        if kept.all() and (settled or (wanted <= path.radii * (1.0 + TOLERANCE)).all()):
+        within_deviation = path.deviation <= max_deviation
+        # Radii of neighbouring zones may oscillate: after GROWTH_ROUNDS they only shrink.
+        settled = settled or should_stop() or round_ >= GROWTH_ROUNDS
+        if within_deviation.all() and (
+                settled or (wanted <= path.radii * (1.0 + TOLERANCE)).all()):
             yield path
             return
-        if equal_shares is None and kept.all() and len(radii) > 1 and len(path.shrunk):
-            equal_shares = path
+        if not has_competing and within_deviation.all() and len(radii) > 1 and len(path.shrunk):
+            has_competing = True
             yield path
-        fitting = np.where(kept, path.radii, np.minimum(wanted, path.radii))
+        fitting = np.where(within_deviation, path.radii, np.minimum(wanted, path.radii))
         radii = fitting if settled else wanted
     raise ConvergenceError(
-        f'largest radii not found: deviation is {path.deviation.tolist()} m after {2 * ROUNDS} '
-        f'rounds, {max_deviation:.6g} m wanted')
+        f'largest radii not found: deviation is {path.deviation.tolist()} m after '
+        f'{2 * GROWTH_ROUNDS} rounds, {max_deviation:.6g} m wanted')
 
 
 def _power(before: CartesianPath, path: CartesianPath, known: Array) -> Array:
-    """Return the powers of the radii that deviations grow with, from two paths."""
+    """Return the exponents of the model deviation ~ radius^p, from two paths."""
     with np.errstate(divide='ignore', invalid='ignore'):
         larger = np.log(path.radii / before.radii)
         found = np.log(path.deviation / before.deviation) / larger
-    told = np.isfinite(found) & (np.abs(larger) > TOLERANCE)
-    return np.where(told, np.clip(found, 1.0, MOST_POWER), known)
+    usable = np.isfinite(found) & (np.abs(larger) > TOLERANCE)
+    return np.where(usable, np.clip(found, 1.0, MOST_POWER), known)

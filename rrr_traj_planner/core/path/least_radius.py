@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The least radius of an arc at a given tip speed, and the largest speed on it (5.4.1)."""
+"""Least radius of an arc at a given tip speed, and largest speed on it (thesis 5.4.1)."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ from rrr_traj_planner.core.dynamics.rigid_body import (
     inertia_matrix,
 )
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, told_apart
-from rrr_traj_planner.core.kinematics.forward import jacobian, jacobian_rate
+from rrr_traj_planner.core.kinematics.forward import jacobian, jacobian_rate, radial_distance
 from rrr_traj_planner.core.scalars import not_negative, positive
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
 
 UNIT_TOLERANCE = 1e-9     # of the directions' lengths and of their right angle
 SINGULAR = 1e-9           # relative volume of the Jacobian below which a pose is singular
-ROUNDING = 1e-12          # relative, for a limit that is just met
+LIMIT_ROUNDING = 1e-12    # relative, for a limit that is just met
 
 
 class Bound(NamedTuple):
-    """The extreme value of a radius or a speed, and the limit that stops it there."""
+    """Extreme value of a radius or a speed, and the limit that determines it."""
 
     value: float
-    joint: int     # -1 where nothing stops it
+    joint: int     # -1 if none does
     quantity: str  # 'effort', 'acceleration', 'velocity', or empty
 
 
@@ -64,9 +64,9 @@ def least_radius(model: RobotModel, limits: JointLimits, q: ArrayLike, tangent: 
     Return the least radius of curvature that the arm can pass at a constant tip speed.
 
     The problem of 5.56-5.62: minimise rho (5.55) with the tip's velocity v T, its acceleration
-    (v^2 / rho) N and every torque in its limit. Torques and joint accelerations are affine in
-    1 / rho, so the answer has a closed form. Joint velocity and acceleration limits are kept
-    too; infinite ones do not bind. Larger radii are feasible too wherever the straight line is.
+    (v^2 / rho) N and every torque within its limit. Torques and joint accelerations are affine in
+    1 / rho, so the result has a closed form. Joint velocity and acceleration limits are
+    satisfied too. Larger radii are feasible too wherever the straight line is.
 
     Parameters
     ----------
@@ -168,14 +168,14 @@ def _largest(model: RobotModel, rows: list[_Row], where: str) -> Bound:
             least, first = Bound(low, row.joint, row.quantity), row
         if high < most.value:
             most = Bound(high, row.joint, row.quantity)
-    if first is not None and least.value > most.value * (1.0 + ROUNDING):
+    if first is not None and least.value > most.value * (1.0 + LIMIT_ROUNDING):
         raise _violation(model, first, most.value, where)
     return most
 
 
 def _interval(row: _Row) -> tuple[float, float]:
-    """Return between which x a row keeps its limit; an empty interval where it never does."""
-    most = row.limit * (1.0 + ROUNDING)
+    """Return the interval of x in which a row satisfies its limit; empty if it never does."""
+    most = row.limit * (1.0 + LIMIT_ROUNDING)
     if row.slope == 0.0:
         return (-np.inf, np.inf) if abs(row.base) <= most else (np.inf, -np.inf)
     ends = (-most - row.base) / row.slope, (most - row.base) / row.slope
@@ -183,7 +183,7 @@ def _interval(row: _Row) -> tuple[float, float]:
 
 
 def _violation(model: RobotModel, row: _Row, x: float, where: str) -> LimitViolationError:
-    """Return the error of a joint that cannot keep its limit."""
+    """Return the error of a joint that cannot satisfy its limit."""
     value, limit, unit = abs(row.base + row.slope * x), row.limit, row.unit
     name = model.joint_names[row.joint]
     needed, most = told_apart(value, limit)
@@ -210,7 +210,7 @@ def _regular_jacobian(model: RobotModel, q: Array) -> Array:
     """Return the Jacobian of a pose that is not singular."""
     J = jacobian(model, q)
     reach = model.reach[1]
-    radius = abs(float(model.a2 * np.cos(q[1]) + model.d4 * np.sin(q[1] + q[2])))
+    radius = abs(float(radial_distance(model, q)))
     for joint, size, why in ((0, radius / reach, 'the tip is on joint axis 1'),
                              (2, abs(float(np.cos(q[2]))), 'the arm is stretched or folded')):
         if size <= SINGULAR:

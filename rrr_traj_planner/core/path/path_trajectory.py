@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A motion along a path of the tip: the path's geometry, and its length as a function of time."""
+"""
+Motion along a path of the tip: the path's geometry, and the path coordinate over time.
+
+Bobrow, Dubowsky and Gibson, Time-optimal control of robotic manipulators along specified paths,
+Int. J. Robotics Research 4(3), 1985.
+"""
 
 from __future__ import annotations
 
@@ -46,11 +51,10 @@ from rrr_traj_planner.core.trajectory.trajectory import (
     Trajectory,
 )
 
-STEPS_PER_PIECE = 24   # of the path, at which whole turns of the joints are remembered
-STEPS_PER_KNOT = 6     # of the time between knots, at which extremes are looked for
-FAR = 1e2              # rad: makes positions positive, as what maxima are looked for must be
-LEAST_STEP = 1e-6      # rad/s^2: what is less is rounding
-BEFORE = 1e-9          # s before a knot, where what steps there still has its old value
+STEPS_PER_KNOT = 6       # of the time between knots, in the search for extremes; chosen
+POSITION_OFFSET = 1e2    # rad, makes positions positive, as `maximum_over_time` requires
+LEAST_STEP = 1e-6        # rad/s^2; acceleration steps below this are rounding
+ONE_SIDED = 1e-9         # s, offset for the left limit at a knot
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,17 +85,14 @@ class ArmPath(ReadOnlyArrays):
 
     @cached_property
     def planes(self) -> AxisPlanes:
-        """Return where joint 1 stands still in a plane with its axis."""
+        """Parts of the path in a plane through joint axis 1, where joint 1 is constant."""
         return axis_planes(
             self.path, self.posture, 0.0 if self.start is None else float(self.start[0]))
 
     @cached_property
     def _turning(self) -> tuple[Array, Array]:
-        """Places along the path, and joint positions there with their whole turns."""
-        knots = np.unique(np.concatenate((self.path.via_s, self.path.joins)))
-        share = np.arange(STEPS_PER_PIECE) / STEPS_PER_PIECE
-        s = (knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * share).ravel()
-        s = np.concatenate((s, knots[-1:]))
+        """Path coordinates, and joint positions there with their whole turns."""
+        s = self.path.grid
         q = unlimited_joint_path(self.model, self.planes.points(self.path, s), self.posture).q
         return s, q + whole_turns(q, self.limits, self.start)
 
@@ -102,7 +103,7 @@ class ArmPath(ReadOnlyArrays):
         Parameters
         ----------
         s : ndarray, shape (m,)
-            Places along the path [m], in any order.
+            Path coordinates [m], in any order.
         left : bool or ndarray of bool, shape (m,)
             At a join, the values of the piece that ends there.
 
@@ -114,8 +115,8 @@ class ArmPath(ReadOnlyArrays):
         """
         found = joint_path_modulo_turns(
             self.model, self.planes.points(self.path, s, left), self.posture)
-        places, known = self._turning
-        near = np.stack([np.interp(s, places, known[:, j]) for j in range(3)], axis=1)
+        grid, known = self._turning
+        near = np.stack([np.interp(s, grid, known[:, j]) for j in range(3)], axis=1)
         turns = np.round((near - found.q) / (2.0 * np.pi))
         return found._replace(q=found.q + 2.0 * np.pi * turns)
 
@@ -128,17 +129,17 @@ class PathPeaks(NamedTuple):
 
     def scaled(self, factor: float) -> PathPeaks:
         """
-        Return those of the same motion at another rate.
+        Return the extremes of the time-scaled motion.
 
         Parameters
         ----------
         factor : float
-            What every time is multiplied by.
+            New over old duration.
 
         Returns
         -------
         PathPeaks
-            Without looking for them again.
+            Converted, not searched again.
 
         """
         p = self.peaks
@@ -156,7 +157,7 @@ class PathTrajectory(Trajectory):
     arm_path : ArmPath
         The path in joint space.
     progress : JointProfile
-        Length of the path behind the tip [m] over time; from 0 to all of it.
+        Path coordinate [m] over time, from 0 to the path's length.
     via_times : ndarray
         When each via point is passed [s].
     join_times : ndarray
@@ -201,14 +202,14 @@ class PathTrajectory(Trajectory):
 
     @cached_property
     def step_times(self) -> Array:
-        """When joins are passed at which curvature steps [s]; see `Trajectory`."""
+        """Times at which joins with a step of curvature are passed [s]; see `Trajectory`."""
         stepping = self.acceleration_steps().max(axis=1, initial=0.0) > LEAST_STEP
         found = np.asarray(self.join_times[stepping])
         make_read_only((found,))
         return found
 
     def peaks(self) -> Peaks:
-        """Return the extremes over the continuous motion, both sides of what steps included."""
+        """Return the extremes over the continuous motion, including one-sided limits at knots."""
         return self._measured().peaks
 
     @property
@@ -224,21 +225,22 @@ class PathTrajectory(Trajectory):
 
     def _measure(self) -> PathPeaks:
         grid = times_within(self, STEPS_PER_KNOT)
-        grid = np.unique(np.concatenate((grid, self.knots[1:] - BEFORE)))
+        grid = np.unique(np.concatenate((grid, self.knots[1:] - ONE_SIDED)))
 
         def values(t: Array) -> Array:
             sd, q, qd, qdd, qddd = self._with_speed(t)
-            return np.concatenate((np.abs(qd), np.abs(qdd), np.abs(qddd), FAR - q, FAR + q, sd),
-                                  axis=1)
+            return np.concatenate((np.abs(qd), np.abs(qdd), np.abs(qddd), POSITION_OFFSET - q,
+                                   POSITION_OFFSET + q, sd), axis=1)
 
         *found, speed = maximum_over_time(values, grid).value
         velocity, acceleration, jerk, least, most = np.reshape(found, (5, 3))
         return PathPeaks(Peaks(
             velocity=velocity, acceleration=acceleration, jerk=jerk,
-            min_position=FAR - least, max_position=most - FAR), float(speed))
+            min_position=POSITION_OFFSET - least, max_position=most - POSITION_OFFSET),
+            float(speed))
 
     def time_scaled(self, factor: float) -> PathTrajectory:
-        """Return the same path run through at another rate; see `Trajectory`."""
+        """Return the time-scaled motion; see `Trajectory`."""
         factor = time_factor(factor)
         slower = PathTrajectory(self.arm_path, self.progress.time_scaled(factor),
                                 self.via_times * factor, self.join_times * factor, self.note)
@@ -252,7 +254,7 @@ class PathTrajectory(Trajectory):
         Parameters
         ----------
         note : str
-            What there is to be said of it.
+            Remark.
 
         Returns
         -------
@@ -266,14 +268,14 @@ class PathTrajectory(Trajectory):
         return found
 
     def acceleration_steps(self) -> Array:
-        """Return by how much joint accelerations step at the joins [rad/s^2], (joins, 3)."""
+        """Return the steps of joint acceleration at the joins [rad/s^2], (joins, 3)."""
         joins, speed = self.arm_path.path.joins, self.progress(self.join_times)[1]
         change = self.arm_path(joins).ddq - self.arm_path(joins, left=True).ddq
         return np.asarray(np.abs(change) * speed[:, np.newaxis] ** 2)
 
 
 def _at_knots(progress: JointProfile, times: Array) -> Array:
-    """Return the knots nearest to times: to rounding, a join's time might be before its knot."""
+    """Return the knots nearest to times, which rounding may have put before their knots."""
     knots = progress.knots
     after = np.clip(np.searchsorted(knots, times), 1, len(knots) - 1)
     before = times - knots[after - 1] <= knots[after] - times

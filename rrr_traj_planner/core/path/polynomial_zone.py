@@ -26,15 +26,14 @@ from rrr_traj_planner.core.errors import ConvergenceError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
 # The zone is a quintic in u, -1 <= u <= 1, symmetric about the via point. Its six control points
-# lie on the two lines, three on each, so that curvature is zero at both ends whatever the other
-# two of each three are: at the distances 1 (the end), alpha and beta from the corner, in units of
-# the first. Of all alpha and beta those are taken that give the least peak curvature between the
-# same two ends, among zones whose curvature changes along half the zone by no more than RISE
-# times the peak at its steepest: curvature that rises more steeply saves a few per cent of radius
-# and costs any multiple of jerk. As functions of c = cos(half the turn) they are 1 - c A(c) and
-# 1 - c B(c), fitted to within 3 % of the best peak, and such that the peak stands at the via
-# point for every turn below half a revolution: so the least radius is known in closed form.
-RISE = 4.0
+# lie on the two lines, three on each, so that curvature is zero at both ends for any choice of
+# alpha and beta: the distances of the three from the corner are 1 (the end), alpha and beta, in
+# units of the first. Alpha and beta were chosen for the least peak curvature between the same two
+# ends, among zones whose curvature changes along half the zone by at most 4 times the peak at its
+# steepest: a steeper rise saves a few per cent of radius and costs any multiple of jerk. As
+# functions of c = cos(half the turn) they are 1 - c A(c) and 1 - c B(c), with polynomials (ALPHA,
+# BETA) fitted to within 3 % of the best peak, and such that the peak is at the via point for every
+# turn below half a revolution: so the least radius is known in closed form.
 ALPHA = (0.7477, -0.7612, 0.6555, -0.3403, 0.0630)
 BETA = (1.9301, -2.9182, 3.3966, -2.3619, 0.7009)
 
@@ -46,12 +45,12 @@ ACROSS = np.array([[10.0, 5.0], [10.0, -15.0], [-20.0, 10.0]]) / 16.0
 # Terms of the series of the zone's length: exact to rounding up to turns of 179 degrees.
 LENGTH_TERMS = 30
 
-# Half turn below which a zone is taken to have this one [rad]: a straight zone has no length.
+# Smallest half turn [rad], which replaces smaller ones: a straight zone has no length.
 LEAST_ANGLE = 1e-60
 
-# Halley steps from length to parameter at most; two are taken, for turns up to 179.9 degrees.
+# Largest number of Halley steps from length to parameter; two are taken, up to 179.9 degrees.
 INVERSIONS = 30
-LAST_STEP = 1e-5  # of the parameter, whose cube is what is left after it
+LAST_STEP = 1e-5  # of the parameter: the error after a step is of the order of its cube
 
 
 class _Quintic(NamedTuple):
@@ -93,7 +92,7 @@ class PolynomialZones(ReadOnlyArrays):
     @staticmethod
     def ends(angle: Array) -> tuple[Array, Array]:
         """
-        Return where a zone meets the line after it.
+        Return the tangent point of a zone and the line after it.
 
         Parameters
         ----------
@@ -116,7 +115,7 @@ class PolynomialZones(ReadOnlyArrays):
         Parameters
         ----------
         zone : ndarray of int, shape (m,)
-            Which zone.
+            Indices of the zones.
         sigma : ndarray, shape (m,)
             Length from the via point, in least radii.
 

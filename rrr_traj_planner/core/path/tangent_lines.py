@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Lines that are tangent to the curved zones at both their ends, each zone through its point."""
+"""
+Lines that are tangent to the curved zones at both ends, each zone through its via point.
+
+Newton's method with step halving (Nocedal and Wright, Numerical Optimization, chapter 11).
+"""
 
 from __future__ import annotations
 
@@ -24,23 +28,24 @@ from rrr_traj_planner.core.errors import ConvergenceError
 from rrr_traj_planner.core.path.zone_kind import ZoneKind
 from scipy.linalg import solve_banded
 
-DIFFERENCE = 1e-7   # rad, step of the numerical derivative
-LARGEST_STEP = 0.3  # rad
+DIFFERENCE = 1e-7   # rad, step of the numerical derivative: root of the rounding, some 1e-15
+LARGEST_STEP = 0.3  # rad, largest turn of a line in an iteration; chosen
+LEAST_ANGLE = 1e-300  # rad, avoids a division by zero
 
-# Each line's miss depends on its own direction and its two neighbours' alone: every third line
-# is turned at once.
+# Each line's error depends on its own direction and its two neighbours' alone: in the numerical
+# derivative, every third line is turned together.
 COLOURS = 3
-NEXT, AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])  # of the axes of space
-BAND = 3  # of the matrix, to either side of its diagonal: 2 components of 3 lines
+NEXT, AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])  # cyclic permutations of x, y, z
+BAND = 3  # half bandwidth of the matrix: 2 components of 3 lines
 
 
 class Accuracy(NamedTuple):
-    """How good lines are to be, and how much may be done for it."""
+    """Convergence tolerances and iteration limits of the Newton method."""
 
-    aimed_at: float   # by how far a line may miss a zone's end, relative to the largest extent
-    tolerance: float  # the same, where the iteration goes no nearer
+    aimed_at: float   # largest error of a line at a zone's end, relative to the largest extent
+    tolerance: float  # the same, accepted where the iteration does not converge further
     iterations: int
-    halvings: int     # of a step that does not bring lines nearer
+    halvings: int     # of a step that does not reduce the error
 
 
 # As exact as rounding allows. Of 839 sets of lines half took at most 3 iterations, 1 % all 40.
@@ -63,7 +68,7 @@ class Tangents(NamedTuple):
 
 def tangents(points: Array, radii: Array, kind: ZoneKind, direction: Array) -> Tangents:
     """
-    Return the lines for given directions; they miss their zones unless the directions fit.
+    Return the lines for given directions; tangent to their zones for the right directions only.
 
     A zone whose lines have the directions d1 and d2 has its tangent along d1 + d2 and its normal
     along d2 - d1 in its middle (5.56 and 5.64 with unit vectors).
@@ -141,10 +146,10 @@ def tangent_lines(points: Array, radii: Array, kind: ZoneKind,
 def nearly_tangent_lines(points: Array, radii: Array, kind: ZoneKind, near: Array | None = None,
                          accuracy: Accuracy = EXACT) -> tuple[Tangents, Array]:
     """
-    Return the lines of `tangent_lines`, or the best that were found, and by how far they miss.
+    Return the lines of `tangent_lines`, or the best found, and their errors.
 
     Newton's method on the directions of the lines, which stay well defined where the corners
-    recede to infinity. A line's miss depends on its own direction and its neighbours' alone: each
+    recede to infinity. A line's error depends on its own direction and its neighbours' alone: each
     step solves a band matrix, in time linear in the number of points.
 
     Parameters
@@ -152,12 +157,12 @@ def nearly_tangent_lines(points: Array, radii: Array, kind: ZoneKind, near: Arra
     points, radii, kind, near
         As of `tangent_lines`.
     accuracy : Accuracy
-        How good the lines are to be.
+        Tolerances and iteration limits.
 
     Returns
     -------
     tuple of Tangents and ndarray, shape (n - 1,)
-        The lines, and by how far each misses a zone's end, relative to the largest extent.
+        The lines, and the distance of each from a zone's end, relative to the largest extent.
 
     """
     legs = np.diff(points, axis=0)
@@ -211,19 +216,19 @@ def frames(first: Array, second: Array) -> tuple[Array, Array]:
 
 def _damped(points: Array, radii: Array, kind: ZoneKind, lines: Tangents, basis: Array,
             step: Array, miss: float, halvings: int) -> Tangents | None:
-    """Return the lines after as much of a step as makes them miss by less, or None."""
-    share = min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
+    """Return the lines after the largest halving of a step that reduces their error, or None."""
+    fraction = min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), LEAST_ANGLE))
     for _ in range(halvings):
-        tried = tangents(points, radii, kind, _turned(lines.direction, basis, share * step))
+        tried = tangents(points, radii, kind, _turned(lines.direction, basis, fraction * step))
         if _largest(_misses(tried, _basis(tried.direction))) < miss:
             return tried
-        share *= 0.5
+        fraction *= 0.5
     return None
 
 
 def _newton_step(points: Array, radii: Array, kind: ZoneKind, lines: Tangents,
                  basis: Array) -> Array | None:
-    """Return by what angles the lines are to be turned, shape (n - 1, 2) [rad], or None."""
+    """Return the Newton step: turns of the lines, shape (n - 1, 2) [rad]; None if singular."""
     n = len(lines.direction)
     turns = np.zeros((COLOURS, 2, n, 2))
     for colour in range(COLOURS):
@@ -249,14 +254,14 @@ def _newton_step(points: Array, radii: Array, kind: ZoneKind, lines: Tangents,
 
 
 def _misses(lines: Tangents, basis: Array) -> Array:
-    """Return by how far each line misses the zone after it, across itself [m]."""
-    way = lines.stop - lines.start
-    off = way - lines.direction * lines.length[..., np.newaxis]
+    """Return each line's distance from the end of the zone after it, across the line [m]."""
+    offset = lines.stop - lines.start
+    off = offset - lines.direction * lines.length[..., np.newaxis]
     return np.asarray(np.einsum('...ki,kji->...kj', off, basis))
 
 
 def _largest(misses: Array) -> float:
-    """Return the largest magnitude, infinite where one is no number."""
+    """Return the largest magnitude, infinite if one is not a number."""
     worst = float(np.abs(misses).max())
     return worst if np.isfinite(worst) else np.inf
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The thesis's own construction of an arc through the middle one of three points (5.4.2)."""
+"""The thesis's construction of an arc through the middle one of three points (5.4.2)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from rrr_traj_planner.core.path.tangent_lines import frames, Tangents
 class ThreePointArc(NamedTuple):
     """An arc and its two tangents."""
 
-    radius: float   # [m]; less than asked for where an end lies inside the circle
+    radius: float   # [m]; less than requested where an end lies inside the circle
     tangent: Array  # of the arc at the middle point, shape (1, 3)
     normal: Array
     before: float   # angles by which the arc turns before and after the middle point [rad]
@@ -44,7 +44,7 @@ def three_point_arc(points: Array, radius: float) -> ThreePointArc:
     points : ndarray, shape (3, 3)
         Via points [m].
     radius : float
-        Radius asked for [m].
+        Requested radius [m].
 
     Returns
     -------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Whether the arm can follow a whole path: workspace and joint ranges between points too."""
+"""Check of a whole path against the workspace and the joint ranges, between points too."""
 
 from __future__ import annotations
 
@@ -38,15 +38,16 @@ from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.path.joint_path import LEAST_CLEARANCE
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
-STEPS_PER_PIECE = 24  # of the first grid; intervals that may hide an excursion are halved,
-ROUNDS = 40           # at most so often,
-SHORTEST_STEP = 1e-9  # m, down to this
+# Intervals that may contain an excursion are halved: largest number of rounds, shortest interval.
+BISECTIONS = 40
+SHORTEST_STEP = 1e-9  # m
 
-# The tip may pass joint axis 1 no nearer than this: joint 1 would turn as good as at once.
+# Least distance from joint axis 1 at which the tip may pass it: nearer, joint 1 would have to turn
+# with practically unbounded velocity. Chosen.
 AXIS_CLEARANCE = 1e-6   # m
-FINEST = 1e-8           # m^2: no excursion larger than this is missed
-FINEST_ANGLE = 0.01 * JOINT_ROUNDING  # the same of a joint: none that later checks would find
-# A second derivative between two samples is taken to be no more than this times theirs.
+FINEST = 1e-8           # m^2: no excursion of a squared distance larger than this is missed
+FINEST_ANGLE = 0.01 * JOINT_ROUNDING  # rad, the same of a joint: less than later checks find
+# Bound on a second derivative between two samples, over the larger of theirs; chosen.
 SAFETY = 2.0
 
 # Values and a bound on the magnitude of their second derivatives by s, shape (m,) each.
@@ -54,9 +55,9 @@ Quantity = Callable[[Array], tuple[Array, Array]]
 
 
 class JointRange(NamedTuple):
-    """Where a path begins in joint space, and between which positions each joint moves [rad]."""
+    """Joint positions at the start of a path, and their extremes along it [rad]."""
 
-    start: Array  # shape (3,); of many turns of a joint, the ones that keep its range
+    start: Array  # shape (3,); with the whole turns that keep each joint in its range
     least: Array
     most: Array
 
@@ -65,7 +66,7 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
                     posture: Posture, start: Array | None = None,
                     should_stop: ShouldStop = never) -> JointRange:
     """
-    Refuse a path that leaves the workspace or a joint's range anywhere, between points too.
+    Raise if a path leaves the workspace or a joint's range anywhere, between points too.
 
     Every interval in which a bound on the second derivative allows an excursion is
     halved until none is left.
@@ -83,7 +84,7 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
     start : ndarray, shape (3,), optional
         Joint positions in which the path is to begin [rad]; None: in any whole turns.
     should_stop : callable
-        Asked in every round; its answer does not matter, for there is none before the last.
+        Polled in every round; called for its exceptions; the return value is ignored.
 
     Returns
     -------
@@ -93,7 +94,7 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
     Raises
     ------
     UnreachableError
-        If the path leaves the workspace: with the worst place, in metres along the path, and
+        If the path leaves the workspace: with the path coordinate of the largest violation and
         the nearest via point's number.
     LimitViolationError
         If the path crosses joint axis 1 where joint 1 would have to turn, or a joint leaves its
@@ -105,8 +106,8 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
     planes = axis_planes(path, posture, _free_angle(limits, start))
     _check_reach(model, path)
     _check_axis(model, path, planes)
-    grid = _grid(path)
-    for _ in range(ROUNDS):
+    grid = path.grid
+    for _ in range(BISECTIONS):
         should_stop()
         joints = unlimited_joint_path(model, planes.points(path, grid), posture)
         from_left = unlimited_joint_path(model, planes.points(path, grid, left=True), posture)
@@ -131,14 +132,14 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
 
 def place_on_path(path: CartesianPath, s: float) -> tuple[str, int]:
     """
-    Return where on a path a place is, for people, and the nearest via point.
+    Return a text for a path coordinate, and the nearest via point.
 
     Parameters
     ----------
     path : CartesianPath
         The path.
     s : float
-        The place [m].
+        The path coordinate [m].
 
     Returns
     -------
@@ -154,33 +155,26 @@ def place_on_path(path: CartesianPath, s: float) -> tuple[str, int]:
 
 
 def _free_angle(limits: JointLimits, start: Array | None) -> float:
-    """Return where joint 1 is if any angle will do [rad]."""
+    """Return the position of joint 1 where any is possible [rad]."""
     low, high = limits.min_position[0], limits.max_position[0]
     return float(np.clip(0.0, low, high) if start is None else start[0])
 
 
 def _check_start(model: RobotModel, start: Array, q: Array) -> None:
-    """Refuse a path that begins in other joint positions than those of the arm."""
+    """Raise if a path begins in joint positions other than those of the arm."""
     gap = np.abs(start - q)
     if gap.max() > JOINT_ROUNDING:
         j = int(gap.argmax())
         at, wanted = told_apart(start[j], q[j])
         raise StartStateError(
-            f'start state: {model.joint_names[j]} is at {at} rad with the tip on joint axis 1, '
-            f'and would have to turn at once to {wanted} rad, where the path leaves the axis')
-
-
-def _grid(path: CartesianPath) -> Array:
-    """Return places that meet every join and every via point."""
-    knots = np.unique(np.concatenate((path.via_s, path.joins)))
-    share = np.arange(STEPS_PER_PIECE) / STEPS_PER_PIECE
-    inner = knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * share
-    return np.concatenate((inner.ravel(), knots[-1:]))
+            f'start state: {model.joint_names[j]} is at {at} rad with the tip on joint axis 1 '
+            f'(singularity): it would need unbounded velocity to reach {wanted} rad, where the '
+            'path leaves the axis')
 
 
 def _peak(quantity: Quantity, grid: Array) -> tuple[float, float]:
-    """Return the largest value, where it is positive to FINEST, and its place."""
-    for _ in range(ROUNDS):
+    """Return the largest value, to FINEST where it is positive, and its path coordinate."""
+    for _ in range(BISECTIONS):
         value, second_derivative = quantity(grid)
         h = np.diff(grid)
         bound = np.maximum(value[:-1], value[1:]) + (
@@ -211,7 +205,7 @@ def _two_sided(path: CartesianPath, s: Array, origin: tuple[float, float, float]
 
 
 def _check_reach(model: RobotModel, path: CartesianPath) -> None:
-    """Refuse a path that leaves the shell that the tip can reach."""
+    """Raise if a path leaves the spherical shell that the tip can reach."""
     least, most = model.reach
     shoulder = (0.0, 0.0, model.d1)
 
@@ -225,22 +219,22 @@ def _check_reach(model: RobotModel, path: CartesianPath) -> None:
 
     for quantity, bound, what in ((beyond, most, "beyond the arm's reach of"),
                                   (inside, least, 'nearer than the arm can fold,')):
-        excess, s = _peak(quantity, _grid(path))
+        excess, s = _peak(quantity, path.grid)
         if excess > 0.0:
             W = float(np.linalg.norm(path(s)[0] - shoulder))
             place, nearest = place_on_path(path, s)
             miss = max(W - most, least - W)
             distance, limit = told_apart(W, bound)
             where = (f'{what} {limit} m' if miss > 0.0 else
-                     'on the edge of the workspace, where the arm could not move on')
+                     'on the edge of the workspace (singularity: would need unbounded velocity)')
             raise UnreachableError(
                 f'{place}: the tip would be {distance} m from the shoulder, {where}',
                 distance=max(miss, 0.0), via_point=nearest)
 
 
 def _check_axis(model: RobotModel, path: CartesianPath, planes: AxisPlanes) -> None:
-    """Refuse a path that crosses joint axis 1 elsewhere than in planes with it."""
-    grid = _grid(path)
+    """Raise if a path crosses joint axis 1 outside the planes through it."""
+    grid = path.grid
     grid = grid[(grid >= planes.before) & (grid <= planes.after)]
     if not len(grid):
         return
@@ -255,14 +249,14 @@ def _check_axis(model: RobotModel, path: CartesianPath, planes: AxisPlanes) -> N
         distance = float(np.hypot(*path(s)[0][:2]))
         passed, bound = told_apart(distance, AXIS_CLEARANCE, digits=3)
         raise LimitViolationError(
-            f'{place}: the tip would pass joint axis 1 at {passed} m, where '
-            f'{model.joint_names[0]} would have to turn at once; least {bound} m',
+            f'{place}: the tip would pass joint axis 1 (singularity) at {passed} m, where '
+            f'{model.joint_names[0]} would need unbounded velocity; least {bound} m',
             model.joint_names[0], distance, AXIS_CLEARANCE, via_point=nearest)
 
 
 def _check_ranges(model: RobotModel, limits: JointLimits, path: CartesianPath,
                   posture: Posture, s: Array, q: Array) -> None:
-    """Refuse joint positions out of range, told of the worst."""
+    """Raise if joint positions are out of range, reporting the largest violation."""
     excess = np.maximum(limits.min_position - q, q - limits.max_position)
     if (excess <= JOINT_ROUNDING - FINEST_ANGLE).all():
         return

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What kind of curved zones a path has: where they meet their lines and their via points."""
+"""Shape of the curved zones: tangent points and position of the via point."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from typing import NamedTuple, TypeAlias
 
 from rrr_traj_planner.core.arrays import Array, IntArray
 
-# Half turn of a zone -> where it meets its lines (x along the tangent, y along the normal), for
-# least radius 1.
+# Half turn of a zone -> its tangent point (x along the tangent, y along the normal), for least
+# radius 1.
 ZoneEnds: TypeAlias = Callable[[Array], tuple[Array, Array]]
 
 
 class ZoneKind(NamedTuple):
     """
-    The shape of curved zones, and where they have their via points.
+    Shape of the curved zones: tangent points and position of the via point.
 
     Parameters
     ----------
     ends : callable
-        Where zones meet their lines.
+        Tangent points: where zones meet their lines.
     side : ndarray of int, shape (n - 2,), or int
         0: a zone's via point is in its middle. -1: at its end, so that the line after it begins at
         the via point; 1: at its beginning.

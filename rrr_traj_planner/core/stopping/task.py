@@ -197,7 +197,7 @@ class MeasuredState(ReferenceTrajectory):
 
 
 def motion_to_brake(motion: ReferenceTrajectory, now: int, measured: State,
-               limits: JointLimits) -> ReferenceTrajectory:
+                    limits: JointLimits) -> ReferenceTrajectory:
     """
     Return the motion to brake: the reference, or the measured state if the error is large.
 

@@ -287,7 +287,8 @@ def test_no_join_leaves_a_range_between_samples(end):
 
 @pytest.mark.parametrize(('q', 'text'), [
     ((-0.3, 0.9, 0.2), 'end with joint_1 at -0.3 rad, range [0, 1.5708] rad: holding position'),
-    ((0.5, 0.9, 90.0), 'end with joint_3 at 90 rad, range [-3.14159, 6.28319] rad: holding position'),
+    ((0.5, 0.9, 90.0), 'end with joint_3 at 90 rad, range [-3.14159, 6.28319] rad: holding '
+                       'position'),
     ((0.5, 3.2, 0.2), 'end with joint_2 at 3.2 rad, range [0, 3.14159] rad: holding position')])
 @pytest.mark.parametrize('command', [REST, MOVING])
 def test_motion_of_our_own_does_not_end_outside_a_range(command, q, text):

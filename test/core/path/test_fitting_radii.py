@@ -38,13 +38,13 @@ def walk(n, seed):
 
 
 def steps_taken(monkeypatch, points, radii, ends):
-    tried, count = fitting_radii._tried, [0]
+    tried, count = fitting_radii._lines_for, [0]
 
     def counted(*arguments):
         count[0] += 1
         return tried(*arguments)
 
-    monkeypatch.setattr(fitting_radii, '_tried', counted)
+    monkeypatch.setattr(fitting_radii, '_lines_for', counted)
     fit_radii(points, radii, ends)
     monkeypatch.undo()
     return count[0]

@@ -189,7 +189,7 @@ def test_deviation_is_the_largest_distance_from_the_polyline(family):
 def test_radii_that_fit_are_kept_and_others_shrunk_and_reported(family):
     shrunk = kept = 0
     for path, (_, radii) in zip(paths(family), TASKS):
-        assert path.radii_asked.tolist() == radii.tolist()
+        assert path.requested_radii.tolist() == radii.tolist()
         assert (path.radii <= radii).all()
         assert path.shrunk.tolist() == [j + 1 for j in range(len(radii))
                                         if path.radii[j] != radii[j]]
