@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Checked, read-only arrays of what callers give."""
+"""Checked, read-only arrays from callers' values."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def finite_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = No
     Raises
     ------
     InvalidInputError
-        If the value is no array of numbers, has another shape or is not finite.
+        If the value is not an array of numbers, has another shape or is not finite.
 
     """
     array = _checked(name, value, shape)
@@ -60,7 +60,7 @@ def finite_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = No
 
 def number_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = None) -> Array:
     """
-    Return a read-only float copy of numbers that may be anything, NaN too.
+    Return a read-only float copy of any numbers, also infinite ones and NaN.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def number_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = No
     Raises
     ------
     InvalidInputError
-        If the value is no array of numbers or has another shape.
+        If the value is not an array of numbers or has another shape.
 
     """
     return _checked(name, value, shape)
@@ -98,7 +98,7 @@ def bound_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = Non
     Raises
     ------
     InvalidInputError
-        If the value is no array of numbers, has another shape or holds a NaN.
+        If the value is not an array of numbers, has another shape or holds a NaN.
 
     """
     array = _checked(name, value, shape)
@@ -120,12 +120,12 @@ def joint_values(name: str, value: ArrayLike) -> Array:
     Returns
     -------
     ndarray, shape (..., 3)
-        The same values; the same object, where it is a float array.
+        The same values; the same object if it is a float array.
 
     Raises
     ------
     InvalidInputError
-        If the value is no array of numbers, has another shape or is not finite.
+        If the value is not an array of numbers, has another shape or is not finite.
 
     """
     array = float_array(name, value)
@@ -143,7 +143,7 @@ def joint_states(**values: ArrayLike) -> list[Array]:
     Parameters
     ----------
     **values : array_like, shape (..., 3)
-        By what they are called in the error's text.
+        By their names in the error's text.
 
     Returns
     -------
@@ -153,7 +153,7 @@ def joint_states(**values: ArrayLike) -> list[Array]:
     Raises
     ------
     InvalidInputError
-        If one is as `joint_values` refuses, or the shapes do not go together.
+        If `joint_values` refuses one, or the shapes do not broadcast.
 
     """
     arrays = [joint_values(name, value) for name, value in values.items()]
@@ -169,7 +169,7 @@ def joint_states(**values: ArrayLike) -> list[Array]:
 
 def parameter_values(name: str, value: ArrayLike) -> Array:
     """
-    Return values of a curve's parameter, its time or length, as a float array.
+    Return values of a curve's parameter (time or arc length) as a float array.
 
     Parameters
     ----------
@@ -181,12 +181,12 @@ def parameter_values(name: str, value: ArrayLike) -> Array:
     Returns
     -------
     ndarray, shape (n,) or ()
-        The same values; the same object, where it is a float array.
+        The same values; the same object if it is a float array.
 
     Raises
     ------
     InvalidInputError
-        If the value is no array of numbers, has another shape or holds a NaN.
+        If the value is not an array of numbers, has another shape or holds a NaN.
 
     """
     array = float_array(name, value)
@@ -199,7 +199,7 @@ def parameter_values(name: str, value: ArrayLike) -> Array:
 
 def truth_array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> BoolArray:
     """
-    Return a read-only copy of truth values, checked.
+    Return a read-only copy of bools, checked.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def truth_array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> BoolArra
     Raises
     ------
     InvalidInputError
-        If the value holds anything else, or has another shape.
+        If the value is not an array of bools, or has another shape.
 
     """
     try:
@@ -235,7 +235,7 @@ def truth_array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> BoolArra
 
 def refuse_where(name: str, array: Array, wrong: BoolArray, wanted: str) -> None:
     """
-    Refuse the first value that is wrong.
+    Raise for the first value that is wrong.
 
     Parameters
     ----------
@@ -244,9 +244,9 @@ def refuse_where(name: str, array: Array, wrong: BoolArray, wanted: str) -> None
     array : ndarray
         The values.
     wrong : ndarray of bool
-        Which of them are wrong; none may be.
+        Whether each is wrong.
     wanted : str
-        What they must be.
+        What they must be, for the error's text.
 
     Raises
     ------

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Floats of what a caller gives for numbers: of real numbers alone, nothing is guessed."""
+"""
+Strict conversion of real numbers to float.
+
+Text, booleans and masked values are rejected.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +28,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from rrr_traj_planner.core.errors import InvalidInputError, shown
 
-SHOWN_ROWS = 4  # of an array whose rows differ in length, in an error's text
+SHOWN_ROWS = 4  # rows whose lengths an error's text gives, if they differ
 
 
 def float_array(name: str, value: ArrayLike) -> NDArray[np.float64]:
@@ -36,17 +40,17 @@ def float_array(name: str, value: ArrayLike) -> NDArray[np.float64]:
     name : str
         What the value is called in the error's text.
     value : array_like
-        Real numbers; neither text nor truth values nor masked values are.
+        Real numbers; text, booleans and masked values are rejected.
 
     Returns
     -------
     ndarray
-        The same values; the same object, where it is a float array.
+        The same values; the same object if it is a float array.
 
     Raises
     ------
     InvalidInputError
-        If the value is no array of numbers.
+        If the value is not an array of numbers.
 
     """
     if type(value) is np.ndarray and value.dtype == np.float64:
@@ -65,7 +69,7 @@ def float_array(name: str, value: ArrayLike) -> NDArray[np.float64]:
 
 
 def _converted(name: str, value: Any) -> NDArray[np.float64]:
-    """Return what NumPy does not take for numbers one by one, or refuse the first that is none."""
+    """Convert elements one by one; reject the first that is not a number."""
     try:
         parts = np.array(value, dtype=object)
     except (TypeError, ValueError):
@@ -100,7 +104,7 @@ def real_number(name: str, value: Any) -> float:
     Raises
     ------
     InvalidInputError
-        If it is no real number, or larger than any float.
+        If it is not a real number, or larger than any float.
 
     """
     if type(value) is float:
@@ -122,7 +126,7 @@ def _has_truth_value(value: Any) -> bool:
 
 def indexed(where: tuple[int, ...]) -> str:
     """
-    Return where a value stands in an array, for an error's text.
+    Return the index of a value in an array as text, for an error's text.
 
     Parameters
     ----------

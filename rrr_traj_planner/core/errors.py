@@ -22,7 +22,7 @@ from reprlib import Repr
 _shortened = Repr()
 _shortened.maxstring = _shortened.maxother = _shortened.maxlong = 60
 
-MOST_DIGITS = 17  # tell any two floats apart
+MOST_DIGITS = 17  # significant digits that distinguish any two floats
 
 
 class RrrPlannerError(Exception):
@@ -34,7 +34,7 @@ class RrrPlannerError(Exception):
     message : str
         What was wrong, where, the value, the bound and the unit.
     via_point : int, optional
-        Index of the via point to blame, -1 where none is.
+        Index of the via point at fault, -1 if there is none.
 
     """
 
@@ -43,12 +43,12 @@ class RrrPlannerError(Exception):
         self.via_point = via_point
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Have copies and pickles made of message and fields, whatever the constructor takes."""
+        """Return how to copy and pickle: message and fields, for any constructor."""
         return _remade, (type(self), self.args), vars(self)
 
 
 class InvalidInputError(RrrPlannerError, ValueError):
-    """A malformed value: wrong shape, not finite, out of its range."""
+    """A malformed value: wrong shape, not finite, out of range."""
 
 
 class StartStateError(RrrPlannerError):
@@ -62,11 +62,11 @@ class UnreachableError(RrrPlannerError):
     Parameters
     ----------
     message : str
-        Which point, and by how much it misses.
+        The point, and its distance from the workspace.
     distance : float
-        How far the point is from the nearest reachable one [m].
+        Distance of the point from the nearest reachable one [m].
     via_point : int, optional
-        Index of the via point, -1 where there is none.
+        Index of the via point, -1 if there is none.
 
     """
 
@@ -77,7 +77,7 @@ class UnreachableError(RrrPlannerError):
 
 class LimitViolationError(RrrPlannerError):
     """
-    A point or a path that breaks a limit however slowly the arm moves.
+    A point or a path that violates a limit at any speed.
 
     Parameters
     ----------
@@ -86,9 +86,9 @@ class LimitViolationError(RrrPlannerError):
     joint : str
         Name of the joint.
     value, limit : float
-        The offending value and the limit that it breaks (same unit).
+        The offending value and the limit that it violates (same unit).
     via_point : int, optional
-        Index of the via point, -1 where none is to blame.
+        Index of the via point at fault, -1 if there is none.
 
     """
 
@@ -101,21 +101,21 @@ class LimitViolationError(RrrPlannerError):
 
 
 class JointRangeError(LimitViolationError):
-    """A joint that would be out of its range of positions."""
+    """A joint position out of range."""
 
 
 class TimingError(RrrPlannerError):
     """
-    No timing within the limits, for the durations that were asked for.
+    No timing within the limits for the requested durations.
 
     Parameters
     ----------
     message : str
-        Which durations, and the least feasible ones.
+        The durations, and the least feasible ones.
     least_durations : tuple of float
-        Feasible durations [s], none shorter than asked for; empty where there are none.
+        Feasible durations [s], none shorter than requested; empty if there are none.
     via_point : int, optional
-        Index of the via point, -1 where none is to blame.
+        Index of the via point at fault, -1 if there is none.
 
     """
 
@@ -127,16 +127,16 @@ class TimingError(RrrPlannerError):
 
 class TimeLimitError(TimingError):
     """
-    Planning that was given up because it took too long.
+    Planning that was aborted at its time limit.
 
     Parameters
     ----------
     limit : float
-        How long planning may take [s].
+        The time limit [s].
     elapsed : float
-        How long it has taken [s].
+        Time since planning began [s].
     step : str, optional
-        What took the time.
+        Name of the interrupted step.
 
     """
 
@@ -149,7 +149,7 @@ class TimeLimitError(TimingError):
 
 
 class ConvergenceError(RrrPlannerError):
-    """An iteration that ended at its limit without a result."""
+    """An iteration that did not converge within its limit."""
 
 
 def _remade(kind: type[RrrPlannerError], arguments: tuple[object, ...]) -> RrrPlannerError:
@@ -169,7 +169,7 @@ def quoted(text: str) -> str:
     Returns
     -------
     str
-        With escapes for what cannot be printed; its middle left out where it is long.
+        With escapes for unprintable characters; the middle is left out if it is long.
 
     """
     return shown(str(text))
@@ -187,27 +187,27 @@ def shown(value: object) -> str:
     Returns
     -------
     str
-        Its representation; the middle left out where it is long.
+        Its representation; the middle is left out if it is long.
 
     """
     try:
         return sub(r'\s*\n\s*', ' ', _shortened.repr(value))
-    except ValueError:  # of integers of thousands of digits Python makes no text
+    except ValueError:  # Python does not convert integers of thousands of digits
         return f'of {type(value).__name__} and too long to show'
 
 
-def told_apart(value: float, *bounds: float, digits: int = 6) -> tuple[str, ...]:
+def format_distinct(value: float, *bounds: float, digits: int = 6) -> tuple[str, ...]:
     """
-    Return a value and its bounds for an error's message, with digits enough to see them differ.
+    Return a value and its bounds for an error's message, with enough digits to differ.
 
     Parameters
     ----------
     value : float
         The value.
     *bounds : float
-        What it is compared with.
+        Values that it is compared with.
     digits : int
-        Significant digits where they suffice.
+        Significant digits if they suffice.
 
     Returns
     -------
@@ -232,9 +232,9 @@ def counted(count: int, singular: str, plural: str = '') -> str:
     count : int
         How many.
     singular : str
-        What one of them is called.
+        Name of one of them.
     plural : str
-        What several are called; empty: the singular and an s.
+        Name of several; empty: the singular and an s.
 
     Returns
     -------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Values whose arrays nobody can write to: what every value type of the core is made of."""
+"""Base of value types with read-only arrays."""
 
 from __future__ import annotations
 
@@ -24,10 +24,9 @@ import numpy as np
 
 class ReadOnlyArrays:
     """
-    Base of values whose arrays, those in tuples too, nobody can write to.
+    Base of value types with read-only arrays, also in tuples.
 
-    NumPy's arrays forget that they are read-only where they are pickled or deeply copied; those
-    of such a value do not.
+    NumPy drops the flag on pickling and deepcopy; here it is restored.
     """
 
     def __post_init__(self) -> None:
@@ -35,7 +34,7 @@ class ReadOnlyArrays:
         make_read_only(vars(self).values())
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Take what was pickled or copied."""
+        """Restore what was pickled or copied."""
         vars(self).update(state)
         make_read_only(state.values())
 
@@ -47,7 +46,7 @@ def make_read_only(values: Iterable[Any]) -> None:
     Parameters
     ----------
     values : iterable
-        Arrays, tuples of arrays, and what else there is, which is left alone.
+        Arrays and tuples of arrays; other values are ignored.
 
     """
     for value in values:

@@ -12,12 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What counts as rounding of positions that are given or found: one value for each quantity."""
+"""Differences of positions that count as rounding: one value for each quantity, chosen."""
 
-# Two positions of the tip no further apart than this are one; a tip this near to joint axis 1 or
-# to the edge of the workspace is on it.
+# Two positions of the tip no further apart than this are the same; a tip this near to joint axis 1
+# or to the edge of the workspace is on it.
 TIP_ROUNDING = 1e-9  # m
 
-# Two positions of a joint no further apart than this are one; a joint beyond the end of its range
-# by no more than this is at its end: a point taught there must not be refused for its digits.
+# Two positions of a joint no further apart than this are the same; a joint beyond the end of its
+# range by no more than this is at its end, so that a taught position is accepted despite rounding.
 JOINT_ROUNDING = 1e-9  # rad

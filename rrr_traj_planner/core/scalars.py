@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Checked numbers, flags, choices and names: what value types are made of beside arrays."""
+"""Checked numbers, flags, choices and names: fields of value types other than arrays."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def finite(name: str, value: Any, unit: str = '') -> float:
     Raises
     ------
     InvalidInputError
-        If it is no real number, or not finite.
+        If it is not a real number, or not finite.
 
     """
     return _within(name, value, unit, -inf)
@@ -65,9 +65,9 @@ def positive(name: str, value: Any, unit: str = '', may_be_infinite: bool = Fals
     name, value, unit
         As in `finite`.
     may_be_infinite : bool
-        Whether infinity, for no bound, will do.
+        Whether infinity, for no bound, is accepted.
     least : float, optional
-        What it must not be below.
+        Lower bound.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def positive(name: str, value: Any, unit: str = '', may_be_infinite: bool = Fals
     Raises
     ------
     InvalidInputError
-        If it is no real number, not positive and finite, or too small.
+        If it is not a real number, not positive and finite, or too small.
 
     """
     number = real_number(name, value)
@@ -104,15 +104,15 @@ def not_negative(name: str, value: Any, unit: str = '') -> float:
     Raises
     ------
     InvalidInputError
-        If it is no real number, negative or not finite.
+        If it is not a real number, negative or not finite.
 
     """
     return _within(name, value, unit, 0.0, 'not be negative')
 
 
-def share(name: str, value: Any) -> float:
+def positive_fraction(name: str, value: Any) -> float:
     """
-    Return a number in (0, 1] as a float.
+    Return a fraction in (0, 1] as a float.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def share(name: str, value: Any) -> float:
     Raises
     ------
     InvalidInputError
-        If it is no real number, or outside (0, 1].
+        If it is not a real number, or outside (0, 1].
 
     """
     number = real_number(name, value)
@@ -145,7 +145,7 @@ def whole_number(name: str, value: Any, least: int | None = None) -> int:
     name, value
         As in `finite`.
     least : int, optional
-        What it must not be below.
+        Lower bound.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def whole_number(name: str, value: Any, least: int | None = None) -> int:
     Raises
     ------
     InvalidInputError
-        If it is no whole number, or too small.
+        If it is not a whole number, or too small.
 
     """
     if not isinstance(value, Integral) or isinstance(value, (bool, np.timedelta64)):
@@ -167,7 +167,7 @@ def whole_number(name: str, value: Any, least: int | None = None) -> int:
 
 def truth(name: str, value: Any) -> bool:
     """
-    Return a truth value.
+    Return a bool.
 
     Parameters
     ----------
@@ -177,12 +177,12 @@ def truth(name: str, value: Any) -> bool:
     Returns
     -------
     bool
-        The value; numbers and text are none.
+        The value; not a number or a text.
 
     Raises
     ------
     InvalidInputError
-        If it is none.
+        If it is not a bool.
 
     """
     if not isinstance(value, (bool, np.bool_)):
@@ -207,7 +207,7 @@ def text(name: str, value: Any) -> str:
     Raises
     ------
     InvalidInputError
-        If it is none.
+        If it is not a text.
 
     """
     if not isinstance(value, str):
@@ -232,7 +232,7 @@ def names(name: str, value: Any) -> tuple[str, ...]:
     Raises
     ------
     InvalidInputError
-        If the value is no sequence of texts, or itself one text.
+        If the value is not a sequence of texts, or is itself a text.
 
     """
     if isinstance(value, str) or not isinstance(value, Iterable):
@@ -242,19 +242,19 @@ def names(name: str, value: Any) -> tuple[str, ...]:
 
 def one_of(name: str, value: Any, options: Sequence[str]) -> None:
     """
-    Refuse what is none of some texts.
+    Raise if the value is not one of the options.
 
     Parameters
     ----------
     name, value
         As in `finite`.
     options : sequence of str
-        What it may be.
+        Accepted texts.
 
     Raises
     ------
     InvalidInputError
-        If it is none of them.
+        If it is not one of them.
 
     """
     if not (isinstance(value, str) and value in options):
@@ -264,14 +264,14 @@ def one_of(name: str, value: Any, options: Sequence[str]) -> None:
 
 def kind_of(name: str, value: Any, kind: type) -> None:
     """
-    Refuse a value of another class.
+    Raise if a value is not an instance of the required class.
 
     Parameters
     ----------
     name, value
         As in `finite`.
     kind : type
-        Of which it must be.
+        Required class.
 
     Raises
     ------

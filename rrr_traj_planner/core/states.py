@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""States of the three joints as tuples of floats, which the arm's inner loop computes with."""
+"""States of the three joints as tuples of floats, for the simulation's inner loop."""
 
 # A value of each joint.
 Triple = tuple[float, float, float]

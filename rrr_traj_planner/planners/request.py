@@ -34,7 +34,7 @@ from rrr_traj_planner.core.scalars import (
     not_negative,
     one_of,
     positive,
-    share,
+    positive_fraction,
     text,
     truth,
     whole_number,
@@ -45,7 +45,8 @@ T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
 
 # The check of each field that is not an array: a function of its name and its value.
 CHECKS: dict[str, Callable[[str, Any], Any]] = {
-    'planner_id': text, 'velocity_scaling': share, 'acceleration_scaling': share,
+    'planner_id': text,
+    'velocity_scaling': positive_fraction, 'acceleration_scaling': positive_fraction,
     'sample_period': partial(positive, unit='s'), 'max_deviation': partial(positive, unit='m'),
     'max_tip_speed': partial(positive, unit='m/s', may_be_infinite=True), 'steady_zones': truth,
     'half_transition': partial(positive, unit='s', least=NANOSECOND),

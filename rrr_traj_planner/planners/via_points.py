@@ -22,7 +22,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
-from rrr_traj_planner.core.errors import LimitViolationError, StartStateError, told_apart
+from rrr_traj_planner.core.errors import format_distinct, LimitViolationError, StartStateError
 from rrr_traj_planner.core.kinematics.joint_ranges import (
     out_of_range,
     range_error,
@@ -111,7 +111,7 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
     low, high = limits.min_position, limits.max_position
     allowance = max(tolerance, JOINT_ROUNDING)
     for j in np.flatnonzero((start < low - allowance) | (start > high + allowance)).tolist():
-        at, lowest, highest, *_ = told_apart(
+        at, lowest, highest, *_ = format_distinct(
             start[j], low[j], high[j], low[j] - allowance, high[j] + allowance)
         allowed = (f', start_state_tolerance {allowance:g} rad'
                    if allowance > JOINT_ROUNDING else '')
@@ -198,4 +198,4 @@ def torque_texts(torque: float, limit: float) -> tuple[str, ...]:
         Both.
 
     """
-    return told_apart(torque, limit, digits=len(f'{torque:.1f}') - 1)
+    return format_distinct(torque, limit, digits=len(f'{torque:.1f}') - 1)

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.errors import counted, quoted, told_apart
+from rrr_traj_planner.core.errors import counted, format_distinct, quoted
 
 
 @pytest.mark.parametrize(('text', 'shown'), [
@@ -39,7 +39,7 @@ def test_a_value_just_beyond_its_bound_reads_as_beyond_it(bound):
     for exponent in range(-14, -2):
         miss = rng.uniform(1.0, 9.9) * 10.0 ** exponent
         for value in (bound + miss, bound - miss):
-            shown, limit, other = told_apart(value, bound, 7.0)
+            shown, limit, other = format_distinct(value, bound, 7.0)
             if value == bound:  # too small a miss for a float
                 continue
             assert (float(shown) > float(limit)) == (value > bound)
@@ -50,11 +50,11 @@ def test_a_value_just_beyond_its_bound_reads_as_beyond_it(bound):
 
 
 def test_digits_are_few_where_few_suffice_or_there_is_nothing_to_tell():
-    assert told_apart(1.7, 0.0, np.pi / 2) == ('1.7', '0', '1.5708')
-    assert told_apart(218.93, 200.0, digits=4) == ('218.9', '200')
-    assert told_apart(1.0, 1.0, 1.0000001) == ('1', '1', '1.0000001')
-    assert told_apart(1.0, 1.0) == ('1', '1')
-    assert told_apart(np.nan, 0.1, np.inf) == ('nan', '0.1', 'inf')
+    assert format_distinct(1.7, 0.0, np.pi / 2) == ('1.7', '0', '1.5708')
+    assert format_distinct(218.93, 200.0, digits=4) == ('218.9', '200')
+    assert format_distinct(1.0, 1.0, 1.0000001) == ('1', '1', '1.0000001')
+    assert format_distinct(1.0, 1.0) == ('1', '1')
+    assert format_distinct(np.nan, 0.1, np.inf) == ('nan', '0.1', 'inf')
 
 
 @pytest.mark.parametrize(('count', 'nouns', 'text'), [

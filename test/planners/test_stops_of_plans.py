@@ -23,7 +23,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.stopping.stop import stop
-from rrr_traj_planner.core.trajectory.reference_trajectory import through
+from rrr_traj_planner.core.trajectory.reference_trajectory import reference_through
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
@@ -43,8 +43,8 @@ def motion_of(planner_id, limits, *q):
     points = plan(MODEL, limits, PlanningRequest(
         forward_kinematics(MODEL, np.array(q)), planner_id=planner_id, elbow='up')).points
     known = np.ones(len(points.times), dtype=bool)
-    return through(TrajectoryPoints(points.times, points.positions, points.velocities,
-                                    points.accelerations, known, known))
+    return reference_through(TrajectoryPoints(
+        points.times, points.positions, points.velocities, points.accelerations, known, known))
 
 
 def assert_stops(motion, limits, t):

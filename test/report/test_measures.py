@@ -47,8 +47,8 @@ def rest_to_rest(function):
     lift = function.transition(2.0, 0.0, 0.0, 1.0)
     level = function.cruise(1.0, 1.0, 1.0)
     down = function.transition(2.0, 2.0, 1.0, 0.0)
-    rows = [list(piece.arrays().values()) for piece in (lift, level, down)]
-    pieces = lift.made_of(np.array(values) for values in zip(*rows))
+    rows = [list(piece.parameters().values()) for piece in (lift, level, down)]
+    pieces = lift.with_parameters(np.array(values) for values in zip(*rows))
     return PiecewiseTrajectory([JointProfile(pieces)] * 3, [0.0, 5.0])
 
 

@@ -22,7 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, bound_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
-from rrr_traj_planner.core.scalars import share
+from rrr_traj_planner.core.scalars import positive_fraction
 
 UNITS = {
     'min_position': 'rad', 'max_position': 'rad', 'max_velocity': 'rad/s',
@@ -38,8 +38,8 @@ class JointLimits(ReadOnlyArrays):
     """
     Limits of the three joints, symmetric but for position.
 
-    The defaults are the thesis's (table 6.2 and appendix B.3, joint 2 mirrored because its
-    printed range holds no elbow branch of the thesis's own tasks).
+    The defaults are the thesis's (table 6.2 and appendix B.3, joint 2 mirrored: with the printed
+    range, the thesis's tasks have no inverse solution).
 
     Parameters
     ----------
@@ -97,12 +97,13 @@ class JointLimits(ReadOnlyArrays):
 
         """
         return replace(
-            self, max_velocity=self.max_velocity * share('velocity', velocity),
-            max_acceleration=self.max_acceleration * share('acceleration', acceleration))
+            self, max_velocity=self.max_velocity * positive_fraction('velocity', velocity),
+            max_acceleration=(
+                self.max_acceleration * positive_fraction('acceleration', acceleration)))
 
     def time_scale(self, velocity: Array, acceleration: Array, jerk: Array) -> float:
         """
-        Return the least factor on all times with which a motion keeps these limits.
+        Return the least factor on all times with which a motion satisfies these limits.
 
         Velocity falls with the factor, acceleration with its square, jerk with its cube
         (Hollerbach, Dynamic scaling of manipulator trajectories, 1984).
@@ -115,7 +116,7 @@ class JointLimits(ReadOnlyArrays):
         Returns
         -------
         float
-            At most 1 where the motion keeps them as it is.
+            At most 1 if the motion itself satisfies them.
 
         """
         return float(max((velocity / self.max_velocity).max(),

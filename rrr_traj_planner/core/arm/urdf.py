@@ -32,14 +32,14 @@ ROBOT = 'rrr_arm'
 NO_VELOCITY_LIMIT = 1e3  # rad/s
 NO_EFFORT_LIMIT = 1e6    # N m
 
-RADIUS = 1.0 / 32.0  # of the drawn rods, as a part of the arm's reach
+RADIUS = 1.0 / 32.0  # of the drawn rods, over the arm's reach; chosen
 
 COLOURS = {'light': (0.75, 0.75, 0.78, 1.0), 'dark': (0.35, 0.37, 0.42, 1.0)}
 
 Numbers = tuple[float, float, float]
 QUARTER_TURN = (0.5 * pi, 0.0, 0.0)  # Rx(90 deg), Denavit-Hartenberg's alpha
 ALONG_X = (0.0, 0.5 * pi, 0.0)       # turns a cylinder's axis from z to x
-AS_IT_IS = (0.0, 0.0, 0.0)           # no rotation, or no offset
+NO_TRANSFORM = (0.0, 0.0, 0.0)       # no rotation, or no offset
 
 
 class FrameNames(NamedTuple):
@@ -56,7 +56,7 @@ class _Link(NamedTuple):
     centre: Numbers    # of mass [m]
     axes: Numbers      # roll, pitch, yaw of the Denavit-Hartenberg frame [rad]
     rod: Numbers       # far end of the drawn rod, which begins at the joint [m]
-    rod_turn: Numbers  # roll, pitch, yaw [rad]
+    rod_rpy: Numbers   # roll, pitch, yaw [rad]
     hub: Numbers       # centre of the drawn ball [m]
 
 
@@ -121,8 +121,8 @@ def urdf(model: RobotModel, limits: JointLimits, frames: FrameNames | None = Non
         ET.SubElement(ET.SubElement(robot, 'material', name=name), 'color', rgba=_text(rgba))
     ET.SubElement(robot, 'link', name=frames.base)
     parents = (frames.base, *frames.links)
-    origins = ((AS_IT_IS, AS_IT_IS), ((0.0, 0.0, model.d1), QUARTER_TURN),
-               ((model.a2, 0.0, 0.0), AS_IT_IS))
+    origins = ((NO_TRANSFORM, NO_TRANSFORM), ((0.0, 0.0, model.d1), QUARTER_TURN),
+               ((model.a2, 0.0, 0.0), NO_TRANSFORM))
     for i, (link, (xyz, rpy)) in enumerate(zip(_links(model), origins)):
         _add_link(robot, model, i, frames.links[i], link)
         joint = _add_joint(robot, model.joint_names[i], 'revolute', parents[i:i + 2], xyz, rpy)
@@ -137,8 +137,8 @@ def urdf(model: RobotModel, limits: JointLimits, frames: FrameNames | None = Non
 def _links(model: RobotModel) -> tuple[_Link, _Link, _Link]:
     """Return the links; z of frames 1 and 3 is -y of their joints' frames."""
     shoulder = (0.0, 0.0, model.d1)
-    return (_Link(shoulder, QUARTER_TURN, shoulder, AS_IT_IS, shoulder),
-            _Link((model.l2, 0.0, 0.0), AS_IT_IS, (model.a2, 0.0, 0.0), ALONG_X,
+    return (_Link(shoulder, QUARTER_TURN, shoulder, NO_TRANSFORM, shoulder),
+            _Link((model.l2, 0.0, 0.0), NO_TRANSFORM, (model.a2, 0.0, 0.0), ALONG_X,
                   (model.a2, 0.0, 0.0)),
             _Link((0.0, -model.l3, 0.0), QUARTER_TURN, (0.0, -model.d4, 0.0), QUARTER_TURN,
                   (0.0, -model.d4, 0.0)))
@@ -154,10 +154,10 @@ def _add_link(robot: ET.Element, model: RobotModel, i: int, name: str, link: _Li
     radius, length = RADIUS * model.reach[1], sum(map(abs, link.rod))
     if length > 0.0:
         middle = tuple(0.5 * x for x in link.rod)
-        rod = _add_visual(element, middle, link.rod_turn, 'light')
+        rod = _add_visual(element, middle, link.rod_rpy, 'light')
         ET.SubElement(rod, 'cylinder', radius=_text([radius]), length=_text([length]))
     if i < 2:  # the tip is left free
-        ball = _add_visual(element, link.hub, AS_IT_IS, 'dark')
+        ball = _add_visual(element, link.hub, NO_TRANSFORM, 'dark')
         ET.SubElement(ball, 'sphere', radius=_text([1.4 * radius]))
 
 

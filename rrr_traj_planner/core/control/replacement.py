@@ -16,8 +16,8 @@
 Trajectory replacement: a new trajectory takes over without a jump in the command.
 
 If its first point lies ahead, one segment leads there from the present command, as in
-joint_trajectory_controller, provided that it satisfies the limits. If it does not, or if the first
-point is due or past (where that controller jumps onto the trajectory), a quintic joins the command
+joint_trajectory_controller (ros2_controllers, Jazzy), if it satisfies the limits. If not, or if
+the first point is due or past (where that controller jumps onto it), a quintic joins the command
 to the earliest later point that can be met on schedule within ranges and velocity, acceleration
 and torque limits. If there is none, the arm goes to the last point as soon as the limits allow, by
 one quintic or by a stop and a move; if that point is outside a range, the arm stops.
@@ -34,7 +34,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.control.trajectory_limits import outside_ranges
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
-from rrr_traj_planner.core.errors import told_apart
+from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.states import Desired
 from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
@@ -43,7 +43,10 @@ from rrr_traj_planner.core.stopping.stop import Stop, stop
 from rrr_traj_planner.core.stopping.task import from_state
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, leaves
 from rrr_traj_planner.core.trajectory.quintic_spline import hermite, polynomial
-from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
+from rrr_traj_planner.core.trajectory.reference_trajectory import (
+    reference_through,
+    ReferenceTrajectory,
+)
 from rrr_traj_planner.core.trajectory.trajectory_points import (
     segment_orders,
     TrajectoryPoints,
@@ -139,11 +142,11 @@ def replacement(takeover: Takeover, points: TrajectoryPoints, origin_ns: int,
         The motion, and warnings.
 
     """
-    motion = through(points, origin_ns)
+    motion = reference_through(points, origin_ns)
     if motion.start > takeover.now + least_lead:
         whole = with_start_state(points, takeover.now - motion.origin, takeover.states)
         if _lead_keeps_limits(takeover, whole):
-            return Replacement(through(whole, origin_ns))
+            return Replacement(reference_through(whole, origin_ns))
     elif _is_on(takeover, motion, points):
         return Replacement(motion)
     i = _first_in_reach(takeover, motion)
@@ -283,7 +286,7 @@ def _ends_outside(takeover: Takeover, motion: ReferenceTrajectory) -> tuple[str,
     q, limits = motion.final, takeover.limits
     return tuple(
         'the trajectory would end with {} at {} rad, range [{}, {}] rad: holding position'.format(
-            name, *told_apart(*map(float, bounds)))
+            name, *format_distinct(*map(float, bounds)))
         for name, beyond, *bounds in zip(
             takeover.model.joint_names, outside_ranges(q, limits), q, limits.min_position,
             limits.max_position) if beyond)

@@ -15,8 +15,8 @@
 """
 Tolerances of trajectory execution, as in joint_trajectory_controller.
 
-Names, meaning and texts are those of its `tolerances.hpp`, for position and velocity commands. As
-there, a tolerance of 0 is none.
+Names, meaning and texts are those of its `tolerances.hpp` (ros2_controllers, Jazzy), for position
+and velocity commands. As there, a tolerance of 0 is none.
 """
 
 from __future__ import annotations
@@ -82,14 +82,14 @@ class Tolerances(ReadOnlyArrays):
         """Whether no tolerance applies; without a goal time, the goal's do not."""
         return not self.trajectory.any() and self.goal_time == 0.0 and self.cmd_timeout == 0.0
 
-    def violation(self, seen: State, desired: Desired, since_end: float,
+    def violation(self, measured: State, desired: Desired, since_end: float,
                   first: bool = False) -> tuple[str, ...]:
         """
         Return the violated tolerances, in joint_trajectory_controller's words.
 
         Parameters
         ----------
-        seen : tuple of 6 floats
+        measured : tuple of 6 floats
             Measured positions [rad] and velocities [rad/s].
         desired : tuple of 9 floats
             The reference.
@@ -106,11 +106,11 @@ class Tolerances(ReadOnlyArrays):
         """
         lines: list[str] = []
         if since_end < 0.0 or first:
-            lines = _exceeded(seen, desired, self.trajectory.tolist(), 0.0)
+            lines = _exceeded(measured, desired, self.trajectory.tolist(), 0.0)
             if lines:
                 return *lines, PATH_VIOLATED
         if since_end > self.goal_time > 0.0:
-            lines = _exceeded(seen, desired, self.goal.tolist(), self.stopped_velocity)
+            lines = _exceeded(measured, desired, self.goal.tolist(), self.stopped_velocity)
             if lines:
                 return *lines, GOAL_TIME_EXCEEDED
         if self.cmd_timeout > self.goal_time and since_end > self.cmd_timeout:
@@ -118,14 +118,14 @@ class Tolerances(ReadOnlyArrays):
         return ()
 
 
-def _exceeded(seen: State, desired: Desired, position: list[float],
+def _exceeded(measured: State, desired: Desired, position: list[float],
               velocity: float) -> list[str]:
     """Return the lines that name joints, errors and tolerances."""
     lines: list[str] = []
     for i, tolerance in enumerate(position):
         found = []
-        for kind, error, largest in (('Position', desired[i] - seen[i], tolerance),
-                                     ('Velocity', desired[3 + i] - seen[3 + i], velocity)):
+        for kind, error, largest in (('Position', desired[i] - measured[i], tolerance),
+                                     ('Velocity', desired[3 + i] - measured[3 + i], velocity)):
             if largest > 0.0 and abs(error) > largest:
                 found.append(f'{kind} Error: {error:f}, {kind} Tolerance: {largest:f}')
         if found:

@@ -31,7 +31,10 @@ from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, halved
-from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
+from rrr_traj_planner.core.trajectory.reference_trajectory import (
+    reference_through,
+    ReferenceTrajectory,
+)
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints, with_start_state
 
 # Excesses up to these are not reported: relative to the larger of the range's end and 1 rad, since
@@ -109,7 +112,7 @@ def excesses(points: TrajectoryPoints, limits: JointLimits, time: float = np.inf
         where the trajectory itself is within. Empty if there is no excess.
 
     """
-    own = _bernstein_forms(through(points))
+    own = _bernstein_forms(reference_through(points))
     lead_in = _lead_in_forms(points, time, command)
     sent = (points.positions, points.velocities[points.has_velocity],
             points.accelerations[points.has_acceleration])
@@ -154,7 +157,7 @@ def _lead_in_forms(points: TrajectoryPoints, time: float, command: ArrayLike) ->
     if not time < points.times[0]:
         return [np.zeros((0, 3, 1))] * 3
     q, qd, qdd = np.reshape(command, (3, 3))
-    forms = _bernstein_forms(through(with_start_state(points, time, (q, qd, qdd))))
+    forms = _bernstein_forms(reference_through(with_start_state(points, time, (q, qd, qdd))))
     return [forms[0][:1], forms[1][:1], np.zeros((0, 3, 1))]
 
 

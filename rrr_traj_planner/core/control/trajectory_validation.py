@@ -15,8 +15,8 @@
 """
 Validation of received trajectories by joint_trajectory_controller's rules, in its words.
 
-The checks, their order and their texts are those of the Jazzy controller's
-`validate_trajectory_msg`, without effort commands. In addition repeated names, a negative first
+The checks, their order and their texts are those of its `validate_trajectory_msg`
+(ros2_controllers, Jazzy), without effort commands. In addition repeated names, a negative first
 time, and values that are not finite or absurdly large are refused.
 """
 
@@ -28,7 +28,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.errors import format_distinct, InvalidInputError
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.trajectory.trajectory_points import FLOAT_EPSILON, TrajectoryPoints
 
@@ -203,7 +203,7 @@ def _check_point(i: int, point: IncomingPoint, names: Sequence[str]) -> None:
                 raise InvalidInputError(
                     f'Value of {field} of joint {name} at point #{i} is not finite: {value:f}')
             if abs(value) > LARGEST:
-                _, most, shown = told_apart(abs(value), LARGEST, value)
+                _, most, shown = format_distinct(abs(value), LARGEST, value)
                 raise InvalidInputError(
                     f'Value of {field} of joint {name} at point #{i} is {shown}, must be within '
                     f'{most}')

@@ -15,6 +15,8 @@
 """
 Inverse kinematics along a path: joint positions and three derivatives by arc length.
 
+Thesis (5.8)-(5.12), differentiated three times.
+
 The derivatives of the tip's position are expressed in the arm's vertical plane, and the constraint
 of the two links in that plane is differentiated three times. Only angles need the arc tangent.
 """

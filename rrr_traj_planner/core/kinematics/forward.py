@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Forward kinematics: the tip's position, its Jacobian and the Jacobian's time derivative."""
+"""
+Forward kinematics: the tip's position, its Jacobian and the Jacobian's time derivative.
+
+Thesis (5.3)-(5.7) corrected, (5.18).
+"""
 
 from __future__ import annotations
 

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Inverse kinematics in closed form: one posture, or the solution nearest to a joint state."""
+"""
+Inverse kinematics in closed form: one posture, or the solution nearest to a joint state.
+
+Thesis (5.8)-(5.12) corrected.
+"""
 
 from __future__ import annotations
 
@@ -22,13 +26,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, finite_array
-from rrr_traj_planner.core.errors import told_apart, UnreachableError
-from rrr_traj_planner.core.kinematics.postures import (
-    Elbow,
-    ELBOWS,
-    Shoulder,
-    SHOULDERS,
-)
+from rrr_traj_planner.core.errors import format_distinct, UnreachableError
+from rrr_traj_planner.core.kinematics.joint_ranges import nearest_turns, TURN
+from rrr_traj_planner.core.kinematics.postures import Elbow, ELBOWS, Shoulder, SHOULDERS
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 from rrr_traj_planner.core.scalars import one_of
 
@@ -39,8 +39,7 @@ def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'u
     """
     Return joint positions that bring the tip to a point (5.8-5.12 corrected).
 
-    On joint axis 1, where any theta_1 will do, theta_1 keeps its previous value, or is 0
-    without one.
+    On joint axis 1, where theta_1 is arbitrary, it keeps its previous value, or is 0 without one.
 
     Parameters
     ----------
@@ -119,7 +118,7 @@ def nearest_solution(model: RobotModel, position: ArrayLike, q: ArrayLike) -> Ar
     near = finite_array('q', q, (3,))
     found = [inverse_kinematics(model, position, elbow, near, shoulder)
              for shoulder in SHOULDERS for elbow in ELBOWS]
-    turned = [x + 2.0 * pi * np.round((near - x) / (2.0 * pi)) for x in found]
+    turned = [x + TURN * nearest_turns(near - x) for x in found]
     return min(turned, key=lambda x: float(np.abs(x - near).max()))
 
 
@@ -128,7 +127,7 @@ def _distance_in_reach(model: RobotModel, point: tuple[float, float, float], W: 
     least, most = model.reach
     if W > most + TIP_ROUNDING or W < least - TIP_ROUNDING:
         far = W > most
-        distance, bound = told_apart(W, most if far else least)
+        distance, bound = format_distinct(W, most if far else least)
         side = (f"beyond the arm's reach of {bound} m" if far
                 else f'nearer than the arm can fold, {bound} m')
         miss = W - most if far else least - W

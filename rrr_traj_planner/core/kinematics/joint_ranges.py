@@ -22,11 +22,29 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.errors import JointRangeError, told_apart
+from rrr_traj_planner.core.errors import format_distinct, JointRangeError
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
 TURN = 2.0 * pi  # rad
+
+
+def nearest_turns(angle: Array) -> Array:
+    """
+    Return the numbers of whole turns nearest to angles.
+
+    Parameters
+    ----------
+    angle : ndarray
+        [rad].
+
+    Returns
+    -------
+    ndarray
+        Whole numbers; times `TURN`, the multiples of 2 pi nearest to the angles.
+
+    """
+    return np.asarray(np.round(angle / TURN))
 
 
 def whole_turns(q: Array, limits: JointLimits, start: Array | None = None) -> Array:
@@ -51,15 +69,15 @@ def whole_turns(q: Array, limits: JointLimits, start: Array | None = None) -> Ar
 
     """
     if start is not None:
-        return np.asarray(TURN * np.round((start - q[0]) / TURN))
+        return np.asarray(TURN * nearest_turns(start - q[0]))
     lowest, highest = q.min(axis=0), q.max(axis=0)
     least = np.ceil((limits.min_position - lowest - JOINT_ROUNDING) / TURN)
     most = np.floor((limits.max_position - highest + JOINT_ROUNDING) / TURN)
-    turns = np.clip(np.round(-q[0] / TURN), least, most)
+    turns = np.clip(nearest_turns(-q[0]), least, most)
     if (least > most).any():
         with np.errstate(invalid='ignore'):  # infinite ends
             centre = 0.5 * (limits.min_position + limits.max_position - lowest - highest)
-        centred = np.round(np.where(np.isfinite(centre), centre, -q[0]) / TURN)
+        centred = nearest_turns(np.where(np.isfinite(centre), centre, -q[0]))
         turns = np.where(least <= most, turns, centred)
     return np.asarray(TURN * turns)
 
@@ -106,7 +124,7 @@ def range_error(model: RobotModel, limits: JointLimits, where: str, joint: int, 
     posture : Posture
         Posture of the solution.
     via_point : int
-        Index of the via point to blame, -1 where none is.
+        Index of the via point at fault, -1 if there is none.
 
     Returns
     -------
@@ -116,7 +134,7 @@ def range_error(model: RobotModel, limits: JointLimits, where: str, joint: int, 
     """
     name, low, high = model.joint_names[joint], *(
         float(x[joint]) for x in (limits.min_position, limits.max_position))
-    at, lowest, highest = told_apart(value, low, high)
+    at, lowest, highest = format_distinct(value, low, high)
     return JointRangeError(
         f'{where}: {name} would be at {at} rad ({posture}), limits {lowest} to {highest} rad',
         name, value, low if value < low else high, via_point)

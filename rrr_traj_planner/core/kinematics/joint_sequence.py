@@ -29,7 +29,12 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import UnreachableError
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
-from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, TURN, whole_turns
+from rrr_traj_planner.core.kinematics.joint_ranges import (
+    nearest_turns,
+    out_of_range,
+    TURN,
+    whole_turns,
+)
 from rrr_traj_planner.core.kinematics.least_time_turns import least_time_turns, TRAVEL
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH, travel_times
@@ -76,7 +81,7 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
         q[:, 0] = np.clip(0.0, limits.min_position[0], limits.max_position[0])
     elif free.any():  # preliminary: as at the point before, or at the first that is not free
         q[:, 0] = q[np.maximum.accumulate(np.where(free, free.argmin(), np.arange(len(q)))), 0]
-    q[1:] -= TURN * np.cumsum(np.round(np.diff(q, axis=0) / TURN), axis=0)
+    q[1:] -= TURN * np.cumsum(nearest_turns(np.diff(q, axis=0)), axis=0)
     q += whole_turns(q, limits, start)
     for j in np.flatnonzero(_needs_search(limits, q, passing))[::-1].tolist():
         at = np.flatnonzero(~free) if j == 0 else np.arange(len(q))

@@ -28,7 +28,7 @@ from rrr_traj_planner.core.kinematics.joint_ranges import TURN
 from rrr_traj_planner.core.kinematics.travel_time import joint_travel_time, motion_ends, Passing
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
-MOST_TURNS = 5  # candidates at each point, the nearest: bounds the work in wide ranges
+MOST_TURNS = 5  # candidates at each point, the nearest: bounds the work in wide ranges; chosen
 
 # Tie-breakers among turns of equal time: least travel, then a beginning near 0. So small that they
 # hardly change the order of different times.

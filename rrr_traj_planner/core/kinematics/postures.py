@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The four branches of the inverse kinematics: elbow up or down, shoulder front or back."""
+"""
+The four branches of the inverse kinematics: elbow up or down, shoulder front or back.
+
+Thesis (5.8)-(5.12).
+"""
 
 from __future__ import annotations
 

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Estimated time of a motion through joint positions: trapezoidal velocity profiles."""
+"""
+Estimated time of a motion through joint positions: trapezoidal velocity profiles.
+
+Siciliano et al., Robotics, 2009, section 4.2.1.
+"""
 
 from __future__ import annotations
 
@@ -53,9 +57,9 @@ def joint_travel_time(limits: JointLimits, joint: int | slice, travel: Array,
     Return the time of a joint's travel between via points, by a trapezoidal velocity profile.
 
     With a rest at one or both ends velocity over time is a trapezium, or a triangle for a short
-    travel; with none, a rectangle (Siciliano et al., Robotics, 2009, section 4.2.1). With blends,
-    half of each transition lies within the segment: at speed v and mean acceleration a it takes
-    v / a at a reversal and v / (2 a) at an end of the motion.
+    travel; with none, a rectangle. With blends, half of each transition lies within the segment:
+    at speed v and mean acceleration a it takes v / a at a reversal and v / (2 a) at an end of the
+    motion.
 
     Parameters
     ----------

@@ -69,17 +69,17 @@ class CycloidPiece(NamedTuple):
         acceleration = (self.c - self.b) + self.b * versine
         return position, velocity, acceleration, self.b * w / T * sine
 
-    def arrays(self) -> dict[str, Any]:
+    def parameters(self) -> dict[str, Any]:
         """Return every value by its name; see `Pieces`."""
         return self._asdict()
 
-    def made_of(self, arrays: Iterable[Any]) -> CycloidPiece:
+    def with_parameters(self, parameters: Iterable[Any]) -> CycloidPiece:
         """
         Return pieces of the same type with other values; see `Pieces`.
 
         Parameters
         ----------
-        arrays : iterable
+        parameters : iterable
             The values, in the order of the fields.
 
         Returns
@@ -88,7 +88,7 @@ class CycloidPiece(NamedTuple):
             The pieces.
 
         """
-        return CycloidPiece(*arrays)
+        return CycloidPiece(*parameters)
 
     def time_scaled(self, factor: float) -> CycloidPiece:
         """

@@ -44,6 +44,9 @@ NEEDED_ORDER = 9
 # last coefficient of the highest order is 1e-188.
 LEAST_WIDTH, MOST_WIDTH, MOST_ORDER = 0.1, 100.0, 100
 
+# Rounding of a polynomial's zeros: imaginary part of a real one, distance of another zero from 0.
+REAL_ZERO, POSITIVE_ZERO = 1e-9, 1e-6
+
 
 def maclaurin(u: Any, order: int) -> Array:
     """
@@ -212,7 +215,7 @@ def _series(order: int) -> Polynomial:
 
 
 def _width(half_width: Any) -> float:
-    """Return a half width if it is within what floats can do [sigma]."""
+    """Return a half width if it is in the range in which floats are accurate [sigma]."""
     width = positive('half_width', half_width, 'sigma')
     if LEAST_WIDTH <= width <= MOST_WIDTH:
         return width
@@ -223,8 +226,8 @@ def _width(half_width: Any) -> float:
 def _inner_zeros(polynomial: Polynomial, end: float) -> Array:
     """Return the zeros of a polynomial strictly between 0 and an end."""
     zeros = polynomial.roots()
-    real = zeros.real[np.abs(zeros.imag) < 1e-9]
-    return np.asarray(real[(real > 1e-6) & (real < end)])
+    real = zeros.real[np.abs(zeros.imag) < REAL_ZERO]
+    return np.asarray(real[(real > POSITIVE_ZERO) & (real < end)])
 
 
 GAUSS = gauss()

@@ -54,17 +54,17 @@ class PolynomialPiece(NamedTuple):
                 v + t * (a + t * (j / 2.0 + t * n / 6.0)),
                 a + t * (j + t * n / 2.0), j + t * n)
 
-    def arrays(self) -> dict[str, Any]:
+    def parameters(self) -> dict[str, Any]:
         """Return every value by its name; see `Pieces`."""
         return self._asdict()
 
-    def made_of(self, arrays: Iterable[Any]) -> PolynomialPiece:
+    def with_parameters(self, parameters: Iterable[Any]) -> PolynomialPiece:
         """
         Return pieces of the same type with other values; see `Pieces`.
 
         Parameters
         ----------
-        arrays : iterable
+        parameters : iterable
             The values, in the order of the fields.
 
         Returns
@@ -73,7 +73,7 @@ class PolynomialPiece(NamedTuple):
             The pieces.
 
         """
-        return PolynomialPiece(*arrays)
+        return PolynomialPiece(*parameters)
 
     def time_scaled(self, factor: float) -> PolynomialPiece:
         """

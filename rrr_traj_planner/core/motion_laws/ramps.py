@@ -150,18 +150,18 @@ class Ramps(NamedTuple):
         return (self.position + T * (v * s + T * (0.5 * a * s * s + rise * second)),
                 v + T * (a * s + rise * first), a + rise * part, rise / T * rate)
 
-    def arrays(self) -> dict[str, Any]:
+    def parameters(self) -> dict[str, Any]:
         """Return every value by its name; see `Pieces`."""
         return {'duration': self.duration, 'position': self.position, 'velocity': self.velocity,
                 'acceleration': self.acceleration, 'rise': self.rise}
 
-    def made_of(self, arrays: Iterable[Any]) -> Ramps:
+    def with_parameters(self, parameters: Iterable[Any]) -> Ramps:
         """
         Return pieces of the same type with other values; see `Pieces`.
 
         Parameters
         ----------
-        arrays : iterable
+        parameters : iterable
             Durations, positions, velocities, accelerations and rises.
 
         Returns
@@ -170,7 +170,7 @@ class Ramps(NamedTuple):
             The ramps.
 
         """
-        duration, position, velocity, acceleration, rise = arrays
+        duration, position, velocity, acceleration, rise = parameters
         return Ramps(duration, position, velocity, acceleration, rise, self.shape)
 
     def time_scaled(self, factor: float) -> Ramps:

@@ -110,18 +110,18 @@ class ShapedPiece(NamedTuple):
         mean = change / T
         return position, velocity, mean * shape.acceleration(s), mean / T * shape.jerk(s)
 
-    def arrays(self) -> dict[str, Any]:
+    def parameters(self) -> dict[str, Any]:
         """Return every value by its name; see `Pieces`."""
         return {'duration': self.duration, 'position': self.position, 'velocity': self.velocity,
                 'change': self.change}
 
-    def made_of(self, arrays: Iterable[Any]) -> ShapedPiece:
+    def with_parameters(self, parameters: Iterable[Any]) -> ShapedPiece:
         """
         Return pieces of the same type with other values; see `Pieces`.
 
         Parameters
         ----------
-        arrays : iterable
+        parameters : iterable
             Durations, positions, velocities and changes of velocity.
 
         Returns
@@ -130,7 +130,7 @@ class ShapedPiece(NamedTuple):
             The pieces.
 
         """
-        duration, position, velocity, change = arrays
+        duration, position, velocity, change = parameters
         return ShapedPiece(duration, position, velocity, change, self.shape)
 
     def time_scaled(self, factor: float) -> ShapedPiece:

@@ -23,7 +23,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray, parameter_values
-from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.errors import format_distinct, InvalidInputError
 from rrr_traj_planner.core.path.deviation import polyline_deviation
 from rrr_traj_planner.core.path.tangent_lines import Tangents
 from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
@@ -211,7 +211,7 @@ class CartesianPath(ReadOnlyArrays):
         tolerance = ENDS_ROUNDING * self.length
         bad = ~((s >= -tolerance) & (s <= self.length + tolerance))
         if bad.any():
-            wrong, first, last = told_apart(s[bad][0], 0.0, self.length)
+            wrong, first, last = format_distinct(s[bad][0], 0.0, self.length)
             raise InvalidInputError(f's is {wrong} m, must be on the path, {first} to {last} m')
         return np.clip(s, 0.0, self.length)
 

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, finite_array, joint_values
-from rrr_traj_planner.core.errors import LimitViolationError, told_apart, UnreachableError
+from rrr_traj_planner.core.errors import format_distinct, LimitViolationError, UnreachableError
 from rrr_traj_planner.core.kinematics.along_path import JointPath, PathPoints, unlimited_joint_path
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error, whole_turns
 from rrr_traj_planner.core.kinematics.postures import Posture
@@ -102,7 +102,7 @@ def refuse_singular(model: RobotModel, p: Array) -> None:
     least, most = model.reach
     miss = np.maximum(W - most, least - W) + LEAST_CLEARANCE
     for i in np.flatnonzero(miss > 0.0):
-        distance, lowest, highest = told_apart(W[i], least, most)
+        distance, lowest, highest = format_distinct(W[i], least, most)
         raise UnreachableError(
             f'sample {i} is {distance} m from the shoulder, must be within {lowest} to '
             f'{highest} m', distance=max(float(miss[i]) - LEAST_CLEARANCE, 0.0))

@@ -28,7 +28,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import (
     gravity_torque,
     inertia_matrix,
 )
-from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, told_apart
+from rrr_traj_planner.core.errors import format_distinct, InvalidInputError, LimitViolationError
 from rrr_traj_planner.core.kinematics.forward import jacobian, jacobian_rate, radial_distance
 from rrr_traj_planner.core.scalars import not_negative, positive
 
@@ -186,7 +186,7 @@ def _violation(model: RobotModel, row: _Row, x: float, where: str) -> LimitViola
     """Return the error of a joint that cannot satisfy its limit."""
     value, limit, unit = abs(row.base + row.slope * x), row.limit, row.unit
     name = model.joint_names[row.joint]
-    needed, most = told_apart(value, limit)
+    needed, most = format_distinct(value, limit)
     return LimitViolationError(
         f'{where} {name} would need {row.quantity} {needed} {unit} at the least, limit '
         f'{most} {unit}', name, value, limit)

@@ -36,7 +36,7 @@ from rrr_traj_planner.core.kinematics.along_path import (
     JointPath,
     unlimited_joint_path,
 )
-from rrr_traj_planner.core.kinematics.joint_ranges import whole_turns
+from rrr_traj_planner.core.kinematics.joint_ranges import nearest_turns, TURN, whole_turns
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
@@ -117,8 +117,7 @@ class ArmPath(ReadOnlyArrays):
             self.model, self.planes.points(self.path, s, left), self.posture)
         grid, known = self._turning
         near = np.stack([np.interp(s, grid, known[:, j]) for j in range(3)], axis=1)
-        turns = np.round((near - found.q) / (2.0 * np.pi))
-        return found._replace(q=found.q + 2.0 * np.pi * turns)
+        return found._replace(q=found.q + TURN * nearest_turns(near - found.q))
 
 
 class PathPeaks(NamedTuple):

@@ -25,9 +25,9 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import (
+    format_distinct,
     LimitViolationError,
     StartStateError,
-    told_apart,
     UnreachableError,
 )
 from rrr_traj_planner.core.kinematics.along_path import unlimited_joint_path
@@ -165,7 +165,7 @@ def _check_start(model: RobotModel, start: Array, q: Array) -> None:
     gap = np.abs(start - q)
     if gap.max() > JOINT_ROUNDING:
         j = int(gap.argmax())
-        at, wanted = told_apart(start[j], q[j])
+        at, wanted = format_distinct(start[j], q[j])
         raise StartStateError(
             f'start state: {model.joint_names[j]} is at {at} rad with the tip on joint axis 1 '
             f'(singularity): it would need unbounded velocity to reach {wanted} rad, where the '
@@ -224,7 +224,7 @@ def _check_reach(model: RobotModel, path: CartesianPath) -> None:
             W = float(np.linalg.norm(path(s)[0] - shoulder))
             place, nearest = place_on_path(path, s)
             miss = max(W - most, least - W)
-            distance, limit = told_apart(W, bound)
+            distance, limit = format_distinct(W, bound)
             where = (f'{what} {limit} m' if miss > 0.0 else
                      'on the edge of the workspace (singularity: would need unbounded velocity)')
             raise UnreachableError(
@@ -247,7 +247,7 @@ def _check_axis(model: RobotModel, path: CartesianPath, planes: AxisPlanes) -> N
     if excess > 0.0:
         place, nearest = place_on_path(path, s)
         distance = float(np.hypot(*path(s)[0][:2]))
-        passed, bound = told_apart(distance, AXIS_CLEARANCE, digits=3)
+        passed, bound = format_distinct(distance, AXIS_CLEARANCE, digits=3)
         raise LimitViolationError(
             f'{place}: the tip would pass joint axis 1 (singularity) at {passed} m, where '
             f'{model.joint_names[0]} would need unbounded velocity; least {bound} m',

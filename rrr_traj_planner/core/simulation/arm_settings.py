@@ -31,7 +31,7 @@ from rrr_traj_planner.core.simulation.encoder import EncoderSettings
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.step_stability import check_step
 
-LONGEST_STEP = 1.0  # s, beyond which no controller works
+LONGEST_STEP = 1.0  # s, far beyond what any controller works with
 
 KINDS = {'model': RobotModel, 'limits': JointLimits, 'gains': ControllerGains,
          'payload': Payload, 'friction': Friction, 'soft_stops': SoftStops,
@@ -48,8 +48,8 @@ class ArmSettings:
     model : RobotModel
         The bare arm.
     limits : JointLimits
-        Stops at the position limits, torques saturated at the effort limits; the others are
-        kept where the arm moves of its own (stopping, joining a trajectory).
+        Stops at the position limits, torques saturated at the effort limits; the others apply
+        to motions that the arm generates itself (stopping, joining a trajectory).
     gains : ControllerGains
         Of the computed-torque law.
     step : float
@@ -57,7 +57,7 @@ class ArmSettings:
     payload : Payload
         At the tip.
     friction : Friction
-        In the joints; the controller does not know of it.
+        In the joints; not in the controller's model.
     soft_stops : SoftStops
         Bumpers behind the position limits.
     encoder : EncoderSettings
@@ -106,5 +106,5 @@ class ArmSettings:
 
     @property
     def controller_model(self) -> RobotModel:
-        """Return the arm as its controller knows it."""
+        """Return the controller's model of the arm."""
         return self.loaded_model if self.payload.known_to_controller else self.model

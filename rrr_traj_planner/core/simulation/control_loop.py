@@ -22,10 +22,10 @@ from rrr_traj_planner.core.control.computed_torque import computed_torque, satur
 from rrr_traj_planner.core.dynamics.rigid_body import kinetic_energy, potential_energy
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
-from rrr_traj_planner.core.simulation.condition import ConditionMonitor
 from rrr_traj_planner.core.simulation.encoder import Encoder
 from rrr_traj_planner.core.simulation.energy import EnergyLedger, work
 from rrr_traj_planner.core.simulation.physics import ArmPhysics
+from rrr_traj_planner.core.simulation.saturation_and_contact import SaturationAndContactMonitor
 from rrr_traj_planner.core.states import Desired, State, Triple
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
@@ -34,19 +34,19 @@ NO_DISTURBANCE = (0.0, 0.0, 0.0)
 
 class ControlLoop:
     """
-    The simulated arm, its encoders and its controller, whose own time starts at 0.
+    The simulated arm, its encoders and its controller; time starts at 0.
 
     Parameters
     ----------
     settings : ArmSettings
         The arm, its limits, its controller.
     q : array_like, shape (3,)
-        Where it rests at first [rad].
+        Initial position, at rest [rad].
 
     Attributes
     ----------
     settings : ArmSettings
-        As given, or as last set.
+        As given, or as set last.
     steps : int
         Done so far.
     state : tuple of 6 floats
@@ -57,18 +57,18 @@ class ControlLoop:
         Torques on the joints besides the motors' [N m]; may be set at any time.
     ledger : EnergyLedger
         Work and losses since the position was last set.
-    monitor : ConditionMonitor
-        Saturation and stop contacts.
+    monitor : SaturationAndContactMonitor
+        Record of saturation and of contacts with stops.
 
     """
 
     def __init__(self, settings: ArmSettings, q: ArrayLike) -> None:
         self.steps, self._step_ns = 0, settings.step_ns
-        self.ledger, self.monitor = EnergyLedger(), ConditionMonitor()
+        self.ledger, self.monitor = EnergyLedger(), SaturationAndContactMonitor()
         self.disturbance: Triple = NO_DISTURBANCE
         self.torque: Triple = NO_DISTURBANCE
         self.state: State = (*_triple(finite_array('q', q, (3,))), 0.0, 0.0, 0.0)
-        self.enforce(settings)
+        self.apply_settings(settings)
         self._encoder = self._new_encoder()
 
     @property
@@ -82,9 +82,9 @@ class ControlLoop:
         return self.now / SECOND
 
     @property
-    def seen(self) -> State:
-        """Positions [rad] and velocities [rad/s] as the encoders tell them."""
-        return self.state if self._encoder is None else self._encoder.seen
+    def measured(self) -> State:
+        """Positions [rad] and velocities [rad/s] as measured by the encoders."""
+        return self.state if self._encoder is None else self._encoder.measured
 
     @property
     def energy(self) -> float:
@@ -94,11 +94,11 @@ class ControlLoop:
             model, state[:3])) + self._physics.bumper_energy(state))
 
     @property
-    def is_plain(self) -> bool:
-        """Whether the controller knows and sees the arm exactly, and nothing disturbs it."""
-        return self._plain and self.disturbance == NO_DISTURBANCE
+    def is_ideal(self) -> bool:
+        """Whether the controller has an exact model and exact measurements; no disturbance."""
+        return self._ideal and self.disturbance == NO_DISTURBANCE
 
-    def put(self, q: Array) -> None:
+    def set_position(self, q: Array) -> None:
         """
         Set the arm's position, at rest, and reset the energy ledger.
 
@@ -113,14 +113,14 @@ class ControlLoop:
             self._encoder.restart(self.state)
         self.ledger.clear()
 
-    def enforce(self, settings: ArmSettings) -> None:
+    def apply_settings(self, settings: ArmSettings) -> None:
         """
         Apply settings to the physics and the controller's model.
 
         Parameters
         ----------
         settings : ArmSettings
-            The settings; the encoders are left (`renew_encoder`).
+            The settings; the encoders do not change (`renew_encoder`).
 
         """
         self.settings = settings
@@ -128,14 +128,14 @@ class ControlLoop:
             settings.limits.min_position, settings.limits.max_position))
         self._physics = ArmPhysics(settings.loaded_model, low, high, settings.friction,
                                    settings.soft_stops, self.ledger, self.monitor)
-        self._known = ArmPhysics(settings.controller_model, low, high)
+        self._controller_dynamics = ArmPhysics(settings.controller_model, low, high)
         self._max_effort = self.monitor.max_effort = _triple(settings.limits.max_effort)
-        self._plain = settings.encoder.is_true and (
+        self._ideal = settings.encoder.is_ideal and (
             settings.payload.known_to_controller or settings.payload.mass == 0.0)
 
-    def advance_plainly(self, motion: ReferenceTrajectory, steps: int) -> None:
+    def advance_ideal(self, motion: ReferenceTrajectory, steps: int) -> None:
         """
-        Simulate several steps of an arm that `is_plain`.
+        Simulate several steps of an arm for which `is_ideal` holds.
 
         Parameters
         ----------
@@ -148,7 +148,7 @@ class ControlLoop:
         # The inner loop of nearly every simulation: local names and floats for speed, no NumPy.
         physics, desired, limit = self._physics, motion.elapsed, self._max_effort
         h, gains = self.settings.step, self.settings.gains
-        stiffness, damping, cut = gains.stiffness, gains.damping, self.monitor.cut
+        stiffness, damping, record = gains.stiffness, gains.damping, self.monitor.record_saturation
         state, torque, motors, (m1, m2, m3) = self.state, self.torque, 0.0, limit
         step_ns = self._step_ns
         first = self.steps * step_ns - motion.origin_ns
@@ -157,7 +157,7 @@ class ControlLoop:
             torque = n1, n2, n3 = computed_torque(
                 t, stiffness, damping, state, desired(n, n / 1e9))
             if not (-m1 <= n1 <= m1 and -m2 <= n2 <= m2 and -m3 <= n3 <= m3):
-                cut(torque)
+                record(torque)
                 torque = saturated(torque, limit)
             after = physics.step(t, state, torque, h)
             motors += work(torque, state, after)
@@ -166,7 +166,7 @@ class ControlLoop:
         self.steps += steps
         self.ledger.motors += motors
 
-    def advance_fully(self, desired: Desired) -> None:
+    def advance_general(self, desired: Desired) -> None:
         """
         Simulate a step of any arm.
 
@@ -190,12 +190,12 @@ class ControlLoop:
 
     def control(self, desired: Desired) -> Triple:
         """
-        Return the torques that the controller gives now.
+        Return the torques that the controller commands now, saturated.
 
         Parameters
         ----------
         desired : tuple of 9 floats
-            As `advance_fully`.
+            As `advance_general`.
 
         Returns
         -------
@@ -203,22 +203,22 @@ class ControlLoop:
             Within the motors' limits [N m].
 
         """
-        gains, seen = self.settings.gains, self.seen
-        wanted = computed_torque(self._known.terms(seen), gains.stiffness, gains.damping, seen,
-                                 desired)
+        gains, measured = self.settings.gains, self.measured
+        t = self._controller_dynamics.terms(measured)
+        wanted = computed_torque(t, gains.stiffness, gains.damping, measured, desired)
         torque = saturated(wanted, self._max_effort)
         if torque is not wanted:
-            self.monitor.cut(wanted)
+            self.monitor.record_saturation(wanted)
         return torque
 
     def renew_encoder(self) -> None:
-        """Begin to read with the encoders of the settings."""
+        """Replace the encoders by those of the settings."""
         self._encoder = self._new_encoder()
 
     def _new_encoder(self) -> Encoder | None:
         """Return encoders that begin now, or None for ideal ones."""
         settings = self.settings
-        return None if settings.encoder.is_true else Encoder(
+        return None if settings.encoder.is_ideal else Encoder(
             settings.encoder, settings.step, self.state)
 
 

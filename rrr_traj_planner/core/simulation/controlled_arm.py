@@ -40,7 +40,7 @@ class ControlledArm(ControlLoop):
     settings : ArmSettings
         The arm, its limits, its controller.
     q : array_like, shape (3,)
-        Where it rests at first [rad].
+        Initial position, at rest [rad].
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class ControlledArm(ControlLoop):
         if settings.step != self.settings.step:
             raise InvalidInputError('step cannot change while the arm runs')
         before, encoder, old = self.energy, self.settings.encoder, self.settings.limits
-        self.enforce(settings)
+        self.apply_settings(settings)
         if (settings.limits.min_position > old.min_position).any() or (
                 settings.limits.max_position < old.max_position).any():
             self._keep_ranges()
@@ -106,7 +106,7 @@ class ControlledArm(ControlLoop):
 
         """
         q = finite_array('q', q, (3,))
-        self.put(q)
+        self.set_position(q)
         self._stay(holding(q, self.now))
         self.violation: tuple[str, ...] = ()
         self.torque = self.control(self.desired)
@@ -169,21 +169,21 @@ class ControlledArm(ControlLoop):
 
     def _advance(self, steps: int) -> None:
         """Simulate control and physics, while no motion ends with a velocity."""
-        if self.is_plain and (not self._watched or self.settings.tolerances.are_none):
-            self.advance_plainly(self.motion, steps)
+        if self.is_ideal and (not self._watched or self.settings.tolerances.are_none):
+            self.advance_ideal(self.motion, steps)
         else:
             for _ in range(steps):
                 self._watch()
-                self.advance_fully(self.desired)
+                self.advance_general(self.desired)
 
     def _watch(self) -> None:
         """Abort a trajectory whose tolerances are exceeded, and hold the arm's position."""
         if self._watched:
             lines = self.settings.tolerances.violation(
-                self.seen, self.desired, self.time - self.motion.end, self._first_check)
+                self.measured, self.desired, self.time - self.motion.end, self._first_check)
             self._first_check = False
             if lines:
-                self._stop(MeasuredState(self.seen, self.now, self.motion))
+                self._stop(MeasuredState(self.measured, self.now, self.motion))
                 self.violation = lines
 
     def _keep_ranges(self) -> None:
@@ -194,7 +194,7 @@ class ControlledArm(ControlLoop):
 
     def _motion_to_brake(self) -> ReferenceTrajectory:
         """Return the motion that would be braked now."""
-        return motion_to_brake(self.motion, self.now, self.seen, self.settings.limits)
+        return motion_to_brake(self.motion, self.now, self.measured, self.settings.limits)
 
     def _stop(self, motion: ReferenceTrajectory) -> None:
         """Stop a motion now."""

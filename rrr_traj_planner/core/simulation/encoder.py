@@ -62,7 +62,7 @@ class EncoderSettings:
         object.__setattr__(self, 'seed', whole_number('seed', self.seed))
 
     @property
-    def is_true(self) -> bool:
+    def is_ideal(self) -> bool:
         """Whether the encoders are ideal."""
         return self.resolution == 0.0 and self.noise == 0.0
 
@@ -86,8 +86,8 @@ class Encoder:
 
     Attributes
     ----------
-    seen : tuple of 6 floats
-        Positions as read last, velocities as estimated.
+    measured : tuple of 6 floats
+        Positions as last measured, velocities as estimated.
 
     """
 
@@ -111,7 +111,7 @@ class Encoder:
 
         """
         q1, q2, q3 = (self._reading(q) for q in state[:3])
-        self.seen: State = (q1, q2, q3, *state[3:])
+        self.measured: State = (q1, q2, q3, *state[3:])
         self._tracked = [q1, q2, q3]
 
     def read(self, state: State) -> State:
@@ -126,10 +126,10 @@ class Encoder:
         Returns
         -------
         tuple of 6 floats
-            Positions as read, velocities as estimated.
+            Positions as measured, velocities as estimated.
 
         """
-        readings, velocities = [], list(self.seen[3:])
+        readings, velocities = [], list(self.measured[3:])
         for i in range(3):
             reading = self._reading(state[i])
             expected = self._tracked[i] + self._step * velocities[i]
@@ -138,8 +138,8 @@ class Encoder:
             velocities[i] += self._velocity_gain * residual
             readings.append(reading)
         (q1, q2, q3), (qd1, qd2, qd3) = readings, velocities
-        self.seen = (q1, q2, q3, qd1, qd2, qd3)
-        return self.seen
+        self.measured = (q1, q2, q3, qd1, qd2, qd3)
+        return self.measured
 
     def _reading(self, q: float) -> float:
         """Return one encoder's reading [rad]."""

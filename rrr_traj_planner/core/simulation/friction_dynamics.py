@@ -31,18 +31,25 @@ from typing import NamedTuple
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.dynamics.equations import Constants, Terms
 from rrr_traj_planner.core.simulation.energy import EnergyLedger, kinetic
-from rrr_traj_planner.core.simulation.friction_step import friction_step, Load, Lost, rates
-from rrr_traj_planner.core.simulation.joint_stops import Contact, contact, FREE, held, permitted
-from rrr_traj_planner.core.simulation.root_finding import event, PAST
+from rrr_traj_planner.core.simulation.friction_step import Dissipation, friction_step, Load, rates
+from rrr_traj_planner.core.simulation.joint_stops import (
+    clipped,
+    Contact,
+    contact,
+    FREE,
+    held,
+    permitted,
+    SHORTEST_REBOUND,
+    widened,
+)
+from rrr_traj_planner.core.simulation.root_finding import EVENT_TOLERANCE, locate_event
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.stiction import Range, resting_accelerations
 from rrr_traj_planner.core.states import State, Triple
 
-# Largest number of events in a step; joints in contact or at rest then stay so until its end.
+# Largest number of events in a step, chosen; joints in contact or at rest then stay so until its
+# end.
 MOST_EVENTS = 16
-
-# A joint that would return to its hard stop within this part of a step counts as in contact.
-SHORTEST_REBOUND = 0.05
 
 
 class Bounds(NamedTuple):
@@ -101,29 +108,22 @@ class FrictionDynamics:
             Positions and velocities.
 
         """
-        hard, left = self._hard_stops(state), h
+        hard, left = Bounds(*widened(state, self._low, self._high, self._bumper.width)), h
         for _ in range(MOST_EVENTS):
             t = self._terms(state)
-            state, load, slip = self._settled(t, state, torque, hard, SHORTEST_REBOUND * h)
+            state, load, slip = self._after_impacts(t, state, torque, hard, SHORTEST_REBOUND * h)
             taken, state = self._until_event(t, state, load, slip, left, hard)
             left -= taken
             if left <= 0.0:
                 break
         t = self._terms(state)
         if left > 0.0:
-            state = self._waited(t, state, torque, left, hard)
+            state = self._step_with_joints_locked(t, state, torque, left, hard)
             t = self._terms(state)
-        qd = self._after_impact(t, state[3:], contact(state, *hard))
+        qd = self._velocities_after_impact(t, state[3:], contact(state, *hard))
         return state[:3] + _at_rest(qd, self._coulomb)
 
-    def _hard_stops(self, state: State) -> Bounds:
-        """Return the hard stops; a joint beyond one (which was moved) may not go further."""
-        (l1, l2, l3), (u1, u2, u3), x = self._low, self._high, self._bumper.width
-        q1, q2, q3 = state[:3]
-        return Bounds((min(l1 - x, q1), min(l2 - x, q2), min(l3 - x, q3)),
-                      (max(u1 + x, q1), max(u2 + x, q2), max(u3 + x, q3)))
-
-    def _after_impact(self, t: Terms, qd: Triple, at: Contact) -> Triple:
+    def _velocities_after_impact(self, t: Terms, qd: Triple, at: Contact) -> Triple:
         """Return the velocities after impacts on hard stops, and record the energy lost."""
         if at == FREE:
             return qd
@@ -131,11 +131,11 @@ class FrictionDynamics:
         self._ledger.stops += kinetic(t, qd) - kinetic(t, after)
         return after
 
-    def _settled(self, t: Terms, state: State, torque: Triple, hard: Bounds,
-                 shortest: float) -> tuple[State, Load, Contact]:
+    def _after_impacts(self, t: Terms, state: State, torque: Triple, hard: Bounds,
+                       shortest: float) -> tuple[State, Load, Contact]:
         """Return the state after impacts, the load from there on, and the sliding directions."""
         at = contact(state, *hard)
-        qd = _at_rest(self._after_impact(t, state[3:], at), self._coulomb)
+        qd = _at_rest(self._velocities_after_impact(t, state[3:], at), self._coulomb)
         (qd1, qd2, qd3), (c1, c2, c3) = qd, self._coulomb
         q, lock = state[:3], FREE
         slip = _signs(qd, self._coulomb)
@@ -178,17 +178,17 @@ class FrictionDynamics:
     def _until_event(self, t: Terms, state: State, load: Load, slip: Contact, h: float,
                      hard: Bounds) -> tuple[float, State]:
         """Return the time of the next event, or h, and the state then."""
-        def trial(x: float) -> tuple[State, Lost]:
+        def trial(x: float) -> tuple[State, Dissipation]:
             return friction_step(self._constants, t, state, load, x)
 
         taken, (after, lost) = h, trial(h)
         margin = self._margin(after, load, slip, hard)
         if margin < 0.0:
             first = max(self._margin(state, load, slip, hard), 0.0)
-            taken, (after, lost) = event(
+            taken, (after, lost) = locate_event(
                 trial, lambda s: self._margin(s[0], load, slip, hard), first, h, margin)
-        self._enter(lost, slip, state, after)
-        return taken, _inside(after, hard)
+        self._record_losses(lost, slip, state, after)
+        return taken, clipped(after, *hard)
 
     def _margin(self, state: State, load: Load, slip: Contact, hard: Bounds) -> float:
         """Return the distance to the next event [rad], [rad/s]; negative past it."""
@@ -205,21 +205,23 @@ class FrictionDynamics:
                     margin = min(margin, q - self._low[i], self._high[i] - q)
         return margin
 
-    def _waited(self, t: Terms, state: State, torque: Triple, h: float, hard: Bounds) -> State:
-        """Return the state after a time with all joints in contact or at rest held still."""
+    def _step_with_joints_locked(self, t: Terms, state: State, torque: Triple, h: float,
+                                 hard: Bounds) -> State:
+        """Return the state after a time in which joints in contact or at rest are locked."""
         at = contact(state, *hard)
         c, qd = self._coulomb, state[3:]
-        lock = (int(at[0] or c[0] and abs(qd[0]) <= PAST),
-                int(at[1] or c[1] and abs(qd[1]) <= PAST),
-                int(at[2] or c[2] and abs(qd[2]) <= PAST))
+        lock = (int(at[0] or c[0] and abs(qd[0]) <= EVENT_TOLERANCE),
+                int(at[1] or c[1] and abs(qd[1]) <= EVENT_TOLERANCE),
+                int(at[2] or c[2] and abs(qd[2]) <= EVENT_TOLERANCE))
         before = state[:3] + self._brought_to_rest(t, qd, lock, FREE)[0]
         slip = _signs(before[3:], c)
         load = self._load(before, torque, slip)._replace(lock=lock)
         after, lost = friction_step(self._constants, t, before, load, h)
-        self._enter(lost, slip, before, after)
-        return _inside(after, hard)
+        self._record_losses(lost, slip, before, after)
+        return clipped(after, *hard)
 
-    def _enter(self, lost: Lost, slip: Contact, before: State, after: State) -> None:
+    def _record_losses(self, lost: Dissipation, slip: Contact, before: State,
+                       after: State) -> None:
         """Record the energy lost over an interval of motion."""
         (c1, c2, c3), (s1, s2, s3), ledger = self._coulomb, slip, self._ledger
         ledger.viscous += lost.viscous
@@ -229,11 +231,11 @@ class FrictionDynamics:
 
 
 def _at_rest(qd: Triple, coulomb: Triple) -> Triple:
-    """Return velocities, exactly zero where they are so up to `PAST` and there is friction."""
+    """Return velocities; of joints with friction, those below EVENT_TOLERANCE are set to 0."""
     (qd1, qd2, qd3), (c1, c2, c3) = qd, coulomb
-    return (0.0 if c1 and -PAST <= qd1 <= PAST else qd1,
-            0.0 if c2 and -PAST <= qd2 <= PAST else qd2,
-            0.0 if c3 and -PAST <= qd3 <= PAST else qd3)
+    return (0.0 if c1 and -EVENT_TOLERANCE <= qd1 <= EVENT_TOLERANCE else qd1,
+            0.0 if c2 and -EVENT_TOLERANCE <= qd2 <= EVENT_TOLERANCE else qd2,
+            0.0 if c3 and -EVENT_TOLERANCE <= qd3 <= EVENT_TOLERANCE else qd3)
 
 
 def _range(coulomb: float, qd: float, x: float, side: int, shortest: float) -> Range:
@@ -253,10 +255,3 @@ def _signs(qd: Triple, coulomb: Triple) -> Contact:
     return ((qd[0] > 0.0) - (qd[0] < 0.0) if coulomb[0] else 0,
             (qd[1] > 0.0) - (qd[1] < 0.0) if coulomb[1] else 0,
             (qd[2] > 0.0) - (qd[2] < 0.0) if coulomb[2] else 0)
-
-
-def _inside(state: State, hard: Bounds) -> State:
-    """Return the state with joints beyond a hard stop set back onto it."""
-    (l1, l2, l3), (u1, u2, u3) = hard
-    q1, q2, q3 = state[:3]
-    return (min(max(q1, l1), u1), min(max(q2, l2), u2), min(max(q3, l3), u3)) + state[3:]

@@ -40,14 +40,14 @@ class Load(NamedTuple):
     bumper: SoftStops
 
 
-class Lost(NamedTuple):
+class Dissipation(NamedTuple):
     """Energy dissipated during a step [J], or the power [W]."""
 
     viscous: float
     bumpers: float
 
 
-def rates(load: Load, t: Terms, q: Triple, qd: Triple) -> tuple[Triple, Lost]:
+def rates(load: Load, t: Terms, q: Triple, qd: Triple) -> tuple[Triple, Dissipation]:
     """
     Return accelerations and losses at a state.
 
@@ -64,7 +64,7 @@ def rates(load: Load, t: Terms, q: Triple, qd: Triple) -> tuple[Triple, Lost]:
     -------
     accelerations : tuple of 3 floats
         [rad/s^2].
-    losses : Lost
+    losses : Dissipation
         [W].
 
     """
@@ -82,13 +82,13 @@ def rates(load: Load, t: Terms, q: Triple, qd: Triple) -> tuple[Triple, Lost]:
     a = accelerations(t, qd1, qd2, qd3, *n)
     if load.lock != FREE:
         a = held(t, a, load.lock)
-    return a, Lost(v1 * qd1 * qd1 + v2 * qd2 * qd2 + v3 * qd3 * qd3, lost)
+    return a, Dissipation(v1 * qd1 * qd1 + v2 * qd2 * qd2 + v3 * qd3 * qd3, lost)
 
 
 def friction_step(k: Constants, t: Terms, state: State, load: Load,
-                  h: float) -> tuple[State, Lost]:
+                  h: float) -> tuple[State, Dissipation]:
     """
-    Return the state after a time step, and what was lost on the way.
+    Return the state after a time step, and the energy dissipated.
 
     Parameters
     ----------
@@ -107,12 +107,12 @@ def friction_step(k: Constants, t: Terms, state: State, load: Load,
     -------
     state : tuple of 6 floats
         Positions [rad] and velocities [rad/s].
-    losses : Lost
+    losses : Dissipation
         [J].
 
     """
     if all(load.lock):
-        return state, Lost(0.0, 0.0)
+        return state, Dissipation(0.0, 0.0)
     q, qd, half = state[:3], state[3:], 0.5 * h
     a, lost_a = rates(load, t, q, qd)
     middle = _along(q, half, _along(qd, 0.5 * half, a))
@@ -124,10 +124,10 @@ def friction_step(k: Constants, t: Terms, state: State, load: Load,
     sixth = h / 6.0
     (a1, a2, a3), (b1, b2, b3), (c1, c2, c3), (d1, d2, d3) = a, b, c, d
     mean = _along(qd, sixth, (a1 + b1 + c1, a2 + b2 + c2, a3 + b3 + c3))
-    return _along(q, h, mean) + _along(qd, sixth, (
-        a1 + 2.0 * (b1 + c1) + d1, a2 + 2.0 * (b2 + c2) + d2, a3 + 2.0 * (b3 + c3) + d3)), Lost(
-        *(sixth * (l1 + 2.0 * (l2 + l3) + l4)
-          for l1, l2, l3, l4 in zip(lost_a, lost_b, lost_c, lost_d)))
+    after = _along(q, h, mean) + _along(qd, sixth, (
+        a1 + 2.0 * (b1 + c1) + d1, a2 + 2.0 * (b2 + c2) + d2, a3 + 2.0 * (b3 + c3) + d3))
+    return after, Dissipation(*(sixth * (l1 + 2.0 * (l2 + l3) + l4)
+                                for l1, l2, l3, l4 in zip(lost_a, lost_b, lost_c, lost_d)))
 
 
 def _along(x: Triple, h: float, rate: Triple) -> Triple:

@@ -31,6 +31,10 @@ Contact = tuple[int, int, int]
 
 FREE: Contact = (0, 0, 0)
 
+# A joint that would return to its stop within this part of a step counts as in contact. Without
+# this bound, two joints at their stops exchange ever smaller velocities (Zeno behaviour). Chosen.
+SHORTEST_REBOUND = 0.05
+
 
 def contact(state: State, low: Triple, high: Triple) -> Contact:
     """
@@ -121,6 +125,53 @@ def held(t: Terms, x: Triple, lock: Contact) -> Triple:
     if s3:
         return x1, x2 + t.M23 / t.M22 * x3, 0.0
     return x1, x2, x3
+
+
+def widened(state: State, low: Triple, high: Triple,
+            width: float = 0.0) -> tuple[Triple, Triple]:
+    """
+    Return the stops; those of a joint beyond one, which was moved, include its position.
+
+    Parameters
+    ----------
+    state : tuple of 6 floats
+        Positions [rad] and velocities [rad/s].
+    low, high : tuple of 3 floats
+        Ends of the ranges [rad].
+    width : float
+        Distance of the stops behind the ends of the ranges [rad].
+
+    Returns
+    -------
+    tuple of two tuples of 3 floats
+        Positions of the lower and of the upper stops [rad].
+
+    """
+    (l1, l2, l3), (u1, u2, u3), (q1, q2, q3) = low, high, state[:3]
+    return ((min(l1 - width, q1), min(l2 - width, q2), min(l3 - width, q3)),
+            (max(u1 + width, q1), max(u2 + width, q2), max(u3 + width, q3)))
+
+
+def clipped(state: State, low: Triple, high: Triple) -> State:
+    """
+    Return the state with joints beyond a stop set back onto it.
+
+    Parameters
+    ----------
+    state : tuple of 6 floats
+        Positions [rad] and velocities [rad/s].
+    low, high : tuple of 3 floats
+        Positions of the stops [rad].
+
+    Returns
+    -------
+    tuple of 6 floats
+        Positions between the stops; the velocities are unchanged.
+
+    """
+    (l1, l2, l3), (u1, u2, u3) = low, high
+    q1, q2, q3 = state[:3]
+    return (min(max(q1, l1), u1), min(max(q2, l2), u2), min(max(q3, l3), u3)) + state[3:]
 
 
 def _side(q: float, low: float, high: float) -> int:

@@ -32,23 +32,28 @@ from rrr_traj_planner.core.dynamics.equations import (
     terms,
     torques,
 )
-from rrr_traj_planner.core.simulation.condition import ConditionMonitor
 from rrr_traj_planner.core.simulation.energy import EnergyLedger, kinetic
 from rrr_traj_planner.core.simulation.friction_dynamics import Bounds, FrictionDynamics
-from rrr_traj_planner.core.simulation.joint_stops import Contact, contact, FREE, held, permitted
+from rrr_traj_planner.core.simulation.joint_stops import (
+    clipped,
+    Contact,
+    contact,
+    FREE,
+    held,
+    permitted,
+    SHORTEST_REBOUND,
+    widened,
+)
+from rrr_traj_planner.core.simulation.saturation_and_contact import SaturationAndContactMonitor
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.time_step import free_step, held_step
 from rrr_traj_planner.core.states import State, Triple
 
-# Largest number of impacts in a step; joints at a stop are then held there until its end.
+# Largest number of impacts in a step, chosen; joints at a stop are then held there until its end.
 MOST_IMPACTS = 8
 
 # Bisections of a step at an impact: 1 ms / 2^40 is 1e-15 s.
 BISECTIONS = 40
-
-# A joint that would return to its stop within this part of a step counts as in contact. Without
-# this bound, two joints at their stops exchange ever smaller velocities (Zeno behaviour).
-SHORTEST_REBOUND = 0.05
 
 
 class ArmPhysics:
@@ -67,7 +72,7 @@ class ArmPhysics:
         Bumpers, from low and high on outwards; none by default.
     ledger : EnergyLedger, optional
         Receives the losses.
-    monitor : ConditionMonitor, optional
+    monitor : SaturationAndContactMonitor, optional
         Receives the contacts with stops.
 
     Attributes
@@ -80,8 +85,8 @@ class ArmPhysics:
     def __init__(self, model: RobotModel, low: Triple, high: Triple,
                  friction: Friction | None = None, soft_stops: SoftStops | None = None,
                  ledger: EnergyLedger | None = None,
-                 monitor: ConditionMonitor | None = None) -> None:
-        self.low, self.high, self._monitor = low, high, monitor or ConditionMonitor()
+                 monitor: SaturationAndContactMonitor | None = None) -> None:
+        self.low, self.high, self._monitor = low, high, monitor or SaturationAndContactMonitor()
         self.ledger = EnergyLedger() if ledger is None else ledger
         self._constants = constants(model)
         self._bumper, friction = soft_stops or SoftStops(), friction or Friction()
@@ -146,7 +151,8 @@ class ArmPhysics:
 
         """
         if self._with_friction is not None:
-            return self._watched(t, state, self._with_friction.step(state, torque, h), torque, h)
+            after = self._with_friction.step(state, torque, h)
+            return self._record_contacts(t, state, after, torque, h)
         (l1, l2, l3), (u1, u2, u3) = self.low, self.high
         q1, q2, q3 = state[:3]
         if l1 < q1 < u1 and l2 < q2 < u2 and l3 < q3 < u3:
@@ -154,9 +160,11 @@ class ArmPhysics:
             q1, q2, q3 = after[:3]
             if l1 <= q1 <= u1 and l2 <= q2 <= u2 and l3 <= q3 <= u3:
                 return after
-        return self._watched(t, state, self._step_with_stops(state, torque, h), torque, h)
+        after = self._step_with_stops(state, torque, h)
+        return self._record_contacts(t, state, after, torque, h)
 
-    def _watched(self, t: Terms, state: State, after: State, torque: Triple, h: float) -> State:
+    def _record_contacts(self, t: Terms, state: State, after: State, torque: Triple,
+                         h: float) -> State:
         """Report contacts with stops to the monitor, and return the state after the step."""
         (q1, q2, q3, qd1, qd2, qd3), low, high = state, self.low, self.high
         freely = (q1 + h * qd1, q2 + h * qd2, q3 + h * qd3, qd1, qd2, qd3)
@@ -168,22 +176,18 @@ class ArmPhysics:
             r1, r2, r3 = (
                 _beyond(total - own + viscous * v, coulomb) for total, own, v, viscous, coulomb in
                 zip(net, torque, after[3:], self._viscous, self._coulomb))
-            self._monitor.touched(
+            self._monitor.record_contact(
                 at, contact(state, low, high), state[3:], (r1, r2, r3), torque)
         return after
 
     def _step_with_stops(self, state: State, torque: Triple, h: float) -> State:
         """Return the state after a step with impacts on stops."""
-        # A joint that starts beyond a stop (which was moved) may stay there, not go further.
-        (l1, l2, l3), (u1, u2, u3), (q1, q2, q3) = self.low, self.high, state[:3]
-        low = (min(l1, q1), min(l2, q2), min(l3, q3))
-        high = (max(u1, q1), max(u2, q2), max(u3, q3))
-        left = h
+        (low, high), left = widened(state, self.low, self.high), h
         for _ in range(MOST_IMPACTS):
             t, at = self.terms(state), contact(state, low, high)
             qd = state[3:]
             state, lock = _after_impact(t, state, torque, at, SHORTEST_REBOUND * h)
-            self._enter_impact(t, qd, state[3:])
+            self._record_impact(t, qd, state[3:])
             taken, state = self._until_impact(t, state, torque, left, lock, low, high)
             left -= taken
             if left <= 0.0:
@@ -192,15 +196,15 @@ class ArmPhysics:
         t = self.terms(state)
         if left > 0.0:
             qd = held(t, state[3:], at)
-            self._enter_impact(t, state[3:], qd)
+            self._record_impact(t, state[3:], qd)
             state = held_step(self._constants, t, state[:3] + qd, torque, left, at)
-            state = _within(state, low, high)
+            state = clipped(state, low, high)
             t, at = self.terms(state), contact(state, low, high)
         qd = permitted(t, state[3:], at)
-        self._enter_impact(t, state[3:], qd)
+        self._record_impact(t, state[3:], qd)
         return state[:3] + qd
 
-    def _enter_impact(self, t: Terms, before: Triple, after: Triple) -> None:
+    def _record_impact(self, t: Terms, before: Triple, after: Triple) -> None:
         """Record the energy lost in an impact."""
         if after != before:
             self.ledger.stops += kinetic(t, before) - kinetic(t, after)
@@ -220,7 +224,7 @@ class ArmPhysics:
                 taken, after = middle, trial
             else:
                 before = middle
-        return taken, _within(after, low, high)
+        return taken, clipped(after, low, high)
 
 
 def _after_impact(t: Terms, state: State, torque: Triple, at: Contact,
@@ -256,9 +260,3 @@ def _beyond(torque: float, friction: float) -> float:
 def _overshoot(state: State, low: Triple, high: Triple) -> float:
     """Return the largest distance beyond a stop [rad]; negative if all are inside."""
     return max(max(q - u, d - q) for q, d, u in zip(state, low, high))
-
-
-def _within(state: State, low: Triple, high: Triple) -> State:
-    """Return the state with joints beyond a stop set back onto it."""
-    (l1, l2, l3), (u1, u2, u3), (q1, q2, q3, *_) = low, high, state
-    return (min(max(q1, l1), u1), min(max(q2, l2), u2), min(max(q3, l3), u3)) + state[3:]

@@ -26,19 +26,19 @@ from typing import TypeVar
 
 Outcome = TypeVar('Outcome')
 
-# Accuracy of an event: largest distance past it [rad], [rad/s].
-PAST = 1e-12
+# Tolerance of an event: largest distance past it [rad], [rad/s].
+EVENT_TOLERANCE = 1e-12
 
 # About ten trials are needed; since every fourth is a bisection, this number always suffices.
 MOST_TRIALS = 200
 
-CLEARANCE = 0.02  # of the interval, between a trial and either end
+CLEARANCE = 0.02  # of the interval, least distance of a trial from either end; chosen
 
 
-def event(trial: Callable[[float], Outcome], margin: Callable[[Outcome], float], first: float,
-          h: float, last: float) -> tuple[float, Outcome]:
+def locate_event(trial: Callable[[float], Outcome], margin: Callable[[Outcome], float],
+                 first: float, h: float, last: float) -> tuple[float, Outcome]:
     """
-    Return the time of an event, and the outcome then.
+    Locate an event: return its time, and the outcome then.
 
     Parameters
     ----------
@@ -56,17 +56,17 @@ def event(trial: Callable[[float], Outcome], margin: Callable[[Outcome], float],
     time : float
         [s].
     outcome : object
-        At that time, past the event by no more than `PAST`.
+        At that time, past the event by no more than `EVENT_TOLERANCE`.
 
     """
     low, high, at_low, at_high, now, outcome = 0.0, h, first, last, last, trial(h)
     for n in range(MOST_TRIALS):
-        if now >= -PAST:
+        if now >= -EVENT_TOLERANCE:
             break
-        share = min(max(at_low / (at_low - at_high), CLEARANCE), 1.0 - CLEARANCE)
+        fraction = min(max(at_low / (at_low - at_high), CLEARANCE), 1.0 - CLEARANCE)
         if n % 4 == 3:
-            share = 0.5
-        middle = low + share * (high - low)
+            fraction = 0.5
+        middle = low + fraction * (high - low)
         attempt = trial(middle)
         value = margin(attempt)
         if value < 0.0:  # Illinois rule: the value at the retained end is halved

@@ -12,11 +12,9 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Simulated time against wall time, and schedules of periodic instants."""
+"""Simulated time against wall time."""
 
 from __future__ import annotations
-
-from rrr_traj_planner.core.nanoseconds import SECOND
 
 
 class SimulatedClock:
@@ -89,50 +87,3 @@ class SimulatedClock:
         self._reached, self._since = reached, now
         self.factor = self.factor if factor is None else factor
         self.paused = self.paused if paused is None else paused
-
-
-class Schedule:
-    """
-    Periodic instants: the k-th is k / rate after the first, without accumulated rounding.
-
-    Parameters
-    ----------
-    rate : float
-        Instants a second, positive [Hz].
-    first : int
-        The first instant [ns].
-
-    Attributes
-    ----------
-    rate : float
-        As given.
-    next : int
-        The next instant that is due [ns].
-
-    """
-
-    def __init__(self, rate: float, first: int) -> None:
-        self.rate, self._first, self._count = rate, first, 0
-        self.next = first
-
-    def passed(self, now: int) -> bool:
-        """
-        Return whether an instant has come, and go on to the first one that has not.
-
-        Parameters
-        ----------
-        now : int
-            [ns]; never decreasing.
-
-        Returns
-        -------
-        bool
-            True once for all instants up to now.
-
-        """
-        if now < self.next:
-            return False
-        while self.next <= now:
-            self._count += 1
-            self.next = self._first + int(self._count * SECOND / self.rate)
-        return True

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Stability of the integration step with viscous friction and bumpers."""
+"""
+Stability of the integration step with viscous friction and bumpers.
+
+Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.2.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +25,14 @@ from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix
-from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.errors import format_distinct, InvalidInputError
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 
 # Step times decay rate, or times angular frequency. The method is stable up to 2.8 (for a decay as
-# the classical Runge-Kutta method: Hairer and Wanner, Solving Ordinary Differential Equations II,
-# section IV.2) and accurate up to 1.
+# the classical Runge-Kutta method) and accurate up to 1.
 LARGEST = 1.0
 
-POSES = 24  # of joints 2 and 3 each, over a full turn
+POSES = 24  # positions of joints 2 and 3 each, over a full turn; chosen
 
 
 def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
@@ -64,10 +67,11 @@ def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
         raise InvalidInputError(
             f'friction.viscous is {friction.viscous.tolist()} N m s/rad, too much for '
             f'a physics step of {step:g} s: at most '
-            f'{told_apart(LARGEST / (decay * step), 1.0, digits=3)[0]} times that')
+            f'{format_distinct(LARGEST / (decay * step), 1.0, digits=3)[0]} times that')
     squared = float(np.abs(np.linalg.eigvals(inverse)).max()) * bumper  # [1/s^2]
     if squared * step ** 2 > LARGEST:
-        stiffness, most = told_apart(bumper, bumper * LARGEST / (squared * step ** 2), digits=3)
+        stiffness, most = format_distinct(
+            bumper, bumper * LARGEST / (squared * step ** 2), digits=3)
         raise InvalidInputError(
             f'soft_stops.stiffness is {stiffness} N m/rad, must be at most {most} N m/rad with '
             f'a physics step of {step:g} s')

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Polynomials on intervals in Bernstein's form, whose coefficients bound them on both sides."""
+"""
+Polynomials on intervals in Bernstein form, whose coefficients bound them on both sides.
+
+Farin, Curves and Surfaces for CAGD, chapter 4.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +25,7 @@ from math import comb
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 
-# Bisections after which a polynomial that touches a bound counts as within it.
+# Bisections after which a polynomial that touches a bound counts as within it; chosen.
 MOST_BISECTIONS = 24
 
 # From coefficients of 1, s, ..., s^5 to Bernstein's on [0, 1]: C(i, k) / C(5, k).
@@ -33,7 +37,7 @@ def bernstein_forms(coefficients: Array, widths: Array) -> tuple[Array, Array, A
     Return the Bernstein coefficients of quintics and of their first two derivatives.
 
     A polynomial lies within the convex hull of its Bernstein coefficients, the first and the last
-    of which are its values at the ends (Farin, Curves and Surfaces for CAGD, chapter 4).
+    of which are its values at the ends.
 
     Parameters
     ----------

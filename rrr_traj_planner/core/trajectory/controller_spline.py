@@ -50,7 +50,7 @@ class SplineExcess(NamedTuple):
 
     time_scale: Array  # least factor that satisfies the limits; 1 where they are, (n - 1,)
     outside: Array     # distance beyond a joint's range [rad], 0 within tolerance, (n - 1,)
-    place: Array       # of the largest excess, as a fraction of the interval, (n - 1,)
+    place: Array       # fraction of the interval at which the excess is largest, (n - 1,)
     effort: Array      # largest torque over all intervals to 1e-3 [N m], (3,)
     jerk: Array        # largest jerk of each interval [rad/s^3], exact, (n - 1, 3)
 

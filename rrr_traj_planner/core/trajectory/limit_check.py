@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import told_apart
+from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.trajectory import Peaks
 
@@ -54,7 +54,7 @@ class Violation(NamedTuple):
             Joint, quantity, value, limit and unit.
 
         """
-        value, limit = told_apart(self.value, self.limit)
+        value, limit = format_distinct(self.value, self.limit)
         return (f'{joint_names[self.joint]} {self.quantity} reaches {value} {self.unit}, '
                 f'limit {limit} {self.unit}')
 

@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arrays import Array, IntArray
 
 # Sampling around the vertex of the parabola through three points, at these fractions of the
 # distance to the outer two: a bracket narrows to a 64th where the parabola fits well, at worst to
-# a half. The error of a smooth peak's value is of the order of the square.
+# a half. The error of a smooth peak's value is of the order of the square. Chosen.
 ZOOM_ROUNDS = 12
 OFFSETS = np.array([-32.0, -8.0, -1.0, 0.0, 1.0, 8.0, 32.0]) / 64.0
 # A local maximum is refined if it might exceed the highest value found by more than NEGLIGIBLE
@@ -91,7 +91,7 @@ def maximum_over_time(quantity: Callable[[Array], Array], grid: Array,
         fall = 2.0 * highest - f[:, 0] - f[:, 2]
         promising = highest + ZOOMED_RISE * fall > value[column] * (1.0 + NEGLIGIBLE)
         was, at_end = at_end, (t[:, 1] == t[:, 0]) | (t[:, 1] == t[:, 2])
-        promising &= ~(was & at_end)  # twice the highest: the top is the bracket's end
+        promising &= ~(was & at_end)  # at the bracket's end in two rounds: the maximum is there
         t, f, column, at_end = t[promising], f[promising], column[promising], at_end[promising]
     return Extreme(value, time)
 

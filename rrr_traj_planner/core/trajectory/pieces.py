@@ -49,17 +49,17 @@ class Pieces(Protocol):
 
         """
 
-    def arrays(self) -> dict[str, Any]:
+    def parameters(self) -> dict[str, Any]:
         """Return the parameters of the pieces by name."""
 
-    def made_of(self, arrays: Iterable[Any]) -> Pieces:
+    def with_parameters(self, parameters: Iterable[Any]) -> Pieces:
         """
         Return pieces of the same type with other values.
 
         Parameters
         ----------
-        arrays : iterable
-            Values of the parameters, in the order of `arrays`.
+        parameters : iterable
+            Their values, in the order of `parameters`.
 
         Returns
         -------

@@ -37,7 +37,12 @@ from rrr_traj_planner.core.trajectory.trajectory import (
 # a step that leaves the bracket is replaced by a bisection. At a zero of velocity an error e of
 # the normalised time changes the position by O(e^2).
 MOST_STEPS = 60
-PLACE_TOLERANCE = 1e-9  # of the normalised time
+ZERO_TOLERANCE = 1e-9  # of the normalised time
+
+# Rounding of sums of durations: joints' durations and via times beyond the end [s, and relative
+# to longer durations]; knots of different joints that are the same.
+DURATION_ROUNDING = 1e-9
+KNOT_ROUNDING = 1e-12
 
 
 class JointProfile(ReadOnlyArrays):
@@ -57,9 +62,9 @@ class JointProfile(ReadOnlyArrays):
     """
 
     def __init__(self, pieces: Pieces) -> None:
-        fields = np.array(np.broadcast_arrays(*pieces.arrays().values()), dtype=float)
+        fields = np.array(np.broadcast_arrays(*pieces.parameters().values()), dtype=float)
         if not np.isfinite(fields).all():
-            for name, value in pieces.arrays().items():
+            for name, value in pieces.parameters().items():
                 finite_array(name, value)
         lasting = fields[0] > 0.0
         if fields.ndim != 2 or (fields[0] < 0.0).any() or not lasting.any():
@@ -68,7 +73,7 @@ class JointProfile(ReadOnlyArrays):
         fields = fields[:, lasting]
         self.knots = np.concatenate(([0.0], np.cumsum(fields[0])))
         make_read_only((fields, self.knots))
-        self.pieces = pieces.made_of(fields)
+        self.pieces = pieces.with_parameters(fields)
 
     @property
     def duration(self) -> float:
@@ -129,8 +134,8 @@ class JointProfile(ReadOnlyArrays):
         """
         ends = np.append(self.begins, self.pieces.at(1.0)[0][-1])
         index = np.clip(np.searchsorted(ends, positions) - 1, 0, len(ends) - 2)
-        piece, share = self._at(index), np.diff(ends)[index]
-        s = np.clip((positions - ends[index]) / np.where(share > 0.0, share, 1.0), 0.0, 1.0)
+        piece, rise = self._at(index), np.diff(ends)[index]
+        s = np.clip((positions - ends[index]) / np.where(rise > 0.0, rise, 1.0), 0.0, 1.0)
         low, high = np.zeros_like(s), np.ones_like(s)
         for _ in range(MOST_STEPS):
             position, velocity, _, _ = piece.at(s)
@@ -140,7 +145,7 @@ class JointProfile(ReadOnlyArrays):
                 found = s - (position - positions) / (velocity * piece.duration)
             found = np.where((found >= low) & (found <= high), found, 0.5 * (low + high))
             moved, s = float(np.abs(found - s).max(initial=0.0)), found
-            if moved < PLACE_TOLERANCE:
+            if moved < ZERO_TOLERANCE:
                 break
         return np.asarray(self.knots[index] + s * piece.duration)
 
@@ -167,7 +172,7 @@ class JointProfile(ReadOnlyArrays):
         return JointProfile(self.pieces.time_scaled(time_factor(factor)))
 
     def _at(self, index: Any) -> Pieces:
-        return self.pieces.made_of(f[index] for f in self.pieces.arrays().values())
+        return self.pieces.with_parameters(f[index] for f in self.pieces.parameters().values())
 
     def _columns(self) -> Pieces:
         return self._at((slice(None), np.newaxis))
@@ -184,7 +189,7 @@ class JointProfile(ReadOnlyArrays):
                 found = s - velocity / (acceleration * piece.duration)
             found = np.where((found >= low) & (found <= high), found, 0.5 * (low + high))
             moved, s = float(np.abs(found - s).max()), found
-            if moved < PLACE_TOLERANCE:
+            if moved < ZERO_TOLERANCE:
                 break
         return piece.at(s)[0]
 
@@ -217,10 +222,10 @@ class PiecewiseTrajectory(Trajectory):
         self.via_times = ending_at_duration(
             finite_array('via_times', via_times, (-1,)), self.duration)
         lengths = np.array([p.duration for p in self.profiles])
-        if np.ptp(lengths) > 1e-9 * max(1.0, self.duration):
+        if np.ptp(lengths) > DURATION_ROUNDING * max(1.0, self.duration):
             raise InvalidInputError(f'joints move for {lengths} s, must be in step')
         if (np.diff(self.via_times) < 0.0).any() or (self.via_times < 0.0).any() or (
-                self.via_times > self.duration + 1e-9).any():
+                self.via_times > self.duration + DURATION_ROUNDING).any():
             raise InvalidInputError(f'via_times {self.via_times} s must rise within the motion')
 
     @cached_property
@@ -244,7 +249,7 @@ class PiecewiseTrajectory(Trajectory):
         """Return the ends of all joints' pieces; see `Trajectory`."""
         joined = np.sort(np.concatenate([p.knots for p in self.profiles]))
         joined = np.minimum(joined, self.duration)
-        apart = np.diff(joined) > 1e-12 * max(1.0, self.duration)
+        apart = np.diff(joined) > KNOT_ROUNDING * max(1.0, self.duration)
         knots = np.concatenate((joined[:1], joined[1:][apart]))
         knots[-1] = self.duration
         return knots

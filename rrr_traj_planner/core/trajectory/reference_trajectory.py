@@ -65,11 +65,11 @@ class ReferenceTrajectory(QuinticSpline):
         self.origin_ns = origin_ns
         self._knots_ns = [nanoseconds(knot) for knot in knots.tolist()]
         zero = np.zeros(3)
-        self.arrive(zero if final_velocity is None else final_velocity,
-                    zero if final_acceleration is None else final_acceleration)
+        self.set_end_state(zero if final_velocity is None else final_velocity,
+                           zero if final_acceleration is None else final_acceleration)
         self.elapsed = QuinticCursor(knots, self._knots_ns, coefficients, final).elapsed
 
-    def arrive(self, velocity: Array, acceleration: Array) -> None:
+    def set_end_state(self, velocity: Array, acceleration: Array) -> None:
         """
         Set velocity and acceleration at the last knot.
 
@@ -181,7 +181,7 @@ class ReferenceTrajectory(QuinticSpline):
                 np.vstack((2.0 * c[:, :, 2], self.final_acceleration)))
 
 
-def through(points: TrajectoryPoints, origin_ns: int = 0) -> ReferenceTrajectory:
+def reference_through(points: TrajectoryPoints, origin_ns: int = 0) -> ReferenceTrajectory:
     """
     Return the reference trajectory through points.
 
@@ -204,8 +204,8 @@ def through(points: TrajectoryPoints, origin_ns: int = 0) -> ReferenceTrajectory
     if moving.any():  # other joints are at rest, as if all were
         acceleration = (motion.at(motion.end)[2] if len(motion.coefficients)
                         else points.accelerations[-1])
-        motion.arrive(np.where(moving, points.velocities[-1], 0.0),
-                      np.where(moving, acceleration, 0.0))
+        motion.set_end_state(np.where(moving, points.velocities[-1], 0.0),
+                             np.where(moving, acceleration, 0.0))
     return motion
 
 

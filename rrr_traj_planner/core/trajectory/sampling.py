@@ -27,7 +27,7 @@ from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 NANOSECOND = 1e-9  # s
 
-LEAST_GAP = 0.1  # of the period, between a regular sample and a via point's
+LEAST_GAP = 0.1  # of the period, between a regular sample and a via point's; chosen
 
 # The quintic of an interval in which acceleration steps has the same mean and first moment of
 # acceleration as the motion, and overshoots. With the step at one end of the interval, it
@@ -37,7 +37,7 @@ LEAST_GAP = 0.1  # of the period, between a regular sample and a via point's
 STEP_SHARE, STEP_OVERSHOOT = 1.0 / 6.0, 0.0501
 STEP_GAP = 0.3  # of the period, between a step and a regular point: bounds the quintic's jerk
 
-# Default limit on the number of points, which bounds the memory used.
+# Default limit on the number of points, which bounds the memory used; chosen.
 MOST_POINTS = 200_000
 
 
@@ -135,7 +135,7 @@ def sample_times(trajectory: Trajectory, period: float,
     period : float
         Time between points [s], positive.
     most_points : int
-        How many points there may be.
+        Largest number of points.
 
     Returns
     -------
@@ -190,7 +190,7 @@ def _distance(times: Array, others: Array) -> Array:
 def check_size(duration: float, period: float, most_points: int = MOST_POINTS,
                points: float | None = None) -> None:
     """
-    Refuse a motion with too many points.
+    Raise if a motion has too many points.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def check_size(duration: float, period: float, most_points: int = MOST_POINTS,
     period : float
         Time between points [s], positive.
     most_points : int
-        How many points there may be.
+        Largest number of points.
     points : float, optional
         Number of points; None: one for each period, and one more.
 

@@ -27,9 +27,9 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import positive
 
-ROUNDING = 1e-12  # relative, of a sum of durations
+DURATION_ROUNDING = 1e-12  # relative, of a sum of durations
 
-# A motion can be slowed and sped up so much: the factor's fourth power stays a float.
+# Range of time-scaling factors, chosen so that the factor's fourth power is a normal float.
 LEAST_FACTOR, MOST_FACTOR = 1e-30, 1e30
 
 
@@ -205,7 +205,7 @@ def ending_at_duration(times: Array, duration: float) -> Array:
         Read-only. In a motion of a week rounding exceeds a nanosecond.
 
     """
-    found = np.where(np.abs(times - duration) <= ROUNDING * duration, duration, times)
+    found = np.where(np.abs(times - duration) <= DURATION_ROUNDING * duration, duration, times)
     found.setflags(write=False)
     return found
 

@@ -23,8 +23,11 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rrr_traj_planner.core.nanoseconds import SECOND
-from rrr_traj_planner.core.simulation.condition import Condition, SOUND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.core.simulation.saturation_and_contact import (
+    NONE_RECORDED,
+    SaturationAndContact,
+)
 from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, LATE, OwnClock
 from rrr_traj_planner.nodes.output.diagnostics import diagnostics, PERIOD
 
@@ -53,23 +56,23 @@ class ArmDiagnostics:
         self._begin()
         node.create_timer(PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def update(self, condition: Condition) -> None:
+    def update(self, condition: SaturationAndContact) -> None:
         """
         Record the arm's condition and its present tracking error.
 
         Parameters
         ----------
-        condition : Condition
+        condition : SaturationAndContact
             Saturation and contact with stops since the last call.
 
         """
-        if condition is not SOUND:
+        if condition is not NONE_RECORDED:
             self._condition = self._condition.joined(condition)
-        errors = (abs(a - b) for a, b in zip(self._arm.desired, self._arm.seen[:3]))
+        errors = (abs(a - b) for a, b in zip(self._arm.desired, self._arm.measured[:3]))
         self._errors = [max(pair) for pair in zip(self._errors, errors)]
 
     def _begin(self) -> None:
-        self._condition, self._errors = SOUND, [0.0, 0.0, 0.0]
+        self._condition, self._errors = NONE_RECORDED, [0.0, 0.0, 0.0]
         self._since, self._steps, self._reached = monotonic_ns(), self._arm.steps, self._arm.now
 
     def _report(self) -> None:

@@ -23,7 +23,10 @@ from rclpy.node import Node
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.control.trajectory_limits import Excess
 from rrr_traj_planner.core.errors import counted
-from rrr_traj_planner.core.simulation.condition import Condition, SOUND
+from rrr_traj_planner.core.simulation.saturation_and_contact import (
+    NONE_RECORDED,
+    SaturationAndContact,
+)
 from rrr_traj_planner.nodes.output.throttle import Throttle
 
 # A number in a text, except in names such as joint_1.
@@ -96,19 +99,19 @@ class ArmLog:
                 self._log.warning(text.format('; '.join(
                     e.text(self._joint_names) for e in found)))
 
-    def strained(self, condition: Condition, limits: JointLimits) -> None:
+    def strained(self, condition: SaturationAndContact, limits: JointLimits) -> None:
         """
         Warn of saturated motors and of contact with stops.
 
         Parameters
         ----------
-        condition : Condition
+        condition : SaturationAndContact
             Saturation and contact since the last call.
         limits : JointLimits
             The arm's limits.
 
         """
-        if condition is not SOUND:
+        if condition is not NONE_RECORDED:
             for kind, joint, text in (condition.motors(self._joint_names, limits)
                                       + condition.stops(self._joint_names, limits)):
                 if self._throttle.passes((kind, joint)):

@@ -21,7 +21,7 @@ from collections.abc import Sequence
 
 from builtin_interfaces.msg import Duration, Time
 from rrr_traj_planner.core.control.trajectory_validation import IncomingPoint, IncomingTrajectory
-from rrr_traj_planner.core.errors import counted, InvalidInputError, told_apart
+from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError
 from rrr_traj_planner.core.nanoseconds import SECOND
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
@@ -65,7 +65,7 @@ def disturbance_torque(message: JointState,
             raise InvalidInputError(f"a disturbance names joint '{name}', must name distinct "
                                     f'joints of {", ".join(joint_names)}')
         if not abs(effort) <= MAX_DISTURBANCE:
-            shown, low, high = told_apart(effort, -MAX_DISTURBANCE, MAX_DISTURBANCE)
+            shown, low, high = format_distinct(effort, -MAX_DISTURBANCE, MAX_DISTURBANCE)
             raise InvalidInputError(f'the disturbance of {name} is {shown} N m, must be in '
                                     f'[{low}, {high}] N m')
         torque[name] = float(effort)

@@ -23,7 +23,8 @@ from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
-from rrr_traj_planner.core.simulation.simulated_clock import Schedule, SimulatedClock
+from rrr_traj_planner.core.simulation.schedule import Schedule
+from rrr_traj_planner.core.simulation.simulated_clock import SimulatedClock
 
 # Largest wall time of a tick [ns], so that services are answered in time, and number of steps
 # between two checks of it.

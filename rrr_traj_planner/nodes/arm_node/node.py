@@ -95,7 +95,7 @@ class SimulatedArm(ServiceNode):
         self._joint_names = config.settings.model.joint_names
         self._arm = ControlledArm(config.settings, config.initial_positions)
         self._log = ArmLog(self, self._joint_names)
-        self._view = ArmView(self, config, self._arm.seen)
+        self._view = ArmView(self, config, self._arm.measured)
         self._publishers_of_states = [
             (JointStateMessage(self._joint_names),
              self.create_publisher(JointState, topic, QUEUE_DEPTH).publish)
@@ -121,8 +121,8 @@ class SimulatedArm(ServiceNode):
     def _tick(self) -> None:
         """Simulate up to the present, and log warnings."""
         self._time.tick()
-        self._view.moved(self._arm.seen[:3])
-        condition = self._arm.monitor.take()
+        self._view.moved(self._arm.measured[:3])
+        condition = self._arm.monitor.read_and_clear()
         self._diagnostics.update(condition)
         self._log.strained(condition, self._arm.settings.limits)
         if self._arm.violation:
@@ -138,7 +138,7 @@ class SimulatedArm(ServiceNode):
     def _publish(self) -> None:
         """Publish measured state, reference and tracking error."""
         stamp, arm = self._time.reached(), self._arm
-        q, qd = arm.seen[:3], arm.seen[3:]
+        q, qd = arm.measured[:3], arm.measured[3:]
         self._view.moved(q)
         desired = arm.desired
         fields = ((q, qd, arm.torque), (desired[:3], desired[3:6]), (

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import told_apart
+from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.core.path.deviation import distance_from_polyline
@@ -50,7 +50,7 @@ class Figure(NamedTuple):
     @property
     def text(self) -> str:
         """Return name, value, bound and unit in a line."""
-        value, bound = told_apart(self.value, self.bound)
+        value, bound = format_distinct(self.value, self.bound)
         return f'{self.name} is {value} {self.unit}, bound {bound} {self.unit}'
 
 

@@ -27,7 +27,7 @@ from rrr_traj_planner.core.arm.urdf import check_frames, FrameNames
 from rrr_traj_planner.core.control.computed_torque import ControllerGains
 from rrr_traj_planner.core.control.tolerances import Tolerances
 from rrr_traj_planner.core.control.trajectory_validation import Rules
-from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.errors import format_distinct, InvalidInputError
 from rrr_traj_planner.core.simulation.encoder import EncoderSettings
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.nodes.parameters.naming import from_group, named
@@ -111,8 +111,8 @@ def encoder(values: Values, gains: ControllerGains) -> EncoderSettings:
     # bandwidth / natural frequency > (zeta + sqrt(zeta^2 + 4)) / 2.
     zeta = gains.damping_ratio
     least = STABILITY_MARGIN * 0.5 * (zeta + sqrt(zeta * zeta + 4.0)) * gains.natural_frequency
-    if not settings.is_true and settings.bandwidth < least:
-        bandwidth, lowest = told_apart(settings.bandwidth, least)
+    if not settings.is_ideal and settings.bandwidth < least:
+        bandwidth, lowest = format_distinct(settings.bandwidth, least)
         raise InvalidInputError(
             f'encoder.bandwidth is {bandwidth} rad/s, must be at least {lowest} rad/s '
             f'with controller.natural_frequency {gains.natural_frequency:g} rad/s and '

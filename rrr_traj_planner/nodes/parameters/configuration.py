@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arm.urdf import FrameNames
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.control.computed_torque import ControllerGains
 from rrr_traj_planner.core.control.trajectory_validation import Rules
-from rrr_traj_planner.core.errors import InvalidInputError, told_apart
+from rrr_traj_planner.core.errors import format_distinct, InvalidInputError
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.nodes.parameters.arm_options import (
     encoder,
@@ -138,7 +138,7 @@ class ArmConfig:
         gains = from_group(ControllerGains, 'controller', values)
         step = values['physics_step']
         if gains.damping * step > MAX_DAMPING_PER_STEP:
-            frequency, most = told_apart(gains.natural_frequency, MAX_DAMPING_PER_STEP / (
+            frequency, most = format_distinct(gains.natural_frequency, MAX_DAMPING_PER_STEP / (
                 2.0 * gains.damping_ratio * step))
             raise InvalidInputError(
                 f'controller.natural_frequency is {frequency} rad/s, must be at most {most} rad/s '
@@ -205,7 +205,7 @@ def joint_limits(values: Values) -> JointLimits:
     for joint in joints:
         low, high = values[f'{joint}.min_position'], values[f'{joint}.max_position']
         if low >= high:
-            least, most = told_apart(low, high)
+            least, most = format_distinct(low, high)
             raise InvalidInputError(f'{joint}.min_position is {least} rad, must be below '
                                     f'{joint}.max_position, {most} rad')
     largest = {
@@ -222,7 +222,7 @@ def _initial_positions(values: Values, limits: JointLimits) -> Array:
     q = finite_array('initial_positions', values['initial_positions'], (3,))
     for i, (x, low, high) in enumerate(zip(q, limits.min_position, limits.max_position)):
         if not low <= x <= high:
-            at, least, most = told_apart(x, low, high)
+            at, least, most = format_distinct(x, low, high)
             hint = HINT if explained_by_degrees(x, low, high) else ''
             raise InvalidInputError(
                 f'initial_positions[{i}] is {at} rad, must be in [{least}, {most}] rad, the '

@@ -25,7 +25,7 @@ from math import inf, isfinite, pi
 from typing import Any, NamedTuple
 
 from rrr_traj_planner.core.arm.model import JOINT_NAMES, RobotModel
-from rrr_traj_planner.core.errors import counted, InvalidInputError, told_apart
+from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.trajectory.sampling import MOST_POINTS
 
@@ -240,7 +240,7 @@ def check_value(row: Row, value: Any) -> None:
             index = f'[{i}]' if is_list else ''
             unit = f' {row.unit}' if row.unit else ''
             raise InvalidInputError(
-                f'{row.name}{index} is {told_apart(x, row.low, row.high)[0]}{unit}, must be '
+                f'{row.name}{index} is {format_distinct(x, row.low, row.high)[0]}{unit}, must be '
                 f'{row.item_text}')
 
 

@@ -24,11 +24,11 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import (
     counted,
+    format_distinct,
     InvalidInputError,
     quoted,
     RrrPlannerError,
     StartStateError,
-    told_apart,
 )
 from rrr_traj_planner.core.kinematics.postures import ELBOWS
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
@@ -93,11 +93,11 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
     period = message.sample_period
     if period != 0.0 and not MIN_SAMPLE_PERIOD <= period <= MAX_SAMPLE_PERIOD:
         raise InvalidInputError('sample_period is {} s, must be 0 or in [{}, {}] s'.format(
-            *told_apart(period, MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD)))
+            *format_distinct(period, MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD)))
     deviation = message.max_deviation
     if deviation != 0.0 and not MIN_DEVIATION <= deviation <= MAX_DEVIATION:
         raise InvalidInputError('max_deviation is {} m, must be 0 or in [{}, {}] m'.format(
-            *told_apart(deviation, MIN_DEVIATION, MAX_DEVIATION)))
+            *format_distinct(deviation, MIN_DEVIATION, MAX_DEVIATION)))
     if message.elbow not in ('', *ELBOWS):
         raise InvalidInputError(
             f"elbow is {quoted(message.elbow)}, must be 'up', 'down' or empty")
@@ -166,7 +166,7 @@ def _start(state: JointState, config: PlannerConfig) -> Array | None:
         if not isfinite(x):
             raise StartStateError(f'start state: {name} is at {x:g} rad, must be finite')
         if not abs(v) <= tolerance:
-            _, most, speed = told_apart(abs(v), tolerance, v)
+            _, most, speed = format_distinct(abs(v), tolerance, v)
             raise StartStateError(
                 f'start state: {name} moves at {speed} rad/s, must be at rest (no faster than '
                 f'start_state_tolerance, {most} rad/s)')

@@ -146,8 +146,8 @@ def joint_profiles(pieces: Sequence[Pieces]) -> list[JointProfile]:
     """
     lasting = np.stack([p.duration > 0.0 for p in pieces], axis=1)
     fields = [np.where(lasting, np.stack(f, axis=1), 0.0).reshape(-1, 3)
-              for f in zip(*(np.broadcast_arrays(*p.arrays().values()) for p in pieces))]
-    return [JointProfile(pieces[0].made_of(f[:, j] for f in fields)) for j in range(3)]
+              for f in zip(*(np.broadcast_arrays(*p.parameters().values()) for p in pieces))]
+    return [JointProfile(pieces[0].with_parameters(f[:, j] for f in fields)) for j in range(3)]
 
 
 def _mirrored(parts: Callable[[Array, Array, Array], Parts], v0: Array, v1: Array, T: Array,

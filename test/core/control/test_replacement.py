@@ -26,7 +26,10 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.control.replacement import replacement, Takeover
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.nanoseconds import nanoseconds
-from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory, through
+from rrr_traj_planner.core.trajectory.reference_trajectory import (
+    reference_through,
+    ReferenceTrajectory,
+)
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 LIMITS = JointLimits(max_effort=np.full(3, inf))
@@ -85,7 +88,8 @@ def assert_smooth(command, motion, limits=LIMITS):
 
 def test_trajectory_that_begins_at_the_command_is_followed_exactly():
     points = smooth_points(Q)
-    motion, expected = replaced(takeover(), points, NOW_NS, LEAD), through(points, NOW_NS)
+    motion = replaced(takeover(), points, NOW_NS, LEAD)
+    expected = reference_through(points, NOW_NS)
     for t in np.linspace(NOW, NOW + 3.1, 777):
         assert motion(t) == expected(t)
 
@@ -114,7 +118,8 @@ def test_first_point_ahead_is_led_into_by_what_it_carries():
 @pytest.mark.parametrize('command', [REST, MOVING])
 def test_trajectory_elsewhere_is_joined_on_schedule(command):
     points = smooth_points(Q + 0.02)
-    motion, target = replaced(takeover(command), points, NOW_NS, LEAD), through(points, NOW_NS)
+    motion = replaced(takeover(command), points, NOW_NS, LEAD)
+    target = reference_through(points, NOW_NS)
     assert_smooth(command, motion)
     assert motion.end == target.end
     joined = NOW + float(motion.knots[1])

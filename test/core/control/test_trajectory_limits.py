@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.control.trajectory_limits import ACCURACY, excesses
-from rrr_traj_planner.core.trajectory.reference_trajectory import through
+from rrr_traj_planner.core.trajectory.reference_trajectory import reference_through
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 LIMITS = JointLimits()  # ranges [0, pi/2], [0, pi], [-pi, 2 pi]; 1 rad/s, 1 rad/s^2
@@ -136,7 +136,7 @@ def test_extremes_equal_those_of_dense_samples():
         times = np.cumsum(rng.uniform(0.1, 1.0, n))
         points = TrajectoryPoints(times, *rng.uniform(-1.0, 1.0, (3, n, 3)), rng.random(n) < 0.8,
                                   rng.random(n) < 0.8)
-        motion = through(points)
+        motion = reference_through(points)
         states = np.array([motion(t) for a, b in zip(times, times[1:])
                            for t in np.linspace(a, b - 2e-9, 1000)]).reshape(-1, 3, 3)
         tight = JointLimits(min_position=[-1e-9] * 3, max_position=[1e-9] * 3,

@@ -92,7 +92,7 @@ def test_a_part_is_reached_when_the_shape_says_so(cruise):
 def test_peaks_and_ranges_are_those_of_a_dense_grid(seed, cruise):
     ramps = random_ramps(seed, cruise)
     for i in range(len(ramps.duration)):
-        one = ramps.made_of(f[[i]] for f in ramps.arrays().values())
+        one = ramps.with_parameters(f[[i]] for f in ramps.parameters().values())
         profile, s = JointProfile(one), np.linspace(0.0, 1.0, 4001)
         q, qd, qdd, qddd = one.at(s)
         acceleration, jerk = one.peaks()

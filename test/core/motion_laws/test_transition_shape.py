@@ -116,9 +116,9 @@ def chain(function, rng):
     for T, v0, v1 in zip(durations, velocities[:-1], velocities[1:]):
         piece = function.transition(T, position, v0, v1) if v0 != v1 else function.cruise(
             T, position, v0)
-        fields.append(list(piece.arrays().values()))
+        fields.append(list(piece.parameters().values()))
         position = piece.at(1.0)[0]
-    return JointProfile(piece.made_of(np.array(fields).T))
+    return JointProfile(piece.with_parameters(np.array(fields).T))
 
 
 @pytest.mark.parametrize('seed', range(8))

@@ -140,7 +140,8 @@ def samples(*points):
     ((1.0, 1.5, 0.5), UnreachableError, '^sample 1 is 1.80278 m from the shoulder'),
     ((1.6, 0.0, 0.5), UnreachableError, '^sample 1 is 1.6 m from the shoulder'),
     ((0.1, 0.0, 0.5), UnreachableError, '^sample 1 is 0.1 m from the shoulder'),
-    ((0.0, 0.0, 1.5), LimitViolationError, '^sample 1 is on joint axis 1: joint_1 would have')])
+    ((0.0, 0.0, 1.5), LimitViolationError,
+     r'^sample 1 is on joint axis 1 \(singularity\): joint_1 would need')])
 def test_sample_where_the_arm_could_not_move_on_is_refused(point, error, text):
     with pytest.raises(error, match=text):
         joint_path(RobotModel(), FREE, samples((1.0, 0.0, 0.5), point), Posture('up'))

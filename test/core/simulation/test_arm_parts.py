@@ -24,8 +24,9 @@ from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.nanoseconds import SECOND
-from rrr_traj_planner.core.simulation.root_finding import event, PAST
-from rrr_traj_planner.core.simulation.simulated_clock import Schedule, SimulatedClock
+from rrr_traj_planner.core.simulation.root_finding import EVENT_TOLERANCE, locate_event
+from rrr_traj_planner.core.simulation.schedule import Schedule
+from rrr_traj_planner.core.simulation.simulated_clock import SimulatedClock
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.step_stability import check_step
 
@@ -90,9 +91,9 @@ def test_bumpers_that_would_pull_are_refused(name):
     (lambda x: 1.0 if x < 0.123 else 0.123 - x, 1.0, 0.123)])
 def test_event_is_found_just_past(room, first, when):
     h = 1.3
-    time, outcome = event(lambda x: x, room, first, h, room(h))
+    time, outcome = locate_event(lambda x: x, room, first, h, room(h))
     assert time == outcome == pytest.approx(when, abs=1e-9)
-    assert -PAST <= room(time) < 0.0
+    assert -EVENT_TOLERANCE <= room(time) < 0.0
 
 
 # SimulatedClock

@@ -27,7 +27,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
-from rrr_traj_planner.core.trajectory.reference_trajectory import through
+from rrr_traj_planner.core.trajectory.reference_trajectory import reference_through
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 MODEL = RobotModel()
@@ -281,15 +281,15 @@ def test_arm_at_a_stop_does_not_push_while_its_command_is_brought_back(means, jo
     q[:, joint] = end + np.sign(speed) * beyond - speed * np.array([T, 0.0])
     arm = ControlledArm(SETTINGS, q[0])
     arm.state = (*q[0], *qd[0])
-    arm.motion = through(TrajectoryPoints([0.0, T], q, qd, np.zeros((2, 3)),
-                                          *np.ones((2, 2), dtype=bool)))
+    arm.motion = reference_through(TrajectoryPoints(
+        [0.0, T], q, qd, np.zeros((2, 3)), *np.ones((2, 2), dtype=bool)))
     arm.advance(round(T / SETTINGS.step) - 1)
     command = q[1, joint] if means is end_of_the_trajectory else arm.desired[joint]
     means(arm)
     assert arm.stop_warnings[0].startswith(
         f'{MODEL.joint_names[joint]} is commanded to {command:.6g} rad, outside its range [')
     arm.advance(1)
-    arm.monitor.take()
+    arm.monitor.read_and_clear()
     arm.advance(1000)
-    assert arm.monitor.take().pressed[joint] == 0.0
+    assert arm.monitor.read_and_clear().pressed[joint] == 0.0
     np.testing.assert_allclose(arm.state[joint], end, atol=1e-5)

@@ -29,7 +29,7 @@ AT_REST = (0.5, 1.1, -0.2, 0.0, 0.0, 0.0)
 
 def readings(settings, states):
     encoder = Encoder(settings, STEP, states[0])
-    return np.array([encoder.seen, *(encoder.read(state) for state in states[1:])])
+    return np.array([encoder.measured, *(encoder.read(state) for state in states[1:])])
 
 
 def steady(rate, n=3000):

@@ -191,7 +191,8 @@ def test_arm_pressed_into_its_hard_stop_rests_there_and_leaves_when_friction_let
 
 def test_joint_that_only_its_neighbour_s_stop_presses_into_its_own_rests_there(monkeypatch):
     # Alone, joint 3 would leave its stop; joint 2, pressed into its own, throws it back.
-    monkeypatch.setattr(FrictionDynamics, '_waited', None)  # what a chattering step ends with
+    # What a chattering step ends with.
+    monkeypatch.setattr(FrictionDynamics, '_step_with_joints_locked', None)
     physics = ArmPhysics(MODEL, LOW, HIGH, Friction([1.0] * 3, [1.0] * 3))
     state, found = (0.5, HIGH[1], HIGH[2], 0.1, 0.0, 0.0), 0
     for tau_2, tau_3 in np.random.default_rng(1).uniform(

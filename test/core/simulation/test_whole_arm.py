@@ -122,11 +122,11 @@ def test_controller_sees_what_the_encoders_tell():
     seen = []
     for _ in range(1500):
         arm.advance(1)
-        seen.append(arm.seen)
+        seen.append(arm.measured)
     steps = np.array(seen)[:, :3] / 1e-3
     np.testing.assert_allclose(steps, np.round(steps), atol=1e-9)
     assert np.abs(np.subtract(arm.state[:3], Q + 0.3)).max() < 1e-3
-    assert arm.seen != arm.state
+    assert arm.measured != arm.state
 
 
 def test_encoder_noise_is_the_same_again_with_its_seed():

@@ -26,7 +26,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.stopping.stop import stop
 from rrr_traj_planner.core.stopping.task import from_state, time_inside
-from rrr_traj_planner.core.trajectory.reference_trajectory import through
+from rrr_traj_planner.core.trajectory.reference_trajectory import reference_through
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
 MODEL, FREE = RobotModel(), np.full(3, inf)
@@ -60,7 +60,7 @@ def parabola(top, acceleration, duration=2.0):
     q[:, 0], qd[:, 0], qdd[:, 0] = top - 0.5 * acceleration * x ** 2, -acceleration * x, -(
         acceleration)
     known = np.ones(21, dtype=bool)
-    return through(TrajectoryPoints(t, q, qd, qdd, known, known), NOW_NS)
+    return reference_through(TrajectoryPoints(t, q, qd, qdd, known, known), NOW_NS)
 
 
 def test_stop_starts_from_the_command_and_ends_at_rest():
@@ -227,7 +227,7 @@ def test_pose_that_cannot_be_held_is_flown_through():
     s = (t / 1.2)[:, np.newaxis]
     d = (q[1] - q[0])
     known = np.ones(len(t), dtype=bool)
-    motion = through(TrajectoryPoints(
+    motion = reference_through(TrajectoryPoints(
         t, q[0] + (10 - 15 * s + 6 * s ** 2) * s ** 3 * d,
         30 * (s * (1 - s)) ** 2 * d / 1.2, 60 * s * (1 - s) * (1 - 2 * s) * d / 1.2 ** 2, known,
         known), NOW_NS)
@@ -242,7 +242,8 @@ def test_steps_of_the_followed_motion_are_its_own_and_no_more(order):
     q = np.array([0.3, 1.0, 0.2]) + np.outer(0.3 * np.sin(1.1 * t), (1.0, 0.5, 1.0))
     qd = np.outer(0.33 * np.cos(1.1 * t), (1.0, 0.5, 1.0)) * (order > 1)
     known = np.full(31, order > 1)
-    motion = through(TrajectoryPoints(t, q, qd, np.zeros((31, 3)), known, known & False), NOW_NS)
+    motion = reference_through(
+        TrajectoryPoints(t, q, qd, np.zeros((31, 3)), known, known & False), NOW_NS)
     limits = replace(LIMITS, max_effort=np.array([150.0, 175.0, 65.0]), max_jerk=FREE)
     for begin in NOW + np.linspace(0.05, 2.8, 12):
         motion_to_rest = stop(motion, begin, limits, MODEL).motion

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.nanoseconds import SECOND
-from rrr_traj_planner.core.trajectory.reference_trajectory import holding, through
+from rrr_traj_planner.core.trajectory.reference_trajectory import holding, reference_through
 from rrr_traj_planner.core.trajectory.trajectory_points import segment_orders, TrajectoryPoints
 from scipy.interpolate import BPoly
 
@@ -46,7 +46,7 @@ def test_every_instant_equals_the_whole_trajectory_s_interpolation(
     assert (segment_orders(points) == order).all()
     states = (points.positions, points.velocities, points.accelerations)[:(order + 1) // 2]
     expected = BPoly.from_derivatives(points.times, np.stack(states, axis=1))
-    motion, times = through(points), samples(points)
+    motion, times = reference_through(points), samples(points)
     np.testing.assert_allclose([motion(t) for t in times],
                                np.hstack([expected(times, k) for k in range(3)]), atol=1e-9)
 
@@ -57,7 +57,7 @@ def test_each_segment_uses_what_both_its_points_carry():
         points.times, points.positions, points.velocities, points.accelerations,
         [True, True, True, False, False, True], [True, True, False, True, False, True])
     assert segment_orders(mixed).tolist() == [5, 3, 1, 1, 1]
-    motion, full = through(mixed), through(points)
+    motion, full = reference_through(mixed), reference_through(points)
     t = 0.5 * (points.times[0] + points.times[1])
     assert motion(t) == full(t)
     t = 0.25 * points.times[3] + 0.75 * points.times[4]
@@ -67,7 +67,7 @@ def test_each_segment_uses_what_both_its_points_carry():
 
 def test_position_is_held_before_and_after():
     points = random_points(True, True)
-    motion = through(points)
+    motion = reference_through(points)
     np.testing.assert_allclose(motion(points.times[0] - 5.0)[:3], points.positions[0])
     assert motion(points.times[-1]) == (*points.positions[-1], *(0.0,) * 6)
     assert motion(1e9) == motion(points.times[-1])
@@ -76,7 +76,7 @@ def test_position_is_held_before_and_after():
 def test_any_order_of_times_gives_the_same_states():
     points = random_points(True, True)
     times = samples(points)
-    forward, motion = through(points), through(points)
+    forward, motion = reference_through(points), reference_through(points)
     expected = {t: forward(t) for t in times}
     for t in np.random.default_rng(6).permutation(times):
         assert motion(t) == expected[t]
@@ -86,11 +86,12 @@ def test_origin_moves_the_motion_and_keeps_its_precision():
     # Points a nanosecond apart, 1e9 s ahead: absolute times would coincide.
     points = TrajectoryPoints([0.0, 1e-9, 2e-9], np.eye(3), *np.zeros((2, 3, 3)),
                               *([[False] * 3] * 2))
-    motion = through(points, origin_ns=10 ** 18)
+    motion = reference_through(points, origin_ns=10 ** 18)
     assert motion.start == 1e9
     assert motion(1e9 + 1.0)[:3] == (0.0, 0.0, 1.0)
     points = random_points(True, True)
-    np.testing.assert_allclose(through(points, 2 * SECOND)(3.5), through(points)(1.5), atol=1e-12)
+    np.testing.assert_allclose(reference_through(points, 2 * SECOND)(3.5),
+                               reference_through(points)(1.5), atol=1e-12)
 
 
 def test_exactly_at_a_point_the_segment_that_begins_there_is_in_force():
@@ -100,8 +101,9 @@ def test_exactly_at_a_point_the_segment_that_begins_there_is_in_force():
         gaps = rng.integers(1, 20_000_000, 500)
         times = np.cumsum(gaps).tolist()
         q = rng.uniform(-1.0, 1.0, (500, 3))
-        motion = through(TrajectoryPoints(np.array([n / SECOND for n in times]), q,
-                                          *np.zeros((2, 500, 3)), *([[False] * 500] * 2)), origin)
+        motion = reference_through(TrajectoryPoints(
+            np.array([n / SECOND for n in times]), q, *np.zeros((2, 500, 3)),
+            *([[False] * 500] * 2)), origin)
         slopes = np.diff(q, axis=0) / (gaps[1:, np.newaxis] / SECOND)
         for i, n in enumerate(times[:-1]):
             at = motion.command(origin + n)
@@ -121,7 +123,7 @@ def test_one_point_is_held():
 
 def test_states_are_those_at_the_knots():
     points = random_points(True, True)
-    motion = through(points)
+    motion = reference_through(points)
     expected = [motion(t) for t in points.times[:-1]]
     np.testing.assert_allclose(np.hstack(motion.states())[:-1], expected, atol=1e-12)
     end = np.concatenate((points.positions[-1], points.velocities[-1], points.accelerations[-1]))
@@ -132,13 +134,13 @@ def test_states_are_those_at_the_knots():
 
 @pytest.mark.parametrize('carried', [(False, False), (True, False), (True, True)])
 def test_many_instants_are_those_one_by_one(carried):
-    motion = through(random_points(*carried), 3_000_000_000)
+    motion = reference_through(random_points(*carried), 3_000_000_000)
     t = np.linspace(2.0, motion.end - 1e-9, 500)
     np.testing.assert_allclose(np.hstack(motion.at(t)[:3]), [motion(x) for x in t], atol=1e-12)
 
 
 def test_jerk_is_the_derivative_of_acceleration():
-    motion, h = through(random_points(True, True)), 1e-6
+    motion, h = reference_through(random_points(True, True)), 1e-6
     t = 0.5 * (motion.knots[1:] + motion.knots[:-1])
     difference = (motion.at(t + h)[2] - motion.at(t - h)[2]) / (2.0 * h)
     np.testing.assert_allclose(motion.at(t)[3], difference, rtol=1e-6, atol=1e-6)

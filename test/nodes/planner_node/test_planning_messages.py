@@ -116,7 +116,7 @@ def test_an_arm_parked_at_the_end_of_a_range_is_never_refused_for_its_encoders(c
     outside = 0
     for _ in range(25):
         arm.advance(37)
-        seen = arm.seen
+        seen = arm.measured
         outside += seen[0] < 0.0
         request = planning_request(plan_request(TABLE_6_1, start={
             'position': seen[:3], 'velocity': seen[3:]}), config)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Monitoring of the simulated arm: saturated motors, joints on their stops."""
+"""Record of saturated motors and of contacts with joint stops."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from rrr_traj_planner.core.simulation.joint_stops import Contact
 from rrr_traj_planner.core.states import Triple
 
 # Commanded torque over the limit from which a motor counts as saturated. Following a motion
-# planned at the limit takes up to 1.004.
+# planned at the limit takes up to 1.004 (measured).
 SATURATED = 1.01
 
-# A joint hits its stop at this speed [rad/s], and is pressed against it with this part of its
-# motor's limit, or of the motor's torque where that has none. A motion that ends there touches it
-# more gently, with the noise of encoders of 1e-5 rad too.
+# Impact speed that is reported [rad/s]; fraction of the motor's torque limit (of its torque if
+# unlimited) from which pressing against a stop is reported. A motion that ends at a stop remains
+# below both, also with an encoder noise of 1e-5 rad.
 HIT, PRESSED = 0.05, 0.05
 
-# No stop is pressed with less, whatever the motor [N m].
+# Least torque against a stop that is reported, for any motor [N m]; chosen.
 LEAST_PRESSURE = 1e-3
 
 NONE: Triple = (0.0, 0.0, 0.0)
@@ -50,31 +50,32 @@ class Finding(NamedTuple):
     text: str
 
 
-class Condition(NamedTuple):
-    """Saturation and stop contacts during some steps, for each joint."""
+class SaturationAndContact(NamedTuple):
+    """Saturation and contacts with stops during some steps, for each joint."""
 
     saturated: tuple[int, int, int] = (0, 0, 0)  # steps with a saturated motor
-    wanted: Triple = NONE                        # the largest torque that was wanted then [N m]
-    hit: Triple = NONE      # the largest speed at which a stop was hit [rad/s]; upper stops: > 0
-    pressed: Triple = NONE  # the largest torque against a stop [N m]; upper stops: > 0
+    wanted: Triple = NONE                        # largest torque commanded then [N m]
+    hit: Triple = NONE      # largest speed at which a stop was hit [rad/s]; upper stops: > 0
+    pressed: Triple = NONE  # largest torque against a stop [N m]; upper stops: > 0
 
-    def joined(self, other: Condition) -> Condition:
+    def joined(self, other: SaturationAndContact) -> SaturationAndContact:
         """
-        Return the condition over these steps and others.
+        Return the record over these steps and others.
 
         Parameters
         ----------
-        other : Condition
-            Of the others.
+        other : SaturationAndContact
+            Record of the others.
 
         Returns
         -------
-        Condition
+        SaturationAndContact
             Steps added, the larger of each value.
 
         """
         a, b, c = (m + n for m, n in zip(self.saturated, other.saturated))
-        return Condition((a, b, c), *(_larger(x, y) for x, y in zip(self[1:], other[1:])))
+        return SaturationAndContact(
+            (a, b, c), *(_larger(x, y) for x, y in zip(self[1:], other[1:])))
 
     def motors(self, joint_names: Sequence[str], limits: JointLimits) -> list[Finding]:
         """
@@ -90,7 +91,7 @@ class Condition(NamedTuple):
         Returns
         -------
         list of Finding
-            Joint, torque wanted, limit, unit.
+            Joint, commanded torque, limit, unit.
 
         """
         return [Finding('saturated', name,
@@ -127,12 +128,12 @@ class Condition(NamedTuple):
         return found
 
 
-SOUND = Condition()
+NONE_RECORDED = SaturationAndContact()
 
 
-class ConditionMonitor:
+class SaturationAndContactMonitor:
     """
-    Accumulates the condition of an arm until it is read.
+    Accumulates saturation and contacts until they are read.
 
     Attributes
     ----------
@@ -143,22 +144,22 @@ class ConditionMonitor:
 
     def __init__(self) -> None:
         self.max_effort: Triple = (inf, inf, inf)
-        self._condition = SOUND
+        self._record = NONE_RECORDED
 
-    def take(self) -> Condition:
+    def read_and_clear(self) -> SaturationAndContact:
         """
-        Return the condition since the last call.
+        Return what was recorded since the last call, and clear it.
 
         Returns
         -------
-        Condition
-            `SOUND` itself where nothing has.
+        SaturationAndContact
+            `NONE_RECORDED` itself if nothing was recorded.
 
         """
-        condition, self._condition = self._condition, SOUND
-        return condition
+        record, self._record = self._record, NONE_RECORDED
+        return record
 
-    def cut(self, wanted: Triple) -> None:
+    def record_saturation(self, wanted: Triple) -> None:
         """
         Record a step in which motors saturate.
 
@@ -171,17 +172,17 @@ class ConditionMonitor:
         over = [abs(x) > SATURATED * limit for x, limit in zip(wanted, self.max_effort)]
         if any(over):
             a, b, c = (int(x) for x in over)
-            self._note(Condition((a, b, c), wanted=_where(over, wanted)))
+            self._add(SaturationAndContact((a, b, c), wanted=_where(over, wanted)))
 
-    def touched(self, at: Contact, before: Contact, velocity: Triple, reaction: Triple,
-                torque: Triple) -> None:
+    def record_contact(self, at: Contact, before: Contact, velocity: Triple, reaction: Triple,
+                       torque: Triple) -> None:
         """
-        Record a step at whose end joints touch their stops.
+        Record a step at the end of which joints are in contact with their stops.
 
         Parameters
         ----------
         at, before : tuple of 3 ints
-            Which stops are touched after the step and before it: 1 lower, -1 upper, 0 none.
+            Contacts after the step and before it: 1 lower stop, -1 upper stop, 0 none.
         velocity : tuple of 3 floats
             Before the step [rad/s].
         reaction : tuple of 3 floats
@@ -198,11 +199,11 @@ class ConditionMonitor:
                    for side, was, x, y in zip(at, before, reaction, least)]
         if any(hit) or any(pressed):
             n1, n2, n3 = reaction
-            self._note(Condition(
+            self._add(SaturationAndContact(
                 hit=_where(hit, velocity), pressed=_where(pressed, (-n1, -n2, -n3))))
 
-    def _note(self, condition: Condition) -> None:
-        self._condition = self._condition.joined(condition)
+    def _add(self, record: SaturationAndContact) -> None:
+        self._record = self._record.joined(record)
 
 
 def _where(chosen: Sequence[object], values: Triple) -> Triple:
