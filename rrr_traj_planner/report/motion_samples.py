@@ -21,10 +21,10 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arm.wireframe import skeleton
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 
@@ -171,4 +171,4 @@ def arm_points(model: RobotModel, q: Array) -> Array:
         Base, shoulder, elbow and tip [m].
 
     """
-    return np.array([skeleton(model, one) for one in q.tolist()])
+    return np.array([link_positions(model, one) for one in q.tolist()])

@@ -26,8 +26,9 @@ from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rrr_traj_planner.core.arm.urdf import urdf
-from rrr_traj_planner.core.arm.wireframe import skeleton, Trail
+from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.nodes.output.marker_messages import arm_markers
+from rrr_traj_planner.nodes.output.wireframe import Trail
 from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
@@ -86,7 +87,7 @@ class ArmView:
         reach = self._model.reach[1]
         self._trail = Trail(TRAIL_STEP * reach, TRAIL_POINTS)
         self._moved = MOVED * reach
-        self._joints = skeleton(self._model, q)
+        self._joints = link_positions(self._model, q)
         self._shown: Any = None  # the joints of the last message
         self._shown_at = 0.0     # steady time [s]
         self._description = ''
@@ -108,7 +109,7 @@ class ArmView:
 
         """
         if self._rate > 0.0:
-            self._joints = skeleton(self._model, q)
+            self._joints = link_positions(self._model, q)
             self._trail.add(self._joints[-1])
 
     def restart(self) -> None:

@@ -25,11 +25,11 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 from mpl_toolkits.mplot3d import proj3d
 import numpy as np
-from rrr_traj_planner.core.arm.wireframe import skeleton
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.nodes.demo.client import Run
 
@@ -132,8 +132,8 @@ def _space(axes: Any, run: Run) -> None:
     q = spline_through(run.planned).at(np.linspace(0.0, run.planned.duration, STEPS))[0]
     at_via = spline_through(run.planned).at(np.array(run.response.via_times))[0]
     for i, pose in enumerate(at_via):
-        axes.plot(*zip(*skeleton(run.config.model, pose)), color='0.65', linewidth=2.0, marker='o',
-                  markersize=3, label='arm at via points' if i == 0 else None)
+        axes.plot(*zip(*link_positions(run.config.model, pose)), color='0.65', linewidth=2.0,
+                  marker='o', markersize=3, label='arm at via points' if i == 0 else None)
     axes.plot(*forward_kinematics(model, q).T, color='#cc79a7', linewidth=2.0, label='planned')
     driven = run.recorded.positions[run.recorded.times >= 0.0]
     axes.plot(*forward_kinematics(model, driven).T, **DRIVEN, label='driven')

@@ -27,10 +27,10 @@ from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.urdf import COLOURS, RADIUS
-from rrr_traj_planner.core.arm.wireframe import picked, Rod, rod
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
+from rrr_traj_planner.nodes.output.wireframe import picked, Rod, rod
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 

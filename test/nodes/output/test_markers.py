@@ -25,8 +25,8 @@ from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.urdf import FrameNames, urdf
-from rrr_traj_planner.core.arm.wireframe import skeleton
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.output.marker_messages import MAX_POINTS, plan_markers
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
@@ -110,7 +110,7 @@ def test_markers_show_the_arm_where_it_is_and_where_it_has_been(ros):
         assert marker.header.frame_id == 'base_link'
         assert marker.color.a == 1.0
         assert marker.scale.x > 0.0
-    base, shoulder, elbow, _ = np.array(skeleton(MODEL, GOAL))
+    base, shoulder, elbow, _ = np.array(link_positions(MODEL, GOAL))
     np.testing.assert_allclose(
         places(shown['arm', 3].points), [shoulder, elbow], rtol=0.0, atol=1e-3)
     rods = [shown['arm', i] for i in range(3)]

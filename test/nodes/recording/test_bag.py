@@ -31,7 +31,7 @@ import pytest
 from rclpy.serialization import deserialize_message, serialize_message
 from rosgraph_msgs.msg import Clock
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arm.wireframe import skeleton
+from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.nodes.demo.recording import LATCHED, PASSING
 from rrr_traj_planner.nodes.output.marker_messages import arm_markers
 from rrr_traj_planner.nodes.process.entry import StartError
@@ -78,7 +78,7 @@ SAMPLES = {
                                           position=numbers(), effort=numbers(2))],
     JointTrajectory: [trajectory(0), trajectory(1), trajectory(7)],
     Path: [path(0), path(5)],
-    MarkerArray: [arm_markers(RobotModel(), 'odd', skeleton(RobotModel(), q), [tuple(q)] * n)
+    MarkerArray: [arm_markers(RobotModel(), 'odd', link_positions(RobotModel(), q), [tuple(q)] * n)
                   for n, q in ((0, numbers()), (3, numbers()))],
     String: [String(), String(data='<robot name="ä"/>' * 1000)],
     Clock: [Clock(clock=Time(sec=7, nanosec=1))],

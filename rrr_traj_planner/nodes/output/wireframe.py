@@ -12,20 +12,17 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm as a wireframe for drawing: joint positions, rods between them, a trail of the tip."""
+"""Shapes for drawing the arm: rods between points, a trail of the tip, points picked evenly."""
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
-from math import cos, dist, sin, sqrt
+from math import dist, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
-
-Point = tuple[float, float, float]
+from rrr_traj_planner.core.kinematics.link_positions import Point
 
 
 class Rod(NamedTuple):
@@ -34,30 +31,6 @@ class Rod(NamedTuple):
     centre: Point                                   # [m]
     quaternion: tuple[float, float, float, float]   # x, y, z, w
     length: float                                   # [m]
-
-
-def skeleton(model: RobotModel, q: Sequence[float]) -> tuple[Point, Point, Point, Point]:
-    """
-    Return the positions of base, shoulder, elbow and tip for one joint state, in floats.
-
-    Parameters
-    ----------
-    model : RobotModel
-        The arm.
-    q : sequence of 3 floats
-        Joint positions [rad].
-
-    Returns
-    -------
-    tuple of 4 points
-        Base frame [m].
-
-    """
-    c1, s1, q23 = cos(q[0]), sin(q[0]), q[1] + q[2]
-    r, h = model.a2 * cos(q[1]), model.d1 + model.a2 * sin(q[1])
-    r_tip, h_tip = r + model.d4 * sin(q23), h - model.d4 * cos(q23)
-    return ((0.0, 0.0, 0.0), (0.0, 0.0, model.d1), (c1 * r, s1 * r, h),
-            (c1 * r_tip, s1 * r_tip, h_tip))
 
 
 def rod(start: Point, end: Point) -> Rod:

@@ -12,27 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm in lines, against the kinematics and by what it must look like."""
+"""Shapes for drawing the arm: rods, the trail, picked points."""
 
 from __future__ import annotations
 
-from helpers.random_cases import ARMS, random_states
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.wireframe import picked, rod, skeleton, Trail
-from rrr_traj_planner.core.kinematics.link_motion import link_motion
+from rrr_traj_planner.nodes.output.wireframe import picked, rod, Trail
 
 ROUNDING = 1e-12  # m, rad
-
-
-@pytest.mark.parametrize('arm', ARMS)
-def test_skeleton_has_the_origins_of_the_frames(arm):
-    q, qd, qdd = random_states(np.random.default_rng(1), 50)
-    frames = link_motion(arm, q, qd, qdd).frame.position
-    for one, origins in zip(q.tolist(), frames):
-        base, *joints = skeleton(arm, one)
-        assert base == (0.0, 0.0, 0.0)
-        np.testing.assert_allclose(joints, origins, rtol=0.0, atol=ROUNDING)
 
 
 def rotated_z(quaternion):
