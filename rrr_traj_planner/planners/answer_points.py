@@ -41,7 +41,7 @@ from rrr_traj_planner.core.trajectory.sampling import (
     points_at,
     sample_times,
     SampleTimes,
-    STEP_SHARE,
+    STEP_FRACTION,
 )
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
@@ -170,8 +170,8 @@ def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, step
         share = (steps - begin[index]) / width[index]
         after = np.where(outside[index], share < 0.5,  # both intervals are shorter in any case
                          (excess.place[index] > share) | overshoot_before)
-        # Not at the step itself: beside it, so that the step is STEP_SHARE of an interval inside.
-        beside = STEP_SHARE / (1.0 - STEP_SHARE) * width[index]
+        # Not at the step itself: beside it, so that the step is STEP_FRACTION of an interval inside.
+        beside = STEP_FRACTION / (1.0 - STEP_FRACTION) * width[index]
         cut[index] = np.where(after, steps + beside * share, steps - beside * (1.0 - share))
         exceeds_jerk[index] = False  # a shorter interval would make the step's jerk larger
     least = np.where(outside, min(gap, CLOSEST), gap) - NANOSECOND

@@ -36,7 +36,7 @@ TRAVEL, BEGINNING = 1e-6, 1e-9  # s/rad
 
 
 def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
-                     begun: bool, passing: Passing) -> Array:
+                     first_is_fixed: bool, passing: Passing) -> Array:
     """
     Return one joint's positions with the whole turns of least time within its range.
 
@@ -54,7 +54,7 @@ def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
         Its positions up to whole turns, at most half a turn from one to the next [rad].
     others : ndarray, shape (m - 1,)
         Times from each point to the next that the other joints need [s].
-    begun : bool
+    first_is_fixed : bool
         Whether the turn of the first position is fixed.
     passing : Passing
         How the motion passes via points.
@@ -65,7 +65,7 @@ def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
         Positions [rad]; where no turn is in range, the nearest.
 
     """
-    values, allowed = _options(limits, joint, q, begun)
+    values, allowed = _options(limits, joint, q, first_is_fixed)
     cost = np.where(allowed, 0.0, np.inf)
     if len(q) == 1:
         return values[0, [np.argmin(cost[0] + BEGINNING * np.abs(values[0]))]]
@@ -97,8 +97,8 @@ def _step(best: Array, times: Array, rests: BoolArray, cost: Array) -> tuple[Arr
     """Return least costs at the next stage, and the predecessors that attain them."""
     reached, origin = [], []
     for rest in (0, 1):  # at the middle one of three points
-        way = best + np.stack([times[rest], times[rest + 1]], axis=-1)
-        total = np.where(rests[:, np.newaxis] == rest, np.moveaxis(way, 2, 1)[..., np.newaxis],
+        cost_before = best + np.stack([times[rest], times[rest + 1]], axis=-1)
+        total = np.where(rests[:, np.newaxis] == rest, np.moveaxis(cost_before, 2, 1)[..., np.newaxis],
                          np.inf)  # turn before, rest before, turn between, turn after
         flat = total.reshape(-1, *total.shape[2:])
         origin.append(flat.argmin(axis=0))
@@ -106,14 +106,14 @@ def _step(best: Array, times: Array, rests: BoolArray, cost: Array) -> tuple[Arr
     return np.stack(reached, axis=-1), np.stack(origin, axis=-1)
 
 
-def _options(limits: JointLimits, joint: int, q: Array, begun: bool) -> tuple[Array, BoolArray]:
+def _options(limits: JointLimits, joint: int, q: Array, first_is_fixed: bool) -> tuple[Array, BoolArray]:
     """Return candidate positions at each point, shape (m, k), and which of them are allowed."""
     low, high = limits.min_position[joint], limits.max_position[joint]
     first = np.ceil((low - q - JOINT_ROUNDING) / TURN)
     last = np.floor((high - q + JOINT_ROUNDING) / TURN)
     none = first > last
     first[none] = last[none] = np.round((0.5 * (low + high) - q[none]) / TURN)
-    if begun:
+    if first_is_fixed:
         first[0] = last[0] = 0.0
     nearest = np.clip(0.0, first, last)
     first = np.maximum(first, np.minimum(nearest - MOST_TURNS // 2, last - (MOST_TURNS - 1)))

@@ -51,7 +51,7 @@ THROUGH = Passing()
 
 
 def joint_travel_time(limits: JointLimits, joint: int | slice, travel: Array,
-                      ends: Array | IntArray | int, turns: Array | IntArray | int,
+                      ends: Array | IntArray | int, reversals: Array | IntArray | int,
                       passing: Passing) -> Array:
     """
     Return the time of a joint's travel between via points, by a trapezoidal velocity profile.
@@ -71,7 +71,7 @@ def joint_travel_time(limits: JointLimits, joint: int | slice, travel: Array,
         Lengths [rad], not negative.
     ends : ndarray or int
         Number of ends of the travel that are ends of the motion.
-    turns : ndarray or int
+    reversals : ndarray or int
         Number of the other ends at which the joint reverses.
     passing : Passing
         How the motion passes via points.
@@ -87,10 +87,10 @@ def joint_travel_time(limits: JointLimits, joint: int | slice, travel: Array,
     with np.errstate(invalid='ignore', divide='ignore', over='ignore'):
         if passing.via == 'blend':
             line = np.maximum(travel / velocity,
-                              np.sqrt(travel * (turns + 0.5 * ends) / acceleration))
+                              np.sqrt(travel * (reversals + 0.5 * ends) / acceleration))
             speed = np.where(line > 0.0, travel / line, 0.0)
             return np.asarray(line + 0.5 * ends * speed / acceleration)
-        rests = 2 if passing.via == 'stop' else ends + turns
+        rests = 2 if passing.via == 'stop' else ends + reversals
         ramp = np.where(np.isinf(acceleration), 0.0, velocity / acceleration)
         cruises = 2.0 * travel >= rests * velocity * ramp
         return np.where(rests == 0, travel / velocity,
@@ -118,11 +118,11 @@ def travel_times(limits: JointLimits, q: Array, passing: Passing) -> Array:
 
     """
     travel = np.diff(q, axis=0)
-    turns = np.zeros(q.shape, dtype=int)
-    turns[1:-1] = np.sign(travel[:-1]) * np.sign(travel[1:]) <= 0.0
+    reversals = np.zeros(q.shape, dtype=int)
+    reversals[1:-1] = np.sign(travel[:-1]) * np.sign(travel[1:]) <= 0.0
     return joint_travel_time(
         limits, slice(None), np.abs(travel), motion_ends(len(travel))[:, np.newaxis],
-        turns[:-1] + turns[1:], passing)
+        reversals[:-1] + reversals[1:], passing)
 
 
 def motion_ends(segments: int) -> IntArray:

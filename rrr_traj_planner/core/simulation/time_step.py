@@ -111,11 +111,11 @@ def held_step(k: Constants, t: Terms, state: State, torque: Triple, h: float,
         qd, _added(_added(a, d, 1.0), _added(b, c, 1.0), 2.0), sixth)
 
 
-def _moved(q: Triple, qd: Triple, a: Triple, h: float, share: float | None = None) -> Triple:
-    """Return q + h (qd + share a); the share is h / 2 for a constant acceleration."""
-    share = 0.5 * h if share is None else share
-    return (q[0] + h * (qd[0] + share * a[0]), q[1] + h * (qd[1] + share * a[1]),
-            q[2] + h * (qd[2] + share * a[2]))
+def _moved(q: Triple, qd: Triple, a: Triple, h: float, factor: float | None = None) -> Triple:
+    """Return q + h (qd + factor a); the factor is h / 2 for a constant acceleration."""
+    factor = 0.5 * h if factor is None else factor
+    return (q[0] + h * (qd[0] + factor * a[0]), q[1] + h * (qd[1] + factor * a[1]),
+            q[2] + h * (qd[2] + factor * a[2]))
 
 
 def _added(x: Triple, y: Triple, factor: float) -> Triple:

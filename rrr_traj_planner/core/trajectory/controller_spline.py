@@ -89,8 +89,8 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
         For each interval.
 
     """
-    shares = np.linspace(0.0, 1.0, STEPS + 1)
-    q, qd, qdd = spline.within(shares)
+    fractions = np.linspace(0.0, 1.0, STEPS + 1)
+    q, qd, qdd = spline.within(fractions)
     should_stop()
     tau = inverse_dynamics(model, q, qd, qdd)
     effort = np.abs(tau).max(axis=(0, 1))
@@ -119,8 +119,8 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
 def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
                  index: IntArray) -> tuple[Array, Array, Array, Array]:
     """Return time scale, distance outside, place and effort of some intervals, checked densely."""
-    shares = np.linspace(0.0, 1.0, FINE_STEPS + 1)
-    q, qd, qdd = spline.within(shares, index)
+    fractions = np.linspace(0.0, 1.0, FINE_STEPS + 1)
+    q, qd, qdd = spline.within(fractions, index)
     tau = inverse_dynamics(model, q, qd, qdd)
     ratios = np.stack([
         np.abs(qd) / limits.max_velocity, np.abs(qdd) / limits.max_acceleration,
@@ -133,7 +133,7 @@ def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
     q = _at_reversals(q, qd, qdd, np.diff(spline.knots)[index] / FINE_STEPS)
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max(axis=(0, 2))
     return (factors.max(axis=0), np.where(outside > RANGE_TOLERANCE, outside, 0.0),
-            shares[factors.argmax(axis=0)], _between(np.abs(tau)).max(axis=(0, 1)))
+            fractions[factors.argmax(axis=0)], _between(np.abs(tau)).max(axis=(0, 1)))
 
 
 def _at_reversals(q: Array, qd: Array, qdd: Array, step: Array) -> Array:

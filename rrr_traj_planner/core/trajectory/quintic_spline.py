@@ -71,14 +71,14 @@ class QuinticSpline:
         q, qd, qdd, qddd = (polynomial(c, x, derivative) for derivative in range(4))
         return q, qd, qdd, qddd
 
-    def within(self, shares: ArrayLike,
+    def within(self, fractions: ArrayLike,
                segments: IntArray | slice = slice(None)) -> tuple[Array, Array, Array]:
         """
         Return position, velocity and acceleration at the same fractions of several segments.
 
         Parameters
         ----------
-        shares : array_like, shape (m,)
+        fractions : array_like, shape (m,)
             Fractions of the time from a point to the next, from 0 to 1.
         segments : ndarray or slice
             Indices of k of the n - 1 segments.
@@ -91,7 +91,7 @@ class QuinticSpline:
         """
         c = np.moveaxis(self.coefficients, -1, 0)[:, segments]
         widths = np.diff(self.knots)[segments]
-        x = np.asarray(shares, dtype=float)[:, np.newaxis, np.newaxis] * widths[:, np.newaxis]
+        x = np.asarray(fractions, dtype=float)[:, np.newaxis, np.newaxis] * widths[:, np.newaxis]
         return polynomial(c, x, 0), polynomial(c, x, 1), polynomial(c, x, 2)
 
     def peak_jerks(self) -> Array:
@@ -108,8 +108,8 @@ class QuinticSpline:
         c = np.moveaxis(self.coefficients, -1, 0)
         with np.errstate(divide='ignore', invalid='ignore'):
             vertex = -0.2 * c[4] / c[5]  # jerk is a parabola in time
-        places = (0.0 * widths, widths, np.clip(np.nan_to_num(vertex), 0.0, widths))
-        return np.asarray(np.abs([polynomial(c, x, 3) for x in places]).max(axis=0))
+        times = (0.0 * widths, widths, np.clip(np.nan_to_num(vertex), 0.0, widths))
+        return np.asarray(np.abs([polynomial(c, x, 3) for x in times]).max(axis=0))
 
 
 def spline_through(points: TrajectoryPoints) -> QuinticSpline:

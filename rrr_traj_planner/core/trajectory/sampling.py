@@ -32,9 +32,9 @@ LEAST_GAP = 0.1  # of the period, between a regular sample and a via point's; ch
 # The quintic of an interval in which acceleration steps has the same mean and first moment of
 # acceleration as the motion, and overshoots. With the step at one end of the interval, it
 # overshoots at the other end by 37 % of the step, and its jerk is 9 times the step over the
-# interval; with the step at a sixth of the interval (STEP_SHARE) the overshoot is least, 5 % of
+# interval; with the step at a sixth of the interval (STEP_FRACTION) the overshoot is least, 5 % of
 # the step.
-STEP_SHARE, STEP_OVERSHOOT = 1.0 / 6.0, 0.0501
+STEP_FRACTION, STEP_OVERSHOOT = 1.0 / 6.0, 0.0501
 STEP_GAP = 0.3  # of the period, between a step and a regular point: bounds the quintic's jerk
 
 # Default limit on the number of points, which bounds the memory used; chosen.
@@ -126,7 +126,7 @@ def sample_times(trajectory: Trajectory, period: float,
 
     A regular point nearer than a tenth of a period to a via time is dropped. One nearer than three
     tenths to a step of acceleration is replaced by points half a period before and after the step.
-    See `STEP_SHARE` for quintics across steps.
+    See `STEP_FRACTION` for quintics across steps.
 
     Parameters
     ----------
