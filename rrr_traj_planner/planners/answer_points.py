@@ -170,7 +170,7 @@ def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, step
         share = (steps - begin[index]) / width[index]
         after = np.where(outside[index], share < 0.5,  # both intervals are shorter in any case
                          (excess.place[index] > share) | overshoot_before)
-        # Not at the step itself: beside it, so that the step is STEP_FRACTION of an interval inside.
+        # Not at the step itself: beside it, so that the step is at STEP_FRACTION of an interval.
         beside = STEP_FRACTION / (1.0 - STEP_FRACTION) * width[index]
         cut[index] = np.where(after, steps + beside * share, steps - beside * (1.0 - share))
         exceeds_jerk[index] = False  # a shorter interval would make the step's jerk larger

@@ -98,7 +98,8 @@ def _step(best: Array, times: Array, rests: BoolArray, cost: Array) -> tuple[Arr
     reached, origin = [], []
     for rest in (0, 1):  # at the middle one of three points
         cost_before = best + np.stack([times[rest], times[rest + 1]], axis=-1)
-        total = np.where(rests[:, np.newaxis] == rest, np.moveaxis(cost_before, 2, 1)[..., np.newaxis],
+        cost_before = np.moveaxis(cost_before, 2, 1)[..., np.newaxis]
+        total = np.where(rests[:, np.newaxis] == rest, cost_before,
                          np.inf)  # turn before, rest before, turn between, turn after
         flat = total.reshape(-1, *total.shape[2:])
         origin.append(flat.argmin(axis=0))
@@ -106,7 +107,8 @@ def _step(best: Array, times: Array, rests: BoolArray, cost: Array) -> tuple[Arr
     return np.stack(reached, axis=-1), np.stack(origin, axis=-1)
 
 
-def _options(limits: JointLimits, joint: int, q: Array, first_is_fixed: bool) -> tuple[Array, BoolArray]:
+def _options(limits: JointLimits, joint: int, q: Array,
+             first_is_fixed: bool) -> tuple[Array, BoolArray]:
     """Return candidate positions at each point, shape (m, k), and which of them are allowed."""
     low, high = limits.min_position[joint], limits.max_position[joint]
     first = np.ceil((low - q - JOINT_ROUNDING) / TURN)
