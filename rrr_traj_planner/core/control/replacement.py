@@ -53,10 +53,11 @@ from rrr_traj_planner.core.trajectory.trajectory_points import (
     with_start_state,
 )
 
-# Distance up to which a command counts as on a trajectory [rad], [rad/s].
+# Distance up to which a command counts as on a trajectory [rad], [rad/s]; chosen.
 POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
 
-# Steps in which a joining polynomial's torque is sampled; tolerance of limits, relative and [rad].
+# Time steps in the torque check of a joining polynomial; tolerance of limits, relative and [rad].
+# Chosen.
 TORQUE_STEPS, LIMIT_TOLERANCE = 32, 1e-6
 
 # Points that are tried at once; chosen.
@@ -246,9 +247,9 @@ def _gone_to(takeover: Takeover, motion: ReferenceTrajectory) -> Replacement:
     """
     Return a quintic to the motion's end, later than on schedule, or a stop and a move there.
 
-    Where the motion has a velocity at its end, the quintic leads to where it would be by then, if
-    the arm can stop inside its ranges from there. Where gravity asks too much of a motor on the
-    way, or the end is outside a range, the arm stays where it has stopped.
+    If the motion has a velocity at its end, the quintic leads to the position extrapolated with
+    that velocity, if the arm can stop inside its ranges from there. If the move would exceed a
+    torque limit, or the end is outside a range, the arm holds the position where it stopped.
     """
     if outside := _ends_outside(takeover, motion):
         stopped, warnings = _stopped(takeover)

@@ -42,7 +42,7 @@ from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints,
 # samples of a motion at its limit exceed it by up to 0.1 %.
 POSITION_TOLERANCE, LIMIT_TOLERANCE = 1e-4, 2e-3
 
-ACCURACY = 1e-6  # of extremes, relative to the bound that they exceed
+ACCURACY = 1e-6  # of extremes, relative to the bound that they exceed; chosen
 
 
 class Excess(NamedTuple):

@@ -64,8 +64,7 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
     Returns
     -------
     ndarray, shape (n, 3)
-        Joint positions [rad]. Where no whole turn brings a joint into its range, the turn that
-        brings it nearest.
+        Joint positions [rad]. If no whole turn brings a joint into its range, the nearest one.
 
     Raises
     ------

@@ -36,12 +36,12 @@ from rrr_traj_planner.core.scalars import positive, whole_number
 from scipy.special import erf
 
 # k [sigma]. Up to 2 sigma the Maclaurin series needs order 9 for an error below a thousandth of
-# the peak, the accuracy that appendix A asks for.
+# the peak, the accuracy required in appendix A.
 HALF_WIDTH = 2.0
 NEEDED_ORDER = 9
 
-# Beyond these half widths rounding spoils the lowered function or powers of them overflow; the
-# last coefficient of the highest order is 1e-188.
+# Range of half widths [sigma] outside which rounding spoils the lowered function or its powers
+# overflow, and the highest order, whose last coefficient is 1e-188.
 LEAST_WIDTH, MOST_WIDTH, MOST_ORDER = 0.1, 100.0, 100
 
 # Rounding of a polynomial's zeros: imaginary part of a real one, distance of another zero from 0.

@@ -142,7 +142,7 @@ def zone_sides(points: Array, started: bool) -> IntArray:
 
 
 def _in_half_plane(points: Array) -> bool:
-    """Return whether points lie in a vertical plane through joint axis 1, on one side of it."""
+    """Return whether points lie in a vertical half plane bounded by joint axis 1."""
     return common_plane(points) is not None and not passes_axis(points)
 
 

@@ -67,7 +67,7 @@ class ArmPath(ReadOnlyArrays):
     model : RobotModel
         The arm.
     limits : JointLimits
-        Whose ranges say how many whole turns each joint has made.
+        Joint ranges, which determine the whole turns of each joint.
     path : CartesianPath
         The path, within the workspace and the ranges.
     posture : Posture

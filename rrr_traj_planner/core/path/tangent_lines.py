@@ -237,7 +237,7 @@ def _newton_step(points: Array, radii: Array, kind: ZoneKind, lines: Tangents,
     base = _misses(lines, basis)
     slope = (_misses(turned, basis) - base) / DIFFERENCE  # colour, turn, line, component
     band = np.zeros((2 * BAND + 1, n, 2))  # diagonals of LAPACK's band, by line and turn
-    for offset in (-1, 0, 1):  # the turn of a line is felt by itself and by its neighbours
+    for offset in (-1, 0, 1):  # the turn of a line affects itself and its neighbours
         own = np.arange(max(-offset, 0), n - max(offset, 0))
         for component in range(2):
             for turn in range(2):

@@ -95,7 +95,7 @@ class ControlLoop:
 
     @property
     def is_ideal(self) -> bool:
-        """Whether the controller has an exact model and exact measurements; no disturbance."""
+        """Whether the controller has an exact model and exact measurements, undisturbed."""
         return self._ideal and self.disturbance == NO_DISTURBANCE
 
     def set_position(self, q: Array) -> None:

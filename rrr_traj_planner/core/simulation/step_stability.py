@@ -43,7 +43,7 @@ def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
     Parameters
     ----------
     model : RobotModel
-        The arm, with what it carries.
+        The arm with its payload.
     friction : Friction
         Of its joints.
     soft_stops : SoftStops

@@ -41,8 +41,8 @@ RANGE_TOLERANCE = 8e-7   # rad
 
 # Steps of an interval in the coarse and in the dense check. An interval is checked densely where a
 # limit is below a Bernstein coefficient of position, velocity, acceleration or of the polynomial
-# through the coarse samples of torque.
-STEPS, FINE_STEPS = 4, 64
+# through the coarse samples of torque. Chosen.
+COARSE_STEPS, FINE_STEPS = 4, 64
 
 
 class SplineExcess(NamedTuple):
@@ -70,7 +70,7 @@ class SplineExcess(NamedTuple):
 def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
                   should_stop: ShouldStop = never) -> SplineExcess:
     """
-    Return by how much quintics through points exceed velocity, acceleration, torque and range.
+    Return the excess of quintics through points over velocity, acceleration, torque and range.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
         For each interval.
 
     """
-    fractions = np.linspace(0.0, 1.0, STEPS + 1)
+    fractions = np.linspace(0.0, 1.0, COARSE_STEPS + 1)
     q, qd, qdd = spline.within(fractions)
     should_stop()
     tau = inverse_dynamics(model, q, qd, qdd)
