@@ -66,7 +66,8 @@ def test_line_that_all_but_crosses_joint_axis_1_is_refused():
     path = line_arc([[0.6, 0.8, 1.0], [-0.6, -0.8 + 1e-7, 1.2]], [])
     with pytest.raises(LimitViolationError,
                        match=r'^at 1\.00499 m along the path, between via points 0 and 1 .*: the '
-                             r'tip would pass joint axis 1 at .* m, where joint_1') as caught:
+                             r'tip would pass joint axis 1 \(singularity\) at .* m, where '
+                             r'joint_1') as caught:
         check_workspace(MODEL, FREE, path, Posture())
     assert caught.value.joint == 'joint_1'
 
