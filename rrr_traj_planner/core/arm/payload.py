@@ -69,7 +69,7 @@ def with_payload(model: RobotModel, mass: float) -> RobotModel:
     Returns
     -------
     RobotModel
-        The same object where the mass is 0.
+        The same object if the mass is 0.
 
     Raises
     ------

@@ -15,8 +15,8 @@
 """
 Dynamics of the arm for one state (shape (3,)) or many (shape (..., 3)).
 
-Thesis (5.36)-(5.54) corrected.
-One state is computed with Python floats, ten times as fast as NumPy with single numbers.
+Thesis (5.36)-(5.54) corrected. One state is computed with Python floats, ten times as fast as
+NumPy with single numbers.
 """
 
 from __future__ import annotations

@@ -15,10 +15,10 @@
 """
 Inverse kinematics at consecutive via points: whole turns and free angles chosen jointly.
 
-Taking the nearest solution at every point gives the least travel. Where it leaves a joint's
-range, or where the other direction might avoid a reversal, the turns of all points are chosen
-together for the least estimated time (`least_time_turns`). On joint axis 1, where theta_1 is free,
-it is interpolated between the point before and the point after.
+The nearest solution at every point gives the least travel. If it leaves a joint's range, or if the
+other direction might avoid a reversal, the turns of all points are chosen together for the least
+estimated time (`least_time_turns`). On joint axis 1, where theta_1 is free, it is interpolated
+between the point before and the point after.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ OUTSIDE_NEW_RANGES = 'The motion leaves the new joint ranges: stopping'
 
 class ControlledArm(ControlLoop):
     """
-    A simulated arm that follows trajectories, joins and stops them, and watches its tolerances.
+    A simulated arm that follows, replaces and stops trajectories, and checks tolerances.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ class ControlledArm(ControlLoop):
         Returns
         -------
         bool
-            Whether it is followed; else the arm stops, and `stop_warnings` say why.
+            Whether it is followed; if not, the arm stops, and `stop_warnings` give the reason.
 
         """
         takeover = Takeover(self.time, self.desired, self.settings.limits,
@@ -207,7 +207,7 @@ class ControlledArm(ControlLoop):
         return stop(motion, time, self.settings.limits, self.settings.controller_model)
 
     def _stay(self, motion: ReferenceTrajectory) -> None:
-        """Follow a motion other than a trajectory: tolerances do not apply."""
+        """Follow a motion other than a received trajectory: tolerances do not apply."""
         self.motion = motion
         self._watched = self._first_check = False
         self.stop_warnings = ()

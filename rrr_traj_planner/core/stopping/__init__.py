@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""How a motion comes to rest inside the joints' ranges."""
+"""Stopping of motions within the joints' ranges and limits."""

@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Trajectories: pieces, peaks, limits, samples, and what a controller makes of the points."""
+"""Trajectories: pieces, peaks, limits, samples, and a controller's interpolation of points."""

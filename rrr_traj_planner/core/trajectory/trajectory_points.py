@@ -43,7 +43,7 @@ class TrajectoryPoints(ReadOnlyArrays):
     velocities, accelerations : array_like, shape (n, 3), optional
         [rad/s], [rad/s^2]; zero where a point has none, and if left out.
     has_velocity, has_acceleration : array_like of bool, shape (n,), optional
-        Whether a point has them; if left out, all points have what is given.
+        Whether a point has them; if left out, all points have those that are given.
 
     Raises
     ------
