@@ -31,8 +31,8 @@ from rrr_traj_planner.core.simulation.saturation_and_contact import (
 from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, LATE, OwnClock
 from rrr_traj_planner.nodes.output.diagnostics import diagnostics, PERIOD
 
-LARGE_ERROR = 0.02  # rad, tracking error of a joint that is reported as a warning
-OUTSIDE = 1e-6      # rad, distance outside a range that is reported; less is rounding
+LARGE_ERROR = 0.02  # rad, tracking error of a joint above which there is a warning
+OUTSIDE = 1e-6      # rad, least distance outside a range that is reported; less is rounding
 
 
 class ArmDiagnostics:
@@ -78,38 +78,38 @@ class ArmDiagnostics:
     def _report(self) -> None:
         """Publish what was recorded since the last message, and clear it."""
         arm, names = self._arm, self._arm.settings.model.joint_names
-        shares = [n / max(arm.steps - self._steps, 1) for n in self._condition.saturated]
+        saturated = [n / max(arm.steps - self._steps, 1) for n in self._condition.saturated]
         outside = [_outside(*x) for x in zip(
             arm.state, arm.settings.limits.min_position, arm.settings.limits.max_position)]
         factor = (arm.now - self._reached) / max(monotonic_ns() - self._since, 1)
-        wrong = self._wrong(shares, outside)
+        warnings = self._warnings(saturated, outside)
         values = [('real-time factor', f'{factor:.3f}'),
                   ('behind the clock [s]', f'{self._time.behind / SECOND:.3f}')]
-        for name, *of_joint in zip(names, shares, self._condition.hit, self._condition.pressed,
-                                   self._errors, outside):
+        for name, *of_joint in zip(names, saturated, self._condition.hit,
+                                   self._condition.pressed, self._errors, outside):
             keys = ('saturated [share]', 'stop hit at [rad/s]', 'pressed against stop [N m]',
                     'tracking error [rad]', 'outside range [rad]')
             values += [(f'{name} {key}', f'{x:.6g}') for key, x in zip(keys, of_joint)]
         text = 'follows a trajectory' if arm.now < arm.motion.end_ns else 'holds its position'
         self._publish(diagnostics(
             f'{self._node.get_name()}: arm',
-            DiagnosticStatus.WARN if wrong else DiagnosticStatus.OK, '; '.join(wrong) or text,
-            values, self._node.get_clock().now().to_msg()))
+            DiagnosticStatus.WARN if warnings else DiagnosticStatus.OK,
+            '; '.join(warnings) or text, values, self._node.get_clock().now().to_msg()))
         self._begin()
 
-    def _wrong(self, shares: list[float], outside: list[float]) -> list[str]:
-        """Return a text for each warning."""
+    def _warnings(self, saturated: list[float], outside: list[float]) -> list[str]:
+        """Return a text for each warning; arguments as in `_report`."""
         arm, names = self._arm, self._arm.settings.model.joint_names
-        wrong = [f'{name} saturated {100.0 * share:.3g} % of the time'
-                 for name, share in zip(names, shares) if share > 0.0]
-        wrong += [finding.text for finding in self._condition.stops(names, arm.settings.limits)]
-        wrong += [f'{name} {abs(x):.3g} rad outside its range'
+        texts = [f'{name} saturated {100.0 * fraction:.3g} % of the time'
+                 for name, fraction in zip(names, saturated) if fraction > 0.0]
+        texts += [finding.text for finding in self._condition.stops(names, arm.settings.limits)]
+        texts += [f'{name} {abs(x):.3g} rad outside its range'
                   for name, x in zip(names, outside) if abs(x) > OUTSIDE]
-        wrong += [f'{name} up to {x:.3g} rad off what it follows'
+        texts += [f'{name} tracking error up to {x:.3g} rad'
                   for name, x in zip(names, self._errors) if x > LARGE_ERROR]
         if self._time.behind > LATE:
-            wrong.append(f'simulated time is {self._time.behind / SECOND:.3f} s behind')
-        return wrong
+            texts.append(f'simulated time is {self._time.behind / SECOND:.3f} s behind')
+        return texts
 
 
 def _outside(q: float, low: float, high: float) -> float:

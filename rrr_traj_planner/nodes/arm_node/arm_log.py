@@ -35,7 +35,7 @@ NUMBER = re.compile(r'(?<![\w.])-?\d[\d.]*(?:e[-+]?\d+)?')
 
 class ArmLog:
     """
-    Logs the arm's events; repeated ones at most once per period for each kind and joint.
+    Logs the arm's events: repeated ones at most once per period for each kind and joint.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ class ArmLog:
 
         """
         if self._throttle.passes('followed'):
-            self._log.info(f'following {counted(points, "point")}, at the end in {seconds:.3f} s'
-                           + self._held('followed'))
+            self._log.info(f'following {counted(points, "point")}, until the end in {seconds:.3f} s'
+                           + self._suppressed('followed'))
 
     def refused(self, text: str) -> None:
         """
@@ -78,11 +78,11 @@ class ArmLog:
         """
         kind = NUMBER.sub('#', text)
         if self._throttle.passes(kind):
-            self._log.error(text + self._held(kind))
+            self._log.error(text + self._suppressed(kind))
 
     def exceeded(self, excesses: Sequence[Excess]) -> None:
         """
-        Warn of a trajectory that exceeds ranges or limits.
+        Warn of a trajectory, or a lead-in segment, that exceeds ranges or limits.
 
         Parameters
         ----------
@@ -91,9 +91,9 @@ class ArmLog:
 
         """
         for leading_in, text in (
-                (False, "the trajectory, as it was sent, leaves the joints' limits: {}"),
-                (True, "the way to the trajectory's first point, by its time, leaves the joints' "
-                       'limits: {}; the arm joins it later, within them')):
+                (False, 'the received trajectory exceeds joint limits: {}'),
+                (True, 'the lead-in segment exceeds joint limits: {}; the trajectory is joined '
+                       'at a later point')):
             found = [e for e in excesses if e.leading_in is leading_in]
             if found and self._throttle.passes(*(e.kind for e in found)):
                 self._log.warning(text.format('; '.join(
@@ -117,7 +117,7 @@ class ArmLog:
                 if self._throttle.passes((kind, joint)):
                     self._log.warning(text)
 
-    def _held(self, kind: str) -> str:
-        """Return the number of messages of a kind that were held back, as text."""
-        held = self._throttle.held(kind)
-        return f' ({held} more since the last such line)' if held else ''
+    def _suppressed(self, kind: str) -> str:
+        """Return the number of messages of a kind that were suppressed, as text."""
+        count = self._throttle.suppressed(kind)
+        return f' ({count} more since the last such line)' if count else ''

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Time of the arm's simulation: it follows the node's clock, or is itself the clock (/clock)."""
+"""Simulated time: it follows the node's clock, or the arm publishes it on /clock."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.core.simulation.schedule import Schedule
 from rrr_traj_planner.core.simulation.simulated_clock import SimulatedClock
 
-# Largest wall time of a tick [ns], so that services are answered in time, and number of steps
-# between two checks of it.
+# Largest wall time of a tick [ns], so that services are answered soon, and number of steps between
+# two checks of it.
 MAX_TICK, STEPS_PER_CHECK = SECOND // 50, 100
 
 # Delay of simulated time that is reported [ns], and period of that warning [s].
@@ -50,12 +50,12 @@ MOST_STATES = 100
 
 class FollowedClock:
     """
-    Time of the node's clock: every tick simulates up to the present, in whole steps.
+    Simulated time that follows the node's clock: each tick simulates up to the present.
 
     Parameters
     ----------
     node : Node
-        The arm node; it may use simulated time.
+        The arm node; its clock may be simulated time of another node (use_sim_time).
     arm : ControlledArm
         The arm.
     publish : callable
@@ -64,7 +64,7 @@ class FollowedClock:
 
     """
 
-    pace: SimulatedClock | None = None
+    simulated_clock: SimulatedClock | None = None
 
     def __init__(self, node: Node, arm: ControlledArm, publish: Callable[[], None]) -> None:
         self._node, self._arm, self._publish = node, arm, publish
@@ -91,8 +91,8 @@ class FollowedClock:
         behind = self.now() - self.reached()
         if not -JUMP_BACK <= behind <= JUMP_AHEAD:
             self._node.get_logger().warning(
-                f'the clock jumped by {behind / SECOND:+.3f} s; the arm and what it follows '
-                'go on from there', throttle_duration_sec=WARNING_PERIOD)
+                f'the clock jumped by {behind / SECOND:+.3f} s; the arm and its trajectory '
+                'continue from the new time', throttle_duration_sec=WARNING_PERIOD)
             self.epoch += behind
             self._states = Schedule(self._states.rate, self._arm.now)
             behind = 0
@@ -104,10 +104,10 @@ class FollowedClock:
                 f'simulated time is {self.behind / SECOND:.3f} s behind the clock: this machine '
                 'is busy or too slow', throttle_duration_sec=WARNING_PERIOD)
 
-    catch_up = tick
+    advance_to_now = tick
 
     def _advance(self, due: int) -> None:
-        """Simulate up to a time of the arm's [ns], at most for `MAX_TICK`."""
+        """Simulate up to a time since the arm's start [ns], at most for `MAX_TICK`."""
         arm, step, begun = self._arm, self._arm.settings.step_ns, monotonic_ns()
         latest = MOST_STATES * SECOND / self._states.rate  # ns before the present
         while True:
@@ -121,7 +121,7 @@ class FollowedClock:
 
 class OwnClock:
     """
-    Time of the arm itself, from 0 on, published on /clock; it can be paused.
+    Simulated time of the arm's own, from 0 on, published on /clock; it can be paused.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ class OwnClock:
         self._node, self._arm, self._publish = node, arm, publish
         self.epoch = self.behind = 0
         self._states = self._clock = Schedule(MIN_RATE, arm.now)
-        self.pace = SimulatedClock(factor, monotonic_ns())
+        self.simulated_clock = SimulatedClock(factor, monotonic_ns())
         self._publish_clock = node.create_publisher(Clock, '/clock', QUEUE_DEPTH).publish
 
     def now(self) -> int:
@@ -160,8 +160,8 @@ class OwnClock:
         if publish_rate != self._states.rate:
             self._states = Schedule(publish_rate, self.now())
             self._clock = Schedule(max(publish_rate, MIN_RATE), self.now())
-        if factor != self.pace.factor:
-            self.pace.restart(monotonic_ns(), self.now(), factor=factor)
+        if factor != self.simulated_clock.factor:
+            self.simulated_clock.restart(monotonic_ns(), self.now(), factor=factor)
         if factor == 0.0:
             return MIN_PERIOD
         return min(max(1.0 / (self._clock.rate * factor), MIN_PERIOD), MAX_PERIOD)
@@ -169,7 +169,7 @@ class OwnClock:
     def tick(self) -> None:
         """Simulate the steps that are due, and publish; at most for `MAX_TICK`."""
         begun, step = monotonic_ns(), self._arm.settings.step_ns
-        due = self.pace.due(begun, self.now(), SECOND)
+        due = self.simulated_clock.due(begun, self.now(), SECOND)
         while monotonic_ns() - begun <= MAX_TICK:
             steps = _steps(self._arm, min(self._states.next, self._clock.next))
             if self.now() + steps * step > due:
@@ -177,12 +177,13 @@ class OwnClock:
             self._advance(steps)
             if self._states.passed(self.now()):
                 self._publish()
-        self.behind = due - self.now() if self.pace.factor > 0.0 else 0
+        self.behind = due - self.now() if self.simulated_clock.factor > 0.0 else 0
         if self.behind > LATE:
             self._node.get_logger().warning(
-                f'real_time_factor {self.pace.factor:g} is too much for this machine',
+                f'real_time_factor {self.simulated_clock.factor:g} cannot be reached on this '
+                'machine',
                 throttle_duration_sec=WARNING_PERIOD)
-            self.pace.restart(monotonic_ns(), self.now())
+            self.simulated_clock.restart(monotonic_ns(), self.now())
 
     def single_step(self) -> None:
         """Simulate one step, and publish."""
@@ -190,8 +191,8 @@ class OwnClock:
         self._states.passed(self.now())
         self._publish()
 
-    def catch_up(self) -> None:
-        """Do nothing: no time passes between ticks."""
+    def advance_to_now(self) -> None:
+        """Do nothing: simulated time advances only in ticks."""
 
     def _advance(self, steps: int) -> None:
         """Simulate some steps, and publish the time."""

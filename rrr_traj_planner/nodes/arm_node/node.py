@@ -57,7 +57,7 @@ MOVING_END_HINT = (
     '; a stream of points that end while moving needs '
     'allow_nonzero_velocity_at_trajectory_end: true')
 
-NOT_THE_CLOCK = 'the arm follows a clock; only with publish_clock is it one that can stand'
+NOT_THE_CLOCK = 'simulated time can be paused only with publish_clock: true'
 
 
 class SimulatedArm(ServiceNode):
@@ -111,7 +111,7 @@ class SimulatedArm(ServiceNode):
             self, self._arm, self._publish, config.real_time_factor
         ) if config.publish_clock else FollowedClock(self, self._arm, self._publish)
         self._diagnostics = ArmDiagnostics(self, self._arm, self._time)
-        # The timer uses steady time: it also runs while simulated time stands still.
+        # The timer uses steady time: it also runs while simulated time is paused.
         self._timer = self.create_timer(
             self._period(config), self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._start = NodeStart(
@@ -148,7 +148,7 @@ class SimulatedArm(ServiceNode):
 
     def _follow(self, message: JointTrajectory) -> None:
         """Accept a trajectory, or log why it is refused and continue as before."""
-        self._time.catch_up()
+        self._time.advance_to_now()
         trajectory, arm = incoming_trajectory(message), self._arm
         try:
             check_trajectory(trajectory, self._joint_names, self._time.now(),
@@ -166,7 +166,7 @@ class SimulatedArm(ServiceNode):
 
     def _disturb(self, message: JointState) -> None:
         """Apply disturbance torques, or log why they are refused."""
-        self._time.catch_up()
+        self._time.advance_to_now()
         try:
             self._arm.disturbance = disturbance_torque(message, self._joint_names)
         except RrrPlannerError as error:
@@ -174,7 +174,7 @@ class SimulatedArm(ServiceNode):
 
     def _reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Set the arm to its initial positions, at rest."""
-        self._time.catch_up()
+        self._time.advance_to_now()
         q = self._parameters_declared.config.initial_positions
         self._arm.reset(q)
         self._view.restart()
@@ -184,7 +184,7 @@ class SimulatedArm(ServiceNode):
 
     def _hold(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Stop the arm inside its ranges, as fast as its limits allow."""
-        self._time.catch_up()
+        self._time.advance_to_now()
         self._arm.hold()
         motion = self._arm.motion
         response.success = True
@@ -194,26 +194,26 @@ class SimulatedArm(ServiceNode):
 
     def _pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Pause or resume simulated time."""
-        pace = self._time.pace
-        if pace is None:
+        clock = self._time.simulated_clock
+        if clock is None:
             response.success, response.message = False, NOT_THE_CLOCK
             return response
-        pace.restart(monotonic_ns(), self._time.now(), paused=request.data)
+        clock.restart(monotonic_ns(), self._time.now(), paused=request.data)
         response.success = True
-        response.message = (f'time {"stands" if request.data else "goes on"} at '
+        response.message = (f'time {"paused" if request.data else "resumed"} at '
                             f'{self._time.now() / SECOND:.3f} s')
         return response
 
     def _single_step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Simulate one step while time is paused."""
-        if isinstance(self._time, OwnClock) and self._time.pace.paused:
+        if isinstance(self._time, OwnClock) and self._time.simulated_clock.paused:
             self._time.single_step()
             response.success = True
             response.message = f'stepped to {self._time.now() / SECOND:.3f} s'
         else:
             response.success = False
-            response.message = (NOT_THE_CLOCK if self._time.pace is None
-                                else 'time does not stand; call ~/pause first')
+            response.message = (NOT_THE_CLOCK if self._time.simulated_clock is None
+                                else 'time is not paused; call ~/pause first')
         return response
 
     def _configure(self, config: ArmConfig) -> None:

@@ -36,7 +36,7 @@ class Throttle:
     def __init__(self, period: float = PERIOD) -> None:
         self._period = period
         self._passed: dict[Hashable, float] = {}
-        self._held: dict[Hashable, int] = {}
+        self._suppressed: dict[Hashable, int] = {}
 
     def passes(self, *kinds: Hashable) -> bool:
         """
@@ -57,14 +57,14 @@ class Throttle:
         now = monotonic()
         if all(now - self._passed.get(kind, -self._period) < self._period for kind in kinds):
             for kind in kinds:
-                self._held[kind] = self._held.get(kind, 0) + 1
+                self._suppressed[kind] = self._suppressed.get(kind, 0) + 1
             return False
         self._passed.update((kind, now) for kind in kinds)
         return True
 
-    def held(self, kind: Hashable) -> int:
+    def suppressed(self, kind: Hashable) -> int:
         """
-        Return the number of messages of a kind that were held back since the last call.
+        Return the number of messages of a kind that were suppressed since the last call.
 
         Parameters
         ----------
@@ -77,4 +77,4 @@ class Throttle:
             Number of messages.
 
         """
-        return self._held.pop(kind, 0)
+        return self._suppressed.pop(kind, 0)

@@ -114,9 +114,9 @@ def test_rate_that_no_step_can_keep_is_told(ros):
 def test_time_stands_and_goes_in_single_steps(ros):
     arm = Arm(ros, publish_clock=True)
     arm.actual.wait_for()
-    assert not arm.trigger('step').success  # time does not stand
+    assert not arm.trigger('step').success  # time is not paused
     answer = pause(ros, True)
-    assert answer.success and answer.message.startswith('time stands at ')
+    assert answer.success and answer.message.startswith('time paused at ')
     before = arm.trigger('step').message  # 'stepped to 0.123 s'
     after = arm.trigger('step').message
     reached = [float(text.split()[2]) for text in (before, after)]

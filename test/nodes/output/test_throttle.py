@@ -30,8 +30,8 @@ def test_each_kind_passes_once_in_a_period(monkeypatch):
     assert gate.passes('a', 'c')      # c is new, and a passes with it
     now[0] = 101.9
     assert not gate.passes('a')
-    assert gate.held('a') == 3
-    assert gate.held('a') == 0
+    assert gate.suppressed('a') == 3
+    assert gate.suppressed('a') == 0
     now[0] = 102.0
     assert gate.passes('b')
     assert not gate.passes('b')
