@@ -20,12 +20,11 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.function_figures import shade
-from rrr_traj_planner.report.measures import via_errors
+from rrr_traj_planner.report.measures import via_errors, via_positions
 from rrr_traj_planner.report.motion_samples import drawing_times
 from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.theme import JOINTS, LIGHT
@@ -77,32 +76,12 @@ def figure_4_4(of: Planned) -> Picture:
         f'{1e3 * distances[1]:.0f} mm.', corners=True)
 
 
-def via_positions(of: Planned) -> Array:
-    """
-    Return the joint positions of the via points, on the branch of a motion.
-
-    Parameters
-    ----------
-    of : Planned
-        The motion.
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
-        Joint positions [rad].
-
-    """
-    passed = of.plan.trajectory(of.plan.via_times)[0]
-    return np.array([nearest_solution(of.task.model, point, q)
-                     for point, q in zip(of.task.via_points, passed)])
-
-
 def _approach(of: Planned, name: str, title: str, caption: str, corners: bool) -> Picture:
     trajectory = of.plan.trajectory
     assert isinstance(trajectory, PiecewiseTrajectory)
     t = drawing_times(trajectory)
     q, qd = (values[:, JOINT] for values in trajectory(t)[:2])
-    wanted = via_positions(of)[:, JOINT]
+    via = _via_positions(of)[:, JOINT]
     profile: JointProfile = trajectory.profiles[JOINT]
 
     def draw(figure: Any) -> None:
@@ -112,7 +91,7 @@ def _approach(of: Planned, name: str, title: str, caption: str, corners: bool) -
             one.plot(t, values, color=JOINTS[JOINT])
         if corners:
             _corner_lines(axes[0], of, profile)
-        axes[0].plot(of.plan.via_times, wanted, 'o', color=LIGHT['via'], clip_on=False,
+        axes[0].plot(of.plan.via_times, via, 'o', color=LIGHT['via'], clip_on=False,
                      markeredgecolor=LIGHT['ink'], markersize=5)
         drawing.via_lines(axes, of.plan.via_times)
         handle = drawing.joint_handles(of.task.model.joint_names)[JOINT]
@@ -130,5 +109,11 @@ def _corner_lines(axes: Any, of: Planned, profile: JointProfile) -> None:
     t = of.plan.via_times.copy()
     t[0] += 0.5 * first
     t[-1] -= 0.5 * last
-    axes.plot(t, via_positions(of)[:, JOINT], color=LIGHT['limit'], linestyle='--',
+    axes.plot(t, _via_positions(of)[:, JOINT], color=LIGHT['limit'], linestyle='--',
               linewidth=0.9)
+
+
+def _via_positions(of: Planned) -> Array:
+    """Return the joint positions of the via points, on the branch of a motion [rad]."""
+    return via_positions(
+        of.task.model, of.task.via_points, of.plan.trajectory(of.plan.via_times)[0])

@@ -108,11 +108,6 @@ class Planned:
     planner_id: str
     plan: Plan
 
-    @property
-    def follows_path(self) -> bool:
-        """Return whether the planner is Cartesian: whether it plans the tip's path."""
-        return planner(self.planner_id).plan_path is not None
-
 
 def attempts(task: Task, planner_ids: Sequence[str], repeats: int = 1) -> list[Attempt]:
     """

@@ -19,6 +19,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import nearest_solution
@@ -107,12 +108,67 @@ def via_errors(of: Planned) -> tuple[Array, Array]:
         Largest error of a joint [rad], and distance of the tip [m].
 
     """
-    model = of.task.model
-    passed = of.plan.trajectory(of.plan.via_times)[0]
-    tips = forward_kinematics(model, passed)
-    errors = [float(np.abs(nearest_solution(model, point, q) - q).max())
-              for point, q in zip(of.task.via_points, passed)]
-    return np.array(errors), np.linalg.norm(tips - of.task.via_points, axis=1)
+    q = of.plan.trajectory(of.plan.via_times)[0]
+    return (joint_errors(of.task.model, of.task.via_points, q),
+            tip_errors(of.task.model, of.task.via_points, q))
+
+
+def joint_errors(model: RobotModel, via_points: Array, q: Array) -> Array:
+    """
+    Return the largest error of a joint at each via point.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    via_points : ndarray, shape (n, 3)
+        Positions of the tip [m].
+    q : ndarray, shape (n, 3)
+        Joint positions of the arm at the via points' times [rad].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Errors [rad], from the nearest inverse solution.
+
+    """
+    return np.asarray(np.abs(via_positions(model, via_points, q) - q).max(axis=1))
+
+
+def tip_errors(model: RobotModel, via_points: Array, q: Array) -> Array:
+    """
+    Return the distance of the tip from each via point.
+
+    Parameters
+    ----------
+    model, via_points, q
+        As in `joint_errors`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Distances [m].
+
+    """
+    return np.linalg.norm(forward_kinematics(model, q) - via_points, axis=1)
+
+
+def via_positions(model: RobotModel, via_points: Array, q: Array) -> Array:
+    """
+    Return the joint positions of via points that are nearest to given ones.
+
+    Parameters
+    ----------
+    model, via_points, q
+        As in `joint_errors`.
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+        The nearest inverse solution for each via point [rad].
+
+    """
+    return np.array([nearest_solution(model, point, near) for point, near in zip(via_points, q)])
 
 
 def time_at_limit(shares: Array, times: Array, least: float) -> float:

@@ -21,8 +21,8 @@ import numpy as np
 from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
-from rrr_traj_planner.nodes.arm_node.arm_messages import nanoseconds
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
+from rrr_traj_planner.nodes.output.message_times import nanoseconds
 from rrr_traj_planner.nodes.parameters.table import ARM, rows_of
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger

@@ -22,7 +22,7 @@ from rclpy.parameter import Parameter
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
-from rrr_traj_planner.nodes.arm_node.arm_messages import nanoseconds
+from rrr_traj_planner.nodes.output.message_times import nanoseconds
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 

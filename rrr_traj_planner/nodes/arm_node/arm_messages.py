@@ -19,10 +19,10 @@ from __future__ import annotations
 from array import array
 from collections.abc import Sequence
 
-from builtin_interfaces.msg import Duration, Time
 from rrr_traj_planner.core.control.trajectory_validation import IncomingPoint, IncomingTrajectory
 from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError
 from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.nodes.output.message_times import nanoseconds
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
@@ -54,7 +54,7 @@ def disturbance_torque(message: JointState,
 
     """
     if len(message.position) or len(message.velocity):
-        raise InvalidInputError('a disturbance has efforts alone, no positions or velocities')
+        raise InvalidInputError('a disturbance has efforts only, no positions or velocities')
     if len(message.name) != len(message.effort):
         raise InvalidInputError(f'a disturbance has {counted(len(message.name), "name")} and '
                                 f'{counted(len(message.effort), "effort")}, must have an effort '
@@ -92,24 +92,6 @@ def incoming_trajectory(message: JointTrajectory) -> IncomingTrajectory:
         message.joint_names, nanoseconds(message.header.stamp),
         [IncomingPoint(nanoseconds(p.time_from_start), p.positions, p.velocities,
                        p.accelerations, p.effort) for p in message.points])
-
-
-def nanoseconds(time: Time | Duration) -> int:
-    """
-    Return a time or duration message in nanoseconds.
-
-    Parameters
-    ----------
-    time : Time or Duration
-        The message.
-
-    Returns
-    -------
-    int
-        Nanoseconds.
-
-    """
-    return int(time.sec) * SECOND + int(time.nanosec)
 
 
 class JointStateMessage:

@@ -24,23 +24,20 @@ from typing import Any
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from rrr_traj_planner.core.arm.urdf import urdf
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
+from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.nodes.output.latched import LATCHED
 from rrr_traj_planner.nodes.output.marker_messages import arm_markers
 from rrr_traj_planner.nodes.output.wireframe import Trail
 from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
 TRAIL_STEP = 1.0 / 80.0  # distance of the trail's points, as a fraction of the arm's reach
 TRAIL_POINTS = 200       # largest number of the trail's points; rclpy takes some 10 us for each
 MOVED = 1e-6             # least motion that causes new markers, as a fraction of the arm's reach
-
-SECOND = 1_000_000_000  # ns
-STILL_PERIOD = 1.0      # s between markers while the arm stands still
+STILL_PERIOD = 1.0       # s between markers while the arm does not move
 
 
 def description(config: ArmConfig) -> str:
@@ -50,7 +47,7 @@ def description(config: ArmConfig) -> str:
     Parameters
     ----------
     config : ArmConfig
-        The arm; the payload is left out.
+        The arm; its payload is not part of the URDF.
 
     Returns
     -------
@@ -78,7 +75,7 @@ class ArmView:
     Notes
     -----
     Both topics are transient local: late subscribers get the last message. Markers are published
-    in steady time, at `marker_rate`, or once a second while the arm stands still.
+    in steady time, at `marker_rate`, or once a second while the arm does not move.
 
     """
 

@@ -33,6 +33,7 @@ from rrr_traj_planner.core.kinematics.postures import posture_of
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.demo.messages import plan_request, trajectory_points
 from rrr_traj_planner.nodes.demo.recording import demo_recorder
+from rrr_traj_planner.nodes.output.message_times import seconds
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.configuration_files import Task
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
@@ -51,7 +52,8 @@ TIMEOUT = 20.0         # s for a node to appear, to answer, or to make progress
 START_DELAY = 0.5      # s between sending a trajectory and its start
 SETTLING_TIME = 0.5    # s that is recorded after the end
 PROGRESS_PERIOD = 0.5  # s between two progress lines
-AT_START = 1e-6        # rad, within which the arm counts as at the start of the motion
+POLL_PERIOD = 0.02     # s between two checks of a condition that is waited for
+AT_START = 1e-6        # rad, largest distance of a joint at which the motion can start
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +78,8 @@ class Client(Node):
         self.create_subscription(JointState, 'joint_states', self._states.append, 100)
         self._send = self.create_publisher(JointTrajectory, 'joint_trajectory', 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
-        self._ask = self.create_client(GetParameters, 'trajectory_planner/get_parameters')
+        self._get_parameters = self.create_client(
+            GetParameters, 'trajectory_planner/get_parameters')
 
     def run(self, task: Task, ended: Callable[[], tuple[str, int] | None],
             bag: Bag | None = None) -> Run:
@@ -121,13 +124,13 @@ class Client(Node):
               f'{counted(len(response.trajectory.points), "point")}', flush=True)
         planned = trajectory_points(response.trajectory)
         self._go_to(planned.positions[0], task, config)
-        start = self._drive(response.trajectory, 'driving')
+        start = self._execute(response.trajectory, 'executing')
         recorded, torque = _recorded(list(self._states), config, start)
         return Run(task, config, response, planned, recorded, torque)
 
     def check_free(self) -> None:
         """
-        Refuse to run beside other nodes of the same names on this machine.
+        Refuse to run if nodes of the same names run on this machine.
 
         Raises
         ------
@@ -136,16 +139,16 @@ class Client(Node):
 
         """
         for name in self._claimed():
-            raise StartError(f'a node {name} runs already: {KEEP_APART}')
+            raise StartError(f'a node {name} is already running: {KEEP_APART}')
 
     def check_alone(self) -> None:
         """
-        Refuse to run beside the same nodes on another machine: all would answer and move.
+        Refuse to run if nodes of the same names run on another machine: all would respond.
 
         Raises
         ------
         StartError
-            If two nodes of the same name are found, or two of what only one of them has.
+            If two nodes of the same name are found, or two users of a topic that has only one.
 
         """
         names = self.get_node_names_and_namespaces()
@@ -169,7 +172,7 @@ class Client(Node):
         return PlannerConfig.from_values(self._parameter_values(list(rows_of(PLANNER, names))))
 
     def _parameter_values(self, names: list[str]) -> dict[str, Any]:
-        answer = self._answer(self._ask, GetParameters.Request(names=names))
+        answer = self._answer(self._get_parameters, GetParameters.Request(names=names))
         return dict(zip(names, map(parameter_value_to_python, answer.values)))
 
     def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
@@ -182,7 +185,7 @@ class Client(Node):
         request.elbow = posture_of(config.model, q).elbow
         request.start_state.name = list(state.name)
         request.start_state.position = list(state.position)
-        self._drive(self._planned(request).trajectory, 'moving to the first via point')
+        self._execute(self._planned(request).trajectory, 'moving to the first via point')
 
     def _planned(self, request: PlanTrajectory.Request) -> Any:
         response = self._answer(self._plan, request)
@@ -197,12 +200,11 @@ class Client(Node):
         self._wait(future.done, f'an answer of {client.srv_name}')
         return future.result()
 
-    def _drive(self, trajectory: JointTrajectory, what: str) -> float:
+    def _execute(self, trajectory: JointTrajectory, what: str) -> float:
         """Send a trajectory, wait for its end, and return its start time [s]."""
         start = self.get_clock().now().nanoseconds + int(START_DELAY * 1e9)
         trajectory.header.stamp = Time(nanoseconds=start).to_msg()
-        last = trajectory.points[-1].time_from_start
-        duration = last.sec + 1e-9 * last.nanosec
+        duration = seconds(trajectory.points[-1].time_from_start)
         self._states.clear()
         self._send.publish(trajectory)
         shown = -1.0
@@ -210,20 +212,20 @@ class Client(Node):
 
         def finished() -> bool:
             nonlocal shown
-            now = _stamp(self._states[-1]) - begin if self._states else -START_DELAY
+            now = seconds(self._states[-1].header.stamp) - begin if self._states else -START_DELAY
             if now - shown >= PROGRESS_PERIOD and now >= 0.0 and shown < duration:
                 shown = now
                 print(f'{what}: {min(now, duration):5.2f} of {duration:.2f} s', flush=True)
             return now >= duration + SETTLING_TIME
 
-        # On a busy machine simulated time is slower than the clock; it must only advance.
-        self._wait(finished, 'the arm to go on',
-                   lambda: self._states and _stamp(self._states[-1]))
+        # On a busy machine simulated time lags behind the clock: wait as long as it advances.
+        self._wait(finished, 'the arm to continue',
+                   lambda: self._states and seconds(self._states[-1].header.stamp))
         return begin
 
     def _wait(self, ready: Callable[[], Any], what: str,
               progress: Callable[[], Any] = lambda: None) -> None:
-        """Wait as long as there is progress; raise StartError on timeout or if a node ended."""
+        """Wait until ready; raise StartError if a node ended or without progress for TIMEOUT."""
         reached, deadline = progress(), monotonic() + TIMEOUT
         while not ready():
             if progress() != reached:
@@ -234,14 +236,14 @@ class Client(Node):
             if ended is not None:
                 raise StartError(exit_message(*ended))
             if monotonic() > deadline:
-                raise StartError(f'waited {TIMEOUT:.0f} s for {what} in vain')
-            sleep(0.02)
+                raise StartError(f'timed out after {TIMEOUT:.0f} s waiting for {what}')
+            sleep(POLL_PERIOD)
 
 
 def _recorded(states: list[JointState], config: PlannerConfig,
               start: float) -> tuple[TrajectoryPoints, Array]:
     """Return the recorded motion, with times from its start, and the motor torques [N m]."""
-    times = np.array([_stamp(s) for s in states]) - start
+    times = np.array([seconds(s.header.stamp) for s in states]) - start
     fresh = np.concatenate(([True], np.diff(times) > 0.0))
     q, qd, torque = (_in_order(states, config, f)[fresh]
                      for f in ('position', 'velocity', 'effort'))
@@ -251,7 +253,3 @@ def _recorded(states: list[JointState], config: PlannerConfig,
 def _in_order(states: list[JointState], config: PlannerConfig, field: str) -> Array:
     order = [list(states[0].name).index(n) for n in config.model.joint_names]
     return np.array([getattr(s, field) for s in states])[:, order]
-
-
-def _stamp(state: JointState) -> float:
-    return float(state.header.stamp.sec + 1e-9 * state.header.stamp.nanosec)

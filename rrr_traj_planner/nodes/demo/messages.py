@@ -19,6 +19,7 @@ from __future__ import annotations
 from geometry_msgs.msg import Pose, PoseArray
 import numpy as np
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
+from rrr_traj_planner.nodes.output.message_times import seconds
 from rrr_traj_planner.nodes.parameters.configuration_files import Task
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory
@@ -36,7 +37,7 @@ def plan_request(task: Task) -> PlanTrajectory.Request:
     Returns
     -------
     PlanTrajectory.Request
-        Other fields are empty: the node's defaults.
+        Other fields are empty, so that the node's defaults apply.
 
     """
     request = PlanTrajectory.Request(planner_id=task.planner_id)
@@ -63,7 +64,7 @@ def trajectory_points(trajectory: JointTrajectory) -> TrajectoryPoints:
 
     """
     points = trajectory.points
-    times = [p.time_from_start.sec + 1e-9 * p.time_from_start.nanosec for p in points]
+    times = [seconds(p.time_from_start) for p in points]
     return TrajectoryPoints(np.array(times), *(
         np.array([getattr(p, f) for p in points])
         for f in ('positions', 'velocities', 'accelerations')))

@@ -36,13 +36,13 @@ from rrr_traj_planner.nodes.demo.client import Run
 COLOURS = ('#0072b2', '#d55e00', '#009e73')  # Okabe and Ito's: distinct for colour-blind people
 CUT_OFF = 2.0      # multiple of the limit at which a curve is cut off
 STEPS = 2000       # times at which curves are drawn
-SAME_PLACE = 1e-6  # of the width of the picture; closer via points share one label
+SAME_PLACE = 1e-6  # of the picture's width, below which via points have one common label
 STYLE = {
     'font.size': 9, 'axes.grid': True, 'grid.alpha': 0.25, 'grid.linewidth': 0.6,
     'axes.spines.top': False, 'axes.spines.right': False, 'lines.linewidth': 1.4,
     'legend.frameon': False, 'figure.constrained_layout.use': True}
 LIMIT = {'color': '0.4', 'linewidth': 0.9, 'linestyle': '--', 'zorder': 1}
-DRIVEN = {'color': 'black', 'linewidth': 1.0, 'linestyle': ':'}
+EXECUTED = {'color': 'black', 'linewidth': 1.0, 'linestyle': ':'}
 VIA = {'color': '0.75', 'linewidth': 0.8, 'zorder': 0}
 
 
@@ -93,12 +93,12 @@ def _profiles(figure: Any, run: Run) -> list[Any]:
         _via_lines(axes, run)
         axes.set_ylabel(label)
     for joint in range(len(COLOURS)):
-        profiles[-1].plot(run.recorded.times, run.torque[:, joint], **DRIVEN)
+        profiles[-1].plot(run.recorded.times, run.torque[:, joint], **EXECUTED)
     profiles[0].set_xlim(0.0, run.planned.duration)
     profiles[-1].set_xlabel('time [s]')
     profiles[0].legend(handles=[
         *profiles[0].get_lines()[:len(COLOURS)], Line2D([], [], **LIMIT, label='limit'),
-        Line2D([], [], **DRIVEN, label='driven'), Line2D([], [], **VIA, label='via point')],
+        Line2D([], [], **EXECUTED, label='executed'), Line2D([], [], **VIA, label='via point')],
         ncols=6, loc='lower center', bbox_to_anchor=(0.5, 1.0), fontsize=8, columnspacing=1.0,
         handlelength=1.6)
     return profiles
@@ -120,7 +120,7 @@ def _limit_lines(axes: Any, limit: Array) -> None:
 
 
 def _cut_off(axes: Any, values: Array, limit: Array) -> None:
-    """Cut off peaks far above the limits: jerk between points where the acceleration steps."""
+    """Cut off peaks far above a limit, such as the jerk where the acceleration steps."""
     most = CUT_OFF * limit.max()
     if np.isfinite(most) and np.abs(values).max() > most:
         axes.set_ylim(-most, most)
@@ -135,8 +135,8 @@ def _space(axes: Any, run: Run) -> None:
         axes.plot(*zip(*link_positions(run.config.model, pose)), color='0.65', linewidth=2.0,
                   marker='o', markersize=3, label='arm at via points' if i == 0 else None)
     axes.plot(*forward_kinematics(model, q).T, color='#cc79a7', linewidth=2.0, label='planned')
-    driven = run.recorded.positions[run.recorded.times >= 0.0]
-    axes.plot(*forward_kinematics(model, driven).T, **DRIVEN, label='driven')
+    executed = run.recorded.positions[run.recorded.times >= 0.0]
+    axes.plot(*forward_kinematics(model, executed).T, **EXECUTED, label='executed')
     axes.scatter(*run.task.via_points.T, color='#e69f00', edgecolor='black', s=30,
                  depthshade=False, label='via points', zorder=5)
     axes.set(xlabel='x [m]', ylabel='y [m]', zlabel='z [m]')
@@ -159,28 +159,28 @@ def _tick_step(axes: Any) -> float:
 def _number(axes: Any, points: Array) -> None:
     """Write each via point's index beside it, on the side away from its nearest neighbour."""
     x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
-    seen = np.column_stack((x, y))
-    for i, point in enumerate(seen):
-        away = point - seen
+    projected = np.column_stack((x, y))
+    for i, point in enumerate(projected):
+        away = point - projected
         distance = np.linalg.norm(away, axis=1)
         same = np.flatnonzero(distance <= SAME_PLACE)
         if same[0] < i:
-            continue  # its number is in the label of the first one
+            continue  # its index is in the label of the first one
         distance[same] = np.inf
         nearest = distance.argmin()
-        direction = away[nearest] / distance[nearest] if len(same) < len(seen) else (1.0, 0.0)
+        direction = away[nearest] / distance[nearest] if len(same) < len(projected) else (1.0, 0.0)
         axes.annotate(', '.join(map(str, same)), point, 10.0 * np.array(direction),
                       textcoords='offset points', ha='center', va='center')
 
 
 def _tracking(axes: Any, run: Run) -> None:
     """Draw the distance between planned and actual tip position over time."""
-    t = run.recorded.times[(run.recorded.times >= 0.0)]
-    driven = run.recorded.positions[run.recorded.times >= 0.0]
-    wanted = spline_through(run.planned).at(t)[0]
-    error = np.linalg.norm(forward_kinematics(run.config.model, driven)
-                           - forward_kinematics(run.config.model, wanted), axis=1)
+    moving = run.recorded.times >= 0.0
+    t, executed = run.recorded.times[moving], run.recorded.positions[moving]
+    planned = spline_through(run.planned).at(t)[0]
+    error = np.linalg.norm(forward_kinematics(run.config.model, executed)
+                           - forward_kinematics(run.config.model, planned), axis=1)
     axes.plot(t, 1e6 * error, color='black', linewidth=1.0)
     _via_lines(axes, run)
-    axes.set(xlabel='time [s]', ylabel='tip off the plan [µm]', xlim=(0.0, t[-1]))
+    axes.set(xlabel='time [s]', ylabel='tip error [µm]', xlim=(0.0, t[-1]))
     axes.set_ylim(bottom=0.0)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The recorder of the demo and its topics."""
+"""The demo's recorder, with the topics of both nodes."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ from std_msgs.msg import String
 from trajectory_msgs.msg import JointTrajectory
 from visualization_msgs.msg import MarkerArray
 
-PASSING = ((JointState, 'joint_states'), (JointState, 'desired_joint_states'),
-           (JointState, 'simulated_arm/tracking_error'), (JointTrajectory, 'joint_trajectory'),
-           (DiagnosticArray, 'diagnostics'), (Clock, '/clock'))
+VOLATILE = ((JointState, 'joint_states'), (JointState, 'desired_joint_states'),
+            (JointState, 'simulated_arm/tracking_error'), (JointTrajectory, 'joint_trajectory'),
+            (DiagnosticArray, 'diagnostics'), (Clock, '/clock'))
 LATCHED = ((JointTrajectory, 'planned_trajectory'), (Path, 'planned_path'),
            (MarkerArray, 'markers'), (String, 'robot_description'))
 
@@ -51,6 +51,6 @@ def demo_recorder(node: Node, bag: Bag) -> Recorder:
         Records as long as the node is spun.
 
     """
-    recorder = Recorder(node, bag, PASSING, LATCHED)
+    recorder = Recorder(node, bag, VOLATILE, LATCHED)
     recorder.record_all()
     return recorder

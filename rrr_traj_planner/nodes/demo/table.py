@@ -22,19 +22,19 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.core.path.deviation import distance_from_polyline
 from rrr_traj_planner.core.trajectory.limit_check import TOLERANCE
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.nodes.demo.client import Run
 from rrr_traj_planner.planners.registry import planner, Registered
+from rrr_traj_planner.report.measures import joint_errors, tip_errors
 
-PLANNED_BOUND = 1e-9  # rad, error of the plan at via points: rounding
-REACHED_BOUND = 2e-3  # m, error of the arm's tip at via points: tracking
-FINAL_BOUND = 1e-3    # m, error of the arm's tip at rest
+PLANNED_BOUND = 1e-9   # rad, error of the plan at via points: rounding
+EXECUTED_BOUND = 2e-3  # m, error of the arm's tip at via points: tracking
+FINAL_BOUND = 1e-3     # m, error of the arm's tip at rest
 
 
-class Figure(NamedTuple):
+class CheckedValue(NamedTuple):
     """A value and its upper bound."""
 
     name: str
@@ -54,9 +54,9 @@ class Figure(NamedTuple):
         return f'{self.name} is {value} {self.unit}, bound {bound} {self.unit}'
 
 
-def figures(run: Run) -> list[Figure]:
+def checked_values(run: Run) -> list[CheckedValue]:
     """
-    Return all figures of a run.
+    Return all values of a run that have a bound.
 
     Parameters
     ----------
@@ -65,44 +65,46 @@ def figures(run: Run) -> list[Figure]:
 
     Returns
     -------
-    list of Figure
+    list of CheckedValue
         Values with their bounds.
 
     """
     found = []
     last = len(run.task.via_points) - 1
     missed = _planner(run).misses_via_points
-    for i, (planned, reached) in enumerate(zip(planned_errors(run), reached_errors(run))):
-        if missed and 0 < i < last:  # this planner misses via points, as its message says
+    for i, (planned, executed) in enumerate(zip(planned_errors(run), executed_errors(run))):
+        if missed and 0 < i < last:  # this planner misses inner via points by construction
             continue
-        found += [Figure(f'via point {i}: planned error', planned, PLANNED_BOUND, 'rad'),
-                  Figure(f'via point {i}: error reached', reached, REACHED_BOUND, 'm')]
-    found.append(Figure('final error', final_error(run), FINAL_BOUND, 'm'))
+        found += [CheckedValue(f'via point {i}: planned error', planned, PLANNED_BOUND, 'rad'),
+                  CheckedValue(f'via point {i}: tip error', executed, EXECUTED_BOUND, 'm')]
+    found.append(CheckedValue('final error', final_error(run), FINAL_BOUND, 'm'))
     if follows_path(run):
         bound = run.config.max_deviation
-        planned, driven = deviations(run)
-        found += [Figure('planned distance from the polyline', planned, bound, 'm'),
-                  Figure('distance from the polyline', driven, bound + REACHED_BOUND, 'm')]
+        planned, executed = deviations(run)
+        found += [CheckedValue('planned distance from the polyline', planned, bound, 'm'),
+                  CheckedValue('distance from the polyline', executed, bound + EXECUTED_BOUND,
+                               'm')]
     for name, peak, limit, unit in _peaks(run):
         for joint, p, m in zip(run.config.model.joint_names, peak, limit):
-            found.append(Figure(f'{joint}: planned {name}', p, m * (1.0 + TOLERANCE), unit))
-    for joint, p, m in zip(run.config.model.joint_names, driven_torque(run),
+            found.append(
+                CheckedValue(f'{joint}: planned {name}', p, m * (1.0 + TOLERANCE), unit))
+    for joint, p, m in zip(run.config.model.joint_names, executed_torque(run),
                            run.config.limits.max_effort):
-        # A torque at the limit means saturation, so the bound is just below.
-        found.append(Figure(f'{joint}: torque driven', p, np.nextafter(m, 0.0), 'N m'))
+        # A torque at the limit means saturation: the bound is the next smaller number.
+        found.append(CheckedValue(f'{joint}: executed torque', p, np.nextafter(m, 0.0), 'N m'))
     return found
 
 
-def table(run: Run, found: list[Figure]) -> str:
+def table(run: Run, found: list[CheckedValue]) -> str:
     """
-    Return the figures as a table.
+    Return the run's errors, peaks and limits as a table.
 
     Parameters
     ----------
     run : Run
         The run.
-    found : list of Figure
-        Its figures.
+    found : list of CheckedValue
+        From `checked_values`.
 
     Returns
     -------
@@ -112,22 +114,22 @@ def table(run: Run, found: list[Figure]) -> str:
     """
     lines = ['', f'{run.task.name}: {run.response.via_times[-1]:.3f} s', '',
              f'{"via point":<28}{"at [s]":>9}{"planned error [rad]":>22}'
-             f'{"error reached [mm]":>21}']
-    for i, (point, t, planned, reached) in enumerate(zip(
+             f'{"tip error [mm]":>21}']
+    for i, (point, t, planned, executed) in enumerate(zip(
             run.task.via_points, run.response.via_times, planned_errors(run),
-            reached_errors(run))):
+            executed_errors(run))):
         where = '(' + ', '.join(f'{x:g}' for x in point) + ') m'
-        lines.append(f'{i:<3}{where:<25}{t:>9.3f}{planned:>22.1e}{1e3 * reached:>21.4f}')
+        lines.append(f'{i:<3}{where:<25}{t:>9.3f}{planned:>22.1e}{1e3 * executed:>21.4f}')
     lines += [f'{"at rest":<28}{"":>9}{"":>22}{1e3 * final_error(run):>21.4f}']
     if follows_path(run):
-        planned, driven = deviations(run)
-        lines.append(f'distance from the polyline: planned {1e3 * planned:.2f} mm, driven '
-                     f'{1e3 * driven:.2f} mm, allowed {1e3 * run.config.max_deviation:g} mm')
+        planned, executed = deviations(run)
+        lines.append(f'distance from the polyline: planned {1e3 * planned:.2f} mm, executed '
+                     f'{1e3 * executed:.2f} mm, allowed {1e3 * run.config.max_deviation:g} mm')
     lines += [run.response.message, ''] if run.response.message else ['']
     lines.append(f'{"peaks: planned / limit":<24}' + ''.join(
         f'{joint:>24}' for joint in run.config.model.joint_names))
-    rows = [*_peaks(run), ('torque driven', driven_torque(run), run.config.limits.max_effort,
-                           'N m')]
+    rows = [*_peaks(run), ('executed torque', executed_torque(run),
+                           run.config.limits.max_effort, 'N m')]
     for name, peak, limit, unit in rows:
         label = f'{name} [{unit}]'
         lines.append(f'{label:<24}' + ''.join(
@@ -177,9 +179,9 @@ def deviations(run: Run) -> tuple[float, float]:
     moving = run.recorded.times >= 0.0
     tips = (forward_kinematics(run.config.model, q) for q in (
         run.planned.positions, run.recorded.positions[moving]))
-    planned, driven = (float(distance_from_polyline(
+    planned, executed = (float(distance_from_polyline(
         np.asarray(run.task.via_points), tip).max()) for tip in tips)
-    return planned, driven
+    return planned, executed
 
 
 def planned_errors(run: Run) -> list[float]:
@@ -197,16 +199,14 @@ def planned_errors(run: Run) -> list[float]:
         The largest of the three joints' errors for each via point.
 
     """
-    errors = []
-    for point, t in zip(run.task.via_points, run.response.via_times):
-        q = run.planned.positions[np.abs(run.planned.times - t).argmin()]
-        errors.append(float(np.abs(nearest_solution(run.config.model, point, q) - q).max()))
-    return errors
+    index = [np.abs(run.planned.times - t).argmin() for t in run.response.via_times]
+    return [float(error) for error in joint_errors(
+        run.config.model, run.task.via_points, run.planned.positions[index])]
 
 
-def reached_errors(run: Run) -> list[float]:
+def executed_errors(run: Run) -> list[float]:
     """
-    Return the distances of the arm's tip from the via points at their times [m].
+    Return the distances of the simulated arm's tip from the via points at their times [m].
 
     Parameters
     ----------
@@ -220,8 +220,7 @@ def reached_errors(run: Run) -> list[float]:
 
     """
     q = spline_through(run.recorded).at(np.array(run.response.via_times))[0]
-    tip = forward_kinematics(run.config.model, q)
-    return [float(e) for e in np.linalg.norm(tip - run.task.via_points, axis=1)]
+    return [float(error) for error in tip_errors(run.config.model, run.task.via_points, q)]
 
 
 def final_error(run: Run) -> float:
@@ -243,7 +242,7 @@ def final_error(run: Run) -> float:
     return float(np.linalg.norm(tip - run.task.via_points[-1]))
 
 
-def driven_torque(run: Run) -> Array:
+def executed_torque(run: Run) -> Array:
     """
     Return the largest recorded torque of each motor [N m].
 

@@ -30,7 +30,7 @@ from rrr_traj_planner.core.control.trajectory_validation import Rules
 from rrr_traj_planner.core.errors import format_distinct, InvalidInputError
 from rrr_traj_planner.core.simulation.encoder import EncoderSettings
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
-from rrr_traj_planner.nodes.parameters.naming import from_group, named
+from rrr_traj_planner.nodes.parameters.error_names import from_group, named
 
 Values = Mapping[str, Any]
 

@@ -37,7 +37,7 @@ from rrr_traj_planner.nodes.parameters.arm_options import (
     physical_options,
     trajectory_rules,
 )
-from rrr_traj_planner.nodes.parameters.naming import from_group, named
+from rrr_traj_planner.nodes.parameters.error_names import from_group, named
 from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]

@@ -29,7 +29,7 @@ from rcl_interfaces.msg import (
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rrr_traj_planner.core.errors import InvalidInputError, RrrPlannerError
-from rrr_traj_planner.nodes.parameters.names import check_given
+from rrr_traj_planner.nodes.parameters.override_checks import check_given
 from rrr_traj_planner.nodes.parameters.table import check_value, Row, rows_of
 
 Config = TypeVar('Config')

@@ -24,7 +24,7 @@ from typing import Any
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters.names import check_given
+from rrr_traj_planner.nodes.parameters.override_checks import check_given
 from rrr_traj_planner.nodes.parameters.table import check_value, PLANNER, rows_of
 import yaml
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node `trajectory_planner`: serves plan requests, short ones before long ones."""
+"""The node `trajectory_planner`: serves planning requests, short ones before long ones."""
 
 from __future__ import annotations
 
@@ -29,11 +29,13 @@ from nav_msgs.msg import Path
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import InvalidHandle
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import QoSProfile
 from rrr_traj_planner.core.cancellation import step
 from rrr_traj_planner.core.errors import ConvergenceError, counted, quoted, RrrPlannerError
 from rrr_traj_planner.nodes.output.diagnostics import PERIOD
+from rrr_traj_planner.nodes.output.latched import LATCHED
 from rrr_traj_planner.nodes.output.marker_messages import no_plan_markers, plan_markers
+from rrr_traj_planner.nodes.output.message_times import seconds
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.table import PLANNER
@@ -52,16 +54,14 @@ from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory
 from visualization_msgs.msg import MarkerArray
 
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-# Queue of waiting requests; when it is full DDS drops the oldest, which then get no answer.
+# Queue of waiting requests: if it is full, DDS drops the oldest one, which then gets no answer.
 REQUEST_QUEUE = QoSProfile(depth=1000)
 
-TIME_PER_VIA_POINT = 4e-4  # s, lower bound of the planning time where there are many via points
+TIME_PER_VIA_POINT = 4e-4  # s, lower bound on the planning time per via point if there are many
 
 
 class _Answer(NamedTuple):
-    """The response to a request, and what else came of it."""
+    """The response to a request, with its plan or the trace of a bug."""
 
     response: PlanTrajectory.Response
     plan: Plan | None = None  # of a success
@@ -118,7 +118,7 @@ class TrajectoryPlanner(ServiceNode):
         self._unpublished: deque[_Unpublished] = deque()
         self._answered = self.create_guard_condition(
             self._publish_all, callback_group=MutuallyExclusiveCallbackGroup())
-        self.create_timer(PERIOD, self._diagnose,  # also while simulated time stands still
+        self.create_timer(PERIOD, self._diagnose,  # also while simulated time is paused
                           clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._start = NodeStart(
             self, self._parameters_declared, self._parameters_declared.config.limits,
@@ -126,7 +126,7 @@ class TrajectoryPlanner(ServiceNode):
 
     async def _plan(self, request: PlanTrajectory.Request,
                     _: PlanTrajectory.Response) -> PlanTrajectory.Response:
-        """Answer a request; the executor does other work while a thread plans."""
+        """Answer a request; the executor continues with other work while a thread plans."""
         config, stamp = self._parameters_declared.config, self.get_clock().now().to_msg()
         start = perf_counter()
         self._in_progress.append(start)
@@ -173,9 +173,9 @@ class TrajectoryPlanner(ServiceNode):
         took = f'in {1e3 * response.planning_time:.0f} ms'
         if response.error_code == response.SUCCESS:
             points = response.trajectory.points
-            last = points[-1].time_from_start
             log.info(f'{name} planned {counted(len(response.via_times), "via point")} {took}: '
-                     f'{last.sec + 1e-9 * last.nanosec:.3f} s, {counted(len(points), "point")}'
+                     f'{seconds(points[-1].time_from_start):.3f} s, '
+                     f'{counted(len(points), "point")}'
                      + (f'; {response.message}' if response.message else ''))
         elif answer.trace:
             log.error(f'{name} failed {took}: {response.message}\n{answer.trace}')
@@ -196,16 +196,16 @@ def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
     deadline = Deadline(config.planning_time_limit, job.checkpoint, is_ending)
     try:
         found = plan(config.model, config.limits, planning_request(request, config, deadline))
-        seconds = job.run_time()
+        planning_time = job.run_time()
         with step('the making of the message'):
             response = success(found, config, deadline)
     except Exception as error:
-        found, seconds = None, job.run_time()
+        found, planning_time = None, job.run_time()
         if isinstance(error, RrrPlannerError) and not isinstance(error, ConvergenceError):
             response = refusal(error)
-        else:  # a bug: the caller is told, the log has the trace
+        else:  # a bug: the response has its message, the log the trace
             response, trace = failure(error), traceback.format_exc()
-    response.planning_time = seconds
+    response.planning_time = planning_time
     return _Answer(response, found, trace)
 
 

@@ -32,6 +32,7 @@ from rrr_traj_planner.core.errors import (
     UnreachableError,
 )
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.planner_node.planning_request import FrameError
@@ -39,7 +40,6 @@ from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-SECOND = 1_000_000_000  # ns
 POINTS_PER_CHECK = 1000  # points filled between two calls of `should_stop`, some 20 ms
 
 _RESPONSE = PlanTrajectory.Response
@@ -65,7 +65,7 @@ def success(plan: Plan, config: PlannerConfig,
     config : PlannerConfig
         The node's parameters.
     should_stop : callable
-        Called at intervals; what it raises ends the work.
+        Called at intervals; an error that it raises cancels the conversion.
 
     Returns
     -------
@@ -104,12 +104,12 @@ def refusal(error: RrrPlannerError) -> PlanTrajectory.Response:
 
 def failure(error: Exception) -> PlanTrajectory.Response:
     """
-    Return the response to a request that has met a bug.
+    Return the response to a request that failed because of a bug.
 
     Parameters
     ----------
     error : Exception
-        The bug.
+        The unexpected exception.
 
     Returns
     -------

@@ -32,7 +32,7 @@ from rrr_traj_planner.core.errors import (
 )
 from rrr_traj_planner.core.kinematics.postures import ELBOWS
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters.naming import named
+from rrr_traj_planner.nodes.parameters.error_names import named
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState

@@ -25,14 +25,14 @@ from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
 from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
-from rrr_traj_planner.nodes.parameters.names import unused_warnings
+from rrr_traj_planner.nodes.parameters.override_checks import unused_warnings
 from rrr_traj_planner.nodes.parameters.parameter_files import has_section_for
 from rrr_traj_planner.nodes.process.node_claim import claim
 
-SECOND = 1_000_000_000  # ns
-FIRST_DELAY = 0.001     # s, until the first spin
-WATCH_PERIOD = 1.0      # s, between two checks for nodes of the same name
+FIRST_DELAY = 0.001  # s, until the first spin
+WATCH_PERIOD = 1.0   # s, between two checks for nodes of the same name
 
 KEEP_APART = ('end one, or give it a namespace (--ros-args -r __ns:=/NAME) or another '
               'ROS_DOMAIN_ID')

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Records topics in a bag, message by message as serialized."""
+"""Records topics in a bag, each message as it was serialized."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.nodes.output.latched import latched
 from rrr_traj_planner.nodes.recording.bag import Bag
 from rrr_traj_planner.nodes.recording.message_definitions import definition
 
-SECOND = 1_000_000_000  # ns
 QUEUE_DEPTH = 1000      # messages per topic; some seconds of the fastest one
 DISCOVERY_PERIOD = 0.1  # s between two checks for new topics
 
-PASSING = QoSProfile(depth=QUEUE_DEPTH)
-LATCHED = QoSProfile(depth=QUEUE_DEPTH, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+VOLATILE, LATCHED = QoSProfile(depth=QUEUE_DEPTH), latched(QUEUE_DEPTH)
 
 
 class Recorder:
@@ -49,17 +49,17 @@ class Recorder:
         The bag to write to.
     topics : iterable of (type, str)
         Message types and topic names; relative names are in the node's namespace.
-    latched : iterable of (type, str)
+    latched_topics : iterable of (type, str)
         The same for topics with transient local publishers.
 
     """
 
     def __init__(self, node: Node, bag: Bag, topics: Iterable[tuple[Any, str]],
-                 latched: Iterable[tuple[Any, str]] = ()) -> None:
+                 latched_topics: Iterable[tuple[Any, str]] = ()) -> None:
         self._node, self._bag = node, bag
         self._subscriptions: list[Any] = []
-        self._known: set[str] = set()  # topics that are subscribed, or cannot be
-        for some, qos in ((topics, PASSING), (latched, LATCHED)):
+        self._known: set[str] = set()  # topics that are recorded, or cannot be
+        for some, qos in ((topics, VOLATILE), (latched_topics, LATCHED)):
             for kind, topic in some:
                 self._subscribe(kind, topic, qos)
 
@@ -83,7 +83,7 @@ class Recorder:
             except (ImportError, AttributeError, LookupError, OSError) as error:
                 self._known.add(topic)
                 self._node.get_logger().warning(
-                    f'{topic} is not recorded, its type {types[0]} is not there: {error}')
+                    f'{topic} is not recorded, its type {types[0]} is not installed: {error}')
 
     def _subscribe(self, kind: Any, topic: str, qos: QoSProfile) -> None:
         self._known.add(self._node.resolve_topic_name(topic))

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The script `demo`: plans through via points, drives the simulated arm, compares the two."""
+"""The script `demo`: plans through via points, moves the simulated arm, compares the two."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.core.errors import counted
     from rrr_traj_planner.nodes.demo.client import Client
-    from rrr_traj_planner.nodes.demo.table import figures, table
+    from rrr_traj_planner.nodes.demo.table import checked_values, table
     from rrr_traj_planner.nodes.parameters.configuration_files import read_task
     from rrr_traj_planner.nodes.process.node_runner import spin_in_background
     from rrr_traj_planner.nodes.process.processes import NodeProcesses
@@ -87,16 +87,16 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
         bag = None if options.record is None else stack.enter_context(Bag(options.record))
         nodes = stack.enter_context(NodeProcesses(node_arguments(task.arm, ros_arguments)))
         run = client.run(task, nodes.ended, bag)
-    found = figures(run)
+    found = checked_values(run)
     print(table(run, found), flush=True)
     if bag is not None:
         print(f'recording: {bag.file}, {counted(bag.count, "message")}', flush=True)
     plot = Path(f'demo_{task.name}.png') if options.plot is None else options.plot
     if str(plot) not in ('', '.'):
         _plot(run, plot)
-    exceeded = [f for f in found if not f.within_bound]
-    for figure in exceeded:
-        print(f'demo: out of bounds: {figure.text}', file=sys.stderr)
+    exceeded = [value for value in found if not value.within_bound]
+    for value in exceeded:
+        print(f'demo: out of bounds: {value.text}', file=sys.stderr)
     return 1 if exceeded else 0
 
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The script `demo`, end to end: plan, drive, table, plot, exit code; refused and interrupted."""
+"""The script `demo`: plan, execution, table, plot, exit code; refusals and signals."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ PNG = b'\x89PNG\r\n\x1a\n'
     ((), 'table_6_1', 2.850), (('table_6_3.yaml',), 'table_6_3', 3.490)])
 def test_demo_runs_its_task_and_shows_it(tmp_path, arguments, name, seconds):
     with Script(script('demo'), *arguments, cwd=tmp_path) as demo:
-        demo.read_until('driving:')
+        demo.read_until('executing:')
         children = demo.started(2)
         code, output, errors = demo.ended()
         assert all(child.has_ended() for child in children)
     assert code == 0, errors
     shown = float(re.search(rf'^{name}: (\S+) s$', output, re.MULTILINE)[1])
     assert shown == pytest.approx(seconds, abs=5e-3)  # the reference solution's
-    for text in ('error reached [mm]', 'at rest', 'torque driven [N m]', 'joint_3',
+    for text in ('tip error [mm]', 'at rest', 'executed torque [N m]', 'joint_3',
                  '22 of 22 figures are inside their bounds', f'plot: demo_{name}.png'):
         assert text in output
     assert 'Traceback' not in errors
@@ -58,17 +58,17 @@ def test_demo_runs_its_task_and_shows_it(tmp_path, arguments, name, seconds):
 
 @pytest.mark.parametrize('planner_id', ['line_arc', 'line_polynomial'])
 @pytest.mark.parametrize('task', ['table_6_1', 'table_6_3'])
-def test_demo_drives_the_tip_along_paths_of_both_tables(tmp_path, task, planner_id):
+def test_demo_moves_the_tip_along_paths_of_both_tables(tmp_path, task, planner_id):
     arguments = ('--planner', planner_id, '--plot', '', f'{task}.yaml')
     with Script(script('demo'), *arguments, cwd=tmp_path) as demo:
         code, output, errors = demo.ended()
     assert code == 0, errors  # tip at the via points to 2 mm, within the deviation, in all limits
-    planned, driven, allowed = map(float, re.search(
-        r'distance from the polyline: planned (\S+) mm, driven (\S+) mm, allowed (\S+) mm',
+    planned, executed, allowed = map(float, re.search(
+        r'distance from the polyline: planned (\S+) mm, executed (\S+) mm, allowed (\S+) mm',
         output).groups())
     assert allowed == 50.0
     assert 10.0 <= planned <= allowed
-    assert driven == pytest.approx(planned, abs=0.1)
+    assert executed == pytest.approx(planned, abs=0.1)
     assert '24 of 24 figures are inside their bounds' in output
     assert ('joint accelerations step' in output) == (planner_id == 'line_arc')
 
@@ -99,7 +99,7 @@ def test_demo_with_points_out_of_reach_shows_the_refusal(tmp_path):
 
 
 @pytest.mark.parametrize(('number', 'when'), [
-    (signal.SIGINT, 'waiting for planner and arm'), (signal.SIGTERM, 'driving:')])
+    (signal.SIGINT, 'waiting for planner and arm'), (signal.SIGTERM, 'executing:')])
 def test_signal_ends_the_demo_and_its_nodes(tmp_path, number, when):
     with Script(script('demo'), cwd=tmp_path) as demo:
         demo.read_until(when)

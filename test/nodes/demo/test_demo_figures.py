@@ -27,7 +27,7 @@ from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.demo.client import Run
 from rrr_traj_planner.nodes.demo.plot import draw
-from rrr_traj_planner.nodes.demo.table import figures, table
+from rrr_traj_planner.nodes.demo.table import checked_values, table
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.configuration_files import read_task
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
@@ -38,7 +38,7 @@ from rrr_traj_planner.planners.request import PlanningRequest
 BEFORE, AFTER, STATES = 0.5, 0.5, 800
 
 
-def driven(task, off=0.0, **parameters):
+def executed(task, off=0.0, **parameters):
     """Return a run on an arm that follows its plan but for an angle by which joint 1 is off."""
     config = PlannerConfig.from_values({
         **{name: row.default for name, row in rows_of(PLANNER, JOINT_NAMES).items()},
@@ -58,40 +58,40 @@ def task():
 
 
 def broken(run):
-    return [figure.name for figure in figures(run) if not figure.within_bound]
+    return [value.name for value in checked_values(run) if not value.within_bound]
 
 
 def test_perfect_run_keeps_every_bound(task):
-    assert broken(driven(task)) == []
+    assert broken(executed(task)) == []
 
 
 def test_error_between_the_bounds_breaks_the_final_one_alone(task):
-    assert broken(driven(task, off=0.002)) == [  # 1.178 m * 0.002, at rest 0.589 m * 0.002
-        'via point 0: error reached', 'final error']
+    assert broken(executed(task, off=0.002)) == [  # 1.178 m * 0.002, at rest 0.589 m * 0.002
+        'via point 0: tip error', 'final error']
 
 
-def test_large_error_breaks_every_bound_reached(task):
-    run = driven(task, off=0.005)
-    assert broken(run) == [*(f'via point {i}: error reached' for i in range(3)), 'final error']
-    texts = [figure.text for figure in figures(run) if not figure.within_bound]
-    assert texts[0] == 'via point 0: error reached is 0.00589173 m, bound 0.002 m'
+def test_large_error_breaks_every_bound_of_the_executed_motion(task):
+    run = executed(task, off=0.005)
+    assert broken(run) == [*(f'via point {i}: tip error' for i in range(3)), 'final error']
+    texts = [value.text for value in checked_values(run) if not value.within_bound]
+    assert texts[0] == 'via point 0: tip error is 0.00589173 m, bound 0.002 m'
 
 
 def test_saturated_motor_breaks_its_bound(task):
-    run = driven(task)
+    run = executed(task)
     torque = run.torque.copy()
     torque[100, 1] = -run.config.limits.max_effort[1]
-    assert broken(replace(run, torque=torque)) == ['joint_2: torque driven']
+    assert broken(replace(run, torque=torque)) == ['joint_2: executed torque']
 
 
 def test_planned_peak_above_its_limit_breaks_its_bound(task):
-    run = driven(task)
+    run = executed(task)
     run.response.peak_velocity[2] = 1.1
     assert broken(run) == ['joint_3: planned velocity']
 
 
 def test_plan_that_misses_a_via_point_breaks_its_bound(task):
-    run = driven(task)
+    run = executed(task)
     q = run.planned.positions.copy()
     q[-1] += (0.0, 1e-8, 0.0)
     missed = replace(run, planned=TrajectoryPoints(
@@ -100,8 +100,8 @@ def test_plan_that_misses_a_via_point_breaks_its_bound(task):
 
 
 def test_table_shows_every_via_point_joint_and_limit(task):
-    run = driven(task, **{'joint_limits.joint_1.has_jerk_limits': False})
-    lines = table(run, figures(run)).splitlines()
+    run = executed(task, **{'joint_limits.joint_1.has_jerk_limits': False})
+    lines = table(run, checked_values(run)).splitlines()
     assert [line.split()[0] for line in lines if line[:1].isdigit()] == ['0', '1', '2', '22']
     jerk, = (line for line in lines if line.startswith('jerk'))
     assert ' / none' in jerk and ' / 10' in jerk
@@ -110,7 +110,7 @@ def test_table_shows_every_via_point_joint_and_limit(task):
 
 def test_plot_is_a_picture(task, tmp_path):
     for name in ('run.png', 'run.pdf'):
-        draw(driven(task), tmp_path / name)
+        draw(executed(task), tmp_path / name)
         assert (tmp_path / name).stat().st_size > 20_000
     assert imread(tmp_path / 'run.png').shape[:2] == (1200, 1500)
 
@@ -120,7 +120,7 @@ def test_plot_is_a_picture(task, tmp_path):
     [(1.02, 0.59, 0.97), (0.46, 0.55, 1.44), (1.02, 0.59, 0.97)],   # there and back
     [(1.02, 0.59, 0.97), (1.02, 0.59, 0.97)]])                      # rest
 def test_plot_takes_points_that_coincide(task, tmp_path, points):
-    run = driven(replace(task, via_points=np.array(points)), **{
+    run = executed(replace(task, via_points=np.array(points)), **{
         f'joint_limits.{joint}.has_{kind}_limits': False
         for joint in JOINT_NAMES for kind in ('velocity', 'jerk', 'effort')})
     draw(run, tmp_path / 'run.png')
@@ -132,5 +132,5 @@ def test_file_that_cannot_be_written_is_told(task, tmp_path, capsys):
     (tmp_path / 'file').write_text('')
     for file, text in ((tmp_path / 'file' / 'run.png', 'demo: no plot: '),
                        (tmp_path / 'run.xyz', "demo: no plot: Format 'xyz' is not supported")):
-        _plot(driven(task), file)
+        _plot(executed(task), file)
         assert text in capsys.readouterr().err

@@ -28,7 +28,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.urdf import urdf
-from rrr_traj_planner.nodes.arm_node.arm_messages import nanoseconds
+from rrr_traj_planner.nodes.output.message_times import nanoseconds
 from std_msgs.msg import String
 
 NO_PLOT = ('--plot', '')
@@ -44,7 +44,7 @@ def by_stamp(found):
 
 def test_bag_holds_what_was_planned_sent_and_driven(ros, tmp_path):
     with Script(script('demo'), '--record', 'demo.mcap', *NO_PLOT, cwd=tmp_path) as demo:
-        demo.read_until('driving:')
+        demo.read_until('executing:')
         publisher = ros.publisher(String, '/odd/late', LATE)  # that the recorder has found
         while not demo.is_over_in(0.1):  # nothing is sent twice to who has not found it yet
             publisher.publish(String(data='late'))
@@ -101,7 +101,7 @@ def test_reader_s_one_call_reads_the_bag_of_a_refusal(tmp_path):
 
 def test_interrupted_demo_leaves_a_whole_bag(tmp_path):
     with Script(script('demo'), '--record', 'demo.mcap', cwd=tmp_path) as demo:
-        demo.read_until('driving:')
+        demo.read_until('executing:')
         demo.process.send_signal(signal.SIGINT)
         code, _, errors = demo.ended()
     assert code == 0

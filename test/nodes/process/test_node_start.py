@@ -117,7 +117,7 @@ def test_demo_beside_a_running_pair_says_so_and_leaves_it_alone(tmp_path):
         arm.read_errors_until('ready')
         with Script(script('demo'), '--record', 'demo.mcap', cwd=tmp_path) as demo:
             assert demo.ended() == (1, '', (
-                'demo: a node /simulated_arm runs already: end one, or give it a namespace '
+                'demo: a node /simulated_arm is already running: end one, or give it a namespace '
                 '(--ros-args -r __ns:=/NAME) or another ROS_DOMAIN_ID\n'))
         assert not list(tmp_path.iterdir())
         assert 'following' not in ends(arm)[2]  # not a word of the demonstration's trajectory

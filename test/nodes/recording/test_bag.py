@@ -32,14 +32,14 @@ from rclpy.serialization import deserialize_message, serialize_message
 from rosgraph_msgs.msg import Clock
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
-from rrr_traj_planner.nodes.demo.recording import LATCHED, PASSING
+from rrr_traj_planner.nodes.demo.recording import LATCHED, VOLATILE
 from rrr_traj_planner.nodes.output.marker_messages import arm_markers
 from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.recording.bag import Bag, NO_MCAP
 from rrr_traj_planner.nodes.recording.message_definitions import definition
 from rrr_traj_planner.nodes.recording.recorder import LATCHED as LATCHED_QOS
-from rrr_traj_planner.nodes.recording.recorder import PASSING as PASSING_QOS
 from rrr_traj_planner.nodes.recording.recorder import Recorder, type_name
+from rrr_traj_planner.nodes.recording.recorder import VOLATILE as VOLATILE_QOS
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header, String
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
@@ -47,7 +47,7 @@ from visualization_msgs.msg import MarkerArray
 import yaml
 
 DEADLINE = 20.0  # s
-TYPES = sorted({kind for kind, _ in (*PASSING, *LATCHED)}, key=type_name)
+TYPES = sorted({kind for kind, _ in (*VOLATILE, *LATCHED)}, key=type_name)
 
 RNG = np.random.default_rng(1)
 HEADER = Header(stamp=Time(sec=12, nanosec=999_999_999), frame_id='bäse')
@@ -112,7 +112,7 @@ def recorded(ros, file, topic, kind, qos, samples):
     arrived = Event()
     with Bag(file) as bag:
         recorder = Recorder(ros.node, bag, *(
-            [(kind, topic)] if qos is wanted else [] for wanted in (PASSING_QOS, LATCHED_QOS)))
+            [(kind, topic)] if qos is wanted else [] for wanted in (VOLATILE_QOS, LATCHED_QOS)))
         write = bag.write
 
         def noted(*arguments):
@@ -132,7 +132,7 @@ def recorded(ros, file, topic, kind, qos, samples):
 @pytest.mark.parametrize('kind', TYPES, ids=type_name)
 def test_reference_reader_reads_what_was_sent(ros, tmp_path, kind):
     file, samples = tmp_path / 'new folder' / 'bag.mcap', SAMPLES[kind]
-    recorded(ros, file, 'here', kind, PASSING_QOS, samples)
+    recorded(ros, file, 'here', kind, VOLATILE_QOS, samples)
     (topic, found), = messages_by_topic(file).items()
     assert topic == '/here'
     expected = [plain(deserialize_message(serialize_message(s), kind)) for s in samples]
@@ -145,7 +145,7 @@ def test_reference_reader_reads_what_was_sent(ros, tmp_path, kind):
 
 
 @pytest.mark.parametrize(('qos', 'durability'), [
-    (PASSING_QOS, 'volatile'), (LATCHED_QOS, 'transient_local')])
+    (VOLATILE_QOS, 'volatile'), (LATCHED_QOS, 'transient_local')])
 def test_bag_tells_profile_types_and_quality_of_service(ros, tmp_path, qos, durability):
     file = tmp_path / 'bag.mcap'
     bag = recorded(ros, file, 'here', String, qos, [String(data='x')] * 3)

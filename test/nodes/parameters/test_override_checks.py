@@ -22,7 +22,7 @@ from helpers.own_limits import own_limits
 import pytest
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.parameters.names import check_given, unused_warnings
+from rrr_traj_planner.nodes.parameters.override_checks import check_given, unused_warnings
 
 OWN = own_limits('base', 'lift', 'bend')
 NAMES = OWN['joint_names']

@@ -1,0 +1,40 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Quality of service of topics whose last message late subscribers get (`latched` in ROS 1)."""
+
+from __future__ import annotations
+
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+
+def latched(depth: int) -> QoSProfile:
+    """
+    Return a reliable, transient local quality of service.
+
+    Parameters
+    ----------
+    depth : int
+        Number of messages that are stored for late subscribers.
+
+    Returns
+    -------
+    QoSProfile
+        For publishers and subscriptions.
+
+    """
+    return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+LATCHED = latched(1)  # only the last message
