@@ -117,9 +117,9 @@
     line(pen, [base, shoulder, elbow, tip], colour('ink'), 5);
     [shoulder, elbow].forEach((p) => dot(pen, p, 5, colour('paper'), colour('ink')));
     dot(pen, tip, 4, colour('tip'));
-    const frame = Math.min(Math.round(place), motion.share.length - 1);
+    const frame = Math.min(Math.round(place), motion.use.length - 1);
     canvas.nextElementSibling.textContent = time >= motion.duration ? 'at rest' : 'now '
-      + motion.limits[motion.nearest[frame]] + ' at ' + Math.round(100 * motion.share[frame])
+      + motion.limits[motion.tightest[frame]] + ' at ' + Math.round(100 * motion.use[frame])
       + ' % of its limit';
   }
 

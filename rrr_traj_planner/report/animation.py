@@ -25,10 +25,11 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.report.attempts import Planned
-from rrr_traj_planner.report.motion_samples import arm_points, limit_shares, sampled
+from rrr_traj_planner.report.motion_samples import arm_points, limit_use, sampled
 from rrr_traj_planner.report.page import resource
 
-FRAMES_PER_SECOND = 60.0
+FRAME_RATE = 60.0  # Hz, of a motion at its own speed: the refresh rate of common screens
+MIN_FRAMES = 30    # of one motion, for motions shorter than half a second
 MAX_FRAMES = 1500  # of one motion, to bound the size of the page
 DIGITS = 4         # decimals of positions in metres: 0.1 mm
 
@@ -42,7 +43,7 @@ CONTROLS = """<div class="controls"><button type="button" class="play">Play</but
 @dataclass(frozen=True, eq=False)
 class Animation:
     """
-    An animation that shows several motions side by side, at the same time.
+    An animation that shows several motions side by side, at the same instants.
 
     Parameters
     ----------
@@ -98,7 +99,7 @@ def frames(plans: Sequence[Planned]) -> dict[str, Any]:
     -------
     dict
         Via points; for each motion its duration and, at equal time steps, positions of elbow and
-        tip [m], the index of the limit that is used most, and its use as a fraction.
+        tip [m], the index of the limit that is used most, and its use, magnitude / limit.
 
     """
     return {'shoulder': float(plans[0].task.model.d1),
@@ -108,16 +109,16 @@ def frames(plans: Sequence[Planned]) -> dict[str, Any]:
 
 def _motion(of: Planned) -> dict[str, Any]:
     trajectory, model = of.plan.trajectory, of.task.model
-    count = int(np.clip(trajectory.duration * FRAMES_PER_SECOND, 30, MAX_FRAMES))
+    count = int(np.clip(trajectory.duration * FRAME_RATE, MIN_FRAMES, MAX_FRAMES))
     t = np.linspace(0.0, trajectory.duration, count + 1)
     points = arm_points(model, trajectory(t)[0])
     s = sampled(model, trajectory)
-    shares = {kind: np.stack([np.interp(t, s.t, share[:, joint]) for joint in range(3)], axis=1)
-              for kind, share in limit_shares(s, of.task.limits).items()}
-    names = [f"{joint}'s {kind}" for kind in shares for joint in model.joint_names]
-    every = np.concatenate(list(shares.values()), axis=1)
+    used = {kind: np.stack([np.interp(t, s.t, use[:, joint]) for joint in range(3)], axis=1)
+            for kind, use in limit_use(s, of.task.limits).items()}
+    names = [f"{joint}'s {kind}" for kind in used for joint in model.joint_names]
+    all_used = np.concatenate(list(used.values()), axis=1)
     return {'duration': float(trajectory.duration), 'via_times': of.plan.via_times.tolist(),
             'elbow': points[:, 2].round(DIGITS).tolist(),
             'tip': points[:, 3].round(DIGITS).tolist(), 'limits': names,
-            'nearest': every.argmax(axis=1).tolist(),
-            'share': every.max(axis=1).round(3).tolist()}
+            'tightest': all_used.argmax(axis=1).tolist(),
+            'use': all_used.max(axis=1).round(3).tolist()}

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Planning of a task by several planners: their plans, or the reasons of their refusals."""
+"""Planning of a task by several planners: their plans, or why they refuse it."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def attempts(task: Task, planner_ids: Sequence[str], repeats: int = 1) -> list[A
     planner_ids : sequence of str
         The planners.
     repeats : int
-        Number of times that each plans; the shortest planning time is kept.
+        Number of times that each planner plans; the result has the shortest planning time.
 
     Returns
     -------

@@ -24,20 +24,20 @@ from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.excitation import (
     amplitude_spectrum,
+    fraction_above,
     joint_acceleration,
     residual_vibration,
-    share_above,
 )
 from rrr_traj_planner.report.function_figures import FUNCTIONS
 from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.tables import Table
 from rrr_traj_planner.report.theme import DASHES, SERIES
 
-FREQUENCIES = np.linspace(0.25, 10.0, 400)  # Hz, of the figures
+FREQUENCIES = np.linspace(0.25, 10.0, 400)  # Hz, of the curves in the figures
 MODES = np.linspace(3.0, 10.0, 281)         # Hz, frequencies of a joint's flexible mode
 HIGH = 2.0                                  # Hz, above which energy counts as excitation
 DURATION, CHANGE, POINTS = 2.0, 1.0, 4001   # s, rad/s, samples of the transition in the figures
-FLOOR = 1e-6                                # rad/s, lower end of the logarithmic axis
+FLOOR = 1e-6                                # lower end of the logarithmic axes
 
 # Least times of any motion through the points of tables 6.1 and 6.3 [s], with limits of velocity
 # and acceleration, and with jerk limits too; see docs/claims.md.
@@ -47,12 +47,12 @@ LIMIT_TIMES = {'velocity, acceleration': (2.015, 2.474), 'and jerk': (2.129, 2.5
 class Excitation(NamedTuple):
     """Excitation of a flexible structure by a motion."""
 
-    above: float  # fraction of the acceleration's energy above HIGH
-    swing: float  # largest residual vibration of a mode in MODES, relative to its deflection
+    above: float      # fraction of the acceleration's energy above HIGH
+    vibration: float  # largest residual vibration of a mode in MODES, relative to its deflection
 
 
 def of_transitions() -> dict[str, Excitation]:
-    """Return the excitation by a transition of each function, with equal duration and change."""
+    """Return the excitation by each function's transition, of equal duration and change."""
     return {f.name: _excitation(*_transition(f)) for f in FUNCTIONS}
 
 
@@ -78,11 +78,11 @@ def of_plan(of: Planned) -> Excitation:
 def spectra() -> Picture:
     """Return the figure of the functions' spectra."""
     curves = {f.name: amplitude_spectrum(*_transition(f), FREQUENCIES) for f in FUNCTIONS}
-    shares = ', '.join(f'{n} {1e6 * e.above:.0f}' for n, e in of_transitions().items())
+    energies = ', '.join(f'{n} {1e6 * e.above:.0f}' for n, e in of_transitions().items())
     return _by_frequency(
         'claim_spectra', 'Spectrum of a transition of each function',
-        f'Of {DURATION:g} s, by {CHANGE:g} rad/s. Energy above {HIGH:g} Hz, in millionths: '
-        f'{shares}.', curves, 'frequency [Hz]', 'acceleration [rad/s²/Hz]')
+        f'Duration {DURATION:g} s, change {CHANGE:g} rad/s. Energy above {HIGH:g} Hz, in '
+        f'millionths: {energies}.', curves, 'frequency [Hz]', 'acceleration [rad/s²/Hz]')
 
 
 def vibrations() -> Picture:
@@ -91,7 +91,7 @@ def vibrations() -> Picture:
     return _by_frequency(
         'claim_vibrations', 'Residual vibration after a transition',
         'Of a flexible mode with 1 % damping, relative to its deflection under the largest '
-        'acceleration.', curves, "mode's frequency [Hz]", 'swing / deflection')
+        'acceleration.', curves, "mode's frequency [Hz]", 'amplitude / deflection')
 
 
 def claims_table(plans: list[tuple[Planned, Planned]]) -> Table:
@@ -112,7 +112,7 @@ def claims_table(plans: list[tuple[Planned, Planned]]) -> Table:
     heads = ('planner', *(f'time / limit ({name}), table {table}' for name in LIMIT_TIMES
                           for table in ('6.1', '6.3')),
              f'energy above {HIGH:g} Hz [%], table 6.1',
-             f'swing left of modes of {MODES[0]:g} to {MODES[-1]:g} Hz, table 6.1')
+             f'residual vibration of modes of {MODES[0]:g} to {MODES[-1]:g} Hz, table 6.1')
     rows = []
     for pair in plans:
         times = [p.plan.trajectory.duration for p in pair]
@@ -120,7 +120,7 @@ def claims_table(plans: list[tuple[Planned, Planned]]) -> Table:
         rows.append([pair[0].planner_id, *(
             f'{t / limit:.2f}' for limits in LIMIT_TIMES.values()
             for t, limit in zip(times, limits)), f'{100.0 * found.above:.2f}',
-            f'{found.swing:.2f}'])
+            f'{found.vibration:.2f}'])
     return Table('claims', 'Motion times relative to the least times, and excitation',
                  'Of whole motions; excitation of the worst joint.', heads, rows)
 
@@ -132,7 +132,7 @@ def _transition(function: Any) -> tuple[Array, Array]:
 
 
 def _excitation(t: Array, acceleration: Array) -> Excitation:
-    return Excitation(share_above(t, acceleration, HIGH),
+    return Excitation(fraction_above(t, acceleration, HIGH),
                       float(residual_vibration(t, acceleration, MODES).max()))
 
 

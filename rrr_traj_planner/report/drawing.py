@@ -30,9 +30,9 @@ from rrr_traj_planner.report.theme import DASHES, JOINTS, LIGHT, LIMIT, VIA
 POSITION, VELOCITY = 'position [rad]', 'velocity [rad/s]'
 ACCELERATION, JERK, TORQUE = 'acceleration [rad/s²]', 'jerk [rad/s³]', 'torque [N m]'
 TIME = 'time [s]'
-ROW_HEIGHT = 1.35   # inches, of one of several stacked axes
+ROW_HEIGHT = 1.35   # inches, of each of the stacked axes
 LEGEND_GAP = 0.06   # inches, between a legend and the axes below it
-MAX_LINES = 20      # via points that are marked by lines; more would hide the curves
+MAX_LINES = 20      # largest number of via points that are marked by lines; more hide the curves
 TICK = 0.06         # height of a via point's tick, as a fraction of the axes' height
 EDGE_HEIGHT = 0.75  # inches, for the legend and the labels of the lowest axis
 
@@ -229,12 +229,12 @@ def legend(figure: Any, handles: Sequence[Any], columns: int = 3) -> None:
     """
     found = figure.legend(handles=list(handles), loc='upper center',
                           ncols=min(columns, len(handles)), columnspacing=1.2, handlelength=2.2)
-    share = found.get_window_extent().height / figure.bbox.height
-    share += LEGEND_GAP / figure.get_figheight()
+    fraction = found.get_window_extent().height / figure.bbox.height
+    fraction += LEGEND_GAP / figure.get_figheight()
     engine = figure.get_layout_engine()
     if isinstance(engine, ConstrainedLayoutEngine):
-        engine.set(rect=(0.0, 0.0, 1.0, 1.0 - share))
+        engine.set(rect=(0.0, 0.0, 1.0, 1.0 - fraction))
     else:
         for axes in figure.axes:
             left, bottom, width, height = axes.get_position(original=True).bounds
-            axes.set_position((left, bottom, width, min(height, 1.0 - share - bottom)))
+            axes.set_position((left, bottom, width, min(height, 1.0 - fraction - bottom)))

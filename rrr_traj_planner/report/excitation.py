@@ -23,7 +23,8 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
 POINTS = 4001   # of the quadrature over a motion: some hundred per period of the frequencies here
-DAMPING = 0.01  # damping ratio of the flexible mode
+BELOW = 400     # frequencies of the quadrature of a spectrum
+DAMPING = 0.01  # damping ratio of a lightly damped flexible mode
 
 
 def amplitude_spectrum(t: Array, acceleration: Array, frequencies: Array) -> Array:
@@ -49,7 +50,7 @@ def amplitude_spectrum(t: Array, acceleration: Array, frequencies: Array) -> Arr
     return np.abs(_integral(phase * acceleration, t))
 
 
-def share_above(t: Array, acceleration: Array, frequency: float) -> float:
+def fraction_above(t: Array, acceleration: Array, frequency: float) -> float:
     """
     Return the fraction of an acceleration's energy above a frequency.
 
@@ -66,7 +67,7 @@ def share_above(t: Array, acceleration: Array, frequency: float) -> float:
         From 0 to 1; by Parseval's theorem, 1 minus the fraction below.
 
     """
-    below = np.linspace(0.0, frequency, 400)
+    below = np.linspace(0.0, frequency, BELOW)
     power = amplitude_spectrum(t, acceleration, below) ** 2
     whole = float(_integral(acceleration ** 2, t))
     return float(1.0 - 2.0 * _integral(power, below) / whole)
@@ -99,8 +100,8 @@ def residual_vibration(t: Array, acceleration: Array, frequencies: Array,
     w = 2.0 * pi * frequencies
     rate = (-damping + 1j * sqrt(1.0 - damping ** 2)) * w
     response = np.exp(np.outer(rate, t[-1] - t)) * acceleration
-    swing = np.abs(_integral(response, t)) / (w * sqrt(1.0 - damping ** 2))
-    return np.asarray(swing * w ** 2 / np.abs(acceleration).max())
+    amplitude = np.abs(_integral(response, t)) / (w * sqrt(1.0 - damping ** 2))
+    return np.asarray(amplitude * w ** 2 / np.abs(acceleration).max())
 
 
 def joint_acceleration(trajectory: Trajectory, joint: int) -> tuple[Array, Array]:

@@ -39,7 +39,7 @@ ORDERS_3_1 = (3, 6, 9)  # of the Maclaurin series
 PARAMETERS_3_2 = ((1.0, 1.0, 1.0), (0.75, 1.0, 1.0), (1.0, 0.6, 1.0), (1.0, 1.0, 1.3))  # a, b, c
 FUNCTIONS: tuple[TransitionFunction, ...] = (CYCLOID, GAUSS, SEPTIC, QUARTIC)
 LIMIT = 1.0    # rad/s^2 and rad/s, table 6.2
-JOURNEY = 1.8  # rad, of the hypothetical subtrajectory
+DISPLACEMENT = 1.8  # rad, of the hypothetical subtrajectory of figure 4.1
 
 
 class Curve(NamedTuple):
@@ -110,8 +110,8 @@ def figure_3_1() -> Picture:
     errors = ', '.join(f'{maclaurin_error(order):.1e} for N = {order}' for order in ORDERS_3_1)
     return Picture(
         'figure_3_1', 'Figure 3.1: Gauss function',
-        'A larger σ flattens it, μ moves its peak. Below: the Maclaurin series (3.3) in its '
-        f'place; its error within two σ of the peak is {errors}.', draw, 6.6,
+        'A larger σ flattens it, μ moves its peak. Bottom: the Maclaurin series (3.3); its error '
+        f'within two σ of the peak is {errors}.', draw, 6.6,
         {'t': t, **{f'{n} {what}': y for n, v, d in curves for what, y in (
             ('f', v), ('df/dt', d))}})
 
@@ -146,7 +146,7 @@ def figure_3_2() -> Picture:
 
     return Picture(
         'figure_3_2', 'Figure 3.2: the cycloid function',
-        'a stretches it in time, b scales it, c lifts it: with b = c it begins and ends at zero.',
+        'a scales time, b is the amplitude, c the mean: with b = c it begins and ends at zero.',
         draw, 4.4, {f'{n} {what}': y for n, *ys in curves for what, y in zip(
             ('t', 'f', 'df/dt'), ys)})
 
@@ -174,7 +174,7 @@ def figure_3_3() -> Picture:
 
 def figure_4_1() -> Picture:
     """Return the figure of a hypothetical subtrajectory."""
-    profile = subtrajectory(JOURNEY, 0.6)
+    profile = subtrajectory(DISPLACEMENT, 0.6)
     t = np.linspace(0.0, profile.duration, POINTS)
     values = profile(t)
     labels = (drawing.POSITION, drawing.VELOCITY, drawing.ACCELERATION)
@@ -191,8 +191,8 @@ def figure_4_1() -> Picture:
 
     return Picture(
         'figure_4_1', 'Figure 4.1: types of motion of a hypothetical subtrajectory',
-        f'{JOURNEY:g} rad from rest to rest at 0.6 rad/s: position, velocity and acceleration '
-        'are continuous where the three segments meet.', draw, drawing.height_of(3),
+        f'{DISPLACEMENT:g} rad from rest to rest at 0.6 rad/s: position, velocity and '
+        'acceleration are continuous where the three segments meet.', draw, drawing.height_of(3),
         {'time [s]': t, **dict(zip(labels, values))})
 
 
@@ -215,8 +215,8 @@ def figure_4_5() -> Picture:
 
     return Picture(
         'figure_4_5', 'Figure 4.5: different types of robot motion for constrained joint',
-        'With limits of 1 rad/s and 1 rad/s²: 1 rad and on with full speed, 2 rad and 3 rad to '
-        'rest.', draw, drawing.height_of(3) + 0.5)
+        'With limits of 1 rad/s and 1 rad/s²: 1 rad, ending at full speed; 2 rad and 3 rad, '
+        'ending at rest.', draw, drawing.height_of(3) + 0.5)
 
 
 def subtrajectory(displacement: float, velocity: float) -> JointProfile:
@@ -236,13 +236,12 @@ def subtrajectory(displacement: float, velocity: float) -> JointProfile:
         Transition, cruise (which may have no duration), transition.
 
     """
-    lasting = CYCLOID.peak_acceleration * velocity / LIMIT
-    rest = displacement / velocity - lasting
-    start = 0.5 * velocity * lasting
-    lift = transition(lasting, 0.0, 0.0, velocity)
-    level = cruise(max(rest, 0.0), start, velocity)
-    down = transition(lasting, start + velocity * max(rest, 0.0), velocity, 0.0)
-    return JointProfile(CycloidPiece(*(np.array(f, dtype=float) for f in zip(lift, level, down))))
+    duration = CYCLOID.peak_acceleration * velocity / LIMIT  # of a transition
+    cruising = max(displacement / velocity - duration, 0.0)
+    start = 0.5 * velocity * duration
+    pieces = (transition(duration, 0.0, 0.0, velocity), cruise(cruising, start, velocity),
+              transition(duration, start + velocity * cruising, velocity, 0.0))
+    return JointProfile(CycloidPiece(*(np.array(f, dtype=float) for f in zip(*pieces))))
 
 
 def shade(axes: Any, profile: JointProfile) -> None:

@@ -28,8 +28,7 @@ from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTr
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.coefficients import Coefficients, coefficients
-
-BEFORE = 1e-9  # s before a knot: the left-hand limit of quantities that step there
+from rrr_traj_planner.report.motion_samples import BEFORE
 
 
 class Measures(NamedTuple):
@@ -40,9 +39,9 @@ class Measures(NamedTuple):
     acceleration: Array       # [rad/s^2]
     jerk: Array               # [rad/s^3]
     torque: Array             # [N m]
-    jerk_at_ends: Array       # largest where a piece begins or ends [rad/s^3]
-    via_error: float          # largest, of any joint [rad]
-    via_distance: float       # largest, of the tip [m]
+    jerk_at_ends: Array       # largest at the beginnings and ends of pieces [rad/s^3]
+    via_error: float          # largest error of a joint at a via point [rad]
+    via_distance: float       # largest distance of the tip from a via point [m]
     coefficients: Coefficients
 
 
@@ -81,7 +80,7 @@ def jerk_at_ends(trajectory: Trajectory) -> Array:
     Returns
     -------
     ndarray, shape (3,)
-        Jerk [rad/s^3]. For a path of the tip: at the ends of the pieces of s(t).
+        Jerk [rad/s^3]; for a motion along a path of the tip, at the ends of the pieces of s(t).
 
     """
     if isinstance(trajectory, PiecewiseTrajectory):
@@ -171,14 +170,14 @@ def via_positions(model: RobotModel, via_points: Array, q: Array) -> Array:
     return np.array([nearest_solution(model, point, near) for point, near in zip(via_points, q)])
 
 
-def time_at_limit(shares: Array, times: Array, least: float) -> float:
+def time_at_limit(use: Array, times: Array, least: float) -> float:
     """
     Return the fraction of a motion's time in which the use of a limit is above a threshold.
 
     Parameters
     ----------
-    shares : ndarray, shape (n,)
-        Use of the limit, from 0 to 1.
+    use : ndarray, shape (n,)
+        Magnitude / limit.
     times : ndarray, shape (n,)
         Increasing times [s].
     least : float
@@ -190,7 +189,7 @@ def time_at_limit(shares: Array, times: Array, least: float) -> float:
         From 0 to 1.
 
     """
-    middle = 0.5 * (shares[:-1] + shares[1:])
+    middle = 0.5 * (use[:-1] + use[1:])
     widths = np.diff(times)
     return float(widths[middle >= least].sum() / widths.sum())
 

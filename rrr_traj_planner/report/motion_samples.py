@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A motion sampled for drawing, at both sides of every knot; torque and use of the limits."""
+"""A motion sampled for drawing, on both sides of every knot; torque and use of the limits."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 
 STEPS_PER_MOTION = 500  # least number of samples
 STEPS_PER_PIECE = 4     # least number of samples in a piece
-SHORTEST = 1e-5  # of the motion's duration; shorter pieces would look like spikes: left out
-BEFORE = 1e-9    # s before a knot: the left-hand limit of quantities that step there
+SHORTEST = 1e-5  # of the motion's duration; shorter pieces are not drawn: they look like spikes
+BEFORE = 1e-9    # s before a knot, where quantities that step at it have their left-hand limit
 
 
 class Samples(NamedTuple):
@@ -60,8 +60,8 @@ def sampled(model: RobotModel, trajectory: Trajectory) -> Samples:
     Returns
     -------
     Samples
-        Two samples at every knot, so that steps are drawn as steps; the last is just before the
-        end.
+        Two samples at every knot, so that steps are drawn as steps; the last one is just before
+        the end.
 
     """
     t = drawing_times(trajectory)
@@ -82,7 +82,7 @@ def drawing_times(trajectory: Trajectory) -> Array:
     Returns
     -------
     ndarray
-        Increasing times [s], with both sides of every knot; none in pieces too short to be seen.
+        Increasing times [s], on both sides of every knot; none in pieces shorter than `SHORTEST`.
 
     """
     knots = trajectory.knots
@@ -92,7 +92,7 @@ def drawing_times(trajectory: Trajectory) -> Array:
     return np.asarray(t[lasting[np.searchsorted(knots[1:-1], t, side='right')]])
 
 
-def limit_shares(samples: Samples, limits: JointLimits) -> dict[str, Array]:
+def limit_use(samples: Samples, limits: JointLimits) -> dict[str, Array]:
     """
     Return a motion's use of every limit.
 
@@ -116,14 +116,14 @@ def limit_shares(samples: Samples, limits: JointLimits) -> dict[str, Array]:
         'torque': np.abs(samples.torque) / limits.max_effort}
 
 
-def tightest(shares: dict[str, Array]) -> Array:
+def tightest(use: dict[str, Array]) -> Array:
     """
     Return the largest use of any limit of any joint at each time.
 
     Parameters
     ----------
-    shares : dict
-        From `limit_shares`.
+    use : dict
+        From `limit_use`.
 
     Returns
     -------
@@ -131,7 +131,7 @@ def tightest(shares: dict[str, Array]) -> Array:
         Magnitude / limit.
 
     """
-    return np.asarray(np.stack(list(shares.values())).max(axis=(0, 2)))
+    return np.asarray(np.stack(list(use.values())).max(axis=(0, 2)))
 
 
 def path_lengths(trajectory: PathTrajectory, t: Array) -> Array:

@@ -86,8 +86,8 @@ def write_page(folder: Path, title: str, text: str, sections: Sequence[Section])
     """
     Write a page and its files; replace an earlier report in the same folder.
 
-    Files of the earlier report that the new one does not have are removed, unless they have been
-    changed since. Other files are left alone.
+    Files of the earlier report that are not part of the new one are removed, unless they have been
+    changed since. Other files remain.
 
     Parameters
     ----------
@@ -114,25 +114,12 @@ def write_page(folder: Path, title: str, text: str, sections: Sequence[Section])
              for name in content.files}
     remove_earlier(folder, names)
     body = '\n'.join(_section(folder, i, section) for i, section in enumerate(sections))
-    links = ''.join(f'<li><a href="#section-{i}">{escape(s.title)}</a></li>'
-                    for i, s in enumerate(sections))
     page = folder / PAGE
     page.write_text(f"""<!DOCTYPE html>
 <html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta name="generator" content="{GENERATOR}">
-<link rel="icon" href="data:,">
-<title>{escape(title)}</title>
-<style>
-:root {{ {variables(LIGHT)} }}
-@media (prefers-color-scheme: dark) {{ :root {{ {variables(DARK)} }} }}
-{resource('page.css')}</style>
-</head>
+{_head(title)}
 <body>
-<header><h1>{escape(title)}</h1>{paragraphs(text)}<nav><ul>{links}</ul></nav></header>
+<header><h1>{escape(title)}</h1>{paragraphs(text)}{_links(sections)}</header>
 <main>
 {body}
 </main>
@@ -177,6 +164,27 @@ def paragraphs(text: str) -> str:
 
     """
     return ''.join(f'<p>{escape(part)}</p>' for part in text.split('\n\n') if part.strip())
+
+
+def _head(title: str) -> str:
+    return f"""<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta name="generator" content="{GENERATOR}">
+<link rel="icon" href="data:,">
+<title>{escape(title)}</title>
+<style>
+:root {{ {variables(LIGHT)} }}
+@media (prefers-color-scheme: dark) {{ :root {{ {variables(DARK)} }} }}
+{resource('page.css')}</style>
+</head>"""
+
+
+def _links(sections: Sequence[Section]) -> str:
+    items = ''.join(f'<li><a href="#section-{i}">{escape(section.title)}</a></li>'
+                    for i, section in enumerate(sections))
+    return f'<nav><ul>{items}</ul></nav>'
 
 
 def _section(folder: Path, number: int, section: Section) -> str:

@@ -48,7 +48,7 @@ def listed(folder: Path, names: Iterable[str]) -> str:
     return f'<script type="application/json" id="files">{json.dumps(digests)}</script>'
 
 
-def remove_earlier(folder: Path, kept: Iterable[str]) -> None:
+def remove_earlier(folder: Path, retained: Iterable[str]) -> None:
     """
     Remove the files that an earlier page lists and that have not been changed since.
 
@@ -56,8 +56,8 @@ def remove_earlier(folder: Path, kept: Iterable[str]) -> None:
     ----------
     folder : Path
         Folder of the page.
-    kept : iterable of str
-        Names of files that will be written again.
+    retained : iterable of str
+        Names of files that are not removed, because the new page has them too.
 
     Raises
     ------
@@ -70,10 +70,10 @@ def remove_earlier(folder: Path, kept: Iterable[str]) -> None:
         return
     text = page.read_text(encoding='utf-8', errors='replace')
     if f'content="{GENERATOR}"' not in text:
-        raise FileExistsError(f'{page} is no report; another folder is needed')
+        raise FileExistsError(f'{page} is not a report of this program: choose another folder')
     found = LIST.search(text)
     digests = json.loads(found[1]) if found else {}
-    for name in digests.keys() - set(kept):
+    for name in digests.keys() - set(retained):
         file = folder / name
         if file.name == name and file.is_file() and _digest(file) == digests[name]:
             file.unlink()

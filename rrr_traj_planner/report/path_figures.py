@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Figures in space: the tip's path with the arm, and a magnified corner of it (6.12, 6.13)."""
+"""Figures in space: the tip's path with the arm, and a magnified zone of it (6.12, 6.13)."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ from rrr_traj_planner.report.motion_samples import arm_points, sampled
 from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.theme import DASHES, LIGHT, SERIES
 
-POSES = 9          # of the arm, at equal time steps
-MAGNIFIED = 2.0    # length shown on either side of the via point, in half lengths of the curve
-POINTS = 600       # of the magnified path
-MIN_EXTENT = 0.02  # m, least half length of a curve for this purpose
+POSES = 9          # poses of the arm in a figure, at equal time steps
+MAGNIFIED = 2.0    # length shown on either side of the via point, in half lengths of the zone
+POINTS = 600       # of the curve of a magnified path
+MIN_EXTENT = 0.02  # m, half length that is assumed for shorter zones
 LABEL_DISTANCE = 10.0      # points (1/72 inch), from a via point to its number
 LABEL_SIZE = (18.0, 11.0)  # points, width and height of three digits
-MAX_LABELS = 24
-MARKS = ((20, 5.0), (100, 2.5), (np.inf, 1.2))  # up to how many via points: marker size [points]
+MAX_LABELS = 24    # numbers of via points; more are illegible at the figure's width
+MARKS = ((20, 5.0), (100, 2.5), (np.inf, 1.2))  # largest number of via points, mark [points]
 POINTS_PER_INCH = 72.0
-ZOOM = 0.88        # leaves space for labels around the axes
+ZOOM = 0.88        # of the three-dimensional box, so that labels fit around it
 
 
 def path_in_space(of: Planned, name: str, title: str, caption: str) -> Picture:
@@ -109,7 +109,7 @@ def paths_in_space(plans: Sequence[Planned], name: str, title: str, caption: str
 
 def magnified_zone(of: Planned, zone: int, name: str, title: str, caption: str) -> Picture:
     """
-    Return the figure of a path near a via point, in the plane of its curve (figure 6.13).
+    Return the figure of a path near a via point, in the plane of its zone (figure 6.13).
 
     Parameters
     ----------
@@ -148,18 +148,18 @@ def magnified_zone(of: Planned, zone: int, name: str, title: str, caption: str) 
         _zone(axes, line, curved, at_ends, polyline)
         drawing.legend(figure, axes.get_legend_handles_labels()[0], 4)
 
-    told = (f'{caption} Least radius {radius:.3f} m; the path leaves the polyline by at most '
+    text = (f'{caption} Least radius {radius:.3f} m; the path leaves the polyline by at most '
             f'{1e3 * float(np.max(path.deviation)):.1f} mm.')
-    return Picture(name, title, told, draw, 3.0, {
+    return Picture(name, title, text, draw, 3.0, {
         'length along the path [m]': places, 'tangent [m]': line[:, 0], 'normal [m]': line[:, 1]})
 
 
 def _zone(axes: Any, line: Array, curved: BoolArray, ends: Array, polyline: Array) -> None:
-    """Draw a path in the plane of its curve, with the via point as origin [m]."""
+    """Draw a path in the plane of its zone, with the via point as origin [m]."""
     axes.plot(*polyline.T * 1e3, color=LIGHT['limit'], linestyle='--', linewidth=1.0,
               label='polyline')
     axes.plot(*line.T * 1e3, color=LIGHT['tip'], linewidth=1.6, label='line')
-    axes.plot(*line[curved].T * 1e3, color=LIGHT['joint-1'], linewidth=2.4, label='curve')
+    axes.plot(*line[curved].T * 1e3, color=LIGHT['joint-1'], linewidth=2.4, label='zone')
     axes.plot(*ends.T * 1e3, 'o', color=LIGHT['joint-1'], markersize=4)
     axes.plot(0.0, 0.0, 'o', color=LIGHT['via'], markeredgecolor=LIGHT['ink'], markersize=6,
               label='via point')

@@ -32,7 +32,7 @@ from rrr_traj_planner.report.tables import (
     via_points_table,
 )
 
-FEW = 6  # via points that the page's introduction lists; of more only the first and the last
+FEW = 6  # largest number of via points that the introduction lists; else only first and last
 
 
 def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
@@ -54,9 +54,9 @@ def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
     """
     task = found[0].task
     points = ['(' + ', '.join(f'{x:g}' for x in p) + ')' for p in task.via_points]
-    told = '; '.join(points) if len(points) <= FEW else f'from {points[0]} to {points[-1]}'
+    text = '; '.join(points) if len(points) <= FEW else f'from {points[0]} to {points[-1]}'
     return write_page(folder, f'Plan of {task.name}',
-                      f'{counted(len(points), "via point")} [m]: {told}.', sections(found))
+                      f'{counted(len(points), "via point")} [m]: {text}.', sections(found))
 
 
 def sections(found: Sequence[Attempt]) -> list[Section]:
@@ -89,8 +89,7 @@ def sections(found: Sequence[Attempt]) -> list[Section]:
     parts.append(Section('Motion', '', [Animation(
         'animation', 'The arm along the path',
         'Drag a picture to turn the view. The path ahead of the tip is grey. Below each picture: '
-        'the limit of velocity, acceleration, jerk or torque that is used most at the moment, of '
-        'any joint.',
+        'the limit (of velocity, acceleration, jerk or torque of a joint) that is used most then.',
         plans)]))
     if len(plans) > 1:
         parts.append(Section('Side by side', '', _comparison(plans)))

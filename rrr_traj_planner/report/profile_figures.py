@@ -26,7 +26,7 @@ from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.measures import time_at_limit
 from rrr_traj_planner.report.motion_samples import (
-    limit_shares,
+    limit_use,
     path_lengths,
     sampled,
     Samples,
@@ -158,8 +158,8 @@ def torque_use(of: Planned, name: str, title: str, caption: str) -> Picture:
     """
     trajectory = of.plan.trajectory
     s = sampled(of.task.model, trajectory)
-    shares = limit_shares(s, of.task.limits)
-    most = tightest(shares)
+    use = limit_use(s, of.task.limits)
+    most = tightest(use)
     x, via, label = s.t, of.plan.via_times, drawing.TIME
     if isinstance(trajectory, PathTrajectory):
         x, via = path_lengths(trajectory, s.t), trajectory.arm_path.path.via_s
@@ -171,19 +171,19 @@ def torque_use(of: Planned, name: str, title: str, caption: str) -> Picture:
         for one in axes:
             drawing.limit_band(one, np.full(3, 100.0))
             one.set_ylim(0.0, max(105.0, 102.0 * float(most.max())))
-        drawing.joint_lines(axes[0], x, 100.0 * shares['torque'])
+        drawing.joint_lines(axes[0], x, 100.0 * use['torque'])
         axes[1].plot(x, 100.0 * most, color=LIGHT['ink'])
         drawing.via_lines(axes, via)
         drawing.legend(figure, [*drawing.joint_handles(of.task.model.joint_names),
                                 drawing.limit_handle(), drawing.via_handle()])
 
-    told = (f'{caption} For {100.0 * time_at_limit(most, s.t, USED):.0f} % of the time at least '
+    text = (f'{caption} For {100.0 * time_at_limit(most, s.t, USED):.0f} % of the time at least '
             f'one limit (velocity, acceleration, jerk or torque, of any joint) is used to '
             f'{100.0 * USED:.0f} % or more.').strip()
     data = {label: x, 'time [s]': s.t, **{
-        f'{joint} torque share': shares['torque'][:, i]
-        for i, joint in enumerate(of.task.model.joint_names)}, 'tightest share': most}
-    return Picture(name, title, told, draw, drawing.height_of(2) + 0.3, data)
+        f'{joint} torque / limit': use['torque'][:, i]
+        for i, joint in enumerate(of.task.model.joint_names)}, 'tightest limit use': most}
+    return Picture(name, title, text, draw, drawing.height_of(2) + 0.3, data)
 
 
 def compared(plans: Sequence[Planned], joint: int, name: str, title: str,

@@ -47,7 +47,7 @@ class Table:
     rows : sequence of sequence of str
         Cells.
     sentences : bool
-        Whether cells are sentences, which may be broken into lines.
+        Whether cells are sentences, in which lines may be broken at any space.
 
     """
 
@@ -223,7 +223,7 @@ def shown(value: float, digits: int) -> str:
     Returns
     -------
     str
-        '0' for numbers that are only rounding errors.
+        '0' for magnitudes below `ROUNDING`.
 
     """
     return '0' if abs(value) < ROUNDING else f'{value:.{digits}f}'

@@ -39,7 +39,7 @@ DARK = {
     'extra-6': '#8fb0e6'}
 
 JOINTS = (LIGHT['joint-1'], LIGHT['joint-2'], LIGHT['joint-3'])
-DASHES: tuple[Any, ...] = ('-', (0, (5, 1.5)), (0, (1.5, 1.2)))  # distinct without colours too
+DASHES: tuple[Any, ...] = ('-', (0, (5, 1.5)), (0, (1.5, 1.2)))  # distinct in black and white too
 SERIES = (*JOINTS, *(LIGHT[f'extra-{i}'] for i in (1, 4, 3, 2, 5, 6)), LIGHT['tip'])
 
 WIDTH = 4.7  # inches: one column, legible on a phone

@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.report.approach_figures import figure_4_3, figure_4_4
 from rrr_traj_planner.report.attempts import Attempt, attempts, Planned, planned
@@ -58,7 +59,7 @@ Less excitation: true for a transition of the same duration, not for whole motio
 transitions. Near time optimality: not true for approach (a); the least times are those of any
 motion through the points under the same limits."""
 
-REPEATS = 2  # plannings of a task; the shorter time counts, as the first one loads modules
+REPEATS = 2  # times that a task is planned: the shorter one counts, as the first loads modules
 POLYNOMIAL, THESIS = 'poly_414', 'cycloid_approach_a'
 
 
@@ -220,7 +221,7 @@ def total_times(found: Sequence[Attempt], name: str, title: str) -> Picture:
     """
     plans = sorted(planned(found), key=lambda p: -p.plan.trajectory.duration)
     times = np.array([p.plan.trajectory.duration for p in plans])
-    missing = np.array([measures(p).via_error > 1e-9 for p in plans])
+    missing = np.array([measures(p).via_error > JOINT_ROUNDING for p in plans])
 
     def draw(figure: Any) -> None:
         axes = figure.subplots()
@@ -236,15 +237,16 @@ def total_times(found: Sequence[Attempt], name: str, title: str) -> Picture:
                    0.9 + 0.25 * len(plans), {'total time [s]': times})
 
 
-def _joint_figures(of: Planned, first: int, how: str, wherewith: str, seen: str) -> list[Content]:
+def _joint_figures(of: Planned, first: int, how: str, conditions: str,
+                   remark: str) -> list[Content]:
     figures: list[Content] = [positions(
         of, f'figure_6_{first}',
-        f'Figure 6.{first}: the positions {how} for joint 1, 2 and 3 {wherewith}',
-        f'{of.planner_id} on table 6.1, {of.plan.trajectory.duration:.3f} s. {seen}')]
+        f'Figure 6.{first}: the positions {how} for joint 1, 2 and 3 {conditions}',
+        f'{of.planner_id} on table 6.1, {of.plan.trajectory.duration:.3f} s. {remark}')]
     return figures + [one_joint(
         of, joint, f'figure_6_{first + 1 + joint}',
         f'Figure 6.{first + 1 + joint}: the velocity, acceleration and jerk {how} for joint '
-        f'{joint + 1} {wherewith}', f'{of.planner_id} on table 6.1.') for joint in range(3)]
+        f'{joint + 1} {conditions}', f'{of.planner_id} on table 6.1.') for joint in range(3)]
 
 
 def _path_figures(plans: ThesisPlans) -> list[Content]:

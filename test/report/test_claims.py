@@ -26,8 +26,8 @@ from rrr_traj_planner.report.claim_figures import LIMIT_TIMES, of_plan, of_trans
 from rrr_traj_planner.report.coefficients import PER_TRANSITION
 from rrr_traj_planner.report.excitation import (
     amplitude_spectrum,
+    fraction_above,
     residual_vibration,
-    share_above,
 )
 
 DOCUMENT = (DOCS / 'claims.md').read_text()
@@ -36,8 +36,8 @@ ROWS = {row[0]: row[1:] for row in (
     for line in DOCUMENT.splitlines() if line.startswith('| `'))}
 
 
-def scipy_swing(t, acceleration, frequency, damping):
-    """Return the swing by integrating the mode's equation, a slow second method."""
+def scipy_vibration(t, acceleration, frequency, damping):
+    """Return the residual vibration by integrating the mode's equation, a slow second method."""
     from scipy.integrate import solve_ivp
     w = 2.0 * pi * frequency
     y, v = solve_ivp(
@@ -55,19 +55,19 @@ def test_spectrum_of_a_pulse_is_the_sinc():
         np.abs(np.sinc(f)), abs=1e-5)
 
 
-def test_share_above_is_parsevals():
+def test_fraction_above_is_parsevals():
     t = np.linspace(0.0, 20.0, 40001)
     a = np.exp(-0.5 * ((t - 10.0) / 0.5) ** 2)  # energy spectrum: normal, deviation 1/(2 pi)*sqrt2
     from scipy.special import erfc
-    assert share_above(t, a, 0.4) == pytest.approx(erfc(2.0 * pi * 0.5 * 0.4), abs=1e-5)
+    assert fraction_above(t, a, 0.4) == pytest.approx(erfc(2.0 * pi * 0.5 * 0.4), abs=1e-5)
 
 
 @pytest.mark.parametrize('frequency', [1.3, 4.0])
-def test_swing_is_that_of_the_integrated_mode(frequency):
+def test_residual_vibration_is_that_of_the_integrated_mode(frequency):
     t = np.linspace(0.0, 1.5, 4001)
     a = np.sin(pi * t / 1.5) ** 2 * (1.0 - t)
     assert residual_vibration(t, a, np.array([frequency]), 0.02) == pytest.approx(
-        [scipy_swing(t, a, frequency, 0.02)], rel=1e-3)
+        [scipy_vibration(t, a, frequency, 0.02)], rel=1e-3)
 
 
 def test_claim_fewer_coefficients_holds():
@@ -78,14 +78,14 @@ def test_claim_less_excitation_holds_for_transitions_of_equal_length():
     found = of_transitions()
     for other in ('septic', 'quartic', 'gauss'):
         assert found['cycloid'].above < 0.5 * found[other].above, other
-        assert found['cycloid'].swing < 0.7 * found[other].swing, other
+        assert found['cycloid'].vibration < 0.7 * found[other].vibration, other
     assert found['quartic'].above > 20.0 * found['cycloid'].above
 
 
 def test_claim_less_excitation_does_not_hold_for_the_thesis_s_own_example(plans):
     polynomial, own = (of_plan(plans.on_table_6_1(i)) for i in ('poly_414', 'cycloid_approach_a'))
     assert own.above > 10.0 * polynomial.above
-    assert own.swing > 2.0 * polynomial.swing
+    assert own.vibration > 2.0 * polynomial.vibration
 
 
 @pytest.mark.parametrize(('planner_id', 'ratio_low', 'ratio_high'), [
@@ -106,7 +106,7 @@ def test_time_optimal_is_within_two_per_cent_of_the_limit_with_jerk(plans):
 @pytest.mark.parametrize('planner_id', [
     'cycloid', 'cycloid_approach_a', 'gauss', 'poly_414', 'poly_434', 'septic', 'time_optimal'])
 def test_document_has_the_figures_of_motions(plans, planner_id):
-    t1, r1, t3, r3, above, swing = (float(re.sub(r'[^\d.]', '', x)) for x in ROWS[planner_id])
+    t1, r1, t3, r3, above, vibration = (float(re.sub(r'[^\d.]', '', x)) for x in ROWS[planner_id])
     of = (plans.on_table_6_1(planner_id), plans.on_table_6_3(planner_id))
     times = [p.plan.trajectory.duration for p in of]
     limits = LIMIT_TIMES['velocity, acceleration']
@@ -114,14 +114,14 @@ def test_document_has_the_figures_of_motions(plans, planner_id):
     assert [r1, r3] == pytest.approx([t / x for t, x in zip(times, limits)], abs=6e-3)
     found = of_plan(of[0])
     assert above == pytest.approx(100.0 * found.above, rel=0.05, abs=6e-3)
-    assert swing == pytest.approx(found.swing, rel=0.05, abs=6e-3)
+    assert vibration == pytest.approx(found.vibration, rel=0.05, abs=6e-3)
 
 
 @pytest.mark.parametrize('name', ['cycloid function', 'gauss function', 'septic function',
                                   'quartic function'])
 def test_document_has_the_figures_of_functions(name):
-    coefficients, above, swing = (float(x) for x in ROWS[name])
+    coefficients, above, vibration = (float(x) for x in ROWS[name])
     found = of_transitions()[name.split()[0]]
     assert coefficients == PER_TRANSITION[name.split()[0]]
     assert above == pytest.approx(1e6 * found.above, rel=0.02)
-    assert swing == pytest.approx(found.swing, rel=0.02)
+    assert vibration == pytest.approx(found.vibration, rel=0.02)

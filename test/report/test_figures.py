@@ -32,16 +32,16 @@ from rrr_traj_planner.nodes.parameters.parameter_files import planner_config
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.report.animation import frames
-from rrr_traj_planner.report.approach_figures import via_positions
 from rrr_traj_planner.report.attempts import planned
 from rrr_traj_planner.report.function_figures import (
     gauss_function,
     subtrajectory,
     transitions_compared,
 )
+from rrr_traj_planner.report.measures import via_positions
 from rrr_traj_planner.report.motion_samples import (
     arm_points,
-    limit_shares,
+    limit_use,
     path_lengths,
     sampled,
     tightest,
@@ -89,18 +89,20 @@ def test_transitions_last_what_the_thesis_says():
         assert curve.qd[[0, -1]] == pytest.approx([0.0, 1.0]), curve.name
 
 
-@pytest.mark.parametrize(('way', 'speed', 'pieces'), [(1.8, 0.6, 3), (2.0, 1.0, 2)])
-def test_subtrajectory_goes_its_way_from_rest_to_rest(way, speed, pieces):
-    profile = subtrajectory(way, speed)
+@pytest.mark.parametrize(('displacement', 'speed', 'pieces'), [(1.8, 0.6, 3), (2.0, 1.0, 2)])
+def test_subtrajectory_covers_its_displacement_from_rest_to_rest(displacement, speed, pieces):
+    profile = subtrajectory(displacement, speed)
     q, qd, qdd, _ = profile(np.array([0.0, profile.duration]))
-    assert (q[1], *qd, *qdd) == pytest.approx((way, 0.0, 0.0, 0.0, 0.0), abs=1e-12)
-    assert profile.duration == pytest.approx(way / speed + 2.0 * speed)
+    assert (q[1], *qd, *qdd) == pytest.approx((displacement, 0.0, 0.0, 0.0, 0.0), abs=1e-12)
+    assert profile.duration == pytest.approx(displacement / speed + 2.0 * speed)
     assert len(profile.knots) == pieces + 1
 
 
 def test_via_positions_are_those_calculated_by_hand(plans):
     for planner_id in ('cycloid_approach_a', 'cycloid_approach_b'):
-        q = via_positions(plans.on_table_6_1(planner_id))
+        of = plans.on_table_6_1(planner_id)
+        passed = of.plan.trajectory(of.plan.via_times)[0]
+        q = via_positions(of.task.model, of.task.via_points, passed)
         assert np.degrees(q) == pytest.approx(np.array(ANGLES_6_1), abs=1e-3)
 
 
@@ -129,7 +131,7 @@ def test_samples_show_both_sides_of_a_step(plans):
 def test_shares_reach_one_where_limits_are_used_to_the_full(plans):
     for of in planned(plans.table_6_1):
         s = sampled(of.task.model, of.plan.trajectory)
-        shares = limit_shares(s, of.task.limits)
+        shares = limit_use(s, of.task.limits)
         most = tightest(shares)
         assert 0.9 < most.max() <= 1.0 + 1e-6, of.planner_id
         assert most.max() == max(x.max() for x in shares.values())
@@ -138,7 +140,7 @@ def test_shares_reach_one_where_limits_are_used_to_the_full(plans):
 def test_a_limit_that_is_none_is_not_used():
     limits = JointLimits(max_jerk=np.full(3, np.inf))
     found = plan(RobotModel(), limits, PlanningRequest(table_6_1().via_points))
-    assert limit_shares(sampled(RobotModel(), found.trajectory), limits)['jerk'].max() == 0.0
+    assert limit_use(sampled(RobotModel(), found.trajectory), limits)['jerk'].max() == 0.0
 
 
 def test_path_lengths_rise_to_the_whole_path(plans):
@@ -164,8 +166,8 @@ def test_frames_go_from_the_first_via_point_to_the_last(plans):
     for motion in found['motions']:
         assert motion['tip'][0] == pytest.approx(found['via_points'][0], abs=1e-4)
         assert motion['tip'][-1] == pytest.approx(found['via_points'][-1], abs=1e-4)
-        assert len(motion['tip']) == len(motion['elbow']) == len(motion['share'])
-        assert max(motion['share']) <= 1.001
+        assert len(motion['tip']) == len(motion['elbow']) == len(motion['use'])
+        assert max(motion['use']) <= 1.001
 
 
 def test_picture_writes_png_and_csv_and_an_svg_without_fixed_colours(tmp_path):
@@ -233,7 +235,7 @@ def test_page_replaces_an_earlier_one_and_touches_nothing_else(tmp_path):
 def test_page_that_is_no_report_is_not_overwritten(tmp_path):
     page = tmp_path / 'index.html'
     page.write_text('<h1>My own</h1>')
-    with pytest.raises(FileExistsError, match='index.html is no report; another folder is needed'):
+    with pytest.raises(FileExistsError, match='index.html is not a report of this program'):
         write_page(tmp_path, 'Title', '', [])
     assert page.read_text() == '<h1>My own</h1>'
 

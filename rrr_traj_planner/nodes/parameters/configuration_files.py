@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Via-point files, and where they and arm parameter files are looked for."""
+"""Via-point files, and the search path of configuration files."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from rrr_traj_planner.nodes.parameters.point_tables import (
 )
 import yaml
 
-CHECKOUT = Path(__file__).resolve().parents[3] / 'config'  # of the source tree
+SOURCE_FOLDER = Path(__file__).resolve().parents[3] / 'config'  # of the source tree
 FIELDS = ('planner_id', 'via_points', 'segment_durations', 'arm')
 NEEDED = 'must have via_points: [[x, y, z], ...] in m'
 
@@ -131,7 +131,7 @@ def _document(text: str) -> tuple[dict[str, Any], list[int]]:
 
 
 def _check_keys(root: yaml.MappingNode) -> None:
-    """Refuse unknown and repeated keys: of repeated ones YAML takes the last."""
+    """Refuse unknown and repeated keys: YAML would silently take the last one."""
     lines: dict[str, int] = {}
     for key, _ in root.value:
         name, line = str(key.value), key.start_mark.line + 1
@@ -139,7 +139,8 @@ def _check_keys(root: yaml.MappingNode) -> None:
             raise InvalidInputError(
                 f'line {line}: unknown {name}; known are {", ".join(FIELDS)}')
         if name in lines:
-            raise InvalidInputError(f'line {line}: {name} stands in line {lines[name]} already')
+            raise InvalidInputError(
+                f'line {line}: {name} is repeated (first in line {lines[name]})')
         lines[name] = line
 
 
@@ -152,7 +153,7 @@ def arm_file(name: str, folder: Path) -> Path:
     name : str
         A path, absolute or relative to the folder, or the name of a file in the package's config/.
     folder : Path
-        The folder that relative paths begin from.
+        The folder that relative paths refer to.
 
     Returns
     -------
@@ -206,8 +207,8 @@ def shipped_folder() -> Path:
     try:
         from ament_index_python.packages import get_package_share_path, PackageNotFoundError
     except ImportError:
-        return CHECKOUT
+        return SOURCE_FOLDER
     try:
         return Path(get_package_share_path('rrr_traj_planner')) / 'config'
     except PackageNotFoundError:
-        return CHECKOUT
+        return SOURCE_FOLDER

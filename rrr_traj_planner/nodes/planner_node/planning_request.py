@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Conversion of PlanTrajectory's request message to the planners' `PlanningRequest`."""
+"""Conversion of the message PlanTrajectory.Request to the planners' `PlanningRequest`."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ from sensor_msgs.msg import JointState
 # Range of sample_period [s]: no controller can use points closer together or further apart.
 MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD = 1e-4, 10.0
 
-# Range of max_deviation [m]: smaller zones are as good as corners, larger ones exceed any arm.
+# Range of max_deviation [m]: smaller zones are practically corners, larger ones exceed any arm.
 MIN_DEVIATION, MAX_DEVIATION = 1e-6, 100.0
 
-# Arguments of `PlanningRequest` that the service or the node's parameters call otherwise.
+# Arguments of `PlanningRequest` with other names in the service or the node's parameters.
 FIELDS = {'start': 'start_state', 'velocity_scaling': 'max_velocity_scaling_factor',
           'acceleration_scaling': 'max_acceleration_scaling_factor',
           'half_transition': 'poly_414.t_acc'}
@@ -56,7 +56,7 @@ class FrameError(RrrPlannerError):
 def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
                      should_stop: ShouldStop = never) -> PlanningRequest:
     """
-    Return a message as a planning request, with the node's defaults in the empty fields.
+    Return the planning request of a message, with the node's defaults for empty fields.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
     Returns
     -------
     PlanningRequest
-        The request; its fields are checked each by itself.
+        The request, whose fields have been checked one by one.
 
     Raises
     ------
@@ -82,22 +82,9 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
         If another field is malformed.
 
     """
-    frame = message.via_points.header.frame_id
-    if frame not in ('', config.base_frame):
-        raise FrameError(f'via_points are in frame {quoted(frame)}, must be in '
-                         f"'{config.base_frame}' (an empty frame_id means the same)")
-    count = len(message.via_points.poses)
-    if count > config.max_via_points:
-        raise InvalidInputError(f'{count} via points given, at most {config.max_via_points} '
-                                'allowed (max_via_points)')
-    period = message.sample_period
-    if period != 0.0 and not MIN_SAMPLE_PERIOD <= period <= MAX_SAMPLE_PERIOD:
-        raise InvalidInputError('sample_period is {} s, must be 0 or in [{}, {}] s'.format(
-            *format_distinct(period, MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD)))
-    deviation = message.max_deviation
-    if deviation != 0.0 and not MIN_DEVIATION <= deviation <= MAX_DEVIATION:
-        raise InvalidInputError('max_deviation is {} m, must be 0 or in [{}, {}] m'.format(
-            *format_distinct(deviation, MIN_DEVIATION, MAX_DEVIATION)))
+    _check_via_points(message, config)
+    _check_range('sample_period', message.sample_period, MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD, 's')
+    _check_range('max_deviation', message.max_deviation, MIN_DEVIATION, MAX_DEVIATION, 'm')
     if message.elbow not in ('', *ELBOWS):
         raise InvalidInputError(
             f"elbow is {quoted(message.elbow)}, must be 'up', 'down' or empty")
@@ -110,13 +97,31 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
                 message.segment_durations) else None,
             velocity_scaling=_or_default(message.max_velocity_scaling_factor, 1.0),
             acceleration_scaling=_or_default(message.max_acceleration_scaling_factor, 1.0),
-            sample_period=_or_default(period, config.sample_period),
+            sample_period=_or_default(message.sample_period, config.sample_period),
             elbow=message.elbow or None,
-            max_deviation=_or_default(deviation, config.max_deviation),
+            max_deviation=_or_default(message.max_deviation, config.max_deviation),
             max_tip_speed=_or_default(config.max_tip_speed, inf),
             steady_zones=config.steady_zones, half_transition=config.half_transition,
             should_stop=should_stop, max_points=config.max_points,
             start_state_tolerance=config.start_state_tolerance)
+
+
+def _check_via_points(message: PlanTrajectory.Request, config: PlannerConfig) -> None:
+    """Check the frame and the number of via points."""
+    frame, count = message.via_points.header.frame_id, len(message.via_points.poses)
+    if frame not in ('', config.base_frame):
+        raise FrameError(f'via_points are in frame {quoted(frame)}, must be in '
+                         f"'{config.base_frame}' (an empty frame_id means the same)")
+    if count > config.max_via_points:
+        raise InvalidInputError(f'{count} via points given, at most {config.max_via_points} '
+                                'allowed (max_via_points)')
+
+
+def _check_range(field: str, value: float, low: float, high: float, unit: str) -> None:
+    """Check a field that is in a range, or 0 for the node's default."""
+    if value != 0.0 and not low <= value <= high:
+        raise InvalidInputError('{} is {} {}, must be 0 or in [{}, {}] {}'.format(
+            field, format_distinct(value, low, high)[0], unit, *format_distinct(value, low, high)[1:], unit))
 
 
 def _or_default(value: float, default: float) -> float:

@@ -104,7 +104,7 @@ def test_durations_are_read(here):
     ('via_points: [[1.0, 2.0, .nan]]\n', 'via_points[0][2] is nan, must be finite'),
     (f'via_points: [[1{"0" * 400}, 2.0, 3.0]]\n', 'via_points[0][0] is 10'),
     ('via_points: [[1.0, -.inf, 3.0]]\n', 'via_points[0][1] is -inf, must be finite'),
-    (POINTS + POINTS, 'line 2: via_points stands in line 1 already'),
+    (POINTS + POINTS, 'line 2: via_points is repeated (first in line 1)'),
     (POINTS + 'segment_durations: [1.0, x]\n', "segment_durations[1] is 'x', must be a number"),
     (POINTS + 'segment_durations: [.nan]\n', 'segment_durations[0] is nan, must be finite'),
     (POINTS + 'segment_durations: 3.0\n', 'segment_durations has shape (), must have (n)'),
