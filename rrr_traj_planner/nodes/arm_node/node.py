@@ -54,7 +54,7 @@ from trajectory_msgs.msg import JointTrajectory
 WARNING_PERIOD = 1.0  # s between warnings of stops
 
 MOVING_END_HINT = (
-    '; a stream of points that end while moving needs '
+    '; a stream of points with velocities needs '
     'allow_nonzero_velocity_at_trajectory_end: true')
 
 NOT_THE_CLOCK = 'simulated time can be paused only with publish_clock: true'
@@ -74,7 +74,7 @@ class SimulatedArm(ServiceNode):
 
     Notes
     -----
-    Subscribes to `joint_trajectory` and `disturbance` (names and efforts, held until the next
+    Subscribes to `joint_trajectory` and `disturbance` (names and efforts, applied until the next
     message). Publishes `joint_states` (measured position and velocity, motor torque),
     `desired_joint_states` (the controller's reference) and `~/tracking_error` (reference minus
     measurement), all three with the same stamp; `diagnostics` once a second; `robot_description`
@@ -232,7 +232,7 @@ class SimulatedArm(ServiceNode):
         return self._time.period(rate, config.real_time_factor)
 
     def destroy_node(self) -> None:
-        """Release the node's name."""
+        """Release the claim on the node's name with the node."""
         self._start.end()
         super().destroy_node()
 

@@ -16,7 +16,7 @@
 Markers for RViz: the arm and its tip's past path, the via points and path of a plan.
 
 Namespaces and ids are fixed, so that each message replaces the markers of the one before. The
-header's stamp is 0: RViz shows markers of any age, such as those kept for late subscribers.
+header's stamp is 0, so that RViz shows markers of any age, such as those of latched topics.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ BLUE, RED, GREEN = (0.0, 0.45, 0.7, 1.0), (0.84, 0.37, 0.0, 1.0), (0.0, 0.62, 0.
 # Width of lines and diameter of via points, as fractions of the arm's reach.
 LINE_WIDTH, BALL = 1.0 / 320.0, 1.0 / 64.0
 
-MAX_POINTS = 1000  # drawn of a path, and of its via points; RViz becomes slow with more
+MAX_POINTS = 1000  # largest number of via points drawn; RViz becomes slow with more
 
 SAME_TIME = 1e-9  # s, rounding of times
 
@@ -76,7 +76,7 @@ def arm_markers(model: RobotModel, frame: str, joints: Iterable[tuple[float, flo
     balls = _marker(frame, ARM, JOINTS, Marker.SPHERE_LIST, COLOURS['dark'],
                     (2.8 * RADIUS * reach,) * 3)
     balls.points = [point(*p) for p in points[1:3]]
-    # The trail may end up to a step before the present position.
+    # The trail's last point may be up to a step behind the tip.
     line = _line(frame, EXECUTED, GREEN, [point(*p) for p in (*trail, points[-1])], reach)
     return MarkerArray(markers=[*markers, balls, line])
 

@@ -34,7 +34,7 @@ from rrr_traj_planner.nodes.parameters.error_names import from_group, named
 
 Values = Mapping[str, Any]
 
-# Factor by which the encoders' velocity estimate must be faster than the limit of stability.
+# Least bandwidth of the encoders' velocity estimate, over that at the limit of stability.
 STABILITY_MARGIN = 2.0
 
 

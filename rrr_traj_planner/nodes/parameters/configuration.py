@@ -42,8 +42,9 @@ from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]
 
-# Bound on damping * physics_step. The torque is held over a step, which multiplies a velocity
-# error by 1 - damping * step: the error alternates above a product of 1, and grows above 2.
+# Bound on damping * physics_step. The torque is constant over a step, which multiplies a velocity
+# error by 1 - damping * step: the error's sign alternates if the product is above 1, and the error
+# grows if it is above 2.
 MAX_DAMPING_PER_STEP = 1.0
 
 

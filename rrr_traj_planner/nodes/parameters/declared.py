@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A node's ROS parameters: declared from the table, and checked together at every change."""
+"""A node's ROS parameters: declared from the table, and checked together at each change."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class DeclaredParameters(Generic[Config]):
     Attributes
     ----------
     config : object
-        The configuration in force.
+        The present configuration.
     given : dict
         Parameter overrides by name: from files, the command line or the program.
     joint_names : list of str
@@ -63,8 +63,8 @@ class DeclaredParameters(Generic[Config]):
     Raises
     ------
     InvalidInputError
-        If an override is out of range (names parameter, value and range), a name is unknown, or
-        limits of a renamed joint are missing.
+        If an override is out of range, a name is unknown, or limits of a renamed joint are
+        missing; with parameter, value and range.
 
     """
 
@@ -90,7 +90,7 @@ class DeclaredParameters(Generic[Config]):
 
     def _declare(self, row: Row) -> Any:
         """Declare one parameter; return its override, or the default of the table."""
-        # Dynamically typed at first: rclpy's own error messages do not tell the range.
+        # Dynamically typed at first: rclpy's own error messages do not contain the range.
         loose = ParameterDescriptor(dynamic_typing=True)
         value = self._node.declare_parameter(row.name, row.default, loose).value
         try:

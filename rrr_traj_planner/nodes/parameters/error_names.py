@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Translates argument names in the library's errors to names of parameters and message fields."""
+"""Names of parameters and message fields in the library's errors, in place of its arguments."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def named(names: Mapping[str, str]) -> Iterator[None]:
     Raises
     ------
     InvalidInputError
-        As raised within the context, with the name replaced.
+        The error raised within the context, with the name replaced.
 
     """
     try:

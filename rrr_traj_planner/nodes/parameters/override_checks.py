@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Checks of the names of parameter overrides: unknown, missing and unused parameters."""
+"""Checks of parameter overrides by name: unknown, missing and unused parameters."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.table import ARM, PLANNER, rows_of
 
-KINDS = ('velocity', 'acceleration', 'jerk', 'effort')  # of limits
+KINDS = ('velocity', 'acceleration', 'jerk', 'effort')  # of limits, in names of parameters
 ROS_PARAMETERS = ('use_sim_time', 'qos_overrides', 'start_type_description_service')
 MAX_SHOWN = 3      # unknown names in one message
 SIMILARITY = 0.75  # least ratio (difflib's; 1: equal) for a known name to be suggested
@@ -32,7 +32,7 @@ SIMILARITY = 0.75  # least ratio (difflib's; 1: equal) for a known name to be su
 
 def check_given(given: Mapping[str, Any], joint_names: Sequence[str]) -> None:
     """
-    Refuse unknown names in the nodes' parameter groups, and renamed joints without own limits.
+    Refuse unknown names in the nodes' parameter groups, and renamed joints without limits.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def check_given(given: Mapping[str, Any], joint_names: Sequence[str]) -> None:
     Raises
     ------
     InvalidInputError
-        Lists them, with the most similar known name for each unknown one.
+        If there are any; with the most similar known name for each unknown one.
 
     """
     faults = [*_missing_limits(given, joint_names), *_unknown(given, joint_names)]
@@ -121,4 +121,4 @@ def _missing_limits(given: Mapping[str, Any], joint_names: Sequence[str]) -> Ite
         missing = [name for name in needed if f'{limits}.{name}' not in given]
         if missing:
             yield (f'{limits} lacks {", ".join(missing)}: joint_names[{index}] is {joint!r}, and '
-                   f"those of the default arm's {default} are not its own")
+                   f"the default arm's limits of {default} do not apply to it")

@@ -87,7 +87,7 @@ def check_number(name: str, value: Any) -> None:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         hint = ''
         if isinstance(value, str) and _number(value) is not None:
-            hint = ' (YAML takes 1e-3 and quoted numbers for texts: write 1.0e-3)'
+            hint = ' (YAML reads 1e-3 and quoted numbers as text: write 1.0e-3)'
         raise InvalidInputError(f'{name} is {value!r}, must be a number{hint}')
     if abs(value) > LARGEST or value != value:
         raise InvalidInputError(f'{name} is {value}, must be finite')

@@ -70,7 +70,7 @@ class Row(NamedTuple):
         return f'in [{self.low:g}, {self.high:g}]' + (f' {self.unit}' if self.unit else '')
 
 
-MAX_SEED = 2 ** 31 - 1  # of the noise: positive in 32 bits
+MAX_SEED = 2 ** 31 - 1  # of the noise: the largest signed number of 32 bits
 
 
 def _joint_limit(name: str, kind: str, values: tuple[Any, ...], unit: str, low: float,
@@ -106,7 +106,8 @@ TABLE: tuple[Row, ...] = (
     *_joint_limit('jerk', 'jerk', (10.0, 10.0, 10.0), 'rad/s^3', 1e-6, 1e6),
     *_joint_limit('effort', "torque of the joint's motor", (150.0, 200.0, 200.0), 'N m', 1e-6,
                   1e6),
-    Row('default_planner_id', 'cycloid', 'planner of requests that name none', nodes=(PLANNER,)),
+    Row('default_planner_id', 'cycloid', 'planner of requests without a planner_id',
+        nodes=(PLANNER,)),
     Row('sample_period', 0.01, 'time between trajectory points if the request gives none', 's',
         1e-4, 10.0, nodes=(PLANNER,)),
     Row('max_deviation', 0.05, 'largest distance of a Cartesian path from the straight lines '
@@ -225,18 +226,18 @@ def check_value(row: Row, value: Any) -> None:
 
     """
     is_list = isinstance(row.default, list)
-    wanted = type(row.default[0] if is_list else row.default)
+    expected = type(row.default[0] if is_list else row.default)
     sequence = hasattr(value, '__len__') and not isinstance(value, (str, bytes))
     items = list(value) if sequence else [value]
-    if sequence != is_list or any(type(x) is not wanted for x in items):
+    if sequence != is_list or any(type(x) is not expected for x in items):
         raise InvalidInputError(
-            f'{row.name} is {_shown(value)}, must be {row.range_text}{NOTATION_HINT[wanted]}')
+            f'{row.name} is {_shown(value)}, must be {row.range_text}{NOTATION_HINT[expected]}')
     if is_list and len(items) != len(row.default):
         raise InvalidInputError(
             f'{row.name} has {counted(len(items), "value")}, {_shown(value)}, must be '
             f'{row.range_text}')
     for i, x in enumerate(items):
-        if wanted in (int, float) and not (isfinite(x) and row.low <= x <= row.high):
+        if expected in (int, float) and not (isfinite(x) and row.low <= x <= row.high):
             index = f'[{i}]' if is_list else ''
             unit = f' {row.unit}' if row.unit else ''
             raise InvalidInputError(

@@ -26,7 +26,7 @@ from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.nodes.output.diagnostics import diagnostics
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
-WINDOW = 1000  # latest requests whose planning times the percentiles are taken of
+WINDOW = 1000  # number of latest requests that the percentiles of planning times include
 PERCENTILES = (50, 90, 99)
 
 _RESPONSE = PlanTrajectory.Response
@@ -101,7 +101,7 @@ class RequestStatistics:
         refused = requests - self.answers[_RESPONSE.SUCCESS] - bugs
         text = f'{counted(requests, "request")} answered, {refused} of them refused'
         if bugs:
-            text += f'; {bugs} met a bug, see the log'
+            text += f'; {bugs} failed because of a bug, see the log'
         return diagnostics(
             f'{name}: plan_trajectory', DiagnosticStatus.ERROR if bugs else DiagnosticStatus.OK,
             text, self._values(requests, busy), stamp)

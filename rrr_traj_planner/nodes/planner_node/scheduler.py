@@ -13,13 +13,13 @@
 # limitations under the License.
 
 """
-Scheduler of threads of which one works at a time: short jobs first.
+Scheduler that lets one of several threads work at a time: short jobs first.
 
-Python runs one thread at a time, so jobs that ran side by side would only delay each other. The
-order is that of a multilevel feedback queue (Corbato et al., An Experimental Time-Sharing System,
-1962): a job's priority falls as its processor time doubles, and rises while it waits (aging), so
-that long jobs finish however many short ones come. A job that another program delays is no longer
-one for it.
+Python runs one thread at a time, so jobs in parallel would only delay each other. The order is
+that of a multilevel feedback queue (Corbato et al., An Experimental Time-Sharing System, 1962): a
+job's level rises by one each time its processor time doubles, and falls while it waits (aging);
+the job with the lowest level runs first, so that long jobs finish however many short ones come.
+Levels use processor time, so delays by other programs do not count.
 """
 
 from __future__ import annotations
@@ -30,11 +30,13 @@ from math import floor, log2
 from threading import Condition
 from time import perf_counter, thread_time
 
-FIRST_LEVEL = 0.1    # s of processor time at level 0, the most urgent; each further one has twice
-AGING_PERIOD = 1.0   # s of waiting after which a job is more urgent by one level
-MIN_SLICE = 0.02     # s that a job may run before it is preempted; more after a long wait:
-SLICE_PER_WAIT = 0.1  # of the time that the job has waited,
-MAX_SLICE = 0.3      # s at most
+FIRST_LEVEL = 0.1   # s of processor time up to which level 0 applies; twice for each further level
+AGING_PERIOD = 1.0  # s of waiting after which a job is more urgent by one level
+
+# A job runs for at least this time before it is preempted:
+MIN_SLICE = 0.02      # s after a short wait,
+SLICE_PER_WAIT = 0.1  # as a fraction of a longer wait,
+MAX_SLICE = 0.3       # s at most
 
 
 class Job:
@@ -46,8 +48,8 @@ class Job:
     scheduler : Scheduler
         The scheduler that the job belongs to.
     expected : float
-        Lower bound on the job's processor time [s]: the job is never more urgent than one that has
-        run for so long.
+        Lower bound on the job's processor time [s]; the job's level is at least that of a job that
+        has run for so long.
 
     """
 
@@ -56,14 +58,14 @@ class Job:
         self._before = 0.0            # run time before the present slice [s]
         self._since = perf_counter()  # start of the present slice, or of the present wait
         self._slice = MIN_SLICE
-        self._processor = 0.0  # processor time, while the job runs less its thread's at the start
+        self._processor = 0.0  # processor time [s]; in a slice, minus the thread's at its start
 
     def run_time(self) -> float:
         """Return the run time so far, without waiting [s]; call it while the job runs."""
         return self._before + perf_counter() - self._since
 
     def checkpoint(self) -> float:
-        """Let more urgent jobs run first, then return the run time [s]; call it often."""
+        """Let shorter jobs run first, then return the run time [s]; to be called often."""
         if self._scheduler.has_waiting and perf_counter() - self._since > self._slice:
             self._scheduler.preempt(self)
         return self.run_time()
@@ -82,12 +84,12 @@ class Job:
 
     def work(self, running: bool = False) -> float:
         """
-        Return the priority level by the work done: 0 for a new short job, lower is more urgent.
+        Return the level by processor time: 0 for a new short job; lower levels are more urgent.
 
         Parameters
         ----------
         running : bool
-            Whether the job runs, in the calling thread; else it waits.
+            Whether the job runs, in the calling thread; otherwise it waits.
 
         Returns
         -------
@@ -101,12 +103,12 @@ class Job:
 
     def level(self, now: float) -> float:
         """
-        Return the priority level of a waiting job: by its work and by how long it has waited.
+        Return the level of a waiting job: by its processor time, less its waiting time.
 
         Parameters
         ----------
         now : float
-            The time, as of `perf_counter` [s].
+            Present time of `perf_counter` [s].
 
         Returns
         -------
@@ -136,7 +138,7 @@ class Scheduler:
 
     def enqueue(self, expected: float = 0.0) -> Job:
         """
-        Return a job that waits from now on; equally urgent jobs run in this order.
+        Return a job that waits from now on; jobs of the same level run in this order.
 
         Parameters
         ----------
@@ -167,7 +169,7 @@ class Scheduler:
         Returns
         -------
         context manager
-            Yields the job once it is its turn.
+            Yields the job when it may run.
 
         """
         return self.run(self.enqueue(expected))
@@ -175,12 +177,12 @@ class Scheduler:
     @contextmanager
     def run(self, job: Job) -> Iterator[Job]:
         """
-        Wait until it is a job's turn, and let the next one run afterwards.
+        Wait until a job may run, and let the next one run afterwards.
 
         Parameters
         ----------
         job : Job
-            A job that waits. After `end` it does not wait any more.
+            A waiting job. After `end` it runs at once.
 
         Yields
         ------
@@ -199,10 +201,9 @@ class Scheduler:
 
     def preempt(self, job: Job) -> None:
         """
-        Suspend a running job while jobs wait that have done less work by a level.
+        Suspend a running job while jobs wait whose processor time is at a lower level.
 
-        Jobs that have waited long run before others that wait, not before one that runs: a short
-        job is over soon, and is not overtaken by its like.
+        Waiting time does not count here, so short jobs do not preempt each other.
 
         Parameters
         ----------
@@ -221,7 +222,7 @@ class Scheduler:
             self._wait(job)
 
     def end(self) -> None:
-        """Stop scheduling: no job waits any more."""
+        """Stop scheduling: all jobs run at once."""
         with self._changed:
             self._ended = True
             self._changed.notify_all()

@@ -27,9 +27,9 @@ from rclpy.node import Node
 from rclpy.task import Future
 from rrr_traj_planner.nodes.planner_node.scheduler import Scheduler
 
-JOIN_TIMEOUT = 1.0  # s for all threads to end; running functions check `is_ending` far more often
+JOIN_TIMEOUT = 1.0  # s for all threads to end; functions check `is_ending` far more often
 
-MAX_THREADS = 32  # further calls wait for a free thread
+MAX_THREADS = 32  # more simultaneous calls wait for a free thread
 
 
 class _Call(NamedTuple):
@@ -43,7 +43,7 @@ class _Call(NamedTuple):
 
 class WorkerPool:
     """
-    Calls functions in threads, one at a time by a `Scheduler`; the node's callbacks await them.
+    Calls functions in threads, one at a time (`Scheduler`); callbacks await the results.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class WorkerPool:
         return done
 
     def is_ending(self) -> bool:
-        """Return whether the pool is to end: running functions should stop."""
+        """Return whether the pool is ending: functions should stop."""
         return self._ended
 
     def end(self) -> None:
@@ -130,7 +130,7 @@ class WorkerPool:
             self._idle.release()
 
     def _resolve(self) -> None:
-        """Set one future per wake-up: an executor runs the callbacks of several in reverse."""
+        """Set one future per wake-up: executors run the callbacks of several in reverse order."""
         done, result, error = self._returned.popleft()
         if error is None:
             done.set_result(result)

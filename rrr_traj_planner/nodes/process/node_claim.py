@@ -15,7 +15,7 @@
 """
 Lock on a node's name among the processes of this machine.
 
-DDS discovery takes up to three seconds to find a node that is running already. A socket in Linux's
+DDS discovery takes up to three seconds to find a running node. A socket in Linux's
 abstract namespace is visible at once, is local to the machine, and disappears with its process.
 """
 
@@ -55,7 +55,7 @@ def claim(domain: int, name: str) -> socket.socket | None:
 
 def is_claimed(domain: int, name: str) -> bool:
     """
-    Return whether a node of this package and machine runs under a name.
+    Return whether a node of this package with a given name runs on this machine.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The end of a node whose constructor fails."""
+"""Destruction of a node whose constructor fails."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from rclpy.node import Node
 @contextmanager
 def destroyed_on_error(node: Node) -> Iterator[None]:
     """
-    Destroy a node whose constructor fails: else others see it until Python's garbage collection.
+    Destroy a node if the body fails: other nodes would see it until Python's garbage collection.
 
     Parameters
     ----------
     node : Node
-        The node, of which `Node`'s constructor has ended.
+        The node; the constructor of `Node` must have returned.
 
     """
     try:

@@ -78,8 +78,8 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
         start_ros(ros_arguments)
         executor = SingleThreadedExecutor()
         node = create_node(make_node)
-        # A signal wakes the executor before it shuts the context down: on a busy machine the
-        # executor may see a valid context and sleep again. The timer wakes it once more.
+        # A signal wakes the executor before rclpy shuts the context down: on a busy machine the
+        # executor may find the context valid and sleep again. The timer wakes it once more.
         node.create_timer(WAKE_PERIOD, lambda: None, clock=Clock(
             clock_type=ClockType.STEADY_TIME))
         executor.add_node(node)
@@ -188,8 +188,8 @@ def create_node(make_node: Callable[[], Any]) -> Any:
     """
     Create a node; turn ROS's errors about names and parameters into messages for the user.
 
-    What has been loaded by then is exempt from garbage collection: it lives as long as the
-    process, and searching it takes tens of milliseconds, in the middle of a plan or control step.
+    Objects that exist by then are exempt from garbage collection: they live as long as the
+    process, and searching them takes tens of milliseconds, during planning or a control step.
 
     Parameters
     ----------
@@ -223,7 +223,7 @@ def create_node(make_node: Callable[[], Any]) -> Any:
 def _clean_up(executor: Any, node: Any) -> None:
     """Shut down the executor, the node and ROS."""
     import rclpy
-    # A coroutine that the executor could not start before a signal is no error.
+    # It is no error that the executor could not start a coroutine before a signal.
     warnings.filterwarnings('ignore', 'coroutine .* was never awaited', RuntimeWarning)
     if executor is not None:
         executor.shutdown(timeout_sec=1.0)

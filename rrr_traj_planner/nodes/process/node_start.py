@@ -82,7 +82,7 @@ class NodeStart:
         for text in unused_warnings(undeclared, self._parameters.joint_names):
             log.warning(text)
         for file in self._unused:
-            log.warning(f'parameter file {file} has nothing for this node, {self._name}')
+            log.warning(f'parameter file {file} has no parameters for this node, {self._name}')
         self._warn_of(int(self._claim is None))
 
     def _watch(self) -> None:

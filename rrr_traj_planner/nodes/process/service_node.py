@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-A node whose services also answer clients that DDS has discovered only in part.
+A node whose services also answer clients that DDS has discovered only partly.
 
 A service is two DDS topics, discovered one by one: a request may arrive before the reader of its
 response is known. rmw_fastrtps and rmw_cyclonedds then wait 0.1 s and drop the response
@@ -39,7 +39,7 @@ MAX_WAIT = 6.4    # s, the last of seven waits, 12.7 s in all; Fast DDS announce
 
 class ServiceNode(Node):
     """
-    Sends a response again until its client's reader has been discovered.
+    A node that sends a response again until the client's reader has been discovered.
 
     Parameters
     ----------
@@ -76,7 +76,8 @@ class ServiceNode(Node):
             return
         if wait > MAX_WAIT:
             self.get_logger().warning(
-                f'an answer of {service.service_name} is lost: its client is not discovered')
+                f'a response of {service.service_name} is lost: '
+                'its client has not been discovered')
             return
 
         def again() -> None:

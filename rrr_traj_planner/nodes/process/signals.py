@@ -13,11 +13,11 @@
 # limitations under the License.
 
 """
-Handling of SIGINT and SIGTERM: end the process at once or, after ROS has started, in order.
+Handling of SIGINT and SIGTERM: the process ends at once, or cleanly if ROS runs.
 
-The handler raises no exception: it would interrupt any code, such as imports, destructors and
-compiled modules. Until a script has started ROS or other processes it has nothing to clean up and
-ends at once; from then on signals are deferred: the handler only records them.
+The handler raises no exception, because that would interrupt any code, such as imports,
+destructors and compiled modules. Until a script has started ROS or other processes it has nothing
+to clean up and ends at once; from then on signals are deferred: the handler only records them.
 """
 
 from __future__ import annotations

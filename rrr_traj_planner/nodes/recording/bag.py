@@ -24,13 +24,13 @@ from typing import Any
 
 from rrr_traj_planner.nodes.process.entry import StartError
 
-NO_MCAP = ('recording needs the Python package mcap: python3 -m pip install mcap, in the '
-           'environment that this runs in')
+NO_MCAP = ('recording needs the Python package mcap: python3 -m pip install mcap, in this '
+           'environment')
 
 
 class Bag:
     """
-    An MCAP file of profile ros2; a context manager that completes the file at its end.
+    An MCAP file with profile ros2; a context manager that completes the file when it exits.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Bag:
         except ImportError:
             raise StartError(NO_MCAP) from None
         if file.is_file():
-            raise StartError(f'{file} is there already: name another file, or remove it')
+            raise StartError(f'{file} exists already: choose another file, or remove it')
         self.file = file
         self.count = 0  # of messages
         self._channels: dict[str, int] = {}

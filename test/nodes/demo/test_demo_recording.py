@@ -110,7 +110,7 @@ def test_interrupted_demo_leaves_a_whole_bag(tmp_path):
 
 
 @pytest.mark.parametrize(('arguments', 'text'), [
-    (('--record', 'old.mcap'), 'demo: old.mcap is there already: name another file, or remove it'),
+    (('--record', 'old.mcap'), 'demo: old.mcap exists already: choose another file, or remove it'),
     (('--record', 'there'), 'demo: cannot write there: Is a directory\n'),
     (('--record', 'demo.mcap'), 'demo: recording needs the Python package mcap: ')])
 def test_recording_that_is_impossible_is_told_before_anything_starts(

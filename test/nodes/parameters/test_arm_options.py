@@ -86,7 +86,7 @@ def test_bad_disturbance_is_refused_with_a_reason_and_changes_nothing(ros):
             (JointState(name=['joint_2'], effort=[-1e6]),
              'the disturbance of joint_2 is -1e+06 N m, must be in [-100000, 100000] N m'),
             (JointState(name=['joint_2'], effort=[1.0], position=[1.0]),
-             'a disturbance has efforts alone, no positions or velocities')):
+             'a disturbance has efforts only, no positions or velocities')):
         publisher.publish(message)
         log.wait_for(lambda m, text=text: m.msg == text and m.level == 40)
     assert at(START, 1e-9)(arm.actual.wait_for_next())

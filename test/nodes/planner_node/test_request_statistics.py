@@ -72,7 +72,7 @@ def test_bug_is_an_error_from_then_on():
         statistics.add(answer(code), Time())
     told, _ = status(statistics)
     assert told.level == DiagnosticStatus.ERROR
-    assert told.message == '2 requests answered, 0 of them refused; 1 met a bug, see the log'
+    assert told.message == '2 requests answered, 0 of them refused; 1 failed because of a bug, see the log'
 
 
 def test_last_error_stays_with_its_time():

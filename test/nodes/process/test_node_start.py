@@ -74,9 +74,9 @@ def test_files_and_parameters_that_serve_nobody_are_warned_of(tmp_path):
             file, '-p', 'sample_priod:=0.1', '-p', 'publish_rate:=100.0')) as planner:
         line, = planner.read_errors_until('ready')
         assert ': no parameter file, the default arm; ' in line
-        lines = planner.read_errors_until('nothing for this node')
+        lines = planner.read_errors_until('no parameters for this node')
     assert 'parameter sample_priod is used by neither node; is sample_period meant?' in lines[0]
-    assert f'parameter file {file} has nothing for this node, /trajectory_planner' in lines[1]
+    assert f'parameter file {file} has no parameters for this node, /trajectory_planner' in lines[1]
 
 
 @pytest.mark.parametrize('node', ['/**', 'trajectory_planner', '/trajectory_planner'])

@@ -67,5 +67,5 @@ def test_client_that_is_never_discovered_is_told_of_and_holds_up_no_other(ros, m
     answer = stranger.call_async(Trigger.Request())
     assert ros.call(Trigger, 'simulated_arm/hold').success
     log.wait_for(lambda m: m.msg == (
-        'an answer of /simulated_arm/reset is lost: its client is not discovered'))
+        'a response of /simulated_arm/reset is lost: its client has not been discovered'))
     assert not answer.done()
