@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Helpers that several test modules share."""
+"""Helpers of several test modules."""

@@ -131,9 +131,9 @@ class Browser:
         """Return the page's errors, warnings and exceptions."""
         self.value('1')  # events before this answer have been received
         methods = ('Runtime.exceptionThrown', 'Log.entryAdded')
-        told = ('Runtime.consoleAPICalled',)
+        methods = ('Runtime.consoleAPICalled',)
         return [e['params'] for e in self.events if e.get('method') in methods
-                or e.get('method') in told and e['params']['type'] in ('error', 'warning')]
+                or e.get('method') in methods and e['params']['type'] in ('error', 'warning')]
 
     def requests(self):
         """Return every address that the page has requested."""

@@ -43,20 +43,20 @@ class Listener:
             self.messages.append(message)
             self._arrived.notify_all()
 
-    def wait_for(self, wanted=lambda message: True, since=0):
-        """Return the first message from an index on that is wanted; fail at the deadline."""
+    def wait_for(self, fits=lambda message: True, since=0):
+        """Return the first message from an index on that fits; fail at the deadline."""
         def found():
-            return next((m for m in self.messages[since:] if wanted(m)), None)
+            return next((m for m in self.messages[since:] if fits(m)), None)
 
         with self._arrived:
             assert self._arrived.wait_for(lambda: found() is not None, DEADLINE), (
-                f'nothing as wanted among {len(self.messages)} messages, '
+                f'no message fits among {len(self.messages)} messages, '
                 f'last {self.messages[-1:]}')
             return found()
 
-    def wait_for_next(self, wanted=lambda message: True):
-        """Return the first wanted message that arrives from now on."""
-        return self.wait_for(wanted, len(self.messages))
+    def wait_for_next(self, fits=lambda message: True):
+        """Return the first fitting message that arrives from now on."""
+        return self.wait_for(fits, len(self.messages))
 
 
 class Ros:
@@ -79,7 +79,7 @@ class Ros:
         return node
 
     def remove(self, node):
-        """End a node early, in the thread that spins: that would else meet it half gone."""
+        """End a node early, in the thread that spins: which would find it half destroyed."""
         removed = Event()
 
         def remove_here():
@@ -121,7 +121,7 @@ class Ros:
 
     def close(self):
         """End everything, in the order that leaves nothing behind."""
-        # Not shut down while it spins: callbacks that then are ready would find it half gone.
+        # Not shut down while it spins: callbacks that are ready then would find it half destroyed.
         self._closing.set()
         if self._thread.is_alive():
             self._executor.create_task(lambda: None)  # wakes it
@@ -145,7 +145,7 @@ def ros():
 
 @pytest.fixture(scope='module')
 def module_ros():
-    """Give the tests of a module one ROS to share."""
+    """Give the tests of a module one ROS context in common."""
     yield from closed_after_use(Ros())
 
 

@@ -89,7 +89,7 @@ class Robot:
         return np.array(self.states.wait_for(at(goal, 1e-4), count).position)
 
 
-def assert_drives(robot, points, model=None):
+def assert_executes(robot, points, model=None):
     """Assert that a robot plans through points and gets to the last."""
     q = robot.drive(robot.plan(points))
     tip = forward_kinematics(model or RobotModel(), q)
@@ -106,7 +106,7 @@ def test_a_node_with_a_wrong_parameter_does_not_appear(ros, kind):
 
 
 def test_both_nodes_work_in_one_process_and_executor(ros):
-    assert_drives(Robot(ros).start(), NEAR)
+    assert_executes(Robot(ros).start(), NEAR)
 
 
 def test_two_robots_of_different_parameters_do_not_meet(ros):
@@ -114,10 +114,10 @@ def test_two_robots_of_different_parameters_do_not_meet(ros):
     right = Robot(ros, 'cell/right', **OTHER).start()
     outside = ros.listen(JointState, 'joint_states')
     before = left.states.wait_for()
-    assert_drives(right, OTHER_POINTS, OTHER_MODEL)
+    assert_executes(right, OTHER_POINTS, OTHER_MODEL)
     np.testing.assert_allclose(left.states.messages[-1].position, before.position, rtol=0.0,
                                atol=1e-9)
-    assert_drives(left, NEAR)
+    assert_executes(left, NEAR)
     assert list(right.states.messages[-1].name) == OTHER['joint_names']
     assert list(left.states.messages[-1].name) == ['joint_1', 'joint_2', 'joint_3']
     for robot, frame, link in ((left, 'base_link', 'link_1'), (right, 'other_base', 'post')):
@@ -155,7 +155,7 @@ def test_topics_and_nodes_can_be_renamed(ros):
     feelings.wait_for()
     response = ros.call(PlanTrajectory, 'think', plan_request(NEAR))
     assert response.error_code == response.SUCCESS, response.message
-    feelings.wait_for(moving)  # the arm listens to the planner, with nobody between
+    feelings.wait_for(moving)  # the arm listens to the planner directly
     feelings.wait_for(at(response.trajectory.points[-1].positions, 1e-4))
     drawing = ros.listen(MarkerArray, 'drawing', LATCHED)
     for ns in ('planned_path', 'arm'):
@@ -164,7 +164,7 @@ def test_topics_and_nodes_can_be_renamed(ros):
     assert ros.call(Trigger, 'body/hold').success
 
 
-def test_arm_that_appears_later_is_driven_with_what_was_planned_before(ros):
+def test_arm_that_appears_later_executes_what_was_planned_before(ros):
     robot = Robot(ros)
     ros.add(TrajectoryPlanner(**robot.options))
     trajectory = robot.plan(NEAR)
@@ -200,7 +200,7 @@ def test_restarted_planner_serves_old_clients_and_takes_its_old_markers_away(ros
         markers.wait_for(lambda m: {x.action for x in m.markers if x.ns in (
             'planned_path', 'via_points')} == {Marker.DELETE})
     count = len(robot.states.messages)
-    robot.states.wait_for(since=count)  # the arm has gone on
+    robot.states.wait_for(since=count)  # the arm has continued
 
 
 def test_restarted_arm_follows_clients_that_were_there_before(ros):
@@ -253,8 +253,8 @@ def test_two_bring_ups_share_a_machine(ros, tmp_path):
             script('bringup'), '--arm', file, '--ros-args', '-r', '__ns:=/right') as other:
         for robot in (left, right):
             robot.states.wait_for()
-        assert_drives(left, NEAR)
-        assert_drives(right, np.add(NEAR, (0.0, 0.0, 0.2)), RobotModel(d1=0.7))
+        assert_executes(left, NEAR)
+        assert_executes(right, np.add(NEAR, (0.0, 0.0, 0.2)), RobotModel(d1=0.7))
         for bringup in (one, other):
             children = bringup.started(2)
             bringup.process.send_signal(signal.SIGTERM)

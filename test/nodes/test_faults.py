@@ -40,7 +40,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 CODES = PlanTrajectory.Response
 QUIET = ('--ros-args', '--log-level', 'fatal')
 
-# How long a client waits for a node that is gone [s], and by how much more the call may take.
+# How long a client waits for a node that has ended [s], and by how much more the call may take.
 TIMEOUT, SLACK = 1.0, 4.0
 DEADLINE = 30.0
 
@@ -130,7 +130,7 @@ def test_client_of_a_planner_killed_while_planning_times_out_and_the_next_one_se
         assert plan(ros, client) == CODES.SUCCESS  # the same client finds the new planner
 
 
-def test_planner_goes_on_where_the_arm_is_killed_while_moving_and_comes_back(ros):
+def test_planner_continues_when_the_arm_is_killed_while_moving_and_restarted(ros):
     states = ros.listen(JointState, 'joint_states')
     with Script(script('planner'), *QUIET) as planner:
         with Script(script('simulated_arm'), *QUIET) as arm:
@@ -147,7 +147,7 @@ def test_planner_goes_on_where_the_arm_is_killed_while_moving_and_comes_back(ros
         assert planner.process.poll() is None
 
 
-def test_arm_goes_on_where_the_planner_is_killed(ros):
+def test_arm_continues_when_the_planner_is_killed(ros):
     states = ros.listen(JointState, 'joint_states')
     with Script(script('simulated_arm'), *QUIET) as arm:
         with Script(script('planner'), *QUIET) as planner:
@@ -208,7 +208,7 @@ def test_arm_answers_and_moves_under_a_thousand_trajectories_a_second(ros):
 # Clocks
 
 
-def test_arm_stands_a_clock_that_jumps_back_and_forth(ros):
+def test_arm_survives_a_clock_that_jumps_back_and_forth(ros):
     publisher = ros.node.create_publisher(Clock, '/clock', 10)
     arm = Arm(ros, use_sim_time=True)
     now, ticks, steady = [1000 * SECOND], [0], Event()

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the planner answers, driven unchanged by the arm: two processes, and DDS between."""
+"""The planner's answer, executed unchanged by the arm: two processes, and DDS between."""
 
 from __future__ import annotations
 
@@ -58,11 +58,11 @@ def test_arm_passes_every_via_point_on_its_time(ros):
     sign = np.sign(after.velocity[joint])
     begun = seconds(after) - np.interp(
         sign * after.position[joint], sign * rising, planned.times[:len(rising)])
-    driven = spline_through(TrajectoryPoints(
+    executed = spline_through(TrajectoryPoints(
         np.array([seconds(s) for s in actual.messages]) - begun,
         np.array([s.position for s in actual.messages]),
         np.array([s.velocity for s in actual.messages])))
-    tip = forward_kinematics(RobotModel(), driven.at(response.via_times)[0])
+    tip = forward_kinematics(RobotModel(), executed.at(response.via_times)[0])
     assert np.linalg.norm(tip - points, axis=1).max() <= REACHED
     last = forward_kinematics(RobotModel(), np.array(desired.messages[-1].position))
     np.testing.assert_allclose(last, points[-1], atol=1e-9)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The README's client does what it is there for, run as it stands."""
+"""The README's client, run unchanged."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Reports made once, and a browser to look at them."""
+"""Reports made once, and a browser that shows them."""
 
 from __future__ import annotations
 

@@ -188,7 +188,7 @@ def test_pictures_of_one_page_share_no_id(tmp_path):
     assert ids[0] and not ids[0] & ids[1]
 
 
-def test_embedded_references_are_kept():
+def test_embedded_references_are_unchanged():
     svg = embedded('<?xml?>\n<svg width="1pt" height="2pt" viewBox="0 0 1 2"><g id="a"/>'
                    '<use xlink:href="#a" clip-path="url(#a)"/></svg>', 'n', 't')
     assert svg.startswith('<svg role="img" aria-label="t"')
@@ -202,7 +202,7 @@ def test_colours_have_one_role_each_and_a_dark_counterpart():
     assert themed(f'stroke: {LIGHT["tip"]}; fill: #123456') == 'stroke: var(--tip); fill: #123456'
 
 
-def test_page_stands_alone_and_shows_what_it_is_told_as_text(tmp_path):
+def test_page_is_self_contained_and_escapes_text(tmp_path):
     table = Table('t', 'Peaks <b>', 'c & d', ('a', 'b', 'c'), [['<i>', '1', '2 %']])
     page = write_page(tmp_path / 'new', 'A <title>', 'One.\n\nTwo & three.',
                       [Section('Some', '', [table, a_picture()])])

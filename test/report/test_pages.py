@@ -114,7 +114,7 @@ def test_no_texts_of_a_figure_overlap(window, page, view):
     assert window.value(OVERLAPS) == []
 
 
-def test_text_stands_out_from_its_ground_light_and_dark(window, page, view):
+def test_text_has_contrast_in_both_themes(window, page, view):
     window.show(page, *view)
     ground, *texts = window.value(COLOURS)
     assert (luminance(ground) < 0.1) == view[2]
@@ -178,9 +178,9 @@ def test_animation_fits_the_window_with_its_controls(window, many_points_page, w
       return [f.querySelector('.controls').getBoundingClientRect().top,
         f.querySelector('canvas').getBoundingClientRect().bottom]; })()""")
     assert 0.0 < bottom - top <= height
-    told = window.value("document.querySelector('.arms p').textContent")
+    text = window.value("document.querySelector('.arms p').textContent")
     assert re.fullmatch(
-        r"now joint_\d's (velocity|acceleration|jerk|torque) at \d+ % of its limit", told)
+        r"now joint_\d's (velocity|acceleration|jerk|torque) at \d+ % of its limit", text)
 
 
 def picture_of(window, index=0):

@@ -98,7 +98,7 @@ def test_one_refusal_does_not_hide_the_other_plan(tmp_path):
     ((), 2, 'one of the arguments --thesis --plan is required'),
     (('--thesis', 'a', '--planner', 'cycloid'), 2, '--planner and --output go with --plan'),
     (('--thesis', 'a', '--plan', 'b'), 2, 'not allowed with argument')])
-def test_wrong_arguments_are_told(tmp_path, arguments, code, text):
+def test_wrong_arguments_are_reported(tmp_path, arguments, code, text):
     found, _, errors = ended(report(*arguments, cwd=tmp_path))
     assert found == code
     assert text in errors
@@ -110,7 +110,7 @@ def test_wrong_arguments_are_told(tmp_path, arguments, code, text):
     ('arm: {d1: 5}', 'arm.d1 is 5, must be in [-100, 100] m (written with a point'),
     ('joint_limits: {joint_3: {max_position: -4.0}}', 'joint_limits.joint_3.min_position is'),
     ('joint_limits: [', 'while parsing')])
-def test_wrong_arm_is_told_with_its_file(tmp_path, yaml, text):
+def test_wrong_arm_is_reported_with_its_file(tmp_path, yaml, text):
     (tmp_path / 'arm.yaml').write_text(f'/**:\n  ros__parameters: {{{yaml}}}\n')
     (tmp_path / 'points.yaml').write_text(
         'arm: arm.yaml\nvia_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n')

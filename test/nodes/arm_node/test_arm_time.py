@@ -81,7 +81,7 @@ def test_any_rate_keeps_an_outside_clock_s_time(ros, rate, spread):
     ros.node.create_timer(0.005, advance)
     arm.actual.wait_for(lambda m: stamp(m) > 103 * SECOND - SECOND // 10)
     gaps = np.diff([stamp(m) for m in arm.actual.messages[1:]])
-    whole = gaps[gaps < 1.5 * SECOND / rate]  # an arm that is late tells only of the last states
+    whole = gaps[gaps < 1.5 * SECOND / rate]  # an arm that is late publishes only the last states
     assert whole.size
     assert np.abs(whole - SECOND / rate).max() <= spread + 1
 
@@ -104,14 +104,14 @@ def test_clock_is_published_often_however_seldom_states_are(ros):
     assert np.median(gaps) == SECOND // 100
 
 
-def test_rate_that_no_step_can_keep_is_told(ros):
+def test_rate_above_that_of_the_steps_is_warned_of(ros):
     log = ros.listen(Log, '/rosout')
     Arm(ros, publish_rate=200.0, physics_step=0.01)
     text = log.wait_for(lambda m: 'publish_rate' in m.msg).msg
     assert 'publish_rate is 200 Hz' in text and 'at 100 Hz' in text
 
 
-def test_time_stands_and_goes_in_single_steps(ros):
+def test_time_is_paused_and_advances_in_single_steps(ros):
     arm = Arm(ros, publish_clock=True)
     arm.actual.wait_for()
     assert not arm.trigger('step').success  # time is not paused
@@ -127,7 +127,7 @@ def test_time_stands_and_goes_in_single_steps(ros):
     arm.actual.wait_for_next(lambda m: stamp(m) > stepped + SECOND // 10)
 
 
-def test_arm_that_follows_a_clock_does_not_let_it_stand(ros):
+def test_arm_that_follows_a_clock_refuses_to_pause_it(ros):
     arm = Arm(ros)
     answer, step = pause(ros, True), arm.trigger('step')
     assert not answer.success and not step.success

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the arm says of itself: warnings, refusals, a stream's lines, diagnostics."""
+"""Log and diagnostics of the arm: warnings, refusals, throttling."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rcl_interfaces.msg import Log
 WARN, ERROR, INFO = 30, 40, 20
 
 
-class Told:
+class Output:
     """An arm, its log and its diagnostics."""
 
     def __init__(self, ros, **options):
@@ -58,74 +58,74 @@ class Told:
 def test_trajectory_that_leaves_ranges_or_limits_is_warned_of(ros, options, send, parts):
     if len(send) == 3:  # a cubic that swings out by 4/27 v T
         send = ((1.0, (1.5, *START[1:]), (0.9, 0.0, 0.0)), (3.0, (1.5, *START[1:]), (0.0,) * 3))
-    told = Told(ros, **options)
-    told.arm.send(*send)
-    told.line(*parts)
+    output = Output(ros, **options)
+    output.arm.send(*send)
+    output.line(*parts)
 
 
 def test_partial_goal_in_degrees_is_warned_of(ros):
-    told = Told(ros, allow_partial_joints_goal=True)
-    told.arm.send((2.0, (-90.0,)), names=['joint_3'])
-    text = told.line('joint_3 goes to -90 rad', '(in degrees?)')
+    output = Output(ros, allow_partial_joints_goal=True)
+    output.arm.send((2.0, (-90.0,)), names=['joint_3'])
+    text = output.line('joint_3 goes to -90 rad', '(in degrees?)')
     assert 'joint_1' not in text and 'joint_2' not in text
 
 
 def test_sound_trajectory_is_not_warned_of(ros):
-    told = Told(ros)
-    told.arm.send(rest_to_rest(GOAL, 0.7))
-    told.arm.actual.wait_for(at(GOAL))
-    assert told.lines('joint_', level=WARN) == told.lines(level=ERROR) == []
+    output = Output(ros)
+    output.arm.send(rest_to_rest(GOAL, 0.7))
+    output.arm.actual.wait_for(at(GOAL))
+    assert output.lines('joint_', level=WARN) == output.lines(level=ERROR) == []
 
 
 def test_stream_has_a_line_in_a_while(ros):
-    told = Told(ros)
+    output = Output(ros)
     for i in range(40):
-        told.arm.send((0.05, START + 1e-4 * i))
-    told.arm.actual.wait_for(at(START + 39e-4))
-    assert len(told.lines('following', level=INFO)) < 5
+        output.arm.send((0.05, START + 1e-4 * i))
+    output.arm.actual.wait_for(at(START + 39e-4))
+    assert len(output.lines('following', level=INFO)) < 5
 
 
 def test_stream_of_refusals_has_one_too_and_names_the_parameter(ros):
-    told = Told(ros)
+    output = Output(ros)
     for i in range(1, 41):
-        told.arm.send((0.05, START, (0.01 * i, 0.0, 0.0)))
-    text = told.line('Velocity of last trajectory point of joint joint_1 is not zero: 0.',
-                     level=ERROR)
+        output.arm.send((0.05, START, (0.01 * i, 0.0, 0.0)))
+    text = output.line('Velocity of last trajectory point of joint joint_1 is not zero: 0.',
+                       level=ERROR)
     assert 'allow_nonzero_velocity_at_trajectory_end' in text
-    told.arm.send((1.0, START), names=NAMES[:2])  # another refusal is told at once
-    told.line("don't match the controller joints", level=ERROR)
-    assert len(told.lines('Velocity of last', level=ERROR)) < 5
+    output.arm.send((1.0, START), names=NAMES[:2])  # another refusal is logged at once
+    output.line("don't match the controller joints", level=ERROR)
+    assert len(output.lines('Velocity of last', level=ERROR)) < 5
 
 
-def test_saturated_motor_and_pressed_stop_are_told(ros):
-    told = Told(ros)
-    told.arm.disturb(joint_1=-2000.0)  # its motor has 150 N m
-    told.line('joint_1 needs', 'its motor is saturated at 150 N m')
-    told.line('joint_1 hit its lower stop (0 rad) at', 'rad/s')
-    told.line('joint_1 is pressed against its lower stop (0 rad) with 1850 N m')
+def test_saturated_motor_and_pressed_stop_are_warned_of(ros):
+    output = Output(ros)
+    output.arm.disturb(joint_1=-2000.0)  # its motor has 150 N m
+    output.line('joint_1 needs', 'its motor is saturated at 150 N m')
+    output.line('joint_1 hit its lower stop (0 rad) at', 'rad/s')
+    output.line('joint_1 is pressed against its lower stop (0 rad) with 1850 N m')
     # From here on for a whole period: the motor pulls with all that it has.
-    status, values = told.status(lambda s: s.message.startswith('joint_1 saturated 100 %'))
+    status, values = output.status(lambda s: s.message.startswith('joint_1 saturated 100 %'))
     assert status.level == DiagnosticStatus.WARN
     assert float(values['joint_1 saturated [share]']) == 1.0
     assert float(values['joint_1 pressed against stop [N m]']) == pytest.approx(-1850.0, abs=0.5)
     assert float(values['joint_1 tracking error [rad]']) == pytest.approx(START[0], abs=1e-3)
 
 
-def test_sound_arm_is_told_as_such(ros):
-    told = Told(ros, publish_clock=True, real_time_factor=2.0)
-    status, values = told.status(lambda s: s.level == DiagnosticStatus.OK)
+def test_diagnostics_of_an_arm_without_problems_are_ok(ros):
+    output = Output(ros, publish_clock=True, real_time_factor=2.0)
+    status, values = output.status(lambda s: s.level == DiagnosticStatus.OK)
     assert status.message == 'holds its position'
     assert 0.0 < float(values.pop('real-time factor')) < 2.5
     assert float(values.pop('behind the clock [s]')) < 0.1
     assert len(values) == 15 and max(abs(float(x)) for x in values.values()) < 1e-9
 
 
-def test_range_shrunk_under_the_arm_is_told(ros):
-    told = Told(ros)
-    told.arm.send(rest_to_rest(START + (0.3, 0.0, 0.0), 1.2))
-    told.arm.actual.wait_for(at(START + (0.3, 0.0, 0.0)))
+def test_arm_outside_a_range_made_smaller_is_warned_of(ros):
+    output = Output(ros)
+    output.arm.send(rest_to_rest(START + (0.3, 0.0, 0.0), 1.2))
+    output.arm.actual.wait_for(at(START + (0.3, 0.0, 0.0)))
     high = float(START[0] + 0.1)
-    assert told.arm.set_parameter('joint_limits.joint_1.max_position', high).successful
-    status, values = told.status(lambda s: 'outside its range' in s.message)
+    assert output.arm.set_parameter('joint_limits.joint_1.max_position', high).successful
+    status, values = output.status(lambda s: 'outside its range' in s.message)
     assert status.level == DiagnosticStatus.WARN and 'joint_1' in status.message
     assert 0.0 < float(values['joint_1 outside range [rad]']) < np.nextafter(0.2, 1.0) + 1e-6

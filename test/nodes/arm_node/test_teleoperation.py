@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The example of teleoperation in docs/arm.md, run as it stands."""
+"""The example of teleoperation in docs/arm.md, run unchanged."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ ERROR = 1e-4  # rad, at every state; largest where acceleration ends at once
 
 
 class PatientClock:
-    """A clock that goes on as the stream of points does, however busy the machine is."""
+    """A clock that advances with the stream of points, however busy the machine is."""
 
     def __init__(self, ros):
         self.now = 100 * SECOND
@@ -64,7 +64,7 @@ def test_arm_follows_a_stream_of_stamped_points(ros):
     arm = Arm(ros, allow_nonzero_velocity_at_trajectory_end=True, use_sim_time=True)
     with Script([sys.executable, '-c', code, '--ros-args', '-p', 'use_sim_time:=true']) as sender:
         while not (line := sender.read_until('\n')[0].strip()).isdigit():
-            assert 'RTPS' in line  # Fast DDS tells of its troubles on standard output
+            assert 'RTPS' in line  # Fast DDS prints its problems on standard output
         start = int(line)
         arm.actual.wait_for(lambda m: stamp(m) >= start + SECONDS * SECOND)
         assert sender.ended()[0] == 0

@@ -37,7 +37,7 @@ def test_option_prints_the_urdf_of_the_parameters_and_ends():
                           FrameNames(tip='tool'))
 
 
-def test_wrong_parameter_is_told_instead():
+def test_wrong_parameter_is_reported_instead():
     with Script(COMMAND, '--ros-args', '-p', 'tip_frame:=base_link') as arm:
         code, output, errors = arm.ended()
     assert (code, output) == (1, '')

@@ -146,7 +146,7 @@ def test_nodes_of_another_machine_are_counted(ros):
     (('nowhere.yaml',), 1, "demo: no file 'nowhere.yaml' in "),
     (('thesis_arm.yaml',), 1, 'thesis_arm.yaml: no via_points'),
     (('--planner',), 2, 'expected one argument')])
-def test_wrong_arguments_are_told(arguments, code, text):
+def test_wrong_arguments_are_reported(arguments, code, text):
     with Script(script('demo'), *arguments) as demo:
         ended, _, errors = demo.ended()
     assert ended == code
@@ -154,7 +154,7 @@ def test_wrong_arguments_are_told(arguments, code, text):
     assert 'Traceback' not in errors
 
 
-def test_help_tells_the_options():
+def test_help_lists_the_options():
     with Script(script('demo'), '--help') as demo:
         output, errors = demo.process.communicate(timeout=DEADLINE)
     assert (demo.process.returncode, errors) == (0, '')

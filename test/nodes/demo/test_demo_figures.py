@@ -127,7 +127,7 @@ def test_plot_takes_points_that_coincide(task, tmp_path, points):
     assert (tmp_path / 'run.png').stat().st_size > 20_000
 
 
-def test_file_that_cannot_be_written_is_told(task, tmp_path, capsys):
+def test_file_that_cannot_be_written_is_reported(task, tmp_path, capsys):
     from rrr_traj_planner.nodes.scripts.demo import _plot
     (tmp_path / 'file').write_text('')
     for file, text in ((tmp_path / 'file' / 'run.png', 'demo: no plot: '),

@@ -42,7 +42,7 @@ def by_stamp(found):
     return {nanoseconds(m.header.stamp): m.position for _, m in found}
 
 
-def test_bag_holds_what_was_planned_sent_and_driven(ros, tmp_path):
+def test_bag_contains_what_was_planned_sent_and_executed(ros, tmp_path):
     with Script(script('demo'), '--record', 'demo.mcap', *NO_PLOT, cwd=tmp_path) as demo:
         demo.read_until('executing:')
         publisher = ros.publisher(String, '/odd/late', LATE)  # that the recorder has found
@@ -55,9 +55,9 @@ def test_bag_holds_what_was_planned_sent_and_driven(ros, tmp_path):
     assert set(found) - {'/parameter_events'} == RUNNING | LATCHED | {
         '/joint_trajectory', '/rosout', '/odd/late'}
     assert {m.data for _, m in found['/odd/late']} == {'late'}
-    told = {m.name: m.msg for _, m in found['/rosout']}
-    assert 'cycloid planned 3 via points' in told['trajectory_planner']
-    assert 'following 286 points' in told['simulated_arm']
+    logged = {m.name: m.msg for _, m in found['/rosout']}
+    assert 'cycloid planned 3 via points' in logged['trajectory_planner']
+    assert 'following 286 points' in logged['simulated_arm']
     count = sum(map(len, found.values()))
     assert f'recording: demo.mcap, {count} messages\n' in output
     assert summary(file)[1].statistics.message_count == count
@@ -113,7 +113,7 @@ def test_interrupted_demo_leaves_a_whole_bag(tmp_path):
     (('--record', 'old.mcap'), 'demo: old.mcap exists already: choose another file, or remove it'),
     (('--record', 'there'), 'demo: cannot write there: Is a directory\n'),
     (('--record', 'demo.mcap'), 'demo: recording needs the Python package mcap: ')])
-def test_recording_that_is_impossible_is_told_before_anything_starts(
+def test_impossible_recording_is_refused_before_anything_starts(
         tmp_path, monkeypatch, arguments, text):
     (tmp_path / 'there').mkdir()
     (tmp_path / 'old.mcap').write_text('kept')

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What both nodes publish to be looked at: robot_description and markers."""
+"""Visualization by both nodes: robot_description and markers."""
 
 from __future__ import annotations
 

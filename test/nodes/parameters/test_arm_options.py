@@ -36,7 +36,7 @@ def weight(mass):
     return gravity_torque(with_payload(RobotModel(), mass), START)
 
 
-def test_payload_changes_at_run_time_and_is_known_when_told(ros):
+def test_payload_changes_at_run_time_and_the_controller_may_know_it(ros):
     arm = Arm(ros)
     arm.actual.wait_for()
     assert arm.set_parameter('payload.mass', 2.0).successful
@@ -92,7 +92,7 @@ def test_bad_disturbance_is_refused_with_a_reason_and_changes_nothing(ros):
     assert at(START, 1e-9)(arm.actual.wait_for_next())
 
 
-def test_joint_states_are_what_encoders_tell(ros):
+def test_joint_states_are_what_encoders_measure(ros):
     resolution = 2.0 ** -14
     arm = Arm(ros, **STRONG, **{'encoder.resolution': resolution})
     error = ros.listen(JointState, 'simulated_arm/tracking_error')
@@ -154,8 +154,9 @@ def test_command_timeout_holds_what_was_reached(ros):
     arm = Arm(ros, **STRONG, **{'cmd_timeout': 0.1})
     log = ros.listen(Log, '/rosout', 100)
     arm.send(rest_to_rest(GOAL, 0.2))
-    told = log.wait_for(lambda m: m.msg == 'Aborted due to command timeout' and m.level == 30)
-    held = arm.desired.wait_for(lambda m: stamp(m) >= told.stamp.sec * SECOND + told.stamp.nanosec)
+    logged = log.wait_for(lambda m: m.msg == 'Aborted due to command timeout' and m.level == 30)
+    held = arm.desired.wait_for(
+        lambda m: stamp(m) >= logged.stamp.sec * SECOND + logged.stamp.nanosec)
     np.testing.assert_allclose(held.position, GOAL, atol=1e-3)
 
 
@@ -178,14 +179,14 @@ def test_end_with_a_velocity_is_braked_from_where_it_is_allowed(ros):
     arm.actual.wait_for_next(at(rest.position))
 
 
-def test_end_too_near_to_the_end_of_a_range_is_told(ros):
+def test_end_too_near_to_the_end_of_a_range_is_warned_of(ros):
     arm = Arm(ros, allow_nonzero_velocity_at_trajectory_end=True)
     log = ros.listen(Log, '/rosout', 100)
     arm.send((2.0, (0.05, *START[1:]), (-0.4, 0.0, 0.0)))
-    told = log.wait_for(lambda m: 'joint_1 moves at -0.4 rad/s at 0.05 rad' in m.msg)
+    logged = log.wait_for(lambda m: 'joint_1 moves at -0.4 rad/s at 0.05 rad' in m.msg)
     # 0.4^2 / (2 * 0.05)
-    assert 'it brakes with 1.6 rad/s^2, limit 1 rad/s^2, to rest inside it' in told.msg
-    assert told.level == 30
+    assert 'it brakes with 1.6 rad/s^2, limit 1 rad/s^2, to rest inside it' in logged.msg
+    assert logged.level == 30
     rest = arm.actual.wait_for_next(lambda m: not np.any(np.abs(m.velocity) > 1e-9))
     np.testing.assert_allclose(rest.position, (0.0, *START[1:]), atol=1e-6)
 

@@ -49,12 +49,12 @@ def test_package_s_own_files_are_found_from_anywhere():
     assert task.arm.is_file()
 
 
-def test_user_s_file_goes_before_the_package_s(here):
+def test_user_s_file_has_precedence_over_the_package_s(here):
     (here / 'table_6_1.yaml').write_text(POINTS)
     assert len(read_task('table_6_1.yaml').via_points) == 2
 
 
-def test_arm_is_looked_for_beside_its_task(here):
+def test_arm_file_is_searched_in_the_folder_of_its_task(here):
     folder = here / 'tasks'
     folder.mkdir()
     (folder / 'mine.yaml').write_text('/**: {ros__parameters: {}}\n')
@@ -126,7 +126,7 @@ def test_malformed_file_is_named_with_what_is_wrong(here, content, text):
 
 
 @pytest.mark.parametrize('find', [read_task, lambda name: arm_file(name, Path.cwd())])
-def test_missing_file_is_told_with_the_package_s_own(here, find):
+def test_missing_file_is_reported_with_the_package_s_own(here, find):
     with pytest.raises(InvalidInputError) as caught:
         find('nowhere.yaml')
     text = str(caught.value)

@@ -98,7 +98,7 @@ def test_joints_in_another_order_need_their_own_limits():
      'joint_limits.bend.max_velocity meant?'),
     ('base.min_positions', '; is joint_limits.base.min_position meant?'),
     ('d4', '; is arm.d4 meant?')])
-def test_name_that_neither_node_uses_is_told(name, hint):
+def test_name_that_neither_node_uses_is_warned_of(name, hint):
     known = ['publish_rate', 'sample_period', 'joint_names']  # each of some node
     assert unused_warnings([name, *known, *OWN], NAMES) == [
         f'parameter {name} is used by neither node{hint}']

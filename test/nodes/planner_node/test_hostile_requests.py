@@ -143,7 +143,7 @@ def ask(ros):
     return lambda request: ros.call(PlanTrajectory, 'plan_trajectory', request)
 
 
-def test_node_answers_as_the_planners_do_and_goes_on(ask):
+def test_node_answers_as_the_planners_do_and_continues(ask):
     @settings(max_examples=THROUGH_ROS, derandomize=True, database=None, deadline=None,
               phases=[Phase.generate], suppress_health_check=list(HealthCheck))
     @given(hostile_requests())

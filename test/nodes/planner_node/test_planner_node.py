@@ -123,7 +123,7 @@ def test_node_answers_all_else_while_it_plans(ros, gate):
     gate.open.set()
     assert done.wait(DEADLINE)
     assert future.result().error_code == CODES.SUCCESS
-    # What was in force when it was asked.
+    # The parameters at the time of the request.
     assert stamps(future.result().trajectory)[1] == 10_000_000
 
 
@@ -172,7 +172,7 @@ def test_node_can_be_destroyed_while_others_spin(ros, gate):
     gate.open.set()
     thread.join(DEADLINE)
     assert not thread.is_alive()
-    made(ros)  # the executor goes on
+    made(ros)  # the executor continues
     assert plan(ros).error_code == CODES.SUCCESS
 
 
@@ -193,7 +193,7 @@ def test_idle_node_leaves_no_thread(ros):
     (ConvergenceError('planner broken broke a limit'),
      'internal error, ConvergenceError: planner broken broke a limit'),
     (MemoryError(), 'internal error, MemoryError')])
-def test_bug_is_told_logged_and_survived(ros, monkeypatch, error, text):
+def test_bug_is_reported_logged_and_survived(ros, monkeypatch, error, text):
     def broken(task):
         raise error
 

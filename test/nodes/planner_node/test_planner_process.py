@@ -72,7 +72,7 @@ def ask(module_ros):
 
 
 def assert_refused(ask, request, code, text, via_point=-1):
-    """Assert that a request is refused, and the node goes on as if nothing had been."""
+    """Assert that a request is refused, and the node continues as before."""
     is_refused(ask(request), code, text, via_point)
     assert ask(plan_request()).error_code == CODES.SUCCESS
 
@@ -98,7 +98,7 @@ def test_point_out_of_reach_is_blamed_with_its_distance(ask, point, text):
 
 @pytest.mark.parametrize('planner_id', ['cycloid', 'cycloid_approach_a'])
 @pytest.mark.parametrize('asked', [(0.1, 2.0), (1.0, 0.9)])
-def test_short_durations_are_refused_with_ones_that_do(ask, planner_id, asked):
+def test_short_durations_are_refused_with_feasible_ones(ask, planner_id, asked):
     request = plan_request(segment_durations=list(asked), planner_id=planner_id)
     refused = ask(request)
     is_refused(refused, CODES.PLANNING_FAILED, 'the least feasible')
@@ -277,7 +277,7 @@ def test_prescribed_durations_are_kept(ask, durations):
 
 
 @pytest.mark.parametrize('elbow', ['up', 'down'])
-def test_elbow_is_as_asked(ask, elbow):
+def test_elbow_is_as_requested(ask, elbow):
     points = forward_kinematics(RobotModel(), np.array([(0.6, 0.9, 1.9), (0.7, 1.0, 2.0)]))
     assert_good(ask(plan_request(points, elbow=elbow)), points, elbow=elbow)
 
@@ -349,7 +349,7 @@ def test_scaling_factor_zero_is_one(ask):
 # The process
 
 
-def test_bug_in_a_planner_is_told_and_survived(module_ros):
+def test_bug_in_a_planner_is_reported_and_survived(module_ros):
     with Script(python(BUGS), '--ros-args', '-r', '__ns:=/bugs') as planner:
         def ask(request):
             return module_ros.call(PlanTrajectory, 'bugs/plan_trajectory', request)

@@ -96,7 +96,7 @@ def test_start_at_rest_within_noise_and_no_faster(config):
         planning_request(start(-0.011), config)
 
 
-def test_speed_a_hair_above_the_tolerance_is_told_from_it(config):
+def test_speed_slightly_above_the_tolerance_is_shown_with_enough_digits(config):
     with pytest.raises(StartStateError, match=(
             r'^start state: joint_2 moves at -0\.0100000001 rad/s, must be at rest \(no faster '
             r'than start_state_tolerance, 0\.01 rad/s\)$')):

@@ -107,7 +107,7 @@ class Client:
         assert self._client.wait_for_service(DEADLINE)
 
     def ask(self, *points, **fields):
-        """Return the answer to come, and an event that tells of it."""
+        """Return the future answer, and an event that is set when it is there."""
         future, done = self._client.call_async(plan_request(*points, **fields)), Event()
         future.add_done_callback(lambda _: done.set())
         return future, done
@@ -197,7 +197,7 @@ def test_node_can_be_destroyed_while_a_path_is_made(ros, planner, drawing):
     assert drawing.reached.wait(DEADLINE)
     ros.remove(planner)
     drawing.open.set()
-    executor_goes_on(ros)
+    executor_continues(ros)
 
 
 def test_node_can_be_destroyed_between_its_publications(ros, planner, monkeypatch):
@@ -215,10 +215,10 @@ def test_node_can_be_destroyed_between_its_publications(ros, planner, monkeypatc
     topics = Topics(ros)
     response = answered(Client(ros).ask())
     assert topics.trajectory.wait_for() == response.trajectory
-    executor_goes_on(ros)
+    executor_continues(ros)
     assert not topics.path.messages
 
 
-def executor_goes_on(ros):
+def executor_continues(ros):
     ros.add(TrajectoryPlanner(context=ros.context, parameter_overrides=patient()))
     assert is_responsive(ros)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The node's diagnostics: what is counted, and how it is told."""
+"""The node's diagnostics: what is counted, and how it is published."""
 
 from __future__ import annotations
 
@@ -46,10 +46,11 @@ def test_every_code_of_the_service_is_counted():
         if name.isupper() and isinstance(getattr(RESPONSE, name), int)}
 
 
-def test_nothing_asked_is_told_as_such():
-    told, values = status(RequestStatistics())
-    assert (told.level, told.name) == (DiagnosticStatus.OK, 'planner: plan_trajectory')
-    assert told.message == '0 requests answered, 0 of them refused'
+def test_statistics_without_requests():
+    diagnostics, values = status(RequestStatistics())
+    assert (diagnostics.level, diagnostics.name) == (
+        DiagnosticStatus.OK, 'planner: plan_trajectory')
+    assert diagnostics.message == '0 requests answered, 0 of them refused'
     assert values['requests'] == '0'
     assert values['planning time, percentile 50 [s]'] == 'nan'
     assert values['last error'] == values['last error at [s]'] == ''
@@ -59,9 +60,9 @@ def test_answers_are_counted_by_code():
     statistics = RequestStatistics()
     for code in (RESPONSE.SUCCESS, RESPONSE.NO_IK_SOLUTION, RESPONSE.NO_IK_SOLUTION):
         statistics.add(answer(code), Time())
-    told, values = status(statistics, busy=1.5)
-    assert told.level == DiagnosticStatus.OK
-    assert told.message == '3 requests answered, 2 of them refused'
+    diagnostics, values = status(statistics, busy=1.5)
+    assert diagnostics.level == DiagnosticStatus.OK
+    assert diagnostics.message == '3 requests answered, 2 of them refused'
     assert (values['requests'], values['SUCCESS'], values['NO_IK_SOLUTION'],
             values['FAILURE'], values['busy for [s]']) == ('3', '1', '2', '0', '1.500')
 
@@ -70,9 +71,10 @@ def test_bug_is_an_error_from_then_on():
     statistics = RequestStatistics()
     for code in (RESPONSE.FAILURE, RESPONSE.SUCCESS):
         statistics.add(answer(code), Time())
-    told, _ = status(statistics)
-    assert told.level == DiagnosticStatus.ERROR
-    assert told.message == '2 requests answered, 0 of them refused; 1 failed because of a bug, see the log'
+    diagnostics, _ = status(statistics)
+    assert diagnostics.level == DiagnosticStatus.ERROR
+    assert diagnostics.message == (
+        '2 requests answered, 0 of them refused; 1 failed because of a bug, see the log')
 
 
 def test_last_error_stays_with_its_time():
@@ -113,19 +115,19 @@ def ask(ros, *points, **fields):
     return ros.call(PlanTrajectory, 'plan_trajectory', plan_request(*points, **fields))
 
 
-def test_node_tells_once_a_second_what_requests_have_come_to(ros):
+def test_node_publishes_statistics_once_a_second(ros):
     made(ros)
-    told = ros.listen(DiagnosticArray, 'diagnostics')
+    diagnostics = ros.listen(DiagnosticArray, 'diagnostics')
     assert ask(ros).error_code == RESPONSE.SUCCESS
     assert ask(ros, TABLE_6_3).error_code == RESPONSE.GOAL_CONSTRAINTS_VIOLATED
-    message = told.wait_for(lambda m: values_of(m)['requests'] == '2')
+    message = diagnostics.wait_for(lambda m: values_of(m)['requests'] == '2')
     assert message.status[0].name == 'trajectory_planner: plan_trajectory'
     values = values_of(message)
     assert (values['SUCCESS'], values['GOAL_CONSTRAINTS_VIOLATED']) == ('1', '1')
     assert values['last error'].startswith('GOAL_CONSTRAINTS_VIOLATED: via point 2: joint_2')
     assert float(values['last error at [s]']) == pytest.approx(
         message.header.stamp.sec, abs=10.0)
-    later = [told.wait_for_next() for _ in range(2)]
+    later = [diagnostics.wait_for_next() for _ in range(2)]
     gap = later[1].header.stamp.sec - later[0].header.stamp.sec + 1e-9 * (
         later[1].header.stamp.nanosec - later[0].header.stamp.nanosec)
     assert gap == pytest.approx(1.0, abs=0.5)
@@ -137,14 +139,14 @@ def test_bug_is_seen_in_the_diagnostics(ros, monkeypatch):
 
     monkeypatch.setitem(registry._planners, 'broken', registry.Registered(broken, False))
     made(ros)
-    told = ros.listen(DiagnosticArray, 'diagnostics')
+    diagnostics = ros.listen(DiagnosticArray, 'diagnostics')
     assert ask(ros, planner_id='broken').error_code == RESPONSE.FAILURE
-    message = told.wait_for(lambda m: m.status[0].level == DiagnosticStatus.ERROR)
+    message = diagnostics.wait_for(lambda m: m.status[0].level == DiagnosticStatus.ERROR)
     assert values_of(message)['last error'] == 'FAILURE: internal error, RuntimeError: no idea'
 
 
-def test_diagnostics_go_on_where_simulated_time_stands(ros):
+def test_diagnostics_continue_while_simulated_time_is_paused(ros):
     made(ros, use_sim_time=True)
-    told = ros.listen(DiagnosticArray, 'diagnostics')
-    told.wait_for()
-    assert told.wait_for_next().header.stamp.sec == 0
+    diagnostics = ros.listen(DiagnosticArray, 'diagnostics')
+    diagnostics.wait_for()
+    assert diagnostics.wait_for_next().header.stamp.sec == 0

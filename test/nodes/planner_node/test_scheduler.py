@@ -61,7 +61,7 @@ def started(scheduler, seconds):
     return worker
 
 
-def test_short_work_goes_before_long_work_that_came_first():
+def test_short_work_runs_before_long_work_that_came_first():
     scheduler = Scheduler()
     long_ones = [started(scheduler, 0.6) for _ in range(3)]
     short = Worker(scheduler, 0.01).join()

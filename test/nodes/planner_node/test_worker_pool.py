@@ -73,10 +73,10 @@ def test_end_waits_for_the_running_call(threads):
     threads.end()
     assert ended
     assert threads.is_ending()
-    assert not future.done()  # the executor is gone
+    assert not future.done()  # the executor has ended
 
 
-def test_end_does_not_wait_for_ever(threads, monkeypatch):
+def test_end_waits_for_a_limited_time(threads, monkeypatch):
     monkeypatch.setattr(worker_pool, 'JOIN_TIMEOUT', 0.05)
     begun, release = Event(), Event()
 

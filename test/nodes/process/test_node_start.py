@@ -39,7 +39,7 @@ def ends(started):
     ('planner', '/left/trajectory_planner: {file}; {limits}; serves /left/plan_trajectory; ready'),
     ('simulated_arm', '/left/simulated_arm: {file}; {limits}; follows /left/joint_trajectory; '
      'ready')])
-def test_start_is_told_in_a_line(name, text):
+def test_start_is_logged_in_a_line(name, text):
     file = CONFIG / 'thesis_arm_joint_2_250.yaml'
     limits = ('joint_1 0 to 1.571 rad, 1 rad/s, 1 rad/s^2, 10 rad/s^3, 150 N m; '
               'joint_2 0 to 3.142 rad, 1 rad/s, 1 rad/s^2, 10 rad/s^3, 250 N m; '
@@ -67,7 +67,7 @@ def test_file_speaks_of_a_node_by_ros_s_rules(tmp_path, sections, node, speaks):
     assert has_section_for(file, node) == speaks
 
 
-def test_files_and_parameters_that_serve_nobody_are_warned_of(tmp_path):
+def test_unused_files_and_parameters_are_warned_of(tmp_path):
     file = tmp_path / 'gripper.yaml'
     file.write_text('/gripper: {ros__parameters: {force: 3.0, publish_rate: 10.0}}\n')
     with Script(script('planner'), *arguments(
@@ -76,7 +76,8 @@ def test_files_and_parameters_that_serve_nobody_are_warned_of(tmp_path):
         assert ': no parameter file, the default arm; ' in line
         lines = planner.read_errors_until('no parameters for this node')
     assert 'parameter sample_priod is used by neither node; is sample_period meant?' in lines[0]
-    assert f'parameter file {file} has no parameters for this node, /trajectory_planner' in lines[1]
+    assert (f'parameter file {file} has no parameters for this node, '
+            '/trajectory_planner') in lines[1]
 
 
 @pytest.mark.parametrize('node', ['/**', 'trajectory_planner', '/trajectory_planner'])
@@ -100,7 +101,7 @@ def test_arm_of_other_names_starts_with_its_own_limits(tmp_path):
     assert '; lift 0 to 3.142 rad, 1 rad/s, 1 rad/s^2, 10 rad/s^3, 123 N m; bend ' in line
 
 
-def test_second_node_of_a_name_is_told_by_both_and_one_elsewhere_by_none():
+def test_second_node_of_a_name_is_warned_of_by_both_and_one_elsewhere_by_none():
     name, warning = '/trajectory_planner', 'another node is named /trajectory_planner: '
     with Script(script('planner')) as first:
         first.read_errors_until(f'{name}: ')

@@ -33,7 +33,7 @@ from std_srvs.srv import Trigger
 NAMES = GetParameters.Request(names=['joint_names'])
 DROPS = 2
 
-# The reader of its answers asks for more than a service offers: DDS never matches the two.
+# Its response reader requires a stricter quality of service than offered: DDS never matches them.
 NEVER_MATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -58,7 +58,7 @@ def test_answer_that_was_dropped_is_sent_again(ros, monkeypatch, node, service, 
     assert dropped == [dropped[0]] * DROPS
 
 
-def test_client_that_is_never_discovered_is_told_of_and_holds_up_no_other(ros, monkeypatch):
+def test_client_that_is_never_discovered_is_warned_of_and_delays_no_other(ros, monkeypatch):
     monkeypatch.setattr(service_node, 'MAX_WAIT', 2.0 * service_node.FIRST_WAIT)
     log = ros.listen(Log, '/rosout')
     ros.add(SimulatedArm(context=ros.context))

@@ -146,7 +146,7 @@ def test_reference_reader_reads_what_was_sent(ros, tmp_path, kind):
 
 @pytest.mark.parametrize(('qos', 'durability'), [
     (VOLATILE_QOS, 'volatile'), (LATCHED_QOS, 'transient_local')])
-def test_bag_tells_profile_types_and_quality_of_service(ros, tmp_path, qos, durability):
+def test_bag_contains_profile_types_and_quality_of_service(ros, tmp_path, qos, durability):
     file = tmp_path / 'bag.mcap'
     bag = recorded(ros, file, 'here', String, qos, [String(data='x')] * 3)
     assert (bag.count, bag.file) == (3, file)
@@ -176,7 +176,7 @@ def test_nothing_is_written_after_the_end(tmp_path):
     assert bag.count == 0
 
 
-def test_missing_package_is_told_with_what_to_do(tmp_path, monkeypatch):
+def test_missing_package_is_reported_with_what_to_do(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, 'mcap.writer', None)
     with pytest.raises(StartError) as caught:
         Bag(tmp_path / 'bag.mcap')
@@ -184,7 +184,7 @@ def test_missing_package_is_told_with_what_to_do(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-def test_file_that_cannot_be_written_is_told(tmp_path):
+def test_file_that_cannot_be_written_is_reported(tmp_path):
     with pytest.raises(StartError, match=r'cannot write .*: Is a directory'):
         Bag(tmp_path)
 

@@ -92,7 +92,7 @@ def test_node_that_cannot_start_ends_bringup_with_its_code(tmp_path):
     assert 'Traceback' not in errors
 
 
-def test_missing_file_is_told_in_one_line(tmp_path):
+def test_missing_file_is_reported_in_one_line(tmp_path):
     with Script(script('bringup'), '--arm', 'nowhere.yaml', cwd=tmp_path) as bringup:
         code, _, errors = bringup.ended()
     assert code == 1
@@ -100,7 +100,7 @@ def test_missing_file_is_told_in_one_line(tmp_path):
     assert errors.count('\n') == 1
 
 
-def test_help_tells_the_options():
+def test_help_lists_the_options():
     with Script(script('bringup'), '--help') as bringup:
         code, output, errors = bringup.ended()
     assert (code, errors) == (0, '')
@@ -141,7 +141,7 @@ def test_signal_waits_while_processes_are_started_and_they_begin_with_it_blocked
                 signal.raise_signal(signal.SIGINT)
                 process = subprocess.Popen([sys.executable, '-c', 'input()'],
                                            stdin=subprocess.PIPE, stderr=subprocess.DEVNULL)
-        # A process that began meanwhile has it blocked until it asks for it.
+        # A process that has just started blocks the signal until it handles it.
         blocked = int(next(line.split()[1] for line in open(f'/proc/{process.pid}/status')
                            if line.startswith('SigBlk')), 16)
         assert blocked & 1 << signal.SIGINT - 1
