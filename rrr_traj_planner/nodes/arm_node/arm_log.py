@@ -63,7 +63,7 @@ class ArmLog:
 
         """
         if self._throttle.passes('followed'):
-            self._log.info(f'following {counted(points, "point")}, to the end in {seconds:.3f} s'
+            self._log.info(f'following {counted(points, "point")}, which end in {seconds:.3f} s'
                            + self._suppressed('followed'))
 
     def refused(self, text: str) -> None:
