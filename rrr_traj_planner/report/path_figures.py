@@ -175,12 +175,11 @@ def _padded(values: Array) -> tuple[float, float]:
 
 def _via_points(axes: Any, points: Array) -> Any:
     """Draw via points with their indices; call it after the view is set."""
-    x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
-    seen = np.column_stack((x, y))
-    offsets = LABEL_DISTANCE * label_directions(seen)
-    places = axes.transData.transform(seen) * POINTS_PER_INCH / axes.figure.dpi + offsets
+    projected = projection(axes, points)
+    offsets = LABEL_DISTANCE * label_directions(projected)
+    places = axes.transData.transform(projected) * POINTS_PER_INCH / axes.figure.dpi + offsets
     for i in legible(places):
-        axes.annotate(str(i), seen[i], offsets[i], textcoords='offset points',
+        axes.annotate(str(i), projected[i], offsets[i], textcoords='offset points',
                       ha='center', va='center', zorder=10)
     size = next(size for most, size in MARKS if len(points) <= most)
     return axes.plot(*points.T, 'o', color=LIGHT['via'], markeredgecolor=LIGHT['ink'],
@@ -210,14 +209,14 @@ def legible(places: Array) -> list[int]:
     return found
 
 
-def label_directions(seen: Array) -> Array:
+def label_directions(projected: Array) -> Array:
     """
     Return the direction of each point's label: away from the nearest other point.
 
     Parameters
     ----------
-    seen : ndarray, shape (n, 2)
-        Points, projected.
+    projected : ndarray, shape (n, 2)
+        Projected points.
 
     Returns
     -------
@@ -225,13 +224,56 @@ def label_directions(seen: Array) -> Array:
         Unit vectors; to the upper right if another point is at the same place.
 
     """
-    found = np.full(seen.shape, np.sqrt(0.5))
-    for i, point in enumerate(seen):
-        away = np.delete(point - seen, i, axis=0)
-        distance = np.linalg.norm(away, axis=1)
-        if len(away) and distance.min() > 0.0:
-            found[i] = away[distance.argmin()] / distance.min()
+    found = np.full(projected.shape, np.sqrt(0.5))
+    for i, point in enumerate(projected):
+        direction = away_from_nearest(point, np.delete(projected, i, axis=0))
+        found[i] = found[i] if direction is None else direction
     return found
+
+
+def projection(axes: Any, points: Array) -> Array:
+    """
+    Return where points in space appear in the picture.
+
+    Parameters
+    ----------
+    axes : Axes3D
+        The axes, with the view set.
+    points : ndarray, shape (n, 3)
+        The points.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        In the axes' data coordinates.
+
+    """
+    x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
+    return np.column_stack((x, y))
+
+
+def away_from_nearest(point: Array, others: Array) -> Array | None:
+    """
+    Return the direction from the nearest other point to a point.
+
+    Parameters
+    ----------
+    point : ndarray, shape (2,)
+        The point.
+    others : ndarray, shape (n, 2)
+        The other points.
+
+    Returns
+    -------
+    ndarray, shape (2,), or None
+        Unit vector; None if there is no other point, or one at the same place.
+
+    """
+    away = point - others
+    distance = np.linalg.norm(away, axis=1)
+    if not len(others) or distance.min() == 0.0:
+        return None
+    return np.asarray(away[distance.argmin()] / distance.min())
 
 
 def _equal_scales(axes: Any) -> None:

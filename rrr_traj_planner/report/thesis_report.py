@@ -48,7 +48,7 @@ TITLE = 'The thesis, redrawn'
 TEXT = """\
 Tables and figures of S. Amara, A Method for Generating a Controllable and Quasi Time Optimal Robot
 Trajectory, drawn from this package's own planners and functions with the thesis's data. Figures
-keep the thesis's numbers. Where its print is wrong, the corrected equations are used.
+have the thesis's numbers. Where printed equations are wrong, the corrected ones are used.
 
 Position, velocity and acceleration limits are those of tables 6.2 and B.3 (joint 2's range
 mirrored, as no elbow branch fits the printed one); jerk, which the thesis does not limit, is

@@ -23,7 +23,6 @@ import matplotlib
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
-from mpl_toolkits.mplot3d import proj3d
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
@@ -32,6 +31,7 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.nodes.demo.client import Run
+from rrr_traj_planner.report.path_figures import away_from_nearest, LABEL_DISTANCE, projection
 
 COLOURS = ('#0072b2', '#d55e00', '#009e73')  # Okabe and Ito's: distinct for colour-blind people
 CUT_OFF = 2.0      # multiple of the limit at which a curve is cut off
@@ -158,18 +158,14 @@ def _tick_step(axes: Any) -> float:
 
 def _number(axes: Any, points: Array) -> None:
     """Write each via point's index beside it, on the side away from its nearest neighbour."""
-    x, y, _ = proj3d.proj_transform(*points.T, axes.get_proj())
-    projected = np.column_stack((x, y))
+    projected = projection(axes, points)
     for i, point in enumerate(projected):
-        away = point - projected
-        distance = np.linalg.norm(away, axis=1)
-        same = np.flatnonzero(distance <= SAME_PLACE)
+        same = np.flatnonzero(np.linalg.norm(point - projected, axis=1) <= SAME_PLACE)
         if same[0] < i:
             continue  # its index is in the label of the first one
-        distance[same] = np.inf
-        nearest = distance.argmin()
-        direction = away[nearest] / distance[nearest] if len(same) < len(projected) else (1.0, 0.0)
-        axes.annotate(', '.join(map(str, same)), point, 10.0 * np.array(direction),
+        direction = away_from_nearest(point, np.delete(projected, same, axis=0))
+        offset = LABEL_DISTANCE * (np.array([1.0, 0.0]) if direction is None else direction)
+        axes.annotate(', '.join(map(str, same)), point, offset,
                       textcoords='offset points', ha='center', va='center')
 
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The script `bringup`: planner and simulated arm together; when one ends, so does the other."""
+"""The script `bringup`: planner and simulated arm together; if one ends, the other is ended."""
 
 from __future__ import annotations
 

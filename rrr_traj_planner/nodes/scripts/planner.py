@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 
 DESCRIPTION = """\
-Plan motions of the arm through via points, exactly and without stopping.
+Plan motions of the arm's tip through via points, within the limits of joints and motors.
 
   serves      plan_trajectory (rrr_traj_planner_interfaces/srv/PlanTrajectory)
   publishes   planned_trajectory (trajectory_msgs/JointTrajectory), planned_path (nav_msgs/Path),

@@ -28,14 +28,14 @@ Write a self-contained page, OUT_DIR/index.html, with its figures as PNG and CSV
 
 --thesis redraws the thesis's tables and figures from this package's own planners. --plan draws a
 plan of a via-point file: profiles against limits, torque use, path, animation, peaks; by several
-planners side by side. Starts no node. The exit code is 0 only if no planner refuses; the page then
-still shows the refusal."""
+planners side by side. Starts no node. If a planner refuses, the page shows why, and the exit code
+is 1."""
 
 NO_MATPLOTLIB = (
     'no figures, matplotlib is missing ({error}): sudo apt install python3-matplotlib, or '
     "pip install matplotlib (the package's extra 'figures')")
 
-MAX_NAME = 200  # bytes of a folder's name; file systems allow 255
+MAX_NAME = 200  # bytes of a task's name in the folder's name; file systems allow 255 in all
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

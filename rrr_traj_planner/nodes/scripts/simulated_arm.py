@@ -68,7 +68,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _print_urdf(ros_arguments: list[str]) -> int:
-    """Print the URDF for the parameters that the node would have; the node does not run."""
+    """Print the URDF for the node's parameters, without running the node."""
     from rclpy.node import Node
     from rrr_traj_planner.nodes.arm_node.arm_view import description
     from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
