@@ -13,15 +13,12 @@
 # limitations under the License.
 
 """
-The points of an answer, close enough that a controller's quintics through them keep the limits.
+Sampling of the trajectory so that the controller's quintic spline satisfies the limits.
 
-joint_trajectory_controller interpolates by quintics. Where quintics through points of the sample
-period exceed limits, points are inserted, not closer than a tenth of the period; where that is not
-enough, the motion is slowed. A motion that cannot be slowed, because its durations are prescribed
-or because it passes fast through a pose that the motors cannot hold, has closer points still. So
-has one where a joint would leave its range, as where it turns back or stops at the range's end:
-there the quintics overshoot by the cube of the time between points. Inserted points also reduce
-jerk; no motion is slowed for jerk, but the note tells of what remains.
+Where the spline exceeds a limit, points are inserted, not closer than a tenth of the sample
+period; where that is not enough, the motion is slowed. A motion that cannot be slowed, and one
+whose spline leaves a joint's range, get points down to CLOSEST. Excess of the jerk limit is
+reduced by inserted points and otherwise reported in the note.
 """
 
 from __future__ import annotations
@@ -50,7 +47,7 @@ from rrr_traj_planner.planners.request import PlanningRequest
 
 ROUNDS = 40            # of slowing, at most
 LARGEST_SCALING = 1.5  # of time, in one of them
-CLOSEST = 1e-4         # s between points of a motion that cannot be slowed, or leaves a range
+CLOSEST = 1e-4         # s, least spacing for a motion that cannot be slowed, or leaves a range
 
 # Ratios above which the plan's note tells of them:
 REPORTED_JERK = 1.1       # of the quintics' jerk to its limit
@@ -58,7 +55,7 @@ REPORTED_SCALING = 1.001  # of the slowed motion's duration to the planned one's
 
 
 class AnswerPoints(NamedTuple):
-    """Points whose quintics keep the limits, and the motion that they sample."""
+    """Points whose quintic spline satisfies the limits, and the motion that they sample."""
 
     trajectory: Trajectory    # slowed where necessary
     points: TrajectoryPoints
@@ -99,10 +96,10 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
         If no points are found, which is a bug.
 
     """
-    time_scale, gap = 1.0, LEAST_GAP * request.sample_period
-    closest = min(gap, CLOSEST)
+    time_scale, min_spacing = 1.0, LEAST_GAP * request.sample_period
+    closest = min(min_spacing, CLOSEST)
     for _ in range(ROUNDS):
-        points, excess = _best_refined(model, limits, request, trajectory, gap)
+        points, excess = _best_refined(model, limits, request, trajectory, min_spacing)
         factor = excess.slowing
         if factor <= 1.0:
             return AnswerPoints(trajectory, points, excess.effort, time_scale, _note(
@@ -110,9 +107,9 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
         cannot_be_slower = request.segment_durations is not None or np.isinf(
             time_scale_for_torque(model, limits, trajectory).value).any()
         if cannot_be_slower or np.isinf(factor):
-            if gap == closest:
+            if min_spacing == closest:
                 break
-            gap = closest
+            min_spacing = closest
             continue
         factor = min(factor, LARGEST_SCALING)
         trajectory, time_scale = trajectory.time_scaled(factor), time_scale * factor
@@ -126,7 +123,8 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
 
 
 def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-                  trajectory: Trajectory, gap: float) -> tuple[TrajectoryPoints, SplineExcess]:
+                  trajectory: Trajectory,
+                  min_spacing: float) -> tuple[TrajectoryPoints, SplineExcess]:
     """
     Return points as close as necessary, and by how much quintics through them exceed limits.
 
@@ -134,15 +132,15 @@ def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningReque
     quintic overshoots on the other side. If that exceeds it too, all overshoot before the step:
     planners whose motions have steps leave a margin for that (`PathTable.overshoot`).
     """
-    found = _refined(model, limits, request, trajectory, gap, False)
+    found = _refined(model, limits, request, trajectory, min_spacing, False)
     if len(trajectory.step_times) and found[1].slowing > 1.0:
-        other = _refined(model, limits, request, trajectory, gap, True)
+        other = _refined(model, limits, request, trajectory, min_spacing, True)
         found = min(found, other, key=lambda f: f[1].slowing)
     return found
 
 
 def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-             trajectory: Trajectory, gap: float,
+             trajectory: Trajectory, min_spacing: float,
              overshoot_before: bool) -> tuple[TrajectoryPoints, SplineExcess]:
     """Return the same, for overshoot before steps only or on either side."""
     times = sample_times(trajectory, request.sample_period, request.max_points)
@@ -152,15 +150,16 @@ def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
         request.should_stop()
         excess = spline_excess(
             model, limits, spline_through(points), request.should_stop)
-        further = _between(limits, times, excess, trajectory.step_times, gap, overshoot_before)
+        further = _between(
+            limits, times, excess, trajectory.step_times, min_spacing, overshoot_before)
         if not len(further) or len(times.stamps) + len(further) > request.max_points:
             return points, excess
         times = times.with_further(further)
 
 
 def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, steps: Array,
-             gap: float, overshoot_before: bool) -> Array:
-    """Return times at which to divide intervals that exceed limits, none closer than the gap."""
+             min_spacing: float, overshoot_before: bool) -> Array:
+    """Return times at which to divide intervals that exceed limits, at least a spacing apart."""
     begin, width = times.stamps[:-1] * NANOSECOND, np.diff(times.stamps) * NANOSECOND
     cut = begin + 0.5 * width
     outside = excess.outside > 0.0
@@ -174,7 +173,7 @@ def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, step
         beside = STEP_FRACTION / (1.0 - STEP_FRACTION) * width[index]
         cut[index] = np.where(after, steps + beside * share, steps - beside * (1.0 - share))
         exceeds_jerk[index] = False  # a shorter interval would make the step's jerk larger
-    least = np.where(outside, min(gap, CLOSEST), gap) - NANOSECOND
+    least = np.where(outside, min(min_spacing, CLOSEST), min_spacing) - NANOSECOND
     far = np.minimum(cut - begin, begin + width - cut) >= least
     return cut[far & (exceeds_jerk | (excess.time_scale > 1.0) | outside)]
 

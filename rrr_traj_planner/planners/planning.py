@@ -31,7 +31,7 @@ from rrr_traj_planner.core.errors import (
 )
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.postures import Posture
-from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
+from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.motion_laws import cycloid
 from rrr_traj_planner.core.path.axis_planes import passes_axis
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
@@ -44,21 +44,17 @@ from rrr_traj_planner.planners.answer_points import answer_points
 from rrr_traj_planner.planners.answer_size import check_answer_size
 from rrr_traj_planner.planners.missed_via_points import miss_note, misses
 from rrr_traj_planner.planners.plan import Plan
-from rrr_traj_planner.planners.posture_choice import (
-    first_possible,
-    joint_postures,
-    path_postures,
-)
+from rrr_traj_planner.planners.posture_choice import first_possible, joint_postures, path_postures
 from rrr_traj_planner.planners.registry import CartesianPlanner, planner, Registered
 from rrr_traj_planner.planners.request import CartesianTask, JointTask, PlanningRequest
 from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 
-# Joint positions that give the same position of the tip, to its rounding, and differ by no more
-# are one point: at the edge of the workspace 1e-9 m are 7e-5 rad.
+# Joint positions within this that give the same tip position are one point: near the workspace
+# boundary 1e-9 m correspond to 7e-5 rad.
 SAME_POSTURE = 1e-4  # rad
 
 # Displacements up to this are set to zero: ratios of 1e-310 rad to 1 rad would overflow.
-STANDING = 1e-14  # rad
+ZERO_DISPLACEMENT = 1e-14  # rad
 
 # Motions are planned for sample periods up to this, so that a longer sample_period does not slow
 # them: the answer has additional points where its quintics need them.
@@ -103,10 +99,10 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
             answer = _planned_path(method.plan_path, model, limits, request, start)
         else:
             answer = _planned_joints(method, model, limits, request, start)
-    return answer if start is None else _from_exactly(start, answer, request.planner_id)
+    return answer if start is None else _with_exact_start(start, answer, request.planner_id)
 
 
-def _from_exactly(start: Array, answer: Plan, planner_id: str) -> Plan:
+def _with_exact_start(start: Array, answer: Plan, planner_id: str) -> Plan:
     """Return a plan with the start state as its first point, to the last bit."""
     positions = answer.points.positions.copy()
     if np.abs(positions[0] - start).max() > JOINT_ROUNDING:
@@ -128,15 +124,15 @@ def _planned_joints(method: Registered, model: RobotModel, limits: JointLimits,
     return first_possible(
         joint_postures(model, limits, request.via_points, start, request.elbow,
                        method.passing),
-        lambda posture: _through(method, model, limits, request, _joint_points(
+        lambda posture: _plan_through(method, model, limits, request, _joint_points(
             model, limits, request, start, posture, method.passing)))
 
 
-def _through(method: Registered, model: RobotModel, limits: JointLimits,
-             request: PlanningRequest, q: Array) -> Plan:
+def _plan_through(method: Registered, model: RobotModel, limits: JointLimits,
+                  request: PlanningRequest, q: Array) -> Plan:
     """Return the plan through joint positions."""
     check_answer_size(limits, request, q)
-    q = _without_noise(q)
+    q = _with_exact_zeros(q)
     same, durations = _repeated(model, q), request.segment_durations
     if durations is not None:  # where a stay is prescribed, a point counts twice
         same &= np.isnan(durations)
@@ -172,11 +168,11 @@ def _planned_path(method: CartesianPlanner, model: RobotModel, limits: JointLimi
             f'planner {request.planner_id} takes no segment_durations: its time is the least')
     return first_possible(
         path_postures(model, request.via_points, start, request.elbow),
-        lambda posture: _path_in(method, model, limits, request, start, posture))
+        lambda posture: _plan_along_path(method, model, limits, request, start, posture))
 
 
-def _path_in(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
-             request: PlanningRequest, start: Array | None, posture: Posture) -> Plan:
+def _plan_along_path(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
+                     request: PlanningRequest, start: Array | None, posture: Posture) -> Plan:
     """Return the plan along a path of the tip, in one posture."""
     tips = request.via_points
     if start is not None:
@@ -193,11 +189,11 @@ def _path_in(method: CartesianPlanner, model: RobotModel, limits: JointLimits,
             model, limits, distinct, start, posture, request.max_deviation, request.max_tip_speed,
             request.steady_zones, _spacing(request), request.should_stop))
     except RrrPlannerError as error:
-        raise _as_counted(error, same, start is not None) from error
+        raise _renumbered(error, same, start is not None) from error
     return _checked(model, limits, request, trajectory, _via_times(request, trajectory, same))
 
 
-def _as_counted(error: RrrPlannerError, same: BoolArray, started: bool) -> RrrPlannerError:
+def _renumbered(error: RrrPlannerError, same: BoolArray, started: bool) -> RrrPlannerError:
     """Return an error with via points numbered as in the request."""
     numbers = np.concatenate(([0], np.flatnonzero(~same) + 1)) - started
     if error.via_point is not None and error.via_point >= 0:
@@ -209,7 +205,8 @@ def _as_counted(error: RrrPlannerError, same: BoolArray, started: bool) -> RrrPl
 
 
 def _joint_points(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-                  start: Array | None, posture: Posture, passing: Passing = THROUGH) -> Array:
+                  start: Array | None, posture: Posture,
+                  passing: ViaPointBehaviour = THROUGH) -> Array:
     """Return joint positions of the start, if there is one, and of the via points."""
     q = joint_via_points(model, limits, request.via_points, start, posture, passing)
     return q if start is None else np.vstack((start, q))
@@ -221,11 +218,11 @@ def _via_times(request: PlanningRequest, trajectory: Trajectory, same: BoolArray
     return np.asarray(trajectory.via_times[index][len(index) - len(request.via_points):])
 
 
-def _without_noise(q: Array) -> Array:
-    """Return points in which displacements of at most STANDING are exactly zero."""
+def _with_exact_zeros(q: Array) -> Array:
+    """Return points in which displacements of at most ZERO_DISPLACEMENT are exactly zero."""
     q = q.copy()
     for before, point in zip(q, q[1:]):
-        still = np.abs(point - before) <= STANDING
+        still = np.abs(point - before) <= ZERO_DISPLACEMENT
         point[still] = before[still]
     return q
 
@@ -254,7 +251,7 @@ def _rest(model: RobotModel, limits: JointLimits, request: PlanningRequest, q: A
 def _checked(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, via_times: Array) -> Plan:
     """Return the plan of a trajectory, after checks that are independent of the planner."""
-    with step('the choice of points for the answer'):
+    with step('sampling of the trajectory'):
         try:
             found = answer_points(model, limits, request, trajectory)
         except InvalidInputError as error:

@@ -41,7 +41,7 @@ from rrr_traj_planner.core.kinematics.postures import (
     Shoulder,
     SHOULDERS,
 )
-from rrr_traj_planner.core.kinematics.travel_time import Passing, travel_time
+from rrr_traj_planner.core.kinematics.travel_time import travel_time, ViaPointBehaviour
 from rrr_traj_planner.core.path.axis_planes import passes_axis
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
@@ -52,7 +52,7 @@ Answer = TypeVar('Answer')
 
 
 def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start: Array | None,
-                   elbow: Elbow | None, passing: Passing) -> list[Posture]:
+                   elbow: Elbow | None, passing: ViaPointBehaviour) -> list[Posture]:
     """
     Return the postures for a motion in joint space through via points, in order.
 
@@ -68,7 +68,7 @@ def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start:
         Where the motion begins [rad].
     elbow : {'up', 'down'}, optional
         The requested branch.
-    passing : Passing
+    passing : ViaPointBehaviour
         How the motion passes via points.
 
     Returns
@@ -160,7 +160,7 @@ def first_possible(postures: Sequence[Posture], attempt: Callable[[Posture], Ans
 
 
 def _time(model: RobotModel, limits: JointLimits, points: Array, start: Array,
-          posture: Posture, passing: Passing) -> float:
+          posture: Posture, passing: ViaPointBehaviour) -> float:
     """Return the estimated time through via points, infinite where a joint leaves its range."""
     q = joint_sequence(model, limits, points, posture, start, passing)
     if out_of_range(q, limits).any():

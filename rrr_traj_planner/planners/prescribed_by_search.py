@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Prescribed durations for planners whose motion they determine, and longer ones if infeasible."""
+"""Feasible scaling of prescribed durations, by search."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def within_torque(task: JointTask, law: TransitionLaw,
     return None
 
 
-def motion_or_error(motion_in: Callable[[Array], PiecewiseTrajectory | None], durations: Array,
+def feasible_motion(motion_in: Callable[[Array], PiecewiseTrajectory | None], durations: Array,
                     fastest: Callable[[], Array] | None = None) -> PiecewiseTrajectory:
     """
     Return the motion of given durations, or raise an error with longer feasible ones.
@@ -126,8 +126,8 @@ def motion_or_error(motion_in: Callable[[Array], PiecewiseTrajectory | None], du
                       tuple(offered))
 
 
-def fastest_durations_between_stays(task: JointTask,
-                                    fastest: Callable[[Array], Trajectory]) -> Array:
+def least_durations_except_dwells(task: JointTask,
+                                  fastest: Callable[[Array], Trajectory]) -> Array:
     """
     Return the durations of the fastest motion; those of segments without displacement as given.
 

@@ -23,7 +23,7 @@ from pkgutil import iter_modules
 from typing import NamedTuple
 
 from rrr_traj_planner.core.errors import InvalidInputError, quoted
-from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
+from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 import rrr_traj_planner.planners.methods
 from rrr_traj_planner.planners.request import CartesianTask, JointTask
@@ -39,7 +39,7 @@ class Registered(NamedTuple):
     some_durations: bool = False  # whether durations may be prescribed for some segments only
     plan_path: CartesianPlanner | None = None
     misses_via_points: bool = False  # whether it blends around via points instead of reaching them
-    passing: Passing = THROUGH     # how it passes via points, for the choice of whole turns
+    passing: ViaPointBehaviour = THROUGH  # at via points, for the choice of whole turns
 
 
 _planners: dict[str, Registered] = {}
@@ -47,7 +47,7 @@ _planners: dict[str, Registered] = {}
 
 def register(planner_id: str, some_durations: bool = False,
              misses_via_points: bool = False,
-             passing: Passing = THROUGH) -> Callable[[JointPlanner], JointPlanner]:
+             passing: ViaPointBehaviour = THROUGH) -> Callable[[JointPlanner], JointPlanner]:
     """
     Return a decorator that makes a function the planner of an id.
 
@@ -60,7 +60,7 @@ def register(planner_id: str, some_durations: bool = False,
     misses_via_points : bool
         Whether it blends around via points between the first and the last; the plan's note then
         has the distances.
-    passing : Passing
+    passing : ViaPointBehaviour
         How it passes via points, for the estimate of time by which whole turns are chosen.
 
     Returns

@@ -61,7 +61,8 @@ def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
     Returns
     -------
     SamplingLimits
-        With a cruise of jerk where the joints' jerk limits are much tighter than the sampling's.
+        With a constant-jerk phase in each ramp where the joints' jerk limits are much tighter
+        than the sampling's.
 
     Raises
     ------

@@ -23,13 +23,10 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import format_distinct, LimitViolationError, StartStateError
-from rrr_traj_planner.core.kinematics.joint_ranges import (
-    out_of_range,
-    range_error,
-)
+from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import Posture
-from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH
+from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
 HOLDING_TOLERANCE = 1e-9  # part of an effort limit up to which exceeding it is rounding
@@ -37,7 +34,7 @@ HOLDING_TOLERANCE = 1e-9  # part of an effort limit up to which exceeding it is 
 
 def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
                      start: Array | None, posture: Posture,
-                     passing: Passing = THROUGH) -> Array:
+                     passing: ViaPointBehaviour = THROUGH) -> Array:
     """
     Return joint positions of via points, all in one posture.
 
@@ -53,7 +50,7 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
         Joint positions [rad] before the first via point.
     posture : Posture
         The posture.
-    passing : Passing
+    passing : ViaPointBehaviour
         How the motion passes via points, for the choice of whole turns.
 
     Returns
@@ -94,7 +91,8 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
     start : ndarray, shape (3,)
         Joint positions [rad].
     tolerance : float
-        By how much a joint may be outside its range, for what it was seen with [rad].
+        Start state tolerance, for measurement noise: by how much a joint may be outside its
+        range [rad].
 
     Returns
     -------
@@ -157,7 +155,7 @@ def holding_failure(model: RobotModel, limits: JointLimits,
 def holding_error(where: str, joint: str, torque: float, limit: float,
                   via_point: int = -1) -> LimitViolationError:
     """
-    Return the error of a pose in which a motor cannot hold the arm, or with nothing left to move.
+    Return the error of a pose that a motor cannot hold, or has no torque left for motion.
 
     Parameters
     ----------
@@ -177,7 +175,7 @@ def holding_error(where: str, joint: str, torque: float, limit: float,
 
     """
     needed, most = torque_texts(torque, limit)
-    left = '' if torque > limit else ', which leaves nothing to move with'
+    left = '' if torque > limit else ', which leaves no torque for motion'
     return LimitViolationError(
         f'{where} {joint} needs {needed} N m to hold, limit {most} N m{left}', joint, torque,
         limit, via_point)

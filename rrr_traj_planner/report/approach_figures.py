@@ -71,8 +71,8 @@ def figure_4_4(of: Planned) -> Picture:
     errors, distances = via_errors(of)
     return _approach(
         of, 'figure_4_4', 'Figure 4.4: path transition for approach "b", after Paul',
-        'Joint 2 on the task of table 6.1: a transition straddles the via point, where the two '
-        f'lines meet. The point is missed: by {errors[1]:.3f} rad, the tip by '
+        'Joint 2 on the task of table 6.1: the via point, where the two '
+        f'lines meet, is blended around. It is missed: by {errors[1]:.3f} rad, the tip by '
         f'{1e3 * distances[1]:.0f} mm.', corners=True)
 
 

@@ -52,7 +52,7 @@ def test_few_tasks_are_refused_and_all_for_gravity_on_the_way(planner_id):
     planned, refused = outcomes(planner_id)
     assert len(refused) <= MOST_REFUSALS * len(planned)
     for _, error in refused.values():
-        assert 'on its way' in str(error)
+        assert 'along the segment' in str(error)
         assert error.value > error.limit
 
 

@@ -91,7 +91,7 @@ def test_hard_cases_are_planned_within_every_limit_or_refused_for_a_reason(plann
     limits = replace(LIMITS, **changes)
     task = Task(0, name, ARM, limits, np.asarray(q), through(q, planner_id=planner_id))
     if planner_id == 'cycloid_approach_a' and name in NOT_FOR_APPROACH_A:
-        with pytest.raises(RrrPlannerError, match='on its way|no durations are found'):
+        with pytest.raises(RrrPlannerError, match='along the segment|no durations are found'):
             plan(ARM, limits, task.request)
         return
     answer = plan(ARM, limits, task.request)
@@ -240,7 +240,8 @@ def test_a_way_that_cannot_be_held_is_refused_by_segment_joint_and_torque(planne
     weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
     q = [[0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
     with pytest.raises(LimitViolationError, match=(
-            r'^segment 0: on its way joint_3 needs 58\.9 N m to hold, limit 50 N m$')) as no:
+            r'^segment 0: along the segment joint_3 '
+            r'needs 58\.9 N m to hold, limit 50 N m$')) as no:
         plan(ARM, weak, through(q, planner_id=planner_id))
     assert no.value.via_point == -1
     assert no.value.joint == 'joint_3'
@@ -249,7 +250,7 @@ def test_a_way_that_cannot_be_held_is_refused_by_segment_joint_and_torque(planne
 def test_refused_segment_is_counted_as_the_caller_counts():
     weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
     q = [[0.3, 1.5, -1.5], [0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
-    with pytest.raises(LimitViolationError, match='^segment 1: on its way joint_3'):
+    with pytest.raises(LimitViolationError, match='^segment 1: along the segment joint_3'):
         plan(ARM, weak, through(q))
 
 

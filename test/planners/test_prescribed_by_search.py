@@ -24,7 +24,7 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.motion_laws.cycloid import transition
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.prescribed_by_search import motion_or_error
+from rrr_traj_planner.planners.prescribed_by_search import feasible_motion
 from rrr_traj_planner.planners.request import PlanningRequest
 
 PROFILE = JointProfile(transition(*(np.array([x]) for x in (1.0, 0.0, 0.0, 0.0))))
@@ -37,7 +37,7 @@ def slower_than(least):
 
 
 def test_durations_that_have_a_motion_are_kept():
-    assert motion_or_error(slower_than([1.0, 2.0]), np.array([1.0, 2.0])) is MOTION
+    assert feasible_motion(slower_than([1.0, 2.0]), np.array([1.0, 2.0])) is MOTION
 
 
 def test_durations_in_the_same_proportion_are_offered():
@@ -45,7 +45,7 @@ def test_durations_in_the_same_proportion_are_offered():
     with pytest.raises(TimingError, match=(
             r'^segment_durations \[1\.5, 1\.0\] s are too short: the least feasible in their '
             r'proportion are \[3\.0\d*, 2\.0\d*\] s$')) as no:
-        motion_or_error(slower_than([1.0, 2.0]), np.array([1.5, 1.0]))
+        feasible_motion(slower_than([1.0, 2.0]), np.array([1.5, 1.0]))
     assert no.value.least_durations == pytest.approx((3.0, 2.0), rel=1e-5)
     assert (np.array(no.value.least_durations) >= [3.0, 2.0]).all()
 
@@ -53,7 +53,7 @@ def test_durations_in_the_same_proportion_are_offered():
 def test_of_those_that_are_long_enough_nothing_more_is_asked_where_the_fastest_are_known():
     with pytest.raises(TimingError, match=(
             r'^segment_durations \[1\.5, 1\.0\] s are too short: feasible are \[1\.5, 2')) as no:
-        motion_or_error(slower_than([1.0, 2.0]), np.array([1.5, 1.0]),
+        feasible_motion(slower_than([1.0, 2.0]), np.array([1.5, 1.0]),
                         lambda: np.array([1.0, 2.0]))
     assert no.value.least_durations == pytest.approx((1.5, 2.0), rel=1e-5)
 
@@ -61,7 +61,7 @@ def test_of_those_that_are_long_enough_nothing_more_is_asked_where_the_fastest_a
 def test_where_no_stretch_is_feasible_none_is_offered():
     with pytest.raises(TimingError, match=(
             r'^segment_durations \[1\.0\] s are too short, and no multiple of them is fe')) as no:
-        motion_or_error(lambda durations: None, np.array([1.0]))
+        feasible_motion(lambda durations: None, np.array([1.0]))
     assert no.value.least_durations == ()
 
 

@@ -107,7 +107,7 @@ def test_jerk_is_zero_at_the_ends_of_the_thesis_function_alone(plans):
         assert measures(plans.on_table_6_1(planner_id)).jerk_at_ends.max() > 1.0, planner_id
 
 
-def test_only_straddling_methods_miss_via_points(plans):
+def test_only_methods_with_blends_miss_via_points(plans):
     for of in planned([*plans.table_6_1, *plans.table_6_3]):
         found = measures(of)
         assert (found.via_error > ROUNDING) == (of.planner_id in MISSING), of.planner_id

@@ -37,12 +37,12 @@ from rrr_traj_planner.core.kinematics.joint_ranges import (
 )
 from rrr_traj_planner.core.kinematics.least_time_turns import least_time_turns, TRAVEL
 from rrr_traj_planner.core.kinematics.postures import Posture
-from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH, travel_times
+from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_times, ViaPointBehaviour
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 
 def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, posture: Posture,
-                   start: Array | None = None, passing: Passing = THROUGH) -> Array:
+                   start: Array | None = None, passing: ViaPointBehaviour = THROUGH) -> Array:
     """
     Return joint positions at consecutive via points, all in one posture.
 
@@ -58,7 +58,7 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
         The posture.
     start : ndarray, shape (3,), optional
         Joint positions before the first point [rad].
-    passing : Passing
+    passing : ViaPointBehaviour
         How the motion passes the points, for the estimate of time.
 
     Returns
@@ -107,7 +107,7 @@ def _solutions(model: RobotModel, points: Array, posture: Posture) -> Array:
     return q
 
 
-def _needs_search(limits: JointLimits, q: Array, passing: Passing) -> BoolArray:
+def _needs_search(limits: JointLimits, q: Array, passing: ViaPointBehaviour) -> BoolArray:
     """
     Return for which joints the nearest turns are out of range or may not be optimal, shape (3,).
 
@@ -124,7 +124,7 @@ def _needs_search(limits: JointLimits, q: Array, passing: Passing) -> BoolArray:
     return np.asarray(out_of_range(q, limits).any(axis=0) | (long & possible).any(axis=0))
 
 
-def _elapsed(limits: JointLimits, q: Array, joint: int, passing: Passing) -> Array:
+def _elapsed(limits: JointLimits, q: Array, joint: int, passing: ViaPointBehaviour) -> Array:
     """Return the times of arrival [s] at each point by the estimate for the other joints, (n,)."""
     others = [j for j in range(3) if j != joint]
     times = travel_times(limits, q, passing) + TRAVEL * np.abs(np.diff(q, axis=0))

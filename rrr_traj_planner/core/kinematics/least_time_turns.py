@@ -25,7 +25,11 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.kinematics.joint_ranges import TURN
-from rrr_traj_planner.core.kinematics.travel_time import joint_travel_time, motion_ends, Passing
+from rrr_traj_planner.core.kinematics.travel_time import (
+    joint_travel_time,
+    motion_ends,
+    ViaPointBehaviour,
+)
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
 MOST_TURNS = 5  # candidates at each point, the nearest: bounds the work in wide ranges; chosen
@@ -36,7 +40,7 @@ TRAVEL, BEGINNING = 1e-6, 1e-9  # s/rad
 
 
 def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
-                     first_is_fixed: bool, passing: Passing) -> Array:
+                     first_is_fixed: bool, passing: ViaPointBehaviour) -> Array:
     """
     Return one joint's positions with the whole turns of least time within its range.
 
@@ -56,7 +60,7 @@ def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
         Times from each point to the next that the other joints need [s].
     first_is_fixed : bool
         Whether the turn of the first position is fixed.
-    passing : Passing
+    passing : ViaPointBehaviour
         How the motion passes via points.
 
     Returns

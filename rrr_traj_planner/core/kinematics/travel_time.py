@@ -27,7 +27,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, IntArray
 
 
-class Passing(NamedTuple):
+class ViaPointBehaviour(NamedTuple):
     """
     How a planner's motions pass via points, for the estimate of their time.
 
@@ -47,12 +47,12 @@ class Passing(NamedTuple):
     mean_acceleration: float = 0.5
 
 
-THROUGH = Passing()
+THROUGH = ViaPointBehaviour()
 
 
 def joint_travel_time(limits: JointLimits, joint: int | slice, travel: Array,
                       ends: Array | IntArray | int, reversals: Array | IntArray | int,
-                      passing: Passing) -> Array:
+                      passing: ViaPointBehaviour) -> Array:
     """
     Return the time of a joint's travel between via points, by a trapezoidal velocity profile.
 
@@ -73,7 +73,7 @@ def joint_travel_time(limits: JointLimits, joint: int | slice, travel: Array,
         Number of ends of the travel that are ends of the motion.
     reversals : ndarray or int
         Number of the other ends at which the joint reverses.
-    passing : Passing
+    passing : ViaPointBehaviour
         How the motion passes via points.
 
     Returns
@@ -98,7 +98,7 @@ def joint_travel_time(limits: JointLimits, joint: int | slice, travel: Array,
                                  np.sqrt(2.0 * rests * travel / acceleration)))
 
 
-def travel_times(limits: JointLimits, q: Array, passing: Passing) -> Array:
+def travel_times(limits: JointLimits, q: Array, passing: ViaPointBehaviour) -> Array:
     """
     Return the time of each joint alone from each point to the next.
 
@@ -108,7 +108,7 @@ def travel_times(limits: JointLimits, q: Array, passing: Passing) -> Array:
         Velocities and accelerations.
     q : ndarray, shape (n, 3)
         Joint positions [rad].
-    passing : Passing
+    passing : ViaPointBehaviour
         How the motion passes via points.
 
     Returns
@@ -146,7 +146,7 @@ def motion_ends(segments: int) -> IntArray:
     return ends
 
 
-def travel_time(limits: JointLimits, q: Array, passing: Passing) -> float:
+def travel_time(limits: JointLimits, q: Array, passing: ViaPointBehaviour) -> float:
     """
     Return the estimated time of a motion through joint positions.
 
@@ -156,7 +156,7 @@ def travel_time(limits: JointLimits, q: Array, passing: Passing) -> float:
         Velocities and accelerations.
     q : ndarray, shape (n, 3)
         Joint positions [rad].
-    passing : Passing
+    passing : ViaPointBehaviour
         How it passes via points.
 
     Returns

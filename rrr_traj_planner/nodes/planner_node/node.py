@@ -197,7 +197,7 @@ def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
     try:
         found = plan(config.model, config.limits, planning_request(request, config, deadline))
         planning_time = job.run_time()
-        with step('the making of the message'):
+        with step('conversion to the response message'):
             response = success(found, config, deadline)
     except Exception as error:
         found, planning_time = None, job.run_time()

@@ -27,7 +27,8 @@ from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, Limits, TORQUE
 from rrr_traj_planner.planners.solver.ramps import Grid
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 
-# Beyond a range, for joints that stay at its end [rad]; less than what counts as leaving it.
+# Relaxation of position bounds so that joints resting at a range's end have an interior [rad];
+# below JOINT_ROUNDING.
 EDGE = 5e-10
 
 # Stands for no bound, in SI units and rad: never active.
@@ -45,7 +46,7 @@ class JointConstraints:
     limits : JointLimits
         Infinite where there is none.
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     points : ndarray, shape (N + 1, 3)
         Via points [rad].
     margins : ndarray, shape (2, N, 2 n + 1, 3)

@@ -40,7 +40,7 @@ class DenseCheck:
     task : JointTask
         The via points, the arm and its limits.
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     m : Variables
         The motion.
 

@@ -45,7 +45,7 @@ def fastest(task: JointTask, grid: Grid, least_T: Array | None = None) -> Solved
     task : JointTask
         The via points, the arm and its limits.
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     least_T : ndarray, shape (N,), optional
         Least durations of the segments [s].
 
@@ -55,15 +55,15 @@ def fastest(task: JointTask, grid: Grid, least_T: Array | None = None) -> Solved
         None where no path is found along which the motors can hold the arm.
 
     """
-    unconstrained = DurationConstraints.all_free(len(task.points) - 1, 3)
-    whole = JointProblem(task, grid, unconstrained, least_T)
+    durations = DurationConstraints.all_free(len(task.points) - 1, 3)
+    whole = JointProblem(task, grid, durations, least_T)
     if np.isfinite(task.limits.max_acceleration).all():
-        free = replace(whole, task=replace(
+        without_torque = replace(whole, task=replace(
             task, limits=replace(task.limits, max_effort=np.full(3, np.inf))))
-        found = tightened(free, rest_to_rest)
+        found = tightened(without_torque, rest_to_rest)
         task.should_stop()
         if found is not None and torque_fits(task, found.trajectory):
-            better = _refined(free, found)
+            better = _refined(without_torque, found)
             return better if torque_fits(task, better.trajectory) else _refined(whole, found)
     found = tightened(whole, rest_to_rest)
     return None if found is None else _refined(whole, found)

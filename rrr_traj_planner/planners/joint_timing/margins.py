@@ -52,7 +52,7 @@ class Margins(NamedTuple):
         Parameters
         ----------
         grid : Grid
-            The family of motions.
+            Discretisation: n ramps per segment.
         segments : int
             Their number.
 
@@ -121,7 +121,7 @@ class Margins(NamedTuple):
         task : JointTask
             The via points, the arm and its limits.
         grid : Grid
-            The family of motions.
+            Discretisation: n ramps per segment.
         slow : Variables
             With stops at the via points; margins of positions are at most half its distance to
             the ends of the ranges.

@@ -36,8 +36,8 @@ from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, wi
 DURATION_TOLERANCE = 1e-7  # part by which a motion may last longer than prescribed
 LEAST_SCALING = 0.2        # of prescribed durations, down to which the problem is solved
 FREE_WEIGHT = 1e-3         # of free durations while the scaling of the prescribed is minimised
-GENTLER = 1.02             # ratio of peak accelerations at which their reduction ends
-GENTLENESS_ROUNDS = 12     # of that reduction, at most
+LEAST_REDUCTION = 1.02     # least reduction of peak acceleration that justifies another round
+REDUCTION_ROUNDS = 12      # at most
 OFFER_MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)  # tried on top of the least durations
 
 
@@ -53,7 +53,7 @@ def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
     task : JointTask
         The via points, the arm and its limits.
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     durations : ndarray, shape (N,)
         [s], NaN where free.
 
@@ -75,7 +75,7 @@ def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
         raise _too_short(task, grid, durations)
     if np.isnan(durations).any():
         return _fastest_of_free(task, grid, durations, solved)
-    return _gentlest(task, grid, durations, solved)
+    return _least_peak_acceleration(task, grid, durations, solved)
 
 
 def _least_scaled(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
@@ -124,7 +124,8 @@ def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved])
                   float(T.sum()), np.inf)
 
 
-def _gentlest(task: JointTask, grid: Grid, durations: Array, solved: Solved) -> Solved | None:
+def _least_peak_acceleration(task: JointTask, grid: Grid, durations: Array,
+                             solved: Solved) -> Solved | None:
     """
     Return the motion of least peak acceleration over its limit.
 
@@ -132,15 +133,15 @@ def _gentlest(task: JointTask, grid: Grid, durations: Array, solved: Solved) -> 
     limits; the problem is solved again under those until the durations are just met.
     """
     limit = np.minimum(task.limits.max_acceleration, solved.trajectory.peaks().acceleration.max())
-    found = [solved]  # gentlest first
-    for _ in range(GENTLENESS_ROUNDS):
+    found = [solved]  # of least acceleration first
+    for _ in range(REDUCTION_ROUNDS):
         task.should_stop()
         z = _scaling(solved, durations)
-        if z ** 2 > 1.0 / GENTLER:
+        if z ** 2 > 1.0 / LEAST_REDUCTION:
             break
         limit = limit * z ** 2
-        gentler = replace(task, limits=replace(task.limits, max_acceleration=limit))
-        again = _least_scaled(gentler, grid, durations)
+        lower = replace(task, limits=replace(task.limits, max_acceleration=limit))
+        again = _least_scaled(lower, grid, durations)
         if again is None or _scaling(again, durations) > 1.0 + DURATION_TOLERANCE:
             break
         solved = again

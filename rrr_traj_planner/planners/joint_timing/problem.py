@@ -28,7 +28,7 @@ from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.within_limits import fitted
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.solver.interior_point import Centre, minimise, Outcome
+from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise, Outcome
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.solver.timing_problem import Workspace
@@ -56,7 +56,7 @@ class JointProblem(ReadOnlyArrays):
     task : JointTask
         The via points, the arm and its limits.
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     durations : DurationConstraints
         Which durations may change, and their weights.
     least_T : ndarray, shape (N,), optional
@@ -90,7 +90,7 @@ class JointProblem(ReadOnlyArrays):
             task.model, task.limits, self.grid, task.points, margins.positions,
             margins.velocities, margins.efforts, self.least_T, self._workspace)
 
-    def minimised(self, constraints: JointConstraints, margins: Margins, start: Centre,
+    def minimised(self, constraints: JointConstraints, margins: Margins, start: CentralPathPoint,
                   least_barrier: float = 0.0) -> Outcome:
         """
         Return the fastest motion within constraints.
@@ -101,7 +101,7 @@ class JointProblem(ReadOnlyArrays):
             With these margins.
         margins : Margins
             For the joints that rest at a via point.
-        start : Centre
+        start : CentralPathPoint
             Strictly within the constraints.
         least_barrier : float
             The barrier parameter at which the method ends.

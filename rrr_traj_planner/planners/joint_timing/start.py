@@ -120,7 +120,7 @@ def rest_to_rest_shapes(grid: Grid, points: Array) -> Array:
     Parameters
     ----------
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     points : ndarray, shape (N + 1, 3)
         Via points [rad].
 
@@ -142,7 +142,7 @@ def rest_to_rest_legs(grid: Grid, points: Array) -> Array:
     Parameters
     ----------
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     points : ndarray, shape (legs + 1, 3)
         The start, the corners and the end [rad]; longer legs have more of the n ramps.
 
@@ -173,7 +173,7 @@ def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
     task : JointTask
         The arm, its limits and the via points.
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
 
     Returns
     -------
@@ -193,6 +193,6 @@ def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
     needed, limit = float(torque[joint]), float(task.limits.max_effort[joint])
     shown, most = torque_texts(needed, limit)
     return LimitViolationError(
-        f'segment {task.segment_number(k)}: no way is found on which the motors can hold the '
-        f'arm; straight on {name} needs {shown} N m, limit {most} N m',
+        f'segment {task.segment_number(k)}: no path found along which the motors can hold the '
+        f'arm; the straight line in joint space needs {shown} N m at {name}, limit {most} N m',
         name, needed, limit)

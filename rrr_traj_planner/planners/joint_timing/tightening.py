@@ -24,15 +24,16 @@ from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
-from rrr_traj_planner.planners.solver.interior_point import Centre, Outcome
+from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 
 # Without unit.
 SCHEDULE = Schedule(rounds=20, tolerance=1e-3, patience=4, growth=2.0)
 PARTS_OF_MARGINS = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)  # tried in turn where the whole is infeasible
-APPROACHES = 5           # rounds towards margins that no centre satisfies, at most, each with a
-HIGHER = 10.0            # barrier parameter larger by this factor
+# Retries with a larger barrier parameter when no stored iterate satisfies the new margins:
+RETRIES = 5              # at most
+BARRIER_INCREASE = 10.0  # factor on the barrier parameter from one to the next
 RESTARTED_SEGMENTS = 60  # number of restarts from rest, times segments, at most
 
 
@@ -68,10 +69,10 @@ class _Rounds:
         self._margins = Margins.none(problem.grid, len(durations.free))._replace(
             at_rest=durations.fixed_velocities)
         self._constraints = problem.constraints(self._margins)
-        self._start: Centre | None = None
+        self._start: CentralPathPoint | None = None
         self._slow: Variables | None = None  # the first start
-        self._centres: list[Centre] = []
-        self._approaches, self._restarts = 0, RESTARTED_SEGMENTS
+        self._centres: list[CentralPathPoint] = []
+        self._retries, self._restarts = 0, RESTARTED_SEGMENTS
         self._outcomes: list[tuple[Outcome, Variables]] = []  # each with its start
         self.best: Solved | None = None
 
@@ -86,19 +87,19 @@ class _Rounds:
         start = self._start or _last_within(self._constraints, self._centres)
         if start is None:
             return None
-        self._start, self._approaches = None, 0
+        self._start, self._retries = None, 0
         self._slow = self._slow or start.motion
         outcome = self._problem.minimised(self._constraints, self._margins, start)
         self._outcomes.append((outcome, start.motion))
         return outcome
 
     def eased(self) -> bool:
-        if self._centres and self._approaches < APPROACHES:
+        if self._centres and self._retries < RETRIES:
             nearer = _nearer(self._problem, self._margins, self._centres,
-                             HIGHER ** self._approaches)
+                             BARRIER_INCREASE ** self._retries)
             if nearer:
                 self._centres = self._centres + nearer
-                self._approaches += 1
+                self._retries += 1
                 return True
         return self.started()
 
@@ -146,12 +147,13 @@ class _Rounds:
         return best
 
 
-def _last_within(constraints: JointConstraints, centres: list[Centre]) -> Centre | None:
+def _last_within(constraints: JointConstraints,
+                 centres: list[CentralPathPoint]) -> CentralPathPoint | None:
     return next((c for c in reversed(centres) if constraints.problem.is_within(c.motion)), None)
 
 
-def _nearer(problem: JointProblem, margins: Margins, centres: list[Centre],
-            higher: float) -> list[Centre]:
+def _nearer(problem: JointProblem, margins: Margins, centres: list[CentralPathPoint],
+            factor: float) -> list[CentralPathPoint]:
     """
     Return centres for a part of the margins, where no known one satisfies all of them.
 
@@ -161,15 +163,14 @@ def _nearer(problem: JointProblem, margins: Margins, centres: list[Centre],
         constraints = problem.constraints(margins.part(part))
         centre = _last_within(constraints, centres)
         if centre is not None:
-            barrier = None if centre.barrier is None else higher * centre.barrier
-            return problem.minimised(constraints, margins, Centre(centre.motion, barrier),
-                                     barrier or 0.0).centres
+            barrier = None if centre.barrier is None else factor * centre.barrier
+            start = CentralPathPoint(centre.motion, barrier)
+            return problem.minimised(constraints, margins, start, barrier or 0.0).centres
     return []
 
 
-def _start_from_rest(
-        problem: JointProblem, margins: Margins,
-        initial_motion: InitialMotion) -> tuple[Margins, JointConstraints, Centre] | None:
+def _start_from_rest(problem: JointProblem, margins: Margins, initial_motion: InitialMotion,
+                     ) -> tuple[Margins, JointConstraints, CentralPathPoint] | None:
     """Return an initial motion, and as large a part of the margins as it satisfies."""
     for part in (*PARTS_OF_MARGINS, 0.0):
         reduced = margins.of_slow_motion().part(part)
@@ -178,5 +179,5 @@ def _start_from_rest(
         if motion is None:
             return None
         if constraints.problem.is_within(motion):
-            return reduced, constraints, Centre(motion, None)
+            return reduced, constraints, CentralPathPoint(motion, None)
     return None

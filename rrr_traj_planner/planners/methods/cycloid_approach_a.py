@@ -30,7 +30,7 @@ from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
-from rrr_traj_planner.planners.prescribed_by_search import motion_or_error, within_torque
+from rrr_traj_planner.planners.prescribed_by_search import feasible_motion, within_torque
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, via_problem_of
@@ -83,7 +83,7 @@ def plan(task: JointTask) -> Trajectory:
     """
     problem = via_problem_of(task)
     if task.durations is not None:
-        return motion_or_error(lambda durations: within_torque(
+        return feasible_motion(lambda durations: within_torque(
             task, problem.law, lambda law: _motion(task, problem, law, durations)), task.durations)
     motion = _motion(task, problem, problem.law, _fastest(task, problem))
     if motion is None:

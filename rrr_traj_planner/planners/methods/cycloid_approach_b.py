@@ -26,7 +26,7 @@ from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kinematics.travel_time import Passing
+from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
@@ -38,8 +38,8 @@ from rrr_traj_planner.planners.blends.blend_motion import (
 )
 from rrr_traj_planner.planners.blends.blend_timing import fastest
 from rrr_traj_planner.planners.prescribed_by_search import (
-    fastest_durations_between_stays,
-    motion_or_error,
+    feasible_motion,
+    least_durations_except_dwells,
     within_torque,
 )
 from rrr_traj_planner.planners.registry import register
@@ -51,7 +51,7 @@ from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 NEWTON_STEPS = 60  # at most: convergence is quadratic, slower near a double root
 
 
-@register('cycloid_approach_b', misses_via_points=True, passing=Passing('blend'))
+@register('cycloid_approach_b', misses_via_points=True, passing=ViaPointBehaviour('blend'))
 def plan(task: JointTask) -> Trajectory:
     """
     Return the fastest motion of approach (b), or one of prescribed durations.
@@ -79,10 +79,10 @@ def plan(task: JointTask) -> Trajectory:
     problem = via_problem_of(task, CYCLOID)
     if task.durations is None:
         return _fastest(task, problem)
-    return motion_or_error(
+    return feasible_motion(
         lambda durations: within_torque(
             task, problem.law, lambda law: _motion_in(task, problem, law, durations)),
-        task.durations, lambda: fastest_durations_between_stays(task, lambda points: plan(
+        task.durations, lambda: least_durations_except_dwells(task, lambda points: plan(
             replace(task, points=points, durations=None))))
 
 

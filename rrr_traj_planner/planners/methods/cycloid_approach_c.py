@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kinematics.travel_time import Passing
+from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
@@ -38,7 +38,7 @@ from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
 
 
-@register('cycloid_approach_c', some_durations=True, passing=Passing('stop'))
+@register('cycloid_approach_c', some_durations=True, passing=ViaPointBehaviour('stop'))
 def plan(task: JointTask) -> Trajectory:
     """
     Return the fastest motion of approach (c), or one of prescribed durations.

@@ -20,10 +20,10 @@ Acceleration is continuous; jerk steps where a transition begins or ends.
 
 from __future__ import annotations
 
-from rrr_traj_planner.core.kinematics.travel_time import Passing
+from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.motion_laws.gauss import GAUSS
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.transitions.planner import planner_with
 
-plan = register('gauss', passing=Passing(mean_acceleration=1.0 / GAUSS.peak_acceleration))(
-    planner_with(GAUSS))
+plan = register('gauss', passing=ViaPointBehaviour(
+    mean_acceleration=1.0 / GAUSS.peak_acceleration))(planner_with(GAUSS))

@@ -33,8 +33,8 @@ from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.blends.blend_motion import BlendTimes, is_within_limits, trajectory
 from rrr_traj_planner.planners.blends.blend_timing import fastest, total_time
 from rrr_traj_planner.planners.prescribed_by_search import (
-    fastest_durations_between_stays,
-    motion_or_error,
+    feasible_motion,
+    least_durations_except_dwells,
     TORQUE_TOLERANCE,
 )
 from rrr_traj_planner.planners.registry import register
@@ -104,9 +104,9 @@ def planned(task: JointTask, t_acc: float) -> Trajectory:
     """
     problem = via_problem_of(task, QUARTIC)
     if task.durations is not None:
-        return motion_or_error(
+        return feasible_motion(
             lambda durations: _motion_in(task, problem, t_acc, durations), task.durations,
-            lambda: fastest_durations_between_stays(task, lambda points: planned(
+            lambda: least_durations_except_dwells(task, lambda points: planned(
                 replace(task, points=points, durations=None), t_acc)))
     return _fastest(task, problem, t_acc)
 

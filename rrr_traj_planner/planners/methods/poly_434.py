@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kinematics.travel_time import Passing
+from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
@@ -37,7 +37,7 @@ from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.stops.stops_at_via_points import (
     kinematic_durations,
-    may_lack_torque,
+    may_exceed_torque,
     stopping_motion,
 )
 from rrr_traj_planner.planners.stops.symmetric_434 import (
@@ -52,7 +52,7 @@ from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
 
 
 @register('poly_434', some_durations=True,
-          passing=Passing('stop', 1.0 / QUARTIC.peak_acceleration))
+          passing=ViaPointBehaviour('stop', 1.0 / QUARTIC.peak_acceleration))
 def plan(task: JointTask) -> Trajectory:
     """
     Return the fastest 4-3-4 motion, or one of prescribed durations.
@@ -80,7 +80,7 @@ def plan(task: JointTask) -> Trajectory:
     ratios = displacement_ratios(via_problem_of(task, QUARTIC))
     symmetric = fastest_symmetric(ratios)
     floors = kinematic_durations(task, least_time(symmetric, ratios))
-    lacking = may_lack_torque(task, _motion(task.points, symmetric, floors))
+    lacking = may_exceed_torque(task, _motion(task.points, symmetric, floors))
     found = [_for_torque(task, k, DisplacementRatios(*(ratio[k] for ratio in ratios)),
                          _nth(symmetric, k), float(floors[k])) if lacking[k]
              else (_nth(symmetric, k), True) for k in range(len(floors))]

@@ -13,17 +13,18 @@
 # limitations under the License.
 
 """
-`septic`: as `cycloid`, with transitions of the seventh order (C.1-C.11).
+`septic`: as `cycloid`, with the seventh-order transitions of appendix C (C.1-C.11).
 
-Jerk is zero where a transition begins and ends, as with the cycloid.
+With the end position of (C.10) the coefficient of t^7 vanishes: position has degree 6. Jerk is
+zero where a transition begins and ends, as with the cycloid.
 """
 
 from __future__ import annotations
 
-from rrr_traj_planner.core.kinematics.travel_time import Passing
+from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
 from rrr_traj_planner.planners.registry import register
 from rrr_traj_planner.planners.transitions.planner import planner_with
 
-plan = register('septic', passing=Passing(mean_acceleration=1.0 / SEPTIC.peak_acceleration))(
-    planner_with(SEPTIC))
+plan = register('septic', passing=ViaPointBehaviour(
+    mean_acceleration=1.0 / SEPTIC.peak_acceleration))(planner_with(SEPTIC))

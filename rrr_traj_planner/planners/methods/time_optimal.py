@@ -26,7 +26,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from rrr_traj_planner.core.kinematics.travel_time import Passing
+from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
@@ -47,10 +47,10 @@ MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps are abo
 
 
 @register('time_optimal', some_durations=True,
-          passing=Passing(mean_acceleration=MEAN_ACCELERATION))
+          passing=ViaPointBehaviour(mean_acceleration=MEAN_ACCELERATION))
 def plan(task: JointTask) -> Trajectory:
     """
-    Return the fastest motion of the family, or the gentlest of prescribed durations.
+    Return the fastest motion, or that of prescribed durations and least peak acceleration.
 
     Parameters
     ----------

@@ -235,7 +235,8 @@ EXPORTED void timing_linearise(const Problem *p, double barrier)
         inverse[0] = 1.0 / duration_slack[0], inverse[1] = 1.0 / duration_slack[1];
         if (p->least_T) {
             p->gradient_T[k] = DURATION_WEIGHT * barrier * (inverse[0] - inverse[1]);
-            p->hessian_T[k] = DURATION_WEIGHT * (dual[at] * inverse[0] + dual[at + 1] * inverse[1]);
+            p->hessian_T[k] = DURATION_WEIGHT
+                * (dual[at] * inverse[0] + dual[at + 1] * inverse[1]);
         }
     }
 }

@@ -135,7 +135,7 @@ static double solve_via_points(const Problem *p, const double *S, const double *
 }
 
 int newton_step(const Problem *p, const double *Q, const double *r, const double *r_T,
-                  double *direction, double *dz, double *gain)
+                double *direction, double *dz, double *predicted_decrease)
 {
     const Variables m = variables_at(p, p->variables), step = variables_at(p, direction);
     const double *z = p->states, *Q_T = p->hessian_T;
@@ -190,7 +190,7 @@ int newton_step(const Problem *p, const double *Q, const double *r, const double
     }
     const double common = solve_via_points(p, S, right, common_hessian, common_gradient, via_step,
                                            band);
-    *gain = 0.0;
+    *predicted_decrease = 0.0;
     for (int k = 0; k < N; ++k) {
         const double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
         const double *border = via_step + (size_t)k * 2 * J;  /* v0, a0, v1, a1 in a row */
@@ -228,8 +228,8 @@ int newton_step(const Problem *p, const double *Q, const double *r, const double
             }
         const double *gradient = r + (size_t)k * P * Z;
         for (int i = 0; i < P * Z; ++i)
-            *gain -= gradient[i] * to[i];
-        *gain -= (r_T[k] + p->weights[k]) * dT;
+            *predicted_decrease -= gradient[i] * to[i];
+        *predicted_decrease -= (r_T[k] + p->weights[k]) * dT;
     }
     for (int k = 0; k < N - 1; ++k)
         for (int j = 0; j < J; ++j) {

@@ -28,7 +28,7 @@ static inline const double *path_interval(const double *rows, int intervals, dou
                                           size_t *stride, double *x)
 {
     const double scaled = u * intervals;
-    /* compared before it becomes an integer: a step that is far too long leads anywhere */
+    /* a trial step may give any value: compare before the conversion to int */
     const int i = !(scaled > 0.0) ? 0 : scaled < intervals - 1 ? (int)scaled : intervals - 1;
     *stride = (size_t)intervals * COLUMNS;
     *x = (scaled - i) / intervals;

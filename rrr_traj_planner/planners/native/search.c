@@ -52,7 +52,7 @@ EXPORTED void timing_central_duals(const Problem *p, double barrier)
 }
 
 /* The largest relative decrease of a slack over the whole step, to first order. */
-static double steepest(const Problem *p, const double *rate)
+static double max_relative_slack_decrease(const Problem *p, const double *rate)
 {
     const size_t all = slacks_size(p);
     double worst = 0.0;
@@ -69,10 +69,10 @@ static double steepest(const Problem *p, const double *rate)
 EXPORTED int32_t timing_newton(const Problem *p, int32_t exact, Step *s)
 {
     if (newton_step(p, exact ? p->exact : p->hessian, p->gradient, p->gradient_T, s->direction,
-                      p->step_states, &s->gain) || !isfinite(s->gain))
+                    p->step_states, &s->predicted_decrease) || !isfinite(s->predicted_decrease))
         return 0;
     slack_rates(p, variables_at(p, s->direction).T, p->step_states, s->rate);
-    s->steepest = steepest(p, s->rate);
+    s->max_relative_slack_decrease = max_relative_slack_decrease(p, s->rate);
     return 1;
 }
 
@@ -98,15 +98,15 @@ static double parabola(const Problem *p, const Step *s, double size, double reta
 }
 
 /* Try a step of the given size. Returns 1 if every slack retains the given part of itself; else 0,
- * and `shorter` is the size at which parabolas predict that the target part is retained, 0 if none
- * does. */
+ * and `suggested_size` is the size at which parabolas predict that the target part is retained, 0
+ * if none does. */
 EXPORTED int32_t timing_trial(const Problem *p, Step *s, double size, double retained,
                               double target)
 {
     const size_t all = slacks_size(p), unknowns = variables_size(p);
     const Variables moved = variables_at(p, s->variables);
     double *direction = s->direction;
-    s->shorter = 0.0;
+    s->suggested_size = 0.0;
     if (s->correction) {
         direction = p->trial_variables;
         for (size_t i = 0; i < unknowns; ++i)
@@ -119,7 +119,7 @@ EXPORTED int32_t timing_trial(const Problem *p, Step *s, double size, double ret
     for (size_t i = 0; i < all; ++i)
         if (!(s->slack[i] >= retained * p->slack[i])) {
             const double root = parabola(p, s, size, target);
-            s->shorter = root > 0.0 ? root : 0.0;
+            s->suggested_size = root > 0.0 ? root : 0.0;
             return 0;
         }
     s->cost = timing_cost(p, s->variables);
@@ -133,7 +133,7 @@ EXPORTED int32_t timing_correct(const Problem *p, const Step *s, double size, St
 {
     const size_t all = slacks_size(p);
     const Variables moved = variables_at(p, p->trial_variables);
-    double *weights = p->trial_slack, gain;
+    double *weights = p->trial_slack, predicted_decrease;
     if (!step_motion(p, variables_at(p, p->variables), variables_at(p, s->direction), size,
                         moved))
         return 0;
@@ -146,11 +146,12 @@ EXPORTED int32_t timing_correct(const Problem *p, const Step *s, double size, St
     for (int k = 0; k < p->N; ++k)
         p->trial_gradient_T[k] -= p->weights[k];  /* the solution adds them */
     if (newton_step(p, p->hessian, p->trial_gradient, p->trial_gradient_T, corrected->correction,
-                      p->step_states, &gain))
+                    p->step_states, &predicted_decrease))
         return 0;
     memcpy(corrected->direction, s->direction, variables_size(p) * sizeof(double));
     memcpy(corrected->rate, s->rate, all * sizeof(double));
-    corrected->gain = s->gain, corrected->steepest = s->steepest;
+    corrected->predicted_decrease = s->predicted_decrease;
+    corrected->max_relative_slack_decrease = s->max_relative_slack_decrease;
     return 1;
 }
 

@@ -79,10 +79,10 @@ typedef struct {
     double *correction;     /* second-order, times the size squared, or NULL */
     double *rate;           /* derivatives of the slacks by the step's size */
     double *variables, *slack;  /* after the last trial */
-    double gain;            /* predicted decrease of the merit on the whole step, to first order */
-    double steepest;        /* the largest relative decrease of a slack on the whole step */
+    double predicted_decrease;            /* of the merit on the whole step, to first order */
+    double max_relative_slack_decrease;   /* over all slacks, on the whole step, to first order */
     double cost, log;       /* after the last trial: objective, sum of the slacks' logarithms */
-    double shorter;         /* the size that the last trial suggests instead */
+    double suggested_size;  /* after a trial that violates a constraint, for the next one */
 } Step;
 
 static inline size_t points_of(const Problem *p) { return 2 * (size_t)p->n + 1; }
@@ -146,9 +146,11 @@ void weighted_gradient(const Problem *p, const double *weights, double *gradient
                        double *gradient_T);
 double timing_log_sum(const Problem *p, const double *slack);
 
-/* newton.c: the Newton step and the changes of the states along it, (N, P, Z); the gain is minus
- * the product of gradient and step. Returns 1 where the system is singular, else 0. */
+/* newton.c: the Newton step and the changes of the states along it, (N, P, Z); the predicted
+ * decrease is minus the product of gradient and step. Returns 1 where the system is singular, else
+ * 0. */
 int newton_step(const Problem *p, const double *hessian, const double *gradient,
-                  const double *gradient_T, double *direction, double *dz, double *gain);
+                const double *gradient_T, double *direction, double *dz,
+                double *predicted_decrease);
 
 #endif

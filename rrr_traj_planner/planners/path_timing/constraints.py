@@ -108,7 +108,7 @@ class PathConstraints:
     max_tip_speed : float
         [m/s], infinite where there is none.
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     margins : ndarray, shape (N, 2 n + 1, QUANTITIES)
         Subtracted from each quantity's limit.
     steady : ndarray of bool, shape (N,)
@@ -183,7 +183,7 @@ def progress_at(grid: Grid, points: Array, m: Variables) -> Progress:
     Parameters
     ----------
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     points : ndarray, shape (N + 1, 1)
         Path lengths where the pieces meet [m].
     m : Variables

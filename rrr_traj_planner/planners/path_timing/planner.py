@@ -30,11 +30,7 @@ from rrr_traj_planner.core.path.largest_radii import paths_within
 from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.deadline import part_of
-from rrr_traj_planner.planners.path_timing.least_time import (
-    fitted,
-    nearly_fastest_along,
-    Timed,
-)
+from rrr_traj_planner.planners.path_timing.least_time import fitted, nearly_fastest_along, Timed
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.request import CartesianTask
 from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling

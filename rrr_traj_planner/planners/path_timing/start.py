@@ -28,7 +28,7 @@ def motion_with_speeds(grid: Grid, ends: Array, speeds: Array) -> Variables:
     Parameters
     ----------
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     ends : ndarray, shape (N + 1,)
         Path lengths where the pieces meet [m].
     speeds : ndarray, shape (N + 1,)
@@ -54,7 +54,7 @@ def uniform_along(grid: Grid, ends: Array) -> Variables:
     Parameters
     ----------
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     ends : ndarray, shape (N + 1,)
         Path lengths where the pieces meet [m], at least three.
 

@@ -39,7 +39,7 @@ from rrr_traj_planner.planners.path_timing.start import motion_with_speeds, unif
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.solver.interior_point import (
-    Centre,
+    CentralPathPoint,
     minimise,
     Outcome,
     RELATIVE_GAP,
@@ -68,7 +68,7 @@ def tightened(task: PathTask, table: PathTable, grid: Grid,
     table : PathTable
         The path's.
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     steady : ndarray, shape (N,)
         Pieces along which the tip's speed is constant.
 
@@ -97,7 +97,7 @@ class _Rounds:
         self._workspace = Workspace()
         self._previous: PathConstraints | None = None
         self._constraints = self._within(np.zeros((len(steady), 2 * grid.n + 1, QUANTITIES)))
-        self._start = Centre(_slow_start(task, table, self._constraints, steady), None)
+        self._start = CentralPathPoint(_slow_start(task, table, self._constraints, steady), None)
         # each with its duration and a lower bound of all durations [s]
         self.found = [(float(self._start.motion.T.sum()), self._start.motion, -np.inf)]
 
@@ -142,7 +142,7 @@ class _Rounds:
                                self._grid, margins, self._steady, self._workspace)
 
 
-def _last_forward(outcome: Outcome, start: Centre, problem: TimingProblem,
+def _last_forward(outcome: Outcome, start: CentralPathPoint, problem: TimingProblem,
                   bounds: Array) -> tuple[Outcome, DenseCheck]:
     """Return the last motion on which the tip never moves backward, as when cancelled it may."""
     passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion)

@@ -38,7 +38,11 @@ from typing import NamedTuple
 from rrr_traj_planner.planners.solver.convergence import CONVERGED
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.line_search import best_step, promised_gain, TO_BOUNDARY
+from rrr_traj_planner.planners.solver.line_search import (
+    best_step,
+    predicted_decrease_of,
+    TO_BOUNDARY,
+)
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
@@ -56,7 +60,7 @@ DUAL_CORRIDOR = 1e6          # largest ratio of a multiplier to barrier / slack,
 SMALL_SHIFT = 0.5            # part of its slack below which a shift is removed at once
 
 
-class Centre(NamedTuple):
+class CentralPathPoint(NamedTuple):
     """A point near the central path: a strictly feasible motion and its barrier parameter."""
 
     motion: Variables
@@ -69,11 +73,11 @@ class Outcome(NamedTuple):
     motion: Variables
     gap: float             # bound on the time that the optimum saves, by duality [s]
     converged: bool
-    centres: list[Centre]  # points near the central path on the way, slowest first
+    centres: list[CentralPathPoint]  # points near the central path on the way, slowest first
     within: bool = True    # False where shifts remain: the new limits were not reached
 
 
-def minimise(problem: TimingProblem, start: Centre, durations: DurationConstraints,
+def minimise(problem: TimingProblem, start: CentralPathPoint, durations: DurationConstraints,
              should_stop: Callable[[], bool], least_barrier: float = 0.0,
              relative_gap: float = RELATIVE_GAP, previous: TimingProblem | None = None) -> Outcome:
     """
@@ -83,7 +87,7 @@ def minimise(problem: TimingProblem, start: Centre, durations: DurationConstrain
     ----------
     problem : TimingProblem
         The limits.
-    start : Centre
+    start : CentralPathPoint
         Strictly within them, or within the previous ones.
     durations : DurationConstraints
         Which durations are free, and their weights in the objective.
@@ -124,7 +128,7 @@ class _Run:
         self._cost = self._best_cost = KERNELS.timing_cost(
             problem.at, problem.arrays.addresses['variables'])
         self._best, self._gap = problem.arrays['variables'].copy(), math.inf
-        self._centres: list[Centre] = []
+        self._centres: list[CentralPathPoint] = []
         self._barrier = barrier or START * self._cost / self._count
         if previous is None:
             self._barrier = _first_barrier(problem, self._barrier)
@@ -133,7 +137,7 @@ class _Run:
             _central(problem, self._barrier)
         self._merits: list[float] = []  # at this barrier
         self._log = math.nan            # of the iterate's slacks, summed; not known yet
-        self._gain = math.inf           # of the merit function, as the last step promised
+        self._predicted_decrease = math.inf  # of the merit function, by the last step
         self._moved = True
         self.ended = False
 
@@ -141,29 +145,31 @@ class _Run:
         """Take one Newton step, as far as the line search allows; `ended` if there is none."""
         problem, at = self._problem, self._at
         KERNELS.timing_linearise(at, self._barrier)
-        closing = problem.shifted
-        if math.isnan(self._log) and not closing:
+        reducing_shifts = problem.shifted
+        if math.isnan(self._log) and not reducing_shifts:
             self._log = KERNELS.timing_log_sum(at, problem.arrays.addresses['slack'])
-        found = best_step(problem, self._barrier, None if closing else self._merit())
+        found = best_step(problem, self._barrier, None if reducing_shifts else self._merit())
         if found is None:
             self.ended = True
             return
         size, step = found.size, found.step
         self._moved = size > 0.0
-        if closing and self._moved:
+        if reducing_shifts and self._moved:
             KERNELS.timing_reduce_shifts(at, step.at, size, SMALL_SHIFT)
         KERNELS.timing_accept(at, step.at, self._moved, self._barrier, TO_BOUNDARY, DUAL_CORRIDOR)
         if self._moved:
-            self._cost, self._log = step.found.cost, math.nan if closing else step.found.log
-            if not problem.shifted and (closing or self._cost < self._best_cost):
+            self._cost = step.found.cost
+            self._log = math.nan if reducing_shifts else step.found.log
+            if not problem.shifted and (reducing_shifts or self._cost < self._best_cost):
                 self._best, self._best_cost = problem.arrays['variables'].copy(), self._cost
-        self._gain = step.found.gain
-        if closing:
+        self._predicted_decrease = step.found.predicted_decrease
+        if reducing_shifts:
             self.ended = not self._moved
             return
         self._merits.append(self._merit())
         # predicted decrease at this barrier, plus the duality gap of its centre
-        self._gap = min(self._gap, self._gain * (1.0 - 0.5 * size) + self._count * self._barrier)
+        self._gap = min(self._gap, self._predicted_decrease * (1.0 - 0.5 * size)
+                        + self._count * self._barrier)
 
     def converged(self, least_barrier: float, relative_gap: float) -> bool:
         """Lower the barrier parameter at a centre; return whether the method has converged."""
@@ -172,9 +178,9 @@ class _Run:
         complementarity = self._count * self._barrier
         stalled = not self._moved or len(self._merits) > PATIENCE and (
             self._merits[-1 - PATIENCE] - self._merits[-1] < STALL * self._cost)
-        if not stalled and self._gain >= CENTRED * complementarity:
+        if not stalled and self._predicted_decrease >= CENTRED * complementarity:
             return False
-        self._centres.append(Centre(
+        self._centres.append(CentralPathPoint(
             self._problem.motion(self._problem.arrays['variables'].copy()), self._barrier))
         if self._barrier <= least_barrier or complementarity < relative_gap * self._cost:
             return True
@@ -203,8 +209,8 @@ def _first_barrier(problem: TimingProblem, barrier: float) -> float:
     _central(problem, barrier)
     for _ in range(RAISES):
         KERNELS.timing_linearise(problem.at, barrier)
-        gain = promised_gain(problem)
-        if gain is None or gain < FAR_FROM_CENTRE * barrier:
+        decrease = predicted_decrease_of(problem)
+        if decrease is None or decrease < FAR_FROM_CENTRE * barrier:
             break
         barrier /= BARRIER_REDUCTION
         KERNELS.timing_central_duals(problem.at, barrier)

@@ -36,7 +36,7 @@ from rrr_traj_planner.planners.solver.timing_problem import Step, TimingProblem
 
 # Without unit; sizes are parts of the whole Newton step.
 BACKTRACKS = 30              # reductions of one step's size, at most
-SUFFICIENT_GAIN = 1e-4       # part of the predicted decrease of the merit (Armijo)
+SUFFICIENT_DECREASE = 1e-4   # part of the predicted decrease of the merit (Armijo)
 SHORT = 0.05                 # size up to which a step is corrected, then replaced by the next
 LEAST_CORRECTED = 1e-3       # least size at which constraints are evaluated for the correction
 TO_BOUNDARY = 0.995          # fraction to the boundary
@@ -88,7 +88,7 @@ def best_step(problem: TimingProblem, barrier: float,
     return best
 
 
-def promised_gain(problem: TimingProblem) -> float | None:
+def predicted_decrease_of(problem: TimingProblem) -> float | None:
     """
     Return the decrease of the merit that the first Newton step predicts.
 
@@ -103,14 +103,14 @@ def promised_gain(problem: TimingProblem) -> float | None:
         None where the Newton system is singular.
 
     """
-    return next((float(step.found.gain) for step, _ in _newton_steps(problem)), None)
+    return next((float(step.found.predicted_decrease) for step, _ in _newton_steps(problem)), None)
 
 
 def _newton_steps(problem: TimingProblem) -> Iterator[tuple[Step, Step]]:
     """Yield the Newton steps, each with memory for its correction."""
     exact, exact_corrected, plain, plain_corrected = problem.steps
     if problem.limits.kind != BOUNDS_ALONE:
-        if KERNELS.timing_newton(problem.at, 1, exact.at) and exact.found.gain > 0.0:
+        if KERNELS.timing_newton(problem.at, 1, exact.at) and exact.found.predicted_decrease > 0.0:
             yield exact, exact_corrected
     if KERNELS.timing_newton(problem.at, 0, plain.at):
         yield plain, plain_corrected
@@ -120,13 +120,13 @@ def _search(problem: TimingProblem, step: Step, barrier: float,
             merit: float | None) -> LineSearchResult:
     """Backtrack along a step, by parabolas of the slacks where it violates a constraint."""
     at, found = problem.at, step.found
-    gain, steepest = found.gain, found.steepest
-    size = TO_BOUNDARY / steepest if steepest > TO_BOUNDARY else 1.0
+    fastest_fall = found.max_relative_slack_decrease
+    size = TO_BOUNDARY / fastest_fall if fastest_fall > TO_BOUNDARY else 1.0
     for _ in range(BACKTRACKS):
         feasible = KERNELS.timing_trial(at, step.at, size, LEAST_SLACK_RETAINED, TARGET_SLACK)
         if feasible and (merit is None or found.cost - barrier * found.log
-                         <= merit - SUFFICIENT_GAIN * size * gain):
+                         <= merit - SUFFICIENT_DECREASE * size * found.predicted_decrease):
             return LineSearchResult(step, size)
         size = 0.5 * size if feasible else max(
-            min(found.shorter, LONGEST_RETRY * size), 0.5 * size)
+            min(found.suggested_size, LONGEST_RETRY * size), 0.5 * size)
     return LineSearchResult(step, 0.0)

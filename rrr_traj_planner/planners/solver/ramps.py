@@ -214,7 +214,7 @@ def restored(grid: Grid, points: Array, m: Variables) -> Variables:
     Parameters
     ----------
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     points : ndarray, shape (N + 1, 3)
         Via points [rad].
     m : Variables

@@ -44,11 +44,11 @@ class TightenedProblem(Protocol):
         """Return the solution; None where no start is known that satisfies the margins."""
 
     def eased(self) -> bool:
-        """Look for a start, if need be with smaller margins; return whether there may be one."""
+        """Find a new start, relaxing the margins if necessary; return whether there may be one."""
 
     def finished(self, outcome: Outcome, tolerance: float) -> bool:
         """
-        Keep a solution, and return whether it is good enough.
+        Store a solution; return whether it satisfies the tolerance.
 
         Parameters
         ----------
@@ -76,9 +76,9 @@ def tighten(problem: TightenedProblem, schedule: Schedule,
     Parameters
     ----------
     problem : TightenedProblem
-        Keeps the solutions.
+        Stores its solutions.
     schedule : Schedule
-        When to be content.
+        Round limit and tolerance schedule.
     should_stop : callable
         Called now and then for the exceptions that it may raise.
 

@@ -61,7 +61,8 @@ _STEP = 'direction', 'correction', 'rate', 'variables', 'slack'
 class _Step(ctypes.Structure):  # as in native/timing_problem.h
     _fields_ = [*((name, ctypes.c_void_p) for name in _STEP),
                 *((name, ctypes.c_double) for name in (
-                    'gain', 'steepest', 'cost', 'log', 'shorter'))]
+                    'predicted_decrease', 'max_relative_slack_decrease', 'cost', 'log',
+                    'suggested_size'))]
 
 
 class Step(NamedTuple):
@@ -105,7 +106,7 @@ class TimingProblem:
     Parameters
     ----------
     grid : Grid
-        The family of motions.
+        Discretisation: n ramps per segment.
     points : ndarray, shape (N + 1, J)
         Via points.
     limits : Limits

@@ -90,7 +90,7 @@ def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> Pie
     """
     everywhere = slice(0, len(quick))
     scalings = np.ones(len(quick))
-    for k in np.flatnonzero(may_lack_torque(task, motion(everywhere, quick))).tolist():
+    for k in np.flatnonzero(may_exceed_torque(task, motion(everywhere, quick))).tolist():
         task.should_stop()
         scalings[k] = max(1.0, torque_time_scale(task, motion(slice(k, k + 1), quick[k:k + 1])))
     if np.isinf(scalings).any():
@@ -104,7 +104,7 @@ def stopping_motion(task: JointTask, quick: Array, motion: SegmentMotion) -> Pie
     return motion(everywhere, durations)
 
 
-def may_lack_torque(task: JointTask, motion: PiecewiseTrajectory) -> BoolArray:
+def may_exceed_torque(task: JointTask, motion: PiecewiseTrajectory) -> BoolArray:
     """
     Return which segments may exceed torque limits, by samples: the others are well within.
 

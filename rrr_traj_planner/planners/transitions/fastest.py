@@ -30,7 +30,7 @@ from rrr_traj_planner.core.errors import ConvergenceError
 from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.transitions.motion import (
     motion_slowed_for_torque,
-    motion_with_least_T,
+    motion_with_least_durations,
     quickest_motion,
     segment_time_scale,
     TimedMotion,
@@ -41,7 +41,7 @@ from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at
 STRAIGHTENING_ROUNDS = 5   # of reducing via velocities where gravity blocks the path
 SLOWING_ROUNDS = 8         # of lengthening the segments that lack torque
 OVERSHOOT_ROUNDS = 8       # of reducing via velocities where a joint overshoots its range
-BACKWARD = 1.0, 0.5        # exponents, each tried, of the factor that shortens a segment again
+BACKWARD = 1.0, 0.5        # exponents tried for shortening a segment lengthened too much
 
 
 def fastest(task: JointTask, problem: ViaProblem, least_T: Array | None) -> TimedMotion:
@@ -151,7 +151,7 @@ def _least_time_motion(task: JointTask, problem: ViaProblem, least_T: Array | No
         if round_ == OVERSHOOT_ROUNDS:
             problem = at_rest(problem)
         motion, overshoot = (quickest_motion(task, problem) if least_T is None
-                             else motion_with_least_T(task, problem, least_T))
+                             else motion_with_least_durations(task, problem, least_T))
         if motion is not None:
             return motion
         problem = slower_at(problem, overshoot)

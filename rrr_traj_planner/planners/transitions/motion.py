@@ -44,7 +44,7 @@ class TimedMotion(NamedTuple):
 
 
 def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
-                 gently: bool = True) -> tuple[TimedMotion | None, BoolArray]:
+                 low_acceleration: bool = True) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return a motion of given durations, and which segments overshoot a joint's range.
 
@@ -59,7 +59,7 @@ def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
         The via points.
     durations : ndarray, shape (n,)
         [s].
-    gently : bool
+    low_acceleration : bool
         Whether to choose low accelerations.
 
     Returns
@@ -76,7 +76,7 @@ def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
         v, T = solution.velocities, solution.durations
     if factor > 1.0 + SCALING_TOLERANCE:
         return None, np.zeros_like(problem.displacements, dtype=bool)
-    if factor <= 1.0 and gently:
+    if factor <= 1.0 and low_acceleration:
         v, T, factor = v * factor, durations, 1.0
     motion, overshoot = _motion_of(task, problem, v, T, durations)
     if motion is not None and factor != 1.0:
@@ -113,8 +113,8 @@ def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion |
     return motion, overshoot
 
 
-def motion_with_least_T(task: JointTask, problem: ViaProblem,
-                        least_T: Array) -> tuple[TimedMotion | None, BoolArray]:
+def motion_with_least_durations(task: JointTask, problem: ViaProblem,
+                                least_T: Array) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return the motion of least total time with lower bounds on durations, and what overshoots.
 
@@ -200,7 +200,7 @@ def _motion_of(task: JointTask, problem: ViaProblem, v: Array, T: Array,
     """Return the motion of given velocities and durations; none where it overshoots a range."""
     rest = np.zeros((1, 3))
     v0, v1 = np.concatenate((rest, v)), np.concatenate((v, rest))
-    parts = segment_motion.gentle_parts(
+    parts = segment_motion.low_acceleration_parts(
         problem.law, problem.max_velocity, v0, v1, T[:, np.newaxis], problem.displacements)
     overshoot = _overshoot(task, problem, v0, v1, parts)
     if overshoot.any():

@@ -149,4 +149,4 @@ def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:
     name = task.model.joint_names[joint]
     segment = int(np.searchsorted(trajectory.via_times[1:-1], holding.time[joint]))
     return holding_error(
-        f'segment {task.segment_number(segment)}: on its way', name, needed, limit)
+        f'segment {task.segment_number(segment)}: along the segment', name, needed, limit)

@@ -83,8 +83,8 @@ def _within_limits(task: JointTask, problem: ViaProblem, durations: Array) -> Ti
         task.should_stop()
         if round_ == STRAIGHTENING_ROUNDS:
             problem = at_rest(problem)
-        for gently in (True, False):
-            motion = _with_durations(task, problem, durations, gently)
+        for low_acceleration in (True, False):
+            motion = _with_durations(task, problem, durations, low_acceleration)
             if motion is None:
                 return None
             scaling = segment_time_scale(task, motion)
@@ -108,13 +108,13 @@ def _slowed_fastest(task: JointTask, problem: ViaProblem, durations: Array) -> T
 
 
 def _with_durations(task: JointTask, problem: ViaProblem, durations: Array,
-                    gently: bool) -> TimedMotion | None:
+                    low_acceleration: bool) -> TimedMotion | None:
     """Return a motion of given durations within the kinematic limits; None if there is none."""
     for round_ in range(OVERSHOOT_ROUNDS + 1):
         task.should_stop()
         if round_ == OVERSHOOT_ROUNDS:
             problem = at_rest(problem)
-        motion, overshoot = timed_motion(task, problem, durations, gently)
+        motion, overshoot = timed_motion(task, problem, durations, low_acceleration)
         if motion is not None or not overshoot.any():
             return motion
         problem = slower_at(problem, overshoot)

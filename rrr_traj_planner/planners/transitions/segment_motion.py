@@ -39,8 +39,8 @@ class Parts(NamedTuple):
     last: Array    # [s]
 
 
-def gentle_parts(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array,
-                 D: Array) -> Parts:
+def low_acceleration_parts(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
+                           T: Array, D: Array) -> Parts:
     """
     Return parts that cover a displacement in a given time, with long transitions where possible.
 
@@ -82,7 +82,7 @@ def quick_parts(law: TransitionLaw, v0: Array, v1: Array, T: Array, D: Array) ->
     Parameters
     ----------
     law, v0, v1, T, D
-        As in `gentle_parts`.
+        As in `low_acceleration_parts`.
 
     Returns
     -------

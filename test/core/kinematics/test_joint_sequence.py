@@ -26,7 +26,7 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import Posture
-from rrr_traj_planner.core.kinematics.travel_time import Passing, THROUGH, travel_time
+from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_time, ViaPointBehaviour
 
 ARM, TURN = RobotModel(), 2.0 * np.pi
 UP = Posture()
@@ -114,7 +114,8 @@ def test_a_revolution_in_a_range_that_holds_it_has_no_unwinding(half):
     assert q[:, 0] == pytest.approx(azimuths[::-1], abs=1e-9)
 
 
-@pytest.mark.parametrize('passing', [THROUGH, Passing('stop', 2.0 / 3.0), Passing('blend')])
+@pytest.mark.parametrize('passing', [
+    THROUGH, ViaPointBehaviour('stop', 2.0 / 3.0), ViaPointBehaviour('blend')])
 @pytest.mark.parametrize('started', [False, True])
 def test_turns_are_those_of_least_time_by_trial_of_all(started, passing):
     rng, unwound = np.random.default_rng(71), 0

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motions whose via points are straddled by transitions: where they go, and what they keep."""
+"""Motions with blends around the via points: where they go, and what they keep."""
 
 import numpy as np
 import pytest

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Times of straddled motions: they keep the limits, and a search of all times finds no better."""
+"""Times of motions with blends: they keep the limits, and a search of all times finds no less."""
 
 import numpy as np
 import pytest

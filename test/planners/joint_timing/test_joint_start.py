@@ -167,7 +167,7 @@ def test_where_no_way_is_found_there_is_none_and_the_error_names_segment_joint_a
     error = cannot_be_held(replace(task, segment_numbers=np.array([4])), constraints.grid)
     assert isinstance(error, LimitViolationError)
     torque = np.abs(gravity_torque(ARM, np.linspace(*task.points, 4001)))[:, 1].max()
-    assert str(error).startswith('segment 4: no way is found on which the motors can hold')
+    assert str(error).startswith('segment 4: no path found along which the motors can hold')
     assert error.joint == 'joint_2'
     assert error.limit == 45.0
     assert error.value == pytest.approx(torque, rel=1e-2)

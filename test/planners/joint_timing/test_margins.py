@@ -28,7 +28,7 @@ from rrr_traj_planner.planners.joint_timing.margins import LARGER, Margins, MOST
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.request import JointTask
-from rrr_traj_planner.planners.solver.interior_point import Centre, minimise
+from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise
 from rrr_traj_planner.planners.solver.ramps import restored, time_scaled
 
 SEEDS = range(8)
@@ -76,7 +76,7 @@ class Case:
         constraints = constraints_with(margins, self.task, self.grid)
         start, durations = rest_to_rest(self.task, constraints), all_free(len(self.points) - 1)
         assert constraints.problem.is_within(start)
-        return start, minimise(constraints.problem, Centre(start, None),
+        return start, minimise(constraints.problem, CentralPathPoint(start, None),
                                durations._replace(fixed_velocities=margins.at_rest), never).motion
 
     def check(self, m):

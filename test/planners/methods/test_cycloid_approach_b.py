@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Approach (b): via points straddled by cycloid transitions."""
+"""Approach (b): via points with blends, which are cycloid transitions."""
 
 from dataclasses import replace
 
@@ -140,7 +140,7 @@ def test_a_way_that_cannot_be_held_and_a_missing_limit_are_refused():
     weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
     q = [[0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
     for durations in (None, [9.0]):
-        with pytest.raises(LimitViolationError, match='^segment 0: on its way joint_3 needs 58'):
+        with pytest.raises(LimitViolationError, match='^segment 0: along the segment joint_3'):
             plan(ARM, weak, through(q, segment_durations=durations))
     limits = replace(LIMITS, max_acceleration=[1.0, np.inf, 1.0])
     with pytest.raises(InvalidInputError, match='needs acceleration limits, joint_2 has none$'):

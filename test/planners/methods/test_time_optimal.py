@@ -213,7 +213,7 @@ def part_left(answer):
 def test_refusals_name_a_torque_that_the_straight_way_needs():
     for task, error in outcomes()[1].values():
         joint = task.model.joint_names.index(error.joint)
-        k = int(re.match(r'segment (\d+): no way is found', str(error))[1])
+        k = int(re.match(r'segment (\d+): no path found', str(error))[1])
         way = np.linspace(task.q[k], task.q[k + 1], 2001)
         torque = np.abs(gravity_torque(task.model, way))[:, joint].max()
         assert error.limit == task.limits.max_effort[joint]
@@ -528,7 +528,7 @@ def test_a_way_that_gravity_blocks_is_gone_around():
     limit = 0.5 * (max(torque[[0, -1]]) + torque.max())
     assert torque.max() > 1.02 * limit  # straight is no way
     limits = replace(LIMITS, max_effort=[150.0, limit, 200.0])
-    with pytest.raises(LimitViolationError, match='on its way'):
+    with pytest.raises(LimitViolationError, match='along the segment'):
         plan(ARM, limits, through(q, planner_id='cycloid'))
     m = measured(limits, q)
     assert excess(m) == []

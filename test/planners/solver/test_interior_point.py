@@ -31,7 +31,7 @@ from helpers.random_cases import central_difference
 import numpy as np
 import pytest
 from rrr_traj_planner.planners.solver import line_search
-from rrr_traj_planner.planners.solver.interior_point import Centre, minimise
+from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
@@ -53,7 +53,7 @@ def solve(limits, grid, points, should_stop=never, durations=None):
         seen.append(problem.motion(problem.arrays['variables'].copy()))
         return should_stop()
 
-    outcome = minimise(problem, Centre(m, None), durations or all_free(len(m.T)), stop)
+    outcome = minimise(problem, CentralPathPoint(m, None), durations or all_free(len(m.T)), stop)
     return problem, m, seen, outcome
 
 
@@ -243,7 +243,7 @@ def test_the_method_ends_at_the_centre_of_the_least_barrier(seed, limits):
     grid, points, _ = random_motion(seed)
     problem, start, _, outcome = solve(limits, grid, points)
     wanted = outcome.centres[1]
-    found = minimise(problem, Centre(start, None), all_free(len(start.T)), never,
+    found = minimise(problem, CentralPathPoint(start, None), all_free(len(start.T)), never,
                      wanted.barrier)
     assert [c.barrier for c in found.centres] == [c.barrier for c in outcome.centres[:2]]
     for one, other in zip(found.centres[-1].motion, wanted.motion):
@@ -300,7 +300,8 @@ def test_a_step_whose_equations_are_singular_is_skipped(monkeypatch):
             return (lambda *_: 0) if name == 'timing_newton' else getattr(KERNELS, name)
 
     monkeypatch.setattr(line_search, 'KERNELS', Singular())
-    outcome = minimise(constraints.problem, Centre(start, None), all_free(len(start.T)), never)
+    outcome = minimise(
+        constraints.problem, CentralPathPoint(start, None), all_free(len(start.T)), never)
     assert all((f == g).all() for f, g in zip(outcome.motion, start))
     assert not outcome.converged
 
@@ -313,4 +314,4 @@ def test_what_the_callback_raises_goes_on_to_the_caller():
         raise KeyboardInterrupt('now')
 
     with pytest.raises(KeyboardInterrupt, match='now'):
-        minimise(constraints.problem, Centre(m, None), all_free(len(m.T)), should_stop)
+        minimise(constraints.problem, CentralPathPoint(m, None), all_free(len(m.T)), should_stop)

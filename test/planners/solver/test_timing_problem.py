@@ -79,7 +79,7 @@ class Case:
         step = self.problem.steps[0]
         assert KERNELS.timing_newton(self.at, exact, step.at)
         return (self.arrays['direction 0'].copy(), self.arrays['rate 0'].copy(),
-                step.found.gain)
+                step.found.predicted_decrease)
 
     def dense(self, exact, g=None, g_T=None):
         """Return the step and its gain by solving all conditions of optimality at once."""
@@ -178,7 +178,7 @@ def test_rates_and_gain_are_differences_along_the_followed_step(kind, seed):
     _, rate, gain = case.newton(0)
     step, arrays = case.problem.steps[0], case.arrays
     near = arrays['slack'].copy()
-    size = 1e-4 / max(step.found.steepest, 1.0)
+    size = 1e-4 / max(step.found.max_relative_slack_decrease, 1.0)
 
     def followed(part):
         arrays['slack'][:] = -np.inf  # whatever is left is kept
@@ -239,7 +239,7 @@ def test_a_correction_is_the_dense_solution_for_what_rates_leave_out(kind):
     case = Case(kind, 3)
     _, rate, _ = case.newton(0)
     plain, corrected = case.problem.steps[:2]
-    size = 0.05 / max(plain.found.steepest, 1.0)
+    size = 0.05 / max(plain.found.max_relative_slack_decrease, 1.0)
     arrays = case.arrays
     near = arrays['slack'].copy()
     assert KERNELS.timing_correct(case.at, plain.at, size, corrected.at)
@@ -270,7 +270,7 @@ def test_accepting_a_step_moves_multipliers_and_keeps_them_positive_in_sight_of_
     _, rate, _ = case.newton(0)
     arrays, step = case.arrays, case.problem.steps[0]
     before, slack = arrays['dual'].copy(), arrays['slack'].copy()
-    assert KERNELS.timing_trial(case.at, step.at, 0.5 / step.found.steepest, 0.0, 0.0)
+    assert KERNELS.timing_trial(case.at, step.at, 0.5 / step.found.max_relative_slack_decrease, 0.0, 0.0)
     KERNELS.timing_accept(case.at, step.at, 1, BARRIER, 0.995, 1e6)
     assert (arrays['variables'] == arrays['variables 0']).all()
     # Newton for dual * slack = barrier, shortened by the part that keeps each above 1 - 0.995

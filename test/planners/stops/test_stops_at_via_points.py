@@ -83,7 +83,7 @@ def test_a_way_that_cannot_be_held_is_refused_by_segment(planner_id):
     weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
     q = [[0.2, 1.5, -1.5], [0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
     with pytest.raises(LimitViolationError, match=(
-            r'^segment 1: on its way joint_3 needs 58\.9 N m to hold, limit 50 N m$')):
+            r'^segment 1: along the segment joint_3 needs 58\.9 N m to hold, limit 50 N m$')):
         plan(ARM, weak, through(planner_id, q))
 
 

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.planners.transitions.reach import reach
 from rrr_traj_planner.planners.transitions.segment_motion import (
-    gentle_parts,
+    low_acceleration_parts,
     Parts,
     quick_parts,
     trajectory,
@@ -51,12 +51,12 @@ def displacement(parts, v0, v1, T):
 
 
 def parts_of(kind, law, limit, v0, v1, T, D):
-    if kind == 'gentle':
-        return gentle_parts(law, limit, v0, v1, T, D)
+    if kind == 'low acceleration':
+        return low_acceleration_parts(law, limit, v0, v1, T, D)
     return quick_parts(law, v0, v1, T, D)
 
 
-@pytest.mark.parametrize('kind', ['gentle', 'quick'])
+@pytest.mark.parametrize('kind', ['low acceleration', 'quick'])
 @pytest.mark.parametrize('seed', SEEDS)
 def test_parts_cover_the_displacement_within_time_and_limits(kind, seed):
     law, limit, v0, v1, T, D = segments(seed)
@@ -71,7 +71,7 @@ def test_parts_cover_the_displacement_within_time_and_limits(kind, seed):
         assert (law.least_time(change) <= lasting * (1.0 + 1e-6) + 1e-7).all()
 
 
-@pytest.mark.parametrize('kind', ['gentle', 'quick'])
+@pytest.mark.parametrize('kind', ['low acceleration', 'quick'])
 @pytest.mark.parametrize('seed', SEEDS)
 def test_parts_of_the_mirrored_motion_are_mirrored(kind, seed):
     law, limit, v0, v1, T, D = segments(seed)
@@ -87,8 +87,8 @@ def test_parts_of_the_motion_backwards_in_time_are_exchanged(seed):
     v0 = np.where(v0 == v1, v0 + 1e-3, v0) * (1.0 - 1e-2)
     v1 = v1 * (1.0 - 1e-2)
     D = 0.5 * (reach(law, limit, v0, v1, T) - reach(law, limit, -v0, -v1, T))
-    ours = gentle_parts(law, limit, v0, v1, T, D)
-    backwards = gentle_parts(law, limit, v1, v0, T, D)
+    ours = low_acceleration_parts(law, limit, v0, v1, T, D)
+    backwards = low_acceleration_parts(law, limit, v1, v0, T, D)
     assert backwards.first == pytest.approx(ours.last, abs=1e-6)
     assert backwards.cruise == pytest.approx(ours.cruise, abs=1e-6)
 
@@ -96,7 +96,8 @@ def test_parts_of_the_motion_backwards_in_time_are_exchanged(seed):
 def test_with_time_to_spare_a_joint_takes_half_the_segment_for_each_transition():
     # 1 rad in 10 s from rest to rest: u = 0.2 rad/s, the acceleration 2 u / 5 s below its limit.
     law, rest = TransitionLaw(np.full(3, 2.0), np.zeros(3)), np.zeros((1, 3))
-    parts = gentle_parts(law, np.full(3, 5.0), rest, rest, np.array([[10.0]]), np.ones((1, 3)))
+    parts = low_acceleration_parts(
+        law, np.full(3, 5.0), rest, rest, np.array([[10.0]]), np.ones((1, 3)))
     assert parts.first == pytest.approx(np.full((1, 3), 5.0))
     assert parts.last == pytest.approx(np.full((1, 3), 5.0))
     assert parts.cruise == pytest.approx(np.full((1, 3), 0.2))
@@ -117,7 +118,7 @@ def test_motion_passes_every_point_at_its_time_and_velocity(seed):
     T = np.maximum(T, law.least_time(v1 - v0).max(axis=1, keepdims=True) * 1.01)
     D = 0.5 * (reach(law, limit, v0, v1, T) - reach(law, limit, -v0, -v1, T))
     points = np.vstack((np.zeros(3), np.cumsum(D, axis=0)))
-    motion = trajectory(points, v0, v1, T, gentle_parts(law, limit, v0, v1, T, D))
+    motion = trajectory(points, v0, v1, T, low_acceleration_parts(law, limit, v0, v1, T, D))
     assert motion.via_times == pytest.approx(np.concatenate(([0.0], np.cumsum(T))))
     q, qd, qdd, _ = motion(motion.via_times)
     assert q == pytest.approx(points, abs=ROUNDING)
