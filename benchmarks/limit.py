@@ -32,7 +32,7 @@ from rrr_traj_planner.core.dynamics import equations
 from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 from tasks import NONE, Task, thesis_tasks
 
 NODES = 60               # intervals in a segment; 240 change the thesis's tables by 0.05 % at most

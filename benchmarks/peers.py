@@ -21,7 +21,7 @@ import math
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics import equations
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 import ruckig
 import toppra
 from toppra import algorithm, constraint

@@ -23,7 +23,8 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.planners.request import JointTask, PlanningRequest
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.tasks import JointTask
 from scipy import ndimage
 from tasks import ARM, is_usable, NONE, random_pose, Task
 

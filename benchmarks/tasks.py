@@ -25,7 +25,8 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import whole_turns
-from rrr_traj_planner.planners.request import JointTask, PlanningRequest
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.via_points import joint_via_points
 
 ARM = RobotModel()

@@ -42,7 +42,8 @@ from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
-from rrr_traj_planner.planners.request import CartesianTask, JointTask, PlanningRequest
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.tasks import CartesianTask, JointTask
 from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 
 PROTOCOLS = range(2, pickle.HIGHEST_PROTOCOL + 1)

@@ -26,7 +26,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.trajectory import Peaks, Trajectory
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
-from rrr_traj_planner.planners.columns import write_columns
+from rrr_traj_planner.planners.csv_columns import write_columns
 
 
 @dataclass(frozen=True, eq=False)

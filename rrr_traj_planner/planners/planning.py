@@ -45,8 +45,10 @@ from rrr_traj_planner.planners.answer_size import check_answer_size
 from rrr_traj_planner.planners.missed_via_points import miss_note, misses
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.posture_choice import first_possible, joint_postures, path_postures
-from rrr_traj_planner.planners.registry import CartesianPlanner, planner, Registered
-from rrr_traj_planner.planners.request import CartesianTask, JointTask, PlanningRequest
+from rrr_traj_planner.planners.registration import CartesianPlanner, Registered
+from rrr_traj_planner.planners.registry import planner
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.tasks import CartesianTask, JointTask
 from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 
 # Joint positions within this that give the same tip position are one point: near the workspace

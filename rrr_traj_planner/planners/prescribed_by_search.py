@@ -23,7 +23,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scale
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 

@@ -26,7 +26,7 @@ from typing import Any
 import matplotlib
 from matplotlib.figure import Figure
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.columns import write_columns
+from rrr_traj_planner.planners.csv_columns import write_columns
 from rrr_traj_planner.report.theme import STYLE, themed, WIDTH
 
 PNG_RESOLUTION = 200  # dots per inch

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.request import T_ACC
+from rrr_traj_planner.planners.tasks import T_ACC
 from rrr_traj_planner.report.tables import Table
 from rrr_traj_planner.report.thesis_tasks import table_6_1, table_6_3
 

@@ -23,10 +23,10 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables
+from rrr_traj_planner.planners.tasks import JointTask
 from scipy import ndimage
 
 NONE = np.full(3, np.inf)

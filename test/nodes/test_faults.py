@@ -52,7 +52,7 @@ OF_ONE_PROCESS = re.compile('fastrtps_[0-9a-f]{16}(_el)?')
 # A planner that never ends, and says that it has begun.
 ENDLESS = """
 import sys, threading
-from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.registration import register
 @register('endless')
 def endless(task): print('begun', flush=True); threading.Event().wait()
 from rrr_traj_planner.nodes.scripts.planner import main

@@ -35,7 +35,8 @@ from rrr_traj_planner.core.errors import (
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners import planning
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.registry import planner_ids, Registered
+from rrr_traj_planner.planners.registration import Registered
+from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
 
 ARM, LIMITS = RobotModel(), JointLimits()

@@ -19,8 +19,10 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.planners.registry import planner, planner_ids, register
-from rrr_traj_planner.planners.request import JointTask, PlanningRequest
+from rrr_traj_planner.planners.registration import register
+from rrr_traj_planner.planners.registry import planner, planner_ids
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 
 POINTS = [[1.0, 0.6, 1.0], [0.5, 0.5, 1.4]]
@@ -85,7 +87,7 @@ def test_unknown_id_is_refused_with_the_known_ones():
 
 
 def test_a_function_registered_is_the_planner_of_its_id(monkeypatch):
-    monkeypatch.setattr('rrr_traj_planner.planners.registry._planners', {})
+    monkeypatch.setattr('rrr_traj_planner.planners.registration.REGISTERED', {})
 
     @register('mine')
     def mine(task):

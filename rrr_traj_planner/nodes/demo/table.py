@@ -26,7 +26,8 @@ from rrr_traj_planner.core.path.deviation import distance_from_polyline
 from rrr_traj_planner.core.trajectory.limit_check import TOLERANCE
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.nodes.demo.client import Run
-from rrr_traj_planner.planners.registry import planner, Registered
+from rrr_traj_planner.planners.registration import Registered
+from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner.report.measures import joint_errors, tip_errors
 
 PLANNED_BOUND = 1e-9   # rad, error of the plan at via points: rounding

@@ -24,8 +24,8 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dy
 from rrr_traj_planner.core.motion_laws.ramps import RampShape
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.tasks import JointTask
 
 CHECKS = 12      # samples between two points
 ROUNDING = 1e-7  # part of a limit up to which exceeding it is rounding
@@ -119,7 +119,7 @@ class DenseCheck:
         return velocity, _near_points(np.abs(self.tau), self._task.limits.max_effort)
 
 
-def near_points(x: Array, limit: Array, checks: int, reach: int) -> Array:
+def near_points(x: Array, limit: Array, checks: int, half_width: int) -> Array:
     """
     Return by how much densely sampled magnitudes exceed a limit near each point.
 
@@ -131,7 +131,7 @@ def near_points(x: Array, limit: Array, checks: int, reach: int) -> Array:
         Infinite where there is none.
     checks : int
         Samples between two of a segment's 2 n + 1 points.
-    reach : int
+    half_width : int
         Number of samples on either side that count as near a point.
 
     Returns
@@ -142,9 +142,9 @@ def near_points(x: Array, limit: Array, checks: int, reach: int) -> Array:
     """
     peaks = x + _rise_between_samples(x)
     excess = np.where(peaks > limit, peaks - limit * (1.0 - ROUNDING), 0.0)
-    padded = np.pad(excess, ((0, 0), (reach, reach), (0, 0)), mode='edge')
+    padded = np.pad(excess, ((0, 0), (half_width, half_width), (0, 0)), mode='edge')
     width = x.shape[1] - 1
-    near = np.max([padded[:, k:k + width + 1:checks] for k in range(2 * reach + 1)], axis=0)
+    near = np.max([padded[:, k:k + width + 1:checks] for k in range(2 * half_width + 1)], axis=0)
     return np.concatenate((near[:, ::2], near[:, 1::2]), axis=1)
 
 

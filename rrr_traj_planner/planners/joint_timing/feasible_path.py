@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 from scipy import sparse
 from scipy.sparse import csgraph
 
@@ -41,9 +41,9 @@ RETAINED_MARGINS = (0.7, 0.3, 0.0)  # part of the torque margin that a shortcut 
 NEIGHBOURS = ((1, 0), (0, 1), (1, 1), (1, -1))  # of a cell, by rows and columns: half of all eight
 
 
-def gravity_share(model: RobotModel, limits: JointLimits, q: Array) -> Array:
+def gravity_ratio(model: RobotModel, limits: JointLimits, q: Array) -> Array:
     """
-    Return the largest part of an effort limit that gravity takes.
+    Return the largest ratio of gravity's torque to its effort limit.
 
     Parameters
     ----------
@@ -60,10 +60,10 @@ def gravity_share(model: RobotModel, limits: JointLimits, q: Array) -> Array:
         Infinite outside the joints' ranges.
 
     """
-    share = (np.abs(gravity_torque(model, q)) / limits.max_effort).max(axis=-1)
+    ratio = (np.abs(gravity_torque(model, q)) / limits.max_effort).max(axis=-1)
     inside = ((q >= limits.min_position - RANGE_MARGIN)
               & (q <= limits.max_position + RANGE_MARGIN)).all(axis=-1)
-    return np.where(inside, share, np.inf)
+    return np.where(inside, ratio, np.inf)
 
 
 def statically_feasible_path(task: JointTask, start: Array, end: Array,
@@ -108,12 +108,12 @@ def _grid_path(task: JointTask, start: Array, end: Array, cells: int) -> Array |
     shape = (len(axes[0]), len(axes[1]))
     q = np.full((*shape, 3), start[0])
     q[..., 1], q[..., 2] = np.meshgrid(*axes, indexing='ij')
-    share = gravity_share(task.model, limits, q)
+    ratio = gravity_ratio(task.model, limits, q)
     first, last = (int(np.ravel_multi_index(
         [int(np.searchsorted(axis, pose[j])) for j, axis in zip((1, 2), axes)], shape))
         for pose in (start, end))
     _, before = csgraph.dijkstra(
-        _graph(q, share), directed=False, indices=first, return_predecessors=True)
+        _graph(q, ratio), directed=False, indices=first, return_predecessors=True)
     if last != first and before[last] < 0:
         return None
     nodes = [last]
@@ -127,20 +127,20 @@ def _grid_path(task: JointTask, start: Array, end: Array, cells: int) -> Array |
     return path
 
 
-def _graph(q: Array, share: Array) -> sparse.csr_array:
+def _graph(q: Array, ratio: Array) -> sparse.csr_array:
     """Return weighted lengths between neighbours that can be held, larger at small margins."""
-    number = np.arange(share.size).reshape(share.shape)
-    weight = 1.0 / np.sqrt(np.maximum(1.0 - share, HOLDING_MARGIN))
-    open_ = share < 1.0 - HOLDING_MARGIN
+    number = np.arange(ratio.size).reshape(ratio.shape)
+    weight = 1.0 / np.sqrt(np.maximum(1.0 - ratio, HOLDING_MARGIN))
+    open_ = ratio < 1.0 - HOLDING_MARGIN
     ends, lengths = [], []
     for rows, columns in NEIGHBOURS:
-        here, there = _pairs(share.shape, rows, columns)
+        here, there = _pairs(ratio.shape, rows, columns)
         both = open_[here] & open_[there]
         step = np.hypot(*np.moveaxis((q[there] - q[here])[..., 1:], -1, 0))
         ends.append(np.stack((number[here][both], number[there][both])))
         lengths.append((step * (weight[here] + weight[there]))[both])
     i, j = np.concatenate(ends, axis=1)
-    return sparse.csr_array((np.concatenate(lengths), (i, j)), shape=(share.size, share.size))
+    return sparse.csr_array((np.concatenate(lengths), (i, j)), shape=(ratio.size, ratio.size))
 
 
 def _pairs(shape: tuple[int, ...], rows: int, columns: int) -> tuple[
@@ -155,15 +155,15 @@ def _pairs(shape: tuple[int, ...], rows: int, columns: int) -> tuple[
 
 def _shortcut(task: JointTask, path: Array, retained: float) -> IntArray | None:
     """Return the corners that remain after greedy shortcuts by the longest feasible legs."""
-    share = gravity_share(task.model, task.limits, path)
+    ratio = gravity_ratio(task.model, task.limits, path)
     corners = [0]
     while corners[-1] < len(path) - 1:
         here = corners[-1]
         ahead = np.arange(here + 1, len(path))
         legs = path[here] + np.linspace(0.0, 1.0, SAMPLES)[:, np.newaxis, np.newaxis] * (
             path[ahead] - path[here])
-        most = gravity_share(task.model, task.limits, legs).max(axis=0)
-        along = np.maximum.accumulate(np.maximum(share[here], share[ahead]))
+        most = gravity_ratio(task.model, task.limits, legs).max(axis=0)
+        along = np.maximum.accumulate(np.maximum(ratio[here], ratio[ahead]))
         good = np.flatnonzero(most < 1.0 - np.maximum(retained * (1.0 - along), HOLDING_MARGIN))
         if len(good) == 0:
             return None

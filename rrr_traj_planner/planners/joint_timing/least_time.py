@@ -24,9 +24,9 @@ from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.joint_timing.tightening import SCHEDULE, tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled
+from rrr_traj_planner.planners.tasks import JointTask
 
 POOR = 1e-2              # gap, as a part of the time, above which it is solved again
 RESTARTS = 8             # at most, each from the best motion so far

@@ -28,8 +28,8 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.tasks import JointTask
 
 LARGER = 1.2                # enlargement of a margin, over the excess
 MOST_VELOCITY_MARGIN = 0.1  # part of a velocity limit

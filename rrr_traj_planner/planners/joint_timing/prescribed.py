@@ -28,9 +28,9 @@ from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.joint_timing.tightening import tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
+from rrr_traj_planner.planners.tasks import JointTask
 
 # Without unit.
 DURATION_TOLERANCE = 1e-7  # part by which a motion may last longer than prescribed

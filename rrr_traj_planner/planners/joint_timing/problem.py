@@ -27,11 +27,11 @@ from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.within_limits import fitted
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise, Outcome
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.solver.timing_problem import Workspace
+from rrr_traj_planner.planners.tasks import JointTask
 
 # Returns a motion strictly within constraints, to start from, or None.
 InitialMotion = Callable[[JointTask, JointConstraints], Variables | None]

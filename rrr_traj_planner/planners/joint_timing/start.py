@@ -22,12 +22,12 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dy
 from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.feasible_path import (
-    gravity_share,
+    gravity_ratio,
     HOLDING_MARGIN,
     statically_feasible_path,
 )
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.via_points import torque_texts
 
 LEAST_RAMPS = 4         # of a motion from rest to rest
@@ -107,7 +107,7 @@ def _least_durations(task: JointTask, constraints: JointConstraints,
     margin = constraints.effort - (np.sign(moving) * gravity)[:, 1:]
     with np.errstate(divide='ignore', invalid='ignore'):
         by_torque = np.sqrt((np.abs(moving[:, 1:]) / margin).max(axis=(1, 2)))
-    blocked = (gravity_share(task.model, limits, at.q) >= 1.0 - HOLDING_MARGIN)[:, 1:-1]
+    blocked = (gravity_ratio(task.model, limits, at.q) >= 1.0 - HOLDING_MARGIN)[:, 1:-1]
     blocked_by_margin = (margin <= 0.0).any(axis=(1, 2))
     by_torque[blocked.any(axis=1) | blocked_by_margin] = np.inf
     return np.maximum(T, DURATION_MARGIN * by_torque), T

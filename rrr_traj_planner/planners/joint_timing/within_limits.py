@@ -21,7 +21,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import peak_torque
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import torque_time_scale
 
 ROUNDING = 1e-7  # part of a limit up to which exceeding it is rounding
@@ -88,10 +88,10 @@ def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
     limits = task.limits
     for j, profile in enumerate(trajectory.profiles):
         # a piece moves at most its peak velocity times its duration
-        reach = profile.peak_velocity * profile.pieces.duration
+        largest_step = profile.peak_velocity * profile.pieces.duration
         begins = profile.begins
-        if ((begins + reach <= limits.max_position[j])
-                & (begins - reach >= limits.min_position[j])).all():
+        if ((begins + largest_step <= limits.max_position[j])
+                & (begins - largest_step >= limits.min_position[j])).all():
             continue
         least, most = profile.piece_ranges
         segment = np.searchsorted(starts, profile.knots[:-1], side='right')

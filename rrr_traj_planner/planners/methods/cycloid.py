@@ -21,7 +21,7 @@ Every transition is a full-period cycloid (4.3-4.9); the total time is the least
 from __future__ import annotations
 
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
-from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.transitions.planner import planner_with
 
 plan = register('cycloid')(planner_with(CYCLOID))

@@ -31,8 +31,8 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.prescribed_by_search import feasible_motion, within_torque
-from rrr_traj_planner.planners.registry import register
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.registration import register
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, via_problem_of
 from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
 from rrr_traj_planner.planners.transitions.transition_cruise import (

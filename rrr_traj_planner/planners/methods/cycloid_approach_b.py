@@ -42,8 +42,8 @@ from rrr_traj_planner.planners.prescribed_by_search import (
     least_durations_except_dwells,
     within_torque,
 )
-from rrr_traj_planner.planners.registry import register
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.registration import register
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, via_problem_of
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem

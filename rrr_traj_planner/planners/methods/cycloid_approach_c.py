@@ -28,12 +28,12 @@ from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
-from rrr_traj_planner.planners.registry import register
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.stops.stops_at_via_points import (
     kinematic_durations,
     stopping_motion,
 )
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
 

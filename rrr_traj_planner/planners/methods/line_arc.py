@@ -19,8 +19,8 @@ from __future__ import annotations
 from rrr_traj_planner.core.path.design import line_arc
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.path_timing.planner import along
-from rrr_traj_planner.planners.registry import register_path
-from rrr_traj_planner.planners.request import CartesianTask
+from rrr_traj_planner.planners.registration import register_path
+from rrr_traj_planner.planners.tasks import CartesianTask
 
 
 @register_path('line_arc')

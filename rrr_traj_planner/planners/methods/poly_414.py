@@ -37,8 +37,8 @@ from rrr_traj_planner.planners.prescribed_by_search import (
     least_durations_except_dwells,
     TORQUE_TOLERANCE,
 )
-from rrr_traj_planner.planners.registry import register
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.registration import register
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import (
     cannot_hold,
     slowed_for_torque,

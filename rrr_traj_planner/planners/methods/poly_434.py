@@ -33,8 +33,7 @@ from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
-from rrr_traj_planner.planners.registry import register
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.stops.stops_at_via_points import (
     kinematic_durations,
     may_exceed_torque,
@@ -47,6 +46,7 @@ from rrr_traj_planner.planners.stops.symmetric_434 import (
     least_time,
 )
 from rrr_traj_planner.planners.stops.torque_434 import law_for_torque, Segment, STARTS
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import torque_time_scale, via_problem_of
 from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
-from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.transitions.planner import planner_with
 
 plan = register('septic', passing=ViaPointBehaviour(

@@ -32,11 +32,11 @@ from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.prescribed import prescribed
 from rrr_traj_planner.planners.joint_timing.start import cannot_be_held
-from rrr_traj_planner.planners.registry import register
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.solver.ramps import grid_of
+from rrr_traj_planner.planners.tasks import JointTask
 
 RAMPS = 20              # in a segment
 RAMPS_ALONE = 32        # in a motion's only segment, with both acceleration and deceleration

@@ -24,12 +24,12 @@
 
 #define J 1
 #define FRONT(name) one_##name
-#include "elimination.inc"
+#include "riccati.inc"
 #undef J
 #undef FRONT
 #define J 3
 #define FRONT(name) three_##name
-#include "elimination.inc"
+#include "riccati.inc"
 #undef J
 #undef FRONT
 

@@ -17,7 +17,7 @@
 #include "via_problem.h"
 
 #include "blocks.h"
-#include "reach.h"
+#include "largest_displacement.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,8 +57,8 @@ static void part_values(const ViaProblem *p, const double *point, double *values
             const double up = change - (v1 - v0), down = change + (v1 - v0);
             if (!(up > 0.0 && down > 0.0))
                 continue;
-            const double forth = reach(&law, v0, v1, T[k]) - D;
-            const double back = reach(&law, -v0, -v1, T[k]) + D;
+            const double forth = largest_displacement(&law, v0, v1, T[k]) - D;
+            const double back = largest_displacement(&law, -v0, -v1, T[k]) + D;
             *value = barrier(up * down * forth * back, fmin(forth, back));
         }
     }
@@ -99,12 +99,12 @@ static void add_log_derivatives(double slack, const double gradient[3], double s
             block[i][c] += relative[i] * relative[c];
 }
 
-/* Add the derivatives of -log(reach - D), forward (sign 1) or backward (sign -1). */
-static void add_reach_derivatives(const Law *law, double sign, double v0, double v1, double T,
+/* Add the derivatives of -log(largest displacement - D), forward (sign 1) or backward (sign -1). */
+static void add_displacement_derivatives(const Law *law, double sign, double v0, double v1, double T,
                                   double D, double slope[3], double block[3][3])
 {
     const double by[3] = {sign, sign, 1.0};
-    ReachDerivatives at = reach_derivatives(law, sign * v0, sign * v1, T);
+    DisplacementDerivatives at = displacement_derivatives(law, sign * v0, sign * v1, T);
     const double slack = at.distance - sign * D, inverse = 1.0 / slack;
     for (int i = 0; i < 3; ++i) {
         at.gradient[i] *= by[i];
@@ -131,8 +131,8 @@ static void differentiate(const ViaProblem *p)
             const double D = p->displacements[at];
             const double change = largest_change(&law, T[k]), rate = change_rate(&law, T[k]);
             const double up[3] = {1.0, -1.0, rate}, down[3] = {-1.0, 1.0, rate};
-            add_reach_derivatives(&law, 1.0, v0, v1, T[k], D, slope, block);
-            add_reach_derivatives(&law, -1.0, v0, v1, T[k], D, slope, block);
+            add_displacement_derivatives(&law, 1.0, v0, v1, T[k], D, slope, block);
+            add_displacement_derivatives(&law, -1.0, v0, v1, T[k], D, slope, block);
             add_log_derivatives(change - (v1 - v0), up, slope, block);
             add_log_derivatives(change + (v1 - v0), down, slope, block);
             make_convex(block);

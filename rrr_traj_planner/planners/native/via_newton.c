@@ -108,12 +108,12 @@ static double common_step(const ViaProblem *p, double weight)
     }
     if (solve_band(p->band, p->right, m, W, 2))
         return -1.0;
-    double by_pull = 0.0, by_border = 0.0;
+    double border_times_velocity_step = 0.0, by_border = 0.0;
     for (int i = 0; i < m; ++i) {
-        by_pull += p->border[i] * p->right[2 * i];
+        border_times_velocity_step += p->border[i] * p->right[2 * i];
         by_border += p->border[i] * p->right[2 * i + 1];
     }
-    const double factor = -(g - by_pull) / (h - by_border);
+    const double factor = -(g - border_times_velocity_step) / (h - by_border);
     double decrement = -g * factor, *dT = p->step + m;
     for (int i = 0; i < m; ++i) {
         p->step[i] = -(p->right[2 * i] + p->right[2 * i + 1] * factor);

@@ -116,11 +116,11 @@ def least_time_scale(terms: PathTerms, at: Progress, bounds: Array) -> float:
 
     """
     x = limited(terms, at)
-    share = np.abs(x) / bounds
+    ratio = np.abs(x) / bounds
     by_torque = squared_scaling(bounds[..., TORQUE], terms.g, x[..., TORQUE])
-    return float(max(share[..., VELOCITY].max(), share[..., SPEED].max(),
-                     np.sqrt(share[..., ACCELERATION].max()),
-                     np.cbrt(share[..., JERK].max()), np.sqrt(by_torque.max())))
+    return float(max(ratio[..., VELOCITY].max(), ratio[..., SPEED].max(),
+                     np.sqrt(ratio[..., ACCELERATION].max()),
+                     np.cbrt(ratio[..., JERK].max()), np.sqrt(by_torque.max())))
 
 
 @lru_cache(maxsize=64)

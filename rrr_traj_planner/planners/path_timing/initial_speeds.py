@@ -70,10 +70,10 @@ def initial_speeds_of(table: PathTable, bounds: Array) -> Array:
     return np.minimum(forward, backward)
 
 
-def _least(*shares: Array) -> Array:
+def _least(*limits: Array) -> Array:
     """Return the least value on each piece, over positions and joints; NaN counts as no limit."""
     return np.asarray(np.min([np.nan_to_num(s, nan=np.inf, posinf=np.inf).min(axis=(1, 2))
-                              for s in shares], axis=0))
+                              for s in limits], axis=0))
 
 
 def _reachable(limit: Array, lengths: Array, max_sdd: Array, max_sddd: Array) -> Array:

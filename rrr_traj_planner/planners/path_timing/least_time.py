@@ -143,9 +143,9 @@ def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
 
 def _check_held(task: PathTask, table: PathTable) -> None:
     """Raise an error if gravity's torque exceeds an effort limit along the path."""
-    share = np.abs(table.values.g) / task.limits.max_effort
-    piece, place, joint = map(int, np.unravel_index(int(share.argmax()), share.shape))
-    if share.max() < 1.0 - HOLDING_MARGIN:
+    ratio = np.abs(table.values.g) / task.limits.max_effort
+    piece, place, joint = map(int, np.unravel_index(int(ratio.argmax()), ratio.shape))
+    if ratio.max() < 1.0 - HOLDING_MARGIN:
         return
     needed, limit = (float(f) for f in (
         abs(table.values.g[piece, place, joint]), task.limits.max_effort[joint]))

@@ -32,9 +32,9 @@ from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.deadline import part_of
 from rrr_traj_planner.planners.path_timing.least_time import fitted, nearly_fastest_along, Timed
 from rrr_traj_planner.planners.path_timing.task import PathTask
-from rrr_traj_planner.planners.request import CartesianTask
 from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
+from rrr_traj_planner.planners.tasks import CartesianTask
 
 Family = Callable[[Array, ArrayLike, ShouldStop, ArrayLike], CartesianPath]
 Design = Callable[[Array, ArrayLike], CartesianPath]  # of points and radii

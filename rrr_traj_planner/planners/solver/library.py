@@ -38,7 +38,7 @@ _NATIVE = Path(__file__).parents[1] / 'native'
 _BUILD = 'build the package, which needs a C compiler: "make setup", or "pip install -e ."'
 
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
-    'reach_at': (None, [c_int32, *[c_void_p] * 10]),
+    'largest_displacement_at': (None, [c_int32, *[c_void_p] * 10]),
     'cruise_covering': (None, [c_int32, c_int32, *[c_void_p] * 8]),
     'via_attempt': (c_double, [c_void_p, c_double]),
     'via_begin': (None, [c_void_p]),

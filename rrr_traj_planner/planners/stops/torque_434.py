@@ -119,14 +119,15 @@ def _margins(segment: Segment, duration: float, x: Array) -> Array:
     T = duration * np.exp(x[:, 0])
     law = Lin434(np.exp(x[:, 1]), np.exp(x[:, 2]), x[:, 3], x[:, 4])
     velocity, ratios = law.velocities(), segment.ratios
-    shares = np.concatenate((law.accelerations() * ratios.acceleration / T ** 2,
-                             law.jerks() * ratios.jerk / T ** 3,
-                             _torque_shares(segment, law, T)))
-    return np.concatenate(([law.cruise - LEAST_CRUISE], velocity,
-                           1.0 - velocity * ratios.velocity / T, 1.0 - shares, 1.0 + shares))
+    limit_ratios = np.concatenate((law.accelerations() * ratios.acceleration / T ** 2,
+                                   law.jerks() * ratios.jerk / T ** 3,
+                                   _torque_ratios(segment, law, T)))
+    return np.concatenate((
+        [law.cruise - LEAST_CRUISE], velocity, 1.0 - velocity * ratios.velocity / T,
+        1.0 - limit_ratios, 1.0 + limit_ratios))
 
 
-def _torque_shares(segment: Segment, law: Lin434, T: Array) -> Array:
+def _torque_ratios(segment: Segment, law: Lin434, T: Array) -> Array:
     """Return sampled torques over their limits, shape (points, m)."""
     limited = np.isfinite(segment.limits.max_effort)
     columns = Lin434(*(field[:, np.newaxis] for field in law))
@@ -135,5 +136,5 @@ def _torque_shares(segment: Segment, law: Lin434, T: Array) -> Array:
     D = segment.displacement
     torque = inverse_dynamics(segment.model, *(v.reshape(-1, 3) for v in (
         segment.start + s * D, sd * D, sdd * D)))
-    shares = torque[:, limited] / segment.limits.max_effort[limited]
-    return shares.reshape(len(T), -1).T
+    limit_ratios = torque[:, limited] / segment.limits.max_effort[limited]
+    return limit_ratios.reshape(len(T), -1).T

@@ -27,7 +27,7 @@ from collections.abc import Iterator
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion import (
     motion_slowed_for_torque,
     motion_with_least_durations,

@@ -23,8 +23,8 @@ from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import torque_sweep
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions import segment_motion
 from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scale
 from rrr_traj_planner.planners.transitions.via_problem import rests_everywhere, ViaProblem

@@ -22,7 +22,7 @@ from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
 from rrr_traj_planner.core.trajectory.torque import peak_holding_torque, time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import LEAST_VELOCITY, ViaProblem
 from rrr_traj_planner.planners.via_points import holding_error

@@ -18,8 +18,8 @@ from __future__ import annotations
 
 from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
-from rrr_traj_planner.planners.registry import JointPlanner
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.registration import JointPlanner
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.fastest import fastest
 from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 from rrr_traj_planner.planners.transitions.prescribed import prescribed

@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.fastest import (
     fastest,
     fastest_with_stops,

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.transitions.reach import reach
+from rrr_traj_planner.planners.transitions.largest_displacement import largest_displacement
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 NEWTON_STEPS = 12  # at most: convergence is quadratic
@@ -92,8 +92,8 @@ def can_stop(law: TransitionLaw, max_velocity: Array, v0: Array, T: Array, D: Ar
 
     """
     rest = np.zeros_like(v0)
-    forth = reach(law, max_velocity, v0, rest, T)
-    back = -reach(law, max_velocity, -v0, rest, T)
+    forth = largest_displacement(law, max_velocity, v0, rest, T)
+    back = -largest_displacement(law, max_velocity, -v0, rest, T)
     fits = (law.least_time(v0) <= T) & (back <= D) & (D <= forth)
     return np.asarray(fits.all(axis=-1))
 

@@ -43,7 +43,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
-from rrr_traj_planner.planners import registry
+from rrr_traj_planner.planners import registration, registry
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory
 
@@ -95,7 +95,7 @@ class Gate:
 def gate(ros, monkeypatch):
     """Return the planner 'waiting'; it is let go before the node is closed."""
     gate = Gate()
-    monkeypatch.setitem(registry._planners, 'waiting', registry.Registered(gate, False))
+    monkeypatch.setitem(registration.REGISTERED, 'waiting', registration.Registered(gate, False))
     try:
         yield gate
     finally:
@@ -197,7 +197,7 @@ def test_bug_is_reported_logged_and_survived(ros, monkeypatch, error, text):
     def broken(task):
         raise error
 
-    monkeypatch.setitem(registry._planners, 'broken', registry.Registered(broken, False))
+    monkeypatch.setitem(registration.REGISTERED, 'broken', registration.Registered(broken, False))
     log = ros.listen(Log, '/rosout', 100)
     made(ros)
     is_refused(plan(ros, planner_id='broken'), CODES.FAILURE, text)

@@ -53,7 +53,7 @@ ROUNDING = 1e-9
 # A planner that fails, and one that never ends and says that it has begun.
 BUGS = """
 import sys, threading
-from rrr_traj_planner.planners.registry import register
+from rrr_traj_planner.planners.registration import register
 @register('broken')
 def broken(task): raise RuntimeError('no idea')
 @register('endless')

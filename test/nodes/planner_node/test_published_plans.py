@@ -31,7 +31,7 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.planner_node import node as planner_node
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner.nodes.planner_node.scheduler import FIRST_LEVEL
-from rrr_traj_planner.planners import registry
+from rrr_traj_planner.planners import registration, registry
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory
 from visualization_msgs.msg import Marker, MarkerArray
@@ -163,7 +163,8 @@ def test_every_plan_of_many_is_published_in_order(ros, planner):
 
 def test_plan_of_a_client_that_has_left_is_published(ros, planner, monkeypatch):
     planning = Gate(registry.planner('cycloid').plan)
-    monkeypatch.setitem(registry._planners, 'waiting', registry.Registered(planning, False))
+    monkeypatch.setitem(
+        registration.REGISTERED, 'waiting', registration.Registered(planning, False))
     topics, client = Topics(ros), Client(ros)
     client.ask(planner_id='waiting')
     assert planning.reached.wait(DEADLINE)

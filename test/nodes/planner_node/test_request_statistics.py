@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner.nodes.planner_node.request_statistics import CODES, RequestStatistics, WINDOW
-from rrr_traj_planner.planners import registry
+from rrr_traj_planner.planners import registration
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
 RESPONSE = PlanTrajectory.Response
@@ -137,7 +137,7 @@ def test_bug_is_seen_in_the_diagnostics(ros, monkeypatch):
     def broken(task):
         raise RuntimeError('no idea')
 
-    monkeypatch.setitem(registry._planners, 'broken', registry.Registered(broken, False))
+    monkeypatch.setitem(registration.REGISTERED, 'broken', registration.Registered(broken, False))
     made(ros)
     diagnostics = ros.listen(DiagnosticArray, 'diagnostics')
     assert ask(ros, planner_id='broken').error_code == RESPONSE.FAILURE

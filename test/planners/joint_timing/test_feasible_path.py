@@ -21,10 +21,10 @@ from helpers.ramp_cases import ARM, blocked_task, is_connected, LIMITS, NONE, sh
 import numpy as np
 import pytest
 from rrr_traj_planner.planners.joint_timing.feasible_path import (
-    gravity_share,
+    gravity_ratio,
     statically_feasible_path,
 )
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 
 SEEDS = range(48)
 LEGS = 8
@@ -144,9 +144,9 @@ def test_share_is_the_largest_part_of_a_limit_and_infinite_outside_the_ranges(se
     task, rng = blocked_task(seed), np.random.default_rng(seed)
     low, high = task.limits.min_position, task.limits.max_position
     q = rng.uniform(low, high, (50, 3))
-    assert gravity_share(task.model, task.limits, q) == pytest.approx(share_of(task, q))
+    assert gravity_ratio(task.model, task.limits, q) == pytest.approx(share_of(task, q))
     for j in range(3):
         for end, sign in ((low, -1.0), (high, 1.0)):
             outside = q[0].copy()
             outside[j] = end[j] + 1e-8 * sign
-            assert gravity_share(task.model, task.limits, outside) == np.inf
+            assert gravity_ratio(task.model, task.limits, outside) == np.inf

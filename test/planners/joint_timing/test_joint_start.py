@@ -41,8 +41,8 @@ from rrr_traj_planner.planners.joint_timing.start import (
     rest_to_rest,
     rest_to_rest_shapes,
 )
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables, with_durations
+from rrr_traj_planner.planners.tasks import JointTask
 
 SEEDS = range(12)
 DURATION_MARGIN = 1.02

@@ -27,9 +27,9 @@ from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.margins import LARGER, Margins, MOST_VELOCITY_MARGIN
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
-from rrr_traj_planner.planners.request import JointTask
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise
 from rrr_traj_planner.planners.solver.ramps import restored, time_scaled
+from rrr_traj_planner.planners.tasks import JointTask
 
 SEEDS = range(8)
 KINDS = ('torque', 'velocity', 'range')

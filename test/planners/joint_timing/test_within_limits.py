@@ -27,7 +27,7 @@ from rrr_traj_planner.planners.joint_timing.within_limits import (
     kinematic_time_scale,
     torque_fits,
 )
-from rrr_traj_planner.planners.request import JointTask
+from rrr_traj_planner.planners.tasks import JointTask
 
 SEEDS = range(12)
 WIDE = JointLimits([-40.0] * 3, [40.0] * 3, NONE, NONE, NONE, NONE)

@@ -25,7 +25,8 @@ from rrr_traj_planner.core.errors import InvalidInputError, TimingError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.methods.poly_414 import planned
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import JointTask, PlanningRequest, T_ACC
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.tasks import JointTask, T_ACC
 
 ARM, LIMITS = RobotModel(), JointLimits()
 STRONG = replace(LIMITS, max_effort=[150.0, 250.0, 200.0])  # joint 2 as table 6.3 needs it

@@ -43,8 +43,9 @@ from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.planners.methods import time_optimal
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import JointTask, PlanningRequest
+from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.sampling_jerk_limit import CRUISE
+from rrr_traj_planner.planners.tasks import JointTask
 
 NONE = np.full(3, np.inf)
 ARM, LIMITS = RobotModel(), JointLimits()

@@ -270,7 +270,8 @@ def test_accepting_a_step_moves_multipliers_and_keeps_them_positive_in_sight_of_
     _, rate, _ = case.newton(0)
     arrays, step = case.arrays, case.problem.steps[0]
     before, slack = arrays['dual'].copy(), arrays['slack'].copy()
-    assert KERNELS.timing_trial(case.at, step.at, 0.5 / step.found.max_relative_slack_decrease, 0.0, 0.0)
+    assert KERNELS.timing_trial(
+        case.at, step.at, 0.5 / step.found.max_relative_slack_decrease, 0.0, 0.0)
     KERNELS.timing_accept(case.at, step.at, 1, BARRIER, 0.995, 1e6)
     assert (arrays['variables'] == arrays['variables 0']).all()
     # Newton for dual * slack = barrier, shortened by the part that keeps each above 1 - 0.995

@@ -27,7 +27,8 @@ from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.motion_laws.gauss import gauss
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import JointTask, PlanningRequest
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 from rrr_traj_planner.planners.transitions.planner import planner_with
 

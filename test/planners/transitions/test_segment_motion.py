@@ -16,7 +16,7 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.transitions.reach import reach
+from rrr_traj_planner.planners.transitions.largest_displacement import largest_displacement
 from rrr_traj_planner.planners.transitions.segment_motion import (
     low_acceleration_parts,
     Parts,
@@ -37,8 +37,8 @@ def segments(seed, n=6):
     v0, v1 = rng.uniform(-1.0, 1.0, (2, n, 3)) * limit
     v0, v1 = v0 * (rng.random((n, 3)) < 0.8), v1 * (rng.random((n, 3)) < 0.8)
     T = law.least_time(v1 - v0).max(axis=1, keepdims=True) * rng.uniform(1.0, 3.0, (n, 1)) + 1e-3
-    most = reach(law, limit, v0, v1, T)
-    least = -reach(law, limit, -v0, -v1, T)
+    most = largest_displacement(law, limit, v0, v1, T)
+    least = -largest_displacement(law, limit, -v0, -v1, T)
     share = rng.choice([0.0, 0.02, 0.5, 1.0], (n, 3)) + 0.0
     share = np.where(share == 0.5, rng.random((n, 3)), share)
     return law, limit, v0, v1, T, least + share * (most - least)
@@ -86,7 +86,8 @@ def test_parts_of_the_motion_backwards_in_time_are_exchanged(seed):
     law, limit, v0, v1, T, D = segments(seed)
     v0 = np.where(v0 == v1, v0 + 1e-3, v0) * (1.0 - 1e-2)
     v1 = v1 * (1.0 - 1e-2)
-    D = 0.5 * (reach(law, limit, v0, v1, T) - reach(law, limit, -v0, -v1, T))
+    D = 0.5 * (largest_displacement(law, limit, v0, v1, T)
+               - largest_displacement(law, limit, -v0, -v1, T))
     ours = low_acceleration_parts(law, limit, v0, v1, T, D)
     backwards = low_acceleration_parts(law, limit, v1, v0, T, D)
     assert backwards.first == pytest.approx(ours.last, abs=1e-6)
@@ -116,7 +117,8 @@ def test_motion_passes_every_point_at_its_time_and_velocity(seed):
     law, limit, v0, v1, T, D = segments(seed)
     v0[1:], v0[0], v1[-1] = v1[:-1], 0.0, 0.0
     T = np.maximum(T, law.least_time(v1 - v0).max(axis=1, keepdims=True) * 1.01)
-    D = 0.5 * (reach(law, limit, v0, v1, T) - reach(law, limit, -v0, -v1, T))
+    D = 0.5 * (largest_displacement(law, limit, v0, v1, T)
+               - largest_displacement(law, limit, -v0, -v1, T))
     points = np.vstack((np.zeros(3), np.cumsum(D, axis=0)))
     motion = trajectory(points, v0, v1, T, low_acceleration_parts(law, limit, v0, v1, T, D))
     assert motion.via_times == pytest.approx(np.concatenate(([0.0], np.cumsum(T))))

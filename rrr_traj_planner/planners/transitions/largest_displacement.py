@@ -62,11 +62,12 @@ def largest_cruise(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array
     return _evaluated(law, max_velocity, v0, v1, T, derivatives=False)[0]
 
 
-def reach(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array) -> Array:
+def largest_displacement(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
+                         T: Array) -> Array:
     """
     Return the largest displacement in a given time between given velocities.
 
-    The least one is minus the reach between the opposite velocities.
+    The least one is minus the largest between the opposite velocities.
 
     Parameters
     ----------
@@ -114,7 +115,7 @@ def _evaluated(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T:
     at = [contiguous(np.broadcast_to(x, shape)) for x in (v0, v1, T)]
     cruise, distance = np.empty(shape), np.empty(shape)
     gradient, hessian = (np.empty((*(shape if derivatives else (0,)), *(3,) * k)) for k in (1, 2))
-    KERNELS.reach_at(cruise.size // 3, *(x.ctypes.data for x in (
+    KERNELS.largest_displacement_at(cruise.size // 3, *(x.ctypes.data for x in (
         *law_and_limit, *at, cruise, distance)), *(
             x.ctypes.data if derivatives else None for x in (gradient, hessian)))
     return cruise, distance, gradient, hessian

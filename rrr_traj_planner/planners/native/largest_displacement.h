@@ -12,9 +12,9 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The largest displacement of a segment and its derivatives; see transitions/reach.py. */
-#ifndef RRR_TRAJ_PLANNER_REACH_H
-#define RRR_TRAJ_PLANNER_REACH_H
+/* The largest displacement of a segment and its derivatives; see transitions/largest_displacement.py. */
+#ifndef RRR_TRAJ_PLANNER_LARGEST_DISPLACEMENT_H
+#define RRR_TRAJ_PLANNER_LARGEST_DISPLACEMENT_H
 
 typedef struct {
     double slope, root, max_velocity;  /* of a joint: TransitionLaw, and [rad/s] */
@@ -22,11 +22,11 @@ typedef struct {
 
 typedef struct {
     double distance, gradient[3], hessian[3][3];  /* by v0, v1 and T */
-} ReachDerivatives;
+} DisplacementDerivatives;
 
 double largest_change(const Law *law, double T);
 double change_rate(const Law *law, double T);
-double reach(const Law *law, double v0, double v1, double T);
-ReachDerivatives reach_derivatives(const Law *law, double v0, double v1, double T);
+double largest_displacement(const Law *law, double v0, double v1, double T);
+DisplacementDerivatives displacement_derivatives(const Law *law, double v0, double v1, double T);
 
 #endif

@@ -13,8 +13,8 @@
 // limitations under the License.
 
 /* The largest displacement of one joint in a segment of transition, cruise and transition
- * (transitions/reach.py, transitions/transition_law.py). */
-#include "reach.h"
+ * (transitions/largest_displacement.py, transitions/transition_law.py). */
+#include "largest_displacement.h"
 
 #include "export.h"
 
@@ -76,13 +76,13 @@ static double fastest_cruise(const Law *law, double v0, double v1, double T)
     return fmin(fmax(v0, v1) + rise(law, fabs(v1 - v0), T), law->max_velocity);
 }
 
-double reach(const Law *law, double v0, double v1, double T)
+double largest_displacement(const Law *law, double v0, double v1, double T)
 {
     return displacement(law, fastest_cruise(law, v0, v1, T), v0, v1, T);
 }
 
 /* A transition by u: its duration t(u), i = 1 / t'(u), m = (t + u / i) / (2 t), k = i di/du; see
- * `derivatives` in transitions/reach.py. */
+ * `derivatives` in transitions/largest_displacement.py. */
 typedef struct {
     double t, m, i, k;
 } Transition;
@@ -98,7 +98,7 @@ static Transition transition(const Law *law, double u)
 
 /* The cruise c follows from t(c - v0) + t(c - v1) = T, or is the velocity limit; its derivatives
  * by v0, v1 and T, and the displacement's by c, give the others by the chain rule. */
-ReachDerivatives reach_derivatives(const Law *law, double v0, double v1, double T)
+DisplacementDerivatives displacement_derivatives(const Law *law, double v0, double v1, double T)
 {
     const double free = fmax(v0, v1) + rise(law, fabs(v1 - v0), T);
     const int capped = free >= law->max_velocity;
@@ -106,16 +106,20 @@ ReachDerivatives reach_derivatives(const Law *law, double v0, double v1, double 
     const double u0 = cruise - v0, u1 = cruise - v1;
     const Transition a = transition(law, u0), b = transition(law, u1);
     const double q = capped ? 0.0 : 1.0 / (a.i + b.i), q3 = q * q * q;
-    const double own0 = capped ? a.m / a.i : a.m * q, own1 = capped ? b.m / b.i : b.m * q;
-    const double c_v0 = b.i * q, c_v1 = a.i * q, c_T = c_v0 * a.i;
+    /* d below: the partial derivative by the motion's v0, v1 or T; dx / dc = by_cruise */
+    const double own0 = capped ? a.m / a.i : a.m * q;  /* -d(m0 t0) / dv0 */
+    const double own1 = capped ? b.m / b.i : b.m * q;  /* -d(m1 t1) / dv1 */
+    const double c_v0 = b.i * q, c_v1 = a.i * q, c_T = c_v0 * a.i;  /* dc / dv0, dv1, dT */
     const double by_cruise = capped ? 0.0 : T - a.m * a.t - b.m * b.t;
+    /* by_cruise d(dc / dv0) / dv0, and by_cruise d(dc / dv0) / dT: */
     const double skew = by_cruise * q3 * (a.i * b.k + b.i * a.k);
     const double skew_T = by_cruise * q3 * (a.i * a.i * b.k - b.i * b.i * a.k);
-    const double more = (a.m - b.m) * q, with_T = 1.0 - a.m * c_v0 - b.m * c_v1;
-    const double one_two = a.m * q - more * c_v0 - skew;
-    const double one_T = (a.m + with_T) * c_v0 + skew_T;
-    const double two_T = (b.m + with_T) * c_v1 - skew_T;
-    const ReachDerivatives found = {
+    const double more = (a.m - b.m) * q;  /* d by_cruise / dv0 = -d by_cruise / dv1 */
+    const double with_T = 1.0 - a.m * c_v0 - b.m * c_v1;  /* d by_cruise / dT */
+    const double one_two = a.m * q - more * c_v0 - skew;  /* d2x / (dv0 dv1) */
+    const double one_T = (a.m + with_T) * c_v0 + skew_T;  /* d2x / (dv0 dT) */
+    const double two_T = (b.m + with_T) * c_v1 - skew_T;  /* d2x / (dv1 dT) */
+    const DisplacementDerivatives found = {
         cruise * T - 0.5 * (u0 * a.t + u1 * b.t),
         {a.m * a.t + by_cruise * c_v0, b.m * b.t + by_cruise * c_v1, cruise + by_cruise * c_T},
         {{-own0 + more * c_v0 + skew, one_two, one_T},
@@ -125,8 +129,8 @@ ReachDerivatives reach_derivatives(const Law *law, double v0, double v1, double 
     return found;
 }
 
-/* `_evaluated` of transitions/reach.py, for count cases of three joints each. */
-EXPORTED void reach_at(int32_t count, const double *slope, const double *root,
+/* `_evaluated` of transitions/largest_displacement.py, for count cases of three joints each. */
+EXPORTED void largest_displacement_at(int32_t count, const double *slope, const double *root,
                        const double *max_velocity, const double *v0, const double *v1,
                        const double *T, double *cruise, double *distance,
                        double (*gradient)[3], double (*hessian)[3][3])
@@ -137,7 +141,7 @@ EXPORTED void reach_at(int32_t count, const double *slope, const double *root,
         distance[i] = displacement(&law, cruise[i], v0[i], v1[i], T[i]);
         if (!gradient)
             continue;
-        const ReachDerivatives at = reach_derivatives(&law, v0[i], v1[i], T[i]);
+        const DisplacementDerivatives at = displacement_derivatives(&law, v0[i], v1[i], T[i]);
         memcpy(gradient[i], at.gradient, sizeof at.gradient);
         memcpy(hessian[i], at.hessian, sizeof at.hessian);
     }

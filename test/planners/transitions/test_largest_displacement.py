@@ -17,7 +17,11 @@
 from helpers.random_cases import central_difference
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.transitions.reach import derivatives, largest_cruise, reach
+from rrr_traj_planner.planners.transitions.largest_displacement import (
+    derivatives,
+    largest_cruise,
+    largest_displacement,
+)
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 LAWS = {'acceleration': TransitionLaw(np.full(3, 2.0), np.zeros(3)),
@@ -51,7 +55,7 @@ def test_largest_change_and_least_time_are_each_other_s_inverse(name):
 @pytest.mark.parametrize(('name', 'seed'), CASES)
 def test_reach_is_the_best_cruise_that_brute_force_finds(name, seed):
     law, limit, v0, v1, T = case(name, seed)
-    ours = reach(law, limit, v0, v1, T)
+    ours = largest_displacement(law, limit, v0, v1, T)
     u = np.linspace(-limit, limit, 4001)
     t0, t1 = by_hand(law, u - v0), by_hand(law, u - v1)
     covered = 0.5 * (v0 + u) * t0 + u * (T - t0 - t1) + 0.5 * (u + v1) * t1
@@ -73,7 +77,8 @@ def test_cruise_of_the_reach_can_be_driven_within_the_time(name, seed):
 @pytest.mark.parametrize(('name', 'seed'), CASES)
 def test_reach_backwards_in_time_is_the_same(name, seed):
     law, limit, v0, v1, T = case(name, seed)
-    forwards, backwards = reach(law, limit, v0, v1, T), reach(law, limit, v1, v0, T)
+    forwards = largest_displacement(law, limit, v0, v1, T)
+    backwards = largest_displacement(law, limit, v1, v0, T)
     assert forwards == pytest.approx(backwards, rel=1e-12)
 
 
@@ -82,10 +87,10 @@ def test_derivatives_are_finite_differences(name, seed):
     law, limit, v0, v1, T = case(name, seed)
     x = np.stack((0.99 * v0, 0.99 * v1, 1.05 * T))
     ours = derivatives(law, limit, *x)
-    assert ours.distance == pytest.approx(reach(law, limit, *x), rel=1e-12)
+    assert ours.distance == pytest.approx(largest_displacement(law, limit, *x), rel=1e-12)
     for k, unit in enumerate(np.eye(3)[..., np.newaxis]):
         def distance(step, unit=unit):
-            return reach(law, limit, *(x + step * unit))
+            return largest_displacement(law, limit, *(x + step * unit))
 
         def gradient(step, unit=unit):
             return derivatives(law, limit, *(x + step * unit)).gradient.T
@@ -103,8 +108,8 @@ def test_reach_from_rest_to_rest_is_what_a_hand_calculation_gives():
     # 1 rad/s^2: a transition of u lasts 2 u. In 2 s: u = 0.5, and 0.5 rad; within 0.3 rad/s:
     # 0.3 * 2 - 0.3 * 0.6 = 0.42 rad.
     law, rest, T = LAWS['acceleration'], np.zeros(3), np.full(3, 2.0)
-    assert reach(law, np.full(3, 9.0), rest, rest, T) == pytest.approx([0.5] * 3)
-    assert reach(law, np.full(3, 0.3), rest, rest, T) == pytest.approx([0.42] * 3)
+    assert largest_displacement(law, np.full(3, 9.0), rest, rest, T) == pytest.approx([0.5] * 3)
+    assert largest_displacement(law, np.full(3, 0.3), rest, rest, T) == pytest.approx([0.42] * 3)
 
 
 def test_jerk_alone_makes_transitions_as_long_as_its_root():
@@ -112,4 +117,4 @@ def test_jerk_alone_makes_transitions_as_long_as_its_root():
     law = TransitionLaw(np.full(3, 1e-9), np.full(3, 2.0))
     case = law, np.full(3, 9.0), np.zeros(3), np.zeros(3), np.full(3, 4.0)
     assert largest_cruise(*case) == pytest.approx([1.0] * 3, rel=1e-6)
-    assert reach(*case) == pytest.approx([2.0] * 3, rel=1e-6)
+    assert largest_displacement(*case) == pytest.approx([2.0] * 3, rel=1e-6)
