@@ -44,7 +44,7 @@ from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.tasks import CartesianTask, JointTask
-from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
+from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
 PROTOCOLS = range(2, pickle.HIGHEST_PROTOCOL + 1)
 WAYS = {

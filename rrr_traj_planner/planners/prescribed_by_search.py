@@ -23,12 +23,13 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+from rrr_traj_planner.planners.short_durations import durations_too_short, whole_microseconds
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scale
+from rrr_traj_planner.planners.tolerances import DURATION_MARGIN, TORQUE_TOLERANCE
+from rrr_traj_planner.planners.torque_scaling import cannot_hold, torque_time_scale
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 # Without unit.
-TORQUE_TOLERANCE = 5e-7  # part by which a motion may be faster than its torques allow
 ROUNDS = 12              # of lower accelerations, at most
 SCALING_STEP = 1.3       # factor between the scalings of durations that are tried in turn
 LARGEST_SCALING = 1e4
@@ -120,10 +121,8 @@ def feasible_motion(motion_in: Callable[[Array], PiecewiseTrajectory | None], du
         raise TimingError(
             f'segment_durations {durations.tolist()} s are too short, and no multiple of '
             'them is feasible')
-    feasible = np.maximum(np.ceil(scaling * proportions * (1.0 + 1e-6) * 1e6) / 1e6, least_T)
-    given, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
-    raise TimingError(f'segment_durations {given} s are too short: {which} {offered} s',
-                      tuple(offered))
+    feasible = whole_microseconds(scaling * proportions * (1.0 + DURATION_MARGIN))
+    raise durations_too_short(durations, np.maximum(feasible, least_T), which=which)
 
 
 def least_durations_except_dwells(task: JointTask,

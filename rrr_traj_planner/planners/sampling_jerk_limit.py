@@ -30,6 +30,10 @@ from rrr_traj_planner.core.errors import InvalidInputError
 # acceleration that a controller interpolates between them must keep a limit.
 SAMPLES, SAMPLES_OF_LIMITED = 2.0, 4.0
 
+# Least number of samples in a transition at full acceleration, so that a controller's quintics
+# through them keep the limits: chosen by trials.
+SAMPLES_PER_TRANSITION = 5.0
+
 # Part of a ramp during which jerk is constant, and the ratio of the sampling's jerk limit to the
 # joints' own from which on ramps have that part: jerk then changes slowly enough for the samples.
 CRUISE, SLOW_ENOUGH = 0.6, 7.5
@@ -71,9 +75,34 @@ def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
 
     """
     samples = np.where(np.isinf(limits.max_acceleration), SAMPLES, SAMPLES_OF_LIMITED)
-    jerk = np.pi * acceleration_scale(model, limits, q) / (samples * sample_period)
+    jerk = jerk_over_samples(np.pi, acceleration_scale(model, limits, q), samples, sample_period)
     cruise = CRUISE if (SLOW_ENOUGH * limits.max_jerk <= jerk).all() else 0.0
     return SamplingLimits(replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk)), cruise)
+
+
+def jerk_over_samples(peak_jerk: float, acceleration: Array, samples: Array | float,
+                      sample_period: float) -> Array:
+    """
+    Return the peak jerk of a change of acceleration that lasts a number of samples.
+
+    Parameters
+    ----------
+    peak_jerk : float
+        Of the change, for unit acceleration and unit duration.
+    acceleration : ndarray, shape (3,)
+        Its peak [rad/s^2].
+    samples : ndarray, shape (3,), or float
+        Its duration in sample periods.
+    sample_period : float
+        [s].
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        [rad/s^3].
+
+    """
+    return np.asarray(peak_jerk * acceleration / (samples * sample_period))
 
 
 def acceleration_scale(model: RobotModel, limits: JointLimits, q: Array) -> Array:

@@ -23,7 +23,7 @@ from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.registry import planner, planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
+from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
 POINTS = [[1.0, 0.6, 1.0], [0.5, 0.5, 1.4]]
 

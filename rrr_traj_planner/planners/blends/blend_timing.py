@@ -32,6 +32,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.blends.blend_motion import BlendTimes, excess, shortest_transitions
+from rrr_traj_planner.planners.tolerances import DURATION_MARGIN
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 from scipy import sparse
 from scipy.optimize import linprog
@@ -41,7 +42,6 @@ ROUNDS = 40             # of linear programming, at most
 GAIN = 1e-5             # part of the time, below which a round is the last
 FIRST_TANGENTS = np.geomspace(1.0, 30.0, 12)  # of 1 / r, at these multiples of the first rates
 SCALINGS = 60           # of times, until rounding in a linear program's solution is made up for
-DURATION_MARGIN = 1e-6  # part added to the least durations
 # Least duration of the transition at which the jerk limit's tangent is taken, as a part of the
 # shorter line: at zero duration, between lines of equal velocity, the tangent would be vertical
 # and the duration would stay zero.

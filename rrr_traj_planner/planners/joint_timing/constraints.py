@@ -23,16 +23,13 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.dynamics import equations
-from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, Limits, TORQUE
+from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, FAR, Limits, TORQUE
 from rrr_traj_planner.planners.solver.ramps import Grid
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 
 # Relaxation of position bounds so that joints resting at a range's end have an interior [rad];
 # below JOINT_ROUNDING.
 EDGE = 5e-10
-
-# Stands for no bound, in SI units and rad: never active.
-FAR = 1e6
 
 
 class JointConstraints:

@@ -26,9 +26,9 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.tasks import JointTask
+from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 CHECKS = 12      # samples between two points
-ROUNDING = 1e-7  # part of a limit up to which exceeding it is rounding
 
 
 class DenseCheck:
@@ -83,7 +83,7 @@ class DenseCheck:
         """
         limits, tau = self._task.limits, self.tau
         factor = limits.time_scale(np.abs(self.qd), np.abs(self.qdd), self._peak_jerk)
-        if tau is None or (np.abs(tau) <= limits.max_effort * (1.0 + ROUNDING)).all():
+        if tau is None or (np.abs(tau) <= limits.max_effort * (1.0 + LIMIT_ROUNDING)).all():
             return factor
         gravity = gravity_torque(self._task.model, self.q)
         return float(max(factor, np.sqrt(squared_scaling(limits.max_effort, gravity, tau).max())))
@@ -141,7 +141,7 @@ def near_points(x: Array, limit: Array, checks: int, half_width: int) -> Array:
 
     """
     peaks = x + _rise_between_samples(x)
-    excess = np.where(peaks > limit, peaks - limit * (1.0 - ROUNDING), 0.0)
+    excess = np.where(peaks > limit, peaks - limit * (1.0 - LIMIT_ROUNDING), 0.0)
     padded = np.pad(excess, ((0, 0), (half_width, half_width), (0, 0)), mode='edge')
     width = x.shape[1] - 1
     near = np.max([padded[:, k:k + width + 1:checks] for k in range(2 * half_width + 1)], axis=0)

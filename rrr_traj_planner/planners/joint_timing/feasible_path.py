@@ -30,10 +30,10 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.planners.tasks import JointTask
+from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN
 from scipy import sparse
 from scipy.sparse import csgraph
 
-HOLDING_MARGIN = 1e-6   # part of the effort limits that gravity must leave along the path
 RANGE_MARGIN = 4e-10    # rad, for the rounding of points at the end of a range
 CELLS = (48, 400)       # of each of the two joints; the finer grid where the coarser has no path
 SAMPLES = 40            # of a leg, at which gravity's torque is checked

@@ -28,6 +28,7 @@ from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.joint_timing.tightening import tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
+from rrr_traj_planner.planners.short_durations import durations_too_short, whole_microseconds
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
 from rrr_traj_planner.planners.tasks import JointTask
@@ -119,7 +120,7 @@ def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved])
         return None
     T = np.where(np.isnan(durations), motion.T, durations)
     if (motion.T > T).any():
-        raise _error(durations, np.maximum(T, motion.T))
+        raise durations_too_short(durations, np.maximum(T, motion.T))
     return Solved(grid.trajectory(task.points, with_durations(motion, T)), motion,
                   float(T.sum()), np.inf)
 
@@ -175,15 +176,8 @@ def _too_short(task: JointTask, grid: Grid, durations: Array) -> TimingError:
     found = fastest(task, grid, least_T)
     least = np.maximum(np.diff(found.trajectory.via_times), least_T) if found else least_T
     for margin in OFFER_MARGINS:
-        feasible = np.ceil(least * (1.0 + margin) * 1e6) / 1e6
+        feasible = whole_microseconds(least * (1.0 + margin))
         solved = _least_scaled(task, grid, feasible)
         if solved is not None and _scaling(solved, feasible) <= 1.0 + DURATION_TOLERANCE:
             break
-    return _error(durations, feasible)
-
-
-def _error(durations: Array, feasible: Array) -> TimingError:
-    """Return the error of durations that are too short, with feasible ones."""
-    given, least = ([round(float(d), 9) for d in v] for v in (durations, feasible))
-    return TimingError(f'segment_durations {given} s are too short: the least feasible are '
-                       f'{least} s', tuple(least))
+    return durations_too_short(durations, feasible)

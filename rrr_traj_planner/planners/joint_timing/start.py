@@ -23,15 +23,14 @@ from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.feasible_path import (
     gravity_ratio,
-    HOLDING_MARGIN,
     statically_feasible_path,
 )
 from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
 from rrr_traj_planner.planners.tasks import JointTask
+from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN, START_SCALING
 from rrr_traj_planner.planners.via_points import torque_texts
 
 LEAST_RAMPS = 4         # of a motion from rest to rest
-DURATION_MARGIN = 1.02  # durations / least durations: the start is strictly within its limits
 LEAST_DURATION = 1e-4   # s
 SLOW = 3.0              # factor by which torque slows a straight path before another is sought
 STRAIGHT_SAMPLES = 100  # of a straight path that is blocked, for the error's torque
@@ -97,9 +96,9 @@ def _least_durations(task: JointTask, constraints: JointConstraints,
     T = np.max([(np.abs(at.qd) / limits.max_velocity).max(axis=(1, 2)),
                 np.sqrt((np.abs(at.qdd) / limits.max_acceleration).max(axis=(1, 2))),
                 np.cbrt((np.abs(at.jerk) / limits.max_jerk).max(axis=(1, 2)))], axis=0)
-    T = np.maximum(DURATION_MARGIN * T, LEAST_DURATION)
+    T = np.maximum(START_SCALING * T, LEAST_DURATION)
     if constraints.least_T is not None:
-        T = np.maximum(T, DURATION_MARGIN * constraints.least_T)
+        T = np.maximum(T, START_SCALING * constraints.least_T)
     if not constraints.with_torque:
         return T, T
     gravity = gravity_torque(task.model, at.q)
@@ -110,7 +109,7 @@ def _least_durations(task: JointTask, constraints: JointConstraints,
     blocked = (gravity_ratio(task.model, limits, at.q) >= 1.0 - HOLDING_MARGIN)[:, 1:-1]
     blocked_by_margin = (margin <= 0.0).any(axis=(1, 2))
     by_torque[blocked.any(axis=1) | blocked_by_margin] = np.inf
-    return np.maximum(T, DURATION_MARGIN * by_torque), T
+    return np.maximum(T, START_SCALING * by_torque), T
 
 
 def rest_to_rest_shapes(grid: Grid, points: Array) -> Array:

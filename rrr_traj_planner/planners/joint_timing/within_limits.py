@@ -22,9 +22,8 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import peak_torque
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import torque_time_scale
-
-ROUNDING = 1e-7  # part of a limit up to which exceeding it is rounding
+from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
+from rrr_traj_planner.planners.torque_scaling import torque_time_scale
 
 
 def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
@@ -58,7 +57,7 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
         return None
     if not dynamic:
         factor = max(factor, by_torque)
-    if factor <= 1.0 + ROUNDING:
+    if factor <= 1.0 + LIMIT_ROUNDING:
         return trajectory.time_scaled(factor) if factor > 1.0 and may_scale else trajectory
     if not may_scale:
         return None
@@ -142,4 +141,4 @@ def torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:
     """
     effort = task.limits.max_effort
     return bool(np.isinf(effort).all() or (peak_torque(
-        task.model, trajectory, task.limits).value <= effort * (1.0 + ROUNDING)).all())
+        task.model, trajectory, task.limits).value <= effort * (1.0 + LIMIT_ROUNDING)).all())

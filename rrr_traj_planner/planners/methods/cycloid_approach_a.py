@@ -33,7 +33,7 @@ from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.prescribed_by_search import feasible_motion, within_torque
 from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, via_problem_of
+from rrr_traj_planner.planners.torque_scaling import slowed_for_torque
 from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
 from rrr_traj_planner.planners.transitions.transition_cruise import (
     bisected,
@@ -42,7 +42,7 @@ from rrr_traj_planner.planners.transitions.transition_cruise import (
     stopping_time,
 )
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
-from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
+from rrr_traj_planner.planners.transitions.via_problem import via_problem_of, ViaProblem
 
 # Without unit.
 BEAM = 24                  # partial solutions that are retained

@@ -44,9 +44,9 @@ from rrr_traj_planner.planners.prescribed_by_search import (
 )
 from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import slowed_for_torque, via_problem_of
+from rrr_traj_planner.planners.torque_scaling import slowed_for_torque
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
-from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
+from rrr_traj_planner.planners.transitions.via_problem import via_problem_of, ViaProblem
 
 NEWTON_STEPS = 60  # at most: convergence is quadratic, slower near a double root
 

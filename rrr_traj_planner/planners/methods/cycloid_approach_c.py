@@ -34,8 +34,8 @@ from rrr_traj_planner.planners.stops.stops_at_via_points import (
     stopping_motion,
 )
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
+from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
 
 @register('cycloid_approach_c', some_durations=True, passing=ViaPointBehaviour('stop'))

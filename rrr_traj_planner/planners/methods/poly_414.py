@@ -35,17 +35,16 @@ from rrr_traj_planner.planners.blends.blend_timing import fastest, total_time
 from rrr_traj_planner.planners.prescribed_by_search import (
     feasible_motion,
     least_durations_except_dwells,
-    TORQUE_TOLERANCE,
 )
 from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import (
+from rrr_traj_planner.planners.tolerances import TORQUE_TOLERANCE
+from rrr_traj_planner.planners.torque_scaling import (
     cannot_hold,
     slowed_for_torque,
     torque_time_scale,
-    via_problem_of,
 )
-from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
+from rrr_traj_planner.planners.transitions.via_problem import via_problem_of, ViaProblem
 
 
 @register('poly_414', misses_via_points=True)

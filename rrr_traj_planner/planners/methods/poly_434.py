@@ -47,8 +47,9 @@ from rrr_traj_planner.planners.stops.symmetric_434 import (
 )
 from rrr_traj_planner.planners.stops.torque_434 import law_for_torque, Segment, STARTS
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import torque_time_scale, via_problem_of
+from rrr_traj_planner.planners.torque_scaling import torque_time_scale
 from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
+from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
 
 @register('poly_434', some_durations=True,

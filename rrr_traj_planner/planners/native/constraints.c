@@ -20,7 +20,7 @@
 #include <string.h>
 
 enum { DURATION_WEIGHT = 3 };   /* multiplicity of a least duration's logarithm: one per joint */
-static const double FAR = 1e6;  /* s, upper bound of a duration: never active */
+static const double FAR = 1e6;  /* s, for no upper bound of a duration: as in solver/limits.py */
 
 static double *duration_slacks(const Problem *p, double *slack)
 {

@@ -23,12 +23,9 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.planners.path_timing.table import PathTable, PathTerms
-from rrr_traj_planner.planners.solver.limits import Limits, PATH
+from rrr_traj_planner.planners.solver.limits import FAR, Limits, PATH
 from rrr_traj_planner.planners.solver.ramps import Grid, States, Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
-
-FAR = 1e6  # stands for no bound, in SI units and rad: never active
-
 
 QUANTITIES = 14  # three each of velocity, acceleration, jerk and torque, then:
 VELOCITY, ACCELERATION, JERK, TORQUE = (slice(3 * k, 3 * k + 3) for k in range(4))

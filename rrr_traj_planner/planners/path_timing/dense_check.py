@@ -24,7 +24,6 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.ramps import RampShape
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
-from rrr_traj_planner.planners.joint_timing.dense_check import ROUNDING
 from rrr_traj_planner.planners.path_timing.constraints import (
     ACCELERATION,
     JERK,
@@ -39,6 +38,7 @@ from rrr_traj_planner.planners.path_timing.table import PathTerms
 from rrr_traj_planner.planners.solver.library import Arena, KERNELS
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
+from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 CHECKS = 8        # samples between two points
 CHECKED = 13      # number of quantities: all but acceleration along the path
@@ -90,7 +90,8 @@ def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> DenseChe
     arrays = Arena({'excess': (N, 2 * n + 1, QUANTITIES), 'bounds': (QUANTITIES,),
                     'scratch': ((CHECKED + 1) * (2 * n * CHECKS + 1) + n + 1,)})
     arrays['bounds'][:], arrays['excess'][:] = bounds, 0.0
-    check = _PathCheck(CHECKS, QUANTITIES, ROUNDING, ramp=ramp.ctypes.data, **arrays.addresses)
+    check = _PathCheck(
+        CHECKS, QUANTITIES, LIMIT_ROUNDING, ramp=ramp.ctypes.data, **arrays.addresses)
     variables = np.concatenate([f.ravel() for f in m])
     KERNELS.check_path(problem.at, ctypes.byref(check), variables.ctypes.data)
     return DenseCheck(arrays['excess'], check.time_scale, check.slowest, check.fastest)

@@ -33,12 +33,12 @@ from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.path_timing.tightening import tightened
 from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, Variables
+from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN
 from rrr_traj_planner.planners.via_points import holding_error
 
 # Without unit.
 MOST_RAMPS, FEWEST_RAMPS = 16, 8  # in a piece of the path: the most for up to
 PIECES, RAMP_EXPONENT = 11, 2.0   # so many pieces, beyond fewer by this power of their number
-HOLDING_MARGIN = 1e-6  # part of the effort limits that gravity must leave along the path
 
 
 class Timed(NamedTuple):

@@ -48,12 +48,12 @@ from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled, Variables
 from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
+from rrr_traj_planner.planners.tolerances import START_SCALING
 
 # Without unit.
 SCHEDULE = Schedule(rounds=8, tolerance=2e-3, patience=1, growth=1.7)
 ROUGH_GAP = 0.3         # part of the total time: the gap to which the first round converges
 CENTRES_BACK = 3        # which of the last centres a round with larger margins starts from
-DURATION_MARGIN = 1.02  # durations of the start / least durations: it is strictly feasible
 
 
 def tightened(task: PathTask, table: PathTable, grid: Grid,
@@ -169,5 +169,5 @@ def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
     else:
         m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))
     at = progress_at(grid, constraints.points, m)
-    return time_scaled(m, DURATION_MARGIN * least_time_scale(
+    return time_scaled(m, START_SCALING * least_time_scale(
         constraints.terms(at.s), at, bounds - constraints.margins))

@@ -21,6 +21,8 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 
+FAR = 1e6  # stands for no bound, in SI units and rad: never active
+
 BOUNDS_ALONE, TORQUE, PATH = range(3)  # kinds of general constraints; as in timing_problem.h
 
 

@@ -28,12 +28,16 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
-from rrr_traj_planner.core.trajectory.torque import torque_sweep
+from rrr_traj_planner.planners.short_durations import durations_too_short, whole_microseconds
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scale
+from rrr_traj_planner.planners.tolerances import DURATION_MARGIN
+from rrr_traj_planner.planners.torque_scaling import (
+    cannot_hold,
+    squared_time_scale_by_segment,
+    torque_time_scale,
+)
 
 # Without unit.
-DURATION_MARGIN = 1e-6     # part added to the least durations
 SPEED_CHECKED = 0.8        # time scaling above which a segment's torque peaks are located exactly
 DURATION_TOLERANCE = 1e-7  # part by which prescribed durations may fall short
 
@@ -121,19 +125,11 @@ def may_exceed_torque(task: JointTask, motion: PiecewiseTrajectory) -> BoolArray
         Segments whose sampled torque requires a time scaling of more than SPEED_CHECKED.
 
     """
-    sweep = torque_sweep(task.model, motion)
-    t, squared = sweep.times, sweep.squared_scaling(task.limits).max(axis=1)
-    worst = np.zeros(len(motion.via_times) - 1)
-    np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='right'), squared)
-    np.maximum.at(worst, np.searchsorted(motion.via_times[1:-1], t, side='left'), squared)
+    worst = squared_time_scale_by_segment(task, motion, ['right', 'left'])
     return np.asarray(~(worst < SPEED_CHECKED ** 2))
 
 
 def _too_short(task: JointTask, durations: Array, least: Array, short: list[int]) -> TimingError:
     """Return the error of prescribed durations that are too short, with the least feasible."""
-    numbers = [str(task.segment_number(k)) for k in short]
-    feasible = np.maximum(durations, np.ceil(least * 1e6) / 1e6)
-    given, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
-    return TimingError(
-        f'segment_durations {given} s are too short for segment{"s" * (len(short) > 1)} '
-        f'{", ".join(numbers)}: the least feasible are {offered} s', tuple(offered))
+    return durations_too_short(durations, np.maximum(durations, whole_microseconds(least)),
+                               [task.segment_number(k) for k in short])

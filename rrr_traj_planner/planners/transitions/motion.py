@@ -22,18 +22,19 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.trajectory.torque import torque_sweep
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.tasks import JointTask
+from rrr_traj_planner.planners.tolerances import DURATION_MARGIN, TORQUE_TOLERANCE
+from rrr_traj_planner.planners.torque_scaling import (
+    feasible_time_scale,
+    squared_time_scale_by_segment,
+)
 from rrr_traj_planner.planners.transitions import segment_motion
-from rrr_traj_planner.planners.transitions.motion_law import cannot_hold, torque_time_scale
 from rrr_traj_planner.planners.transitions.via_problem import rests_everywhere, ViaProblem
 from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scale
 
 # Without unit: parts of a duration.
 SCALING_TOLERANCE = 3e-7   # by which prescribed durations may fall short: jerk is then within 1e-6
-TORQUE_TOLERANCE = 5e-7    # by which a motion may be faster than its torques allow
-DURATION_MARGIN = 1e-6     # added to the least durations, so that these can be prescribed again
 
 
 class TimedMotion(NamedTuple):
@@ -157,12 +158,7 @@ def segment_time_scale(task: JointTask, motion: TimedMotion) -> Array:
     """
     if np.isinf(task.limits.max_effort).all():
         return np.zeros(len(motion.durations))
-    sweep = torque_sweep(task.model, motion.trajectory)
-    squared = sweep.squared_scaling(task.limits).max(axis=1)
-    segment = np.searchsorted(motion.trajectory.via_times[1:-1], sweep.times, side='right')
-    worst = np.zeros(len(motion.durations))
-    np.maximum.at(worst, segment, squared)
-    return np.sqrt(worst)
+    return np.sqrt(squared_time_scale_by_segment(task, motion.trajectory, ['right']))
 
 
 def motion_slowed_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotion:
@@ -187,9 +183,7 @@ def motion_slowed_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotio
         If gravity alone exceeds an effort limit along the path.
 
     """
-    factor = torque_time_scale(task, motion.trajectory)
-    if np.isinf(factor):
-        raise cannot_hold(task, motion.trajectory)
+    factor = feasible_time_scale(task, motion.trajectory)
     if factor <= 1.0 + TORQUE_TOLERANCE:
         return motion
     return TimedMotion(motion.trajectory.time_scaled(factor), motion.durations * factor)

@@ -21,8 +21,8 @@ from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.registration import JointPlanner
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.fastest import fastest
-from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 from rrr_traj_planner.planners.transitions.prescribed import prescribed
+from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
 
 def planner_with(function: TransitionFunction) -> JointPlanner:

@@ -19,7 +19,10 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
+from rrr_traj_planner.planners.short_durations import durations_too_short, whole_microseconds
 from rrr_traj_planner.planners.tasks import JointTask
+from rrr_traj_planner.planners.tolerances import DURATION_MARGIN, TORQUE_TOLERANCE
+from rrr_traj_planner.planners.torque_scaling import torque_time_scale
 from rrr_traj_planner.planners.transitions.fastest import (
     fastest,
     fastest_with_stops,
@@ -27,17 +30,16 @@ from rrr_traj_planner.planners.transitions.fastest import (
     STRAIGHTENING_ROUNDS,
 )
 from rrr_traj_planner.planners.transitions.motion import (
-    DURATION_MARGIN,
     SCALING_TOLERANCE,
     segment_time_scale,
     timed_motion,
     TimedMotion,
-    TORQUE_TOLERANCE,
 )
-from rrr_traj_planner.planners.transitions.motion_law import torque_time_scale
 from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
 
 DURATION_TOLERANCE = 1e-9  # s, between prescribed durations and those of the motion
+NOT_LONGER = 2e-6          # s, two of the microseconds to which feasible durations are rounded
+MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3)  # tried in turn on top of the least durations; chosen
 
 
 def prescribed(task: JointTask, problem: ViaProblem, durations: Array) -> TimedMotion:
@@ -124,21 +126,18 @@ def _with_durations(task: JointTask, problem: ViaProblem, durations: Array,
 def _too_short(task: JointTask, problem: ViaProblem, durations: Array) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
     feasible = _least_feasible(task, problem, durations)
-    given, least = ([round(float(d), 9) for d in v] for v in (durations, feasible))
-    short = np.flatnonzero(durations * (1.0 + 2.0 * DURATION_MARGIN) < feasible - 2e-6).tolist()
-    return TimingError(
-        f'segment_durations {given} s are too short for segment'
-        f'{"s" * (len(short) > 1)} {", ".join(map(str, short))}: the least feasible are '
-        f'{least} s', tuple(least))
+    short = np.flatnonzero(
+        durations * (1.0 + 2.0 * DURATION_MARGIN) < feasible - NOT_LONGER).tolist()
+    return durations_too_short(durations, feasible, short)
 
 
 def _least_feasible(task: JointTask, problem: ViaProblem, durations: Array) -> Array:
     """Return feasible durations in whole microseconds, none shorter than the given ones."""
     for candidate in (fastest(task, problem, durations), fastest_with_stops(
             task, problem, durations)):
-        for margin in (0.0, 1e-6, 1e-5, 1e-4, 1e-3):
-            feasible = np.ceil(candidate.durations * (1.0 + margin) * 1e6) / 1e6
+        for margin in MARGINS:
+            feasible = whole_microseconds(candidate.durations * (1.0 + margin))
             if _within_limits(task, problem, feasible) is not None:
-                return np.asarray(feasible)
+                return feasible
     raise ConvergenceError(
         f'no feasible durations found for segment_durations {durations.tolist()} s')

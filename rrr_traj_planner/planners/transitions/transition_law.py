@@ -76,23 +76,3 @@ class TransitionLaw(NamedTuple):
         with np.errstate(divide='ignore'):
             by_jerk = np.where(self.root > 0.0, (duration / self.root) ** 2, np.inf)
         return np.minimum(duration / self.slope, by_jerk)
-
-    def change_rate(self, duration: Array) -> Array:
-        """
-        Return the derivative of the largest change of velocity by the duration.
-
-        Parameters
-        ----------
-        duration : ndarray
-            [s].
-
-        Returns
-        -------
-        ndarray
-            [rad/s^2].
-
-        """
-        with np.errstate(divide='ignore', invalid='ignore'):
-            by_jerk = 2.0 * duration / self.root ** 2
-        return np.where(self.largest_change(duration) < duration / self.slope, by_jerk,
-                        1.0 / self.slope)

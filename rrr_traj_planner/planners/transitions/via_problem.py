@@ -20,9 +20,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
+from rrr_traj_planner.planners.sampling_jerk_limit import jerk_over_samples, SAMPLES_PER_TRANSITION
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 LEAST_VELOCITY = 1e-9      # rad/s, bound of a via velocity that must be zero
@@ -129,3 +132,48 @@ def rests_everywhere(problem: ViaProblem) -> bool:
 
     """
     return bool((np.maximum(-problem.lowest, problem.highest) <= LEAST_VELOCITY).all())
+
+
+def via_problem_of(task: JointTask, function: TransitionFunction = CYCLOID) -> ViaProblem:
+    """
+    Return the via-point problem of a task.
+
+    A via velocity is bounded so that the joint can stop before the end of its range.
+
+    Parameters
+    ----------
+    task : JointTask
+        Via points, the arm and its limits.
+    function : TransitionFunction
+        The velocity function of transitions.
+
+    Returns
+    -------
+    ViaProblem
+        The problem.
+
+    Raises
+    ------
+    InvalidInputError
+        If a joint has no acceleration limit.
+
+    """
+    limits = task.limits
+    if np.isinf(limits.max_acceleration).any():
+        joint = task.model.joint_names[int(np.isinf(limits.max_acceleration).argmax())]
+        raise InvalidInputError(
+            f'a planner of {function.name} transitions needs acceleration limits, {joint} has '
+            'none')
+    jerk = np.minimum(limits.max_jerk, jerk_over_samples(
+        function.peak_jerk / function.peak_acceleration, limits.max_acceleration,
+        SAMPLES_PER_TRANSITION, task.sample_period))
+    law = TransitionLaw(function.peak_acceleration / limits.max_acceleration,
+                        np.sqrt(function.peak_jerk / jerk))
+    D = np.diff(task.points, axis=0)
+    fastest = np.sqrt(2.0 * np.abs(D).sum(axis=0) / law.slope) + 1.0  # above any motion's
+    velocity = np.minimum(limits.max_velocity, fastest)
+    inner = task.points[1:-1]
+    distance = np.minimum(inner - limits.min_position, limits.max_position - inner)
+    highest = np.clip(np.sqrt(2.0 * np.maximum(distance, 0.0) / law.slope), LEAST_VELOCITY,
+                      velocity)
+    return ViaProblem(D, law, velocity, -highest, highest, function)

@@ -45,7 +45,7 @@ from rrr_traj_planner.planners.solver.ramps import Grid, Variables, with_duratio
 from rrr_traj_planner.planners.tasks import JointTask
 
 SEEDS = range(12)
-DURATION_MARGIN = 1.02
+START_SCALING = 1.02
 BETWEEN_POINTS = 1.1  # of an effort limit, on a way with few points to a leg
 
 
@@ -66,7 +66,7 @@ def test_start_stops_at_every_via_point_strictly_within_all_limits(seed, limits)
 def test_start_is_slower_than_it_must_be_by_two_percent_only(seed):
     grid, points, _ = random_motion(seed)
     constraints, m = slow_start(LIMITS, grid, points)
-    faster = with_durations(m, m.T / (1.001 * DURATION_MARGIN))
+    faster = with_durations(m, m.T / (1.001 * START_SCALING))
     slacks = constraints.problem.slacks(faster)[:-2 * len(m.T)]  # but for least durations
     # in each segment some limit is then broken
     assert (slacks.reshape(len(m.T), -1).min(axis=1) < 0.0).all()
@@ -75,7 +75,7 @@ def test_start_is_slower_than_it_must_be_by_two_percent_only(seed):
 def test_least_durations_are_kept():
     grid, points, _ = random_motion(3)
     least_T = np.full(len(points) - 1, 30.0)
-    assert (slow_start(LIMITS, grid, points, least_T)[1].T == DURATION_MARGIN * least_T).all()
+    assert (slow_start(LIMITS, grid, points, least_T)[1].T == START_SCALING * least_T).all()
 
 
 def started(task):
@@ -132,7 +132,7 @@ def test_the_faster_of_the_straight_way_and_another_is_taken():
             m = with_durations(Variables(way, rest, rest, np.ones(1)), part * T)
             return constraints.problem.is_within(m)
 
-        assert not straight_in(1.0 / (1.001 * DURATION_MARGIN))
+        assert not straight_in(1.0 / (1.001 * START_SCALING))
         gained.append(not straight_in(1.5))
     assert sum(gained) >= 3
     assert gained.count(False) >= 3

@@ -29,8 +29,8 @@ from rrr_traj_planner.core.motion_laws.septic import SEPTIC
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.motion_law import via_problem_of
 from rrr_traj_planner.planners.transitions.planner import planner_with
+from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
 ARM, LIMITS = RobotModel(), JointLimits()
 STRONG = replace(LIMITS, max_effort=[150.0, 250.0, 200.0])  # joint 2 as table 6.3 needs it

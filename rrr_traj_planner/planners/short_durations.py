@@ -1,0 +1,72 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The error of prescribed durations that are too short, with feasible ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import TimingError
+
+DECIMALS = 9  # of durations in the error [s]: nanoseconds, as in messages
+
+
+def whole_microseconds(durations: Array) -> Array:
+    """
+    Return durations rounded up, so that they can be read from an error and prescribed.
+
+    Parameters
+    ----------
+    durations : ndarray
+        [s].
+
+    Returns
+    -------
+    ndarray
+        Multiples of 1e-6 s.
+
+    """
+    return np.asarray(np.ceil(durations * 1e6) / 1e6)
+
+
+def durations_too_short(durations: Array, feasible: Array, segments: Sequence[int] = (),
+                        which: str = 'the least feasible are') -> TimingError:
+    """
+    Return the error of prescribed durations that are too short.
+
+    Parameters
+    ----------
+    durations : ndarray, shape (n,)
+        As prescribed [s].
+    feasible : ndarray, shape (n,)
+        Feasible ones [s].
+    segments : sequence of int, optional
+        The numbers of the segments that are too short; empty: not told.
+    which : str
+        What the feasible ones are, for the message.
+
+    Returns
+    -------
+    TimingError
+        With the feasible durations.
+
+    """
+    given, offered = ([round(float(d), DECIMALS) for d in v] for v in (durations, feasible))
+    where = (f' for segment{"s" * (len(segments) > 1)} {", ".join(map(str, segments))}'
+             if len(segments) else '')
+    return TimingError(f'segment_durations {given} s are too short{where}: {which} {offered} s',
+                       tuple(offered))
