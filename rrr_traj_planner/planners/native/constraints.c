@@ -22,6 +22,9 @@
 enum { DURATION_WEIGHT = 3 };   /* multiplicity of a least duration's logarithm: one per joint */
 static const double FAR = 1e6;  /* s, for no upper bound of a duration: as in solver/limits.py */
 
+/* For solver/library.py, which compares them. */
+EXPORTED const int64_t size_of_problem = sizeof(Problem), size_of_step = sizeof(Step);
+
 static double *duration_slacks(const Problem *p, double *slack)
 {
     return slack + 2 * (size_t)p->N * constraints_of(p);

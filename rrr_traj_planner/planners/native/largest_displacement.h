@@ -12,7 +12,8 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The largest displacement of a segment and its derivatives; see transitions/largest_displacement.py. */
+/* The largest displacement of a segment and its derivatives; see
+ * transitions/largest_displacement.py. */
 #ifndef RRR_TRAJ_PLANNER_LARGEST_DISPLACEMENT_H
 #define RRR_TRAJ_PLANNER_LARGEST_DISPLACEMENT_H
 

@@ -16,7 +16,7 @@
  * its duration (Schur complement), free durations are eliminated, and the velocities and
  * accelerations at the via points follow from a banded system. The cost is linear in ramps and
  * segments. */
-#include "blocks.h"
+#include "band_cholesky.h"
 #include "timing_problem.h"
 
 #include <math.h>
@@ -78,19 +78,39 @@ static void extract_coordinate(const Problem *p, int j, const double *z, const d
         }
 }
 
-/* Solve for the steps of velocities and accelerations at the via points (N + 1, 2 J); returns the
- * step of the factor common to the durations of fixed proportions. */
-static double solve_via_points(const Problem *p, const double *S, const double *r,
-                               double common_hessian, double common_gradient, double *via_step,
-                               double *memory)
+/* Scratch memory of a step; W = 4 J + 1 unknowns of a condensed segment. */
+typedef struct {
+    double *S, *right;               /* (N, W, W) and (N, W): the condensed segments */
+    double *rows;                    /* of their eliminations */
+    double *z, *Q, *r, *dz, *inner;  /* of one coordinate */
+    double *via_step;                /* (N + 1, 2 J) */
+    double *band;                    /* the system of the via points, twice */
+} Scratch;
+
+static Scratch scratch_of(const Problem *p)
 {
-    const int N = p->N, half = 2 * p->J, B = 2 * half, W = B + 1, m = (N - 1) * half, w = 2 * half;
-    double *band = memory, *right = band + (size_t)m * w;
-    double *solved = right + 2 * m;  /* band and right again: to solve in */
-    memset(via_step, 0, (size_t)(N + 1) * half * sizeof(double));
-    if (m == 0)
-        return common_hessian != 0.0 ? -common_gradient / common_hessian : 0.0;
-    memset(band, 0, (size_t)m * w * sizeof(double));
+    const size_t N = p->N, P = points_of(p), W = 4 * (size_t)p->J + 1;
+    Scratch s;
+    s.S = p->newton;
+    s.right = s.S + N * W * W;
+    s.rows = s.right + N * W;
+    s.z = s.rows + N * rows_size(p);
+    s.Q = s.z + 4 * P;
+    s.r = s.Q + 16 * P;
+    s.dz = s.r + 4 * P;
+    s.inner = s.dz + 4 * P;
+    s.via_step = s.inner + p->n;
+    s.band = s.via_step + (N + 1) * 2 * p->J;
+    return s;
+}
+
+/* The banded system of velocities and accelerations at the via points, with two right-hand sides:
+ * the gradient, and the coupling to the common factor. */
+static void assemble_via_points(const Problem *p, const double *S, const double *r, double *band,
+                                double *right)
+{
+    const int N = p->N, half = 2 * p->J, B = 2 * half, W = B + 1, w = 2 * half;
+    memset(band, 0, (size_t)(N - 1) * half * w * sizeof(double));
     for (int k = 0; k < N - 1; ++k) {
         const double *one = S + (size_t)k * W * W, *next = one + (size_t)W * W;
         for (int i = 0; i < half; ++i) {
@@ -107,20 +127,40 @@ static double solve_via_points(const Problem *p, const double *S, const double *
                 column[0] = FIXED_PIVOT;
         }
     }
+}
+
+/* Solve a system of m unknowns, band and right-hand sides in a row, regularised as far as
+ * necessary: by its diagonal alone where nothing else helps. */
+static void solve_regularised(const double *band, double *solved, int m, int w)
+{
+    const size_t trials = sizeof REGULARISATION / sizeof *REGULARISATION;
     const size_t all = (size_t)m * (w + 2);
-    for (size_t trial = 0; trial <= sizeof REGULARISATION / sizeof *REGULARISATION; ++trial) {
+    double *right = solved + (size_t)m * w;
+    for (size_t trial = 0; trial < trials; ++trial) {
         memcpy(solved, band, all * sizeof(double));
-        if (trial == sizeof REGULARISATION / sizeof *REGULARISATION) {
-            for (int c = 0; c < m; ++c)
-                for (int s = 0; s < 2; ++s)
-                    solved[(size_t)m * w + 2 * c + s] /= fabs(band[(size_t)c * w]);
-            break;
-        }
         for (int c = 0; c < m; ++c)
             solved[(size_t)c * w] += REGULARISATION[trial] * fabs(band[(size_t)c * w]);
-        if (!solve_band(solved, solved + (size_t)m * w, m, w, 2))
-            break;
+        if (!solve_band(solved, right, m, w, 2))
+            return;
     }
+    memcpy(solved, band, all * sizeof(double));
+    for (int c = 0; c < m; ++c)
+        for (int s = 0; s < 2; ++s)
+            right[2 * c + s] /= fabs(band[(size_t)c * w]);
+}
+
+/* Solve for the steps of velocities and accelerations at the via points (N + 1, 2 J); returns the
+ * step of the factor common to the durations of fixed proportions. */
+static double solve_via_points(const Problem *p, const Scratch *s, double common_hessian,
+                               double common_gradient)
+{
+    const int N = p->N, half = 2 * p->J, m = (N - 1) * half, w = 2 * half;
+    double *right = s->band + (size_t)m * w, *solved = right + 2 * m;
+    memset(s->via_step, 0, (size_t)(N + 1) * half * sizeof(double));
+    if (m == 0)
+        return common_hessian != 0.0 ? -common_gradient / common_hessian : 0.0;
+    assemble_via_points(p, s->S, s->right, s->band, right);
+    solve_regularised(s->band, solved, m, w);
     const double *x = solved + (size_t)m * w;
     double by_r = 0.0, by_common = 0.0, common = 0.0;
     for (int c = 0; c < m; ++c) {
@@ -130,111 +170,155 @@ static double solve_via_points(const Problem *p, const double *S, const double *
     if (common_hessian != 0.0)
         common = -(common_gradient - by_r) / (common_hessian - by_common);
     for (int c = 0; c < m; ++c)
-        via_step[half + c] = -(x[2 * c] + x[2 * c + 1] * common);
+        s->via_step[half + c] = -(x[2 * c] + x[2 * c + 1] * common);
     return common;
+}
+
+/* Condense a segment whose coordinates are coupled through its duration only. */
+static int condense_decoupled(const Problem *p, const Scratch *s, double T, const double *z,
+                              const double *Q, const double *r, double *S, double *right,
+                              double *rows)
+{
+    const int J = p->J, B = 4 * J, W = B + 1;
+    memset(S, 0, (size_t)W * W * sizeof(double));
+    memset(right, 0, (size_t)W * sizeof(double));
+    for (int j = 0; j < J; ++j) {
+        double one[25], one_r[5];
+        const int at[5] = {j, J + j, 2 * J + j, 3 * J + j, B};
+        extract_coordinate(p, j, z, Q, r, s->z, s->Q, s->r);
+        if (one_condense(p, T, s->z, s->Q, s->r, one, one_r,
+                         (one_Rows *)(rows + j * one_rows_size(p->n))))
+            return 1;
+        for (int a = 0; a < 5; ++a) {
+            right[at[a]] += one_r[a];
+            for (int b = 0; b < 5; ++b)
+                S[at[a] * W + at[b]] += one[5 * a + b];
+        }
+    }
+    return 0;
+}
+
+/* Condense every segment to the states at its ends and its duration. */
+static int condense_segments(const Problem *p, const Scratch *s, const double *Q, const double *r,
+                             const double *r_T)
+{
+    const double *T = variables_at(p, p->variables).T;
+    const int B = 4 * p->J, W = B + 1;
+    const size_t states = points_of(p) * 4 * p->J;
+    for (int k = 0; k < p->N; ++k) {
+        double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
+        double *rows = s->rows + k * rows_size(p);
+        const double *z = p->states + k * states, *Qk = Q + k * hessian_size(p);
+        const int singular = is_decoupled(p)
+            ? condense_decoupled(p, s, T[k], z, Qk, r + k * states, S, right, rows)
+            : three_condense(p, T[k], z, Qk, r + k * states, S, right, (three_Rows *)rows);
+        if (singular)
+            return 1;
+        S[B * W + B] += p->hessian_T[k];
+        right[B] += r_T[k] + p->weights[k];
+    }
+    return 0;
+}
+
+/* Eliminate the free durations; receives the derivatives by the factor common to the others. */
+static void eliminate_durations(const Problem *p, const Scratch *s, double *common_hessian,
+                                double *common_gradient)
+{
+    const int B = 4 * p->J, W = B + 1;
+    *common_hessian = *common_gradient = 0.0;
+    for (int k = 0; k < p->N; ++k) {
+        double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
+        *common_hessian += p->proportions[k] * p->proportions[k] * S[B * W + B];
+        *common_gradient += p->proportions[k] * right[B];
+        if (!p->free[k] || S[B * W + B] == 0.0)
+            continue;
+        for (int i = 0; i < B; ++i) {
+            const double factor = S[i * W + B] / S[B * W + B];
+            for (int c = 0; c < B; ++c)
+                S[i * W + c] -= factor * S[B * W + c];
+            right[i] -= factor * right[B];
+        }
+    }
+}
+
+/* The step of a segment's duration, from those of its border v0, a0, v1, a1. */
+static double duration_step(const Problem *p, const Scratch *s, int k, const double *border,
+                            double common)
+{
+    const int B = 4 * p->J, W = B + 1;
+    const double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
+    if (!p->free[k])
+        return p->proportions[k] * common;
+    if (S[B * W + B] == 0.0)
+        return 0.0;
+    double sum = right[B];
+    for (int i = 0; i < B; ++i)
+        sum += S[B * W + i] * border[i];
+    return -sum / S[B * W + B];
+}
+
+/* Back substitution in a segment whose coordinates are coupled through its duration only. */
+static void expand_decoupled(const Problem *p, const Scratch *s, double T, const double *z,
+                             const double *border, double dT, const double *rows, double *inner,
+                             double *dz)
+{
+    const int J = p->J, Z = 4 * J, n = p->n, P = 2 * n + 1;
+    for (int j = 0; j < J; ++j) {
+        const double own[4] = {border[j], border[J + j], border[2 * J + j], border[3 * J + j]};
+        for (int i = 0; i < P; ++i)
+            for (int a = 0; a < 4; ++a)
+                s->z[4 * i + a] = z[i * Z + a * J + j];
+        one_expand(p, T, s->z, own, dT, (const one_Rows *)(rows + j * one_rows_size(n)), s->inner,
+                   s->dz);
+        for (int i = 0; i < n - 1; ++i)
+            inner[i * J + j] = s->inner[i];
+        for (int i = 0; i < P; ++i)
+            for (int a = 0; a < 4; ++a)
+                dz[i * Z + a * J + j] = s->dz[4 * i + a];
+    }
+}
+
+/* The steps of all durations, inner accelerations and states, from those of the via points;
+ * returns the predicted decrease. */
+static double expand_segments(const Problem *p, const Scratch *s, const double *r,
+                              const double *r_T, double common, Variables step, double *dz)
+{
+    const double *T = variables_at(p, p->variables).T;
+    const int J = p->J;
+    const size_t states = points_of(p) * 4 * J;
+    double decrease = 0.0;
+    for (int k = 0; k < p->N; ++k) {
+        const double *border = s->via_step + (size_t)k * 2 * J;  /* v0, a0, v1, a1 in a row */
+        const double *z = p->states + k * states, *rows = s->rows + k * rows_size(p);
+        const double *gradient = r + k * states;
+        double *to = dz + k * states, *inner = step.inner + (size_t)k * (p->n - 1) * J;
+        const double dT = step.T[k] = duration_step(p, s, k, border, common);
+        if (is_decoupled(p))
+            expand_decoupled(p, s, T[k], z, border, dT, rows, inner, to);
+        else
+            three_expand(p, T[k], z, border, dT, (const three_Rows *)rows, inner, to);
+        for (size_t i = 0; i < states; ++i)
+            decrease -= gradient[i] * to[i];
+        decrease -= (r_T[k] + p->weights[k]) * dT;
+    }
+    return decrease;
 }
 
 int newton_step(const Problem *p, const double *Q, const double *r, const double *r_T,
                 double *direction, double *dz, double *predicted_decrease)
 {
-    const Variables m = variables_at(p, p->variables), step = variables_at(p, direction);
-    const double *z = p->states, *Q_T = p->hessian_T;
-    double *memory = p->newton;
-    const int J = p->J, N = p->N, n = p->n, Z = 4 * J, B = 4 * J, W = B + 1, P = 2 * n + 1;
-    double *S = memory, *right = S + (size_t)N * W * W;
-    double *rows = right + (size_t)N * W;
-    double *own_z = rows + N * rows_size(p), *own_Q = own_z + 4 * P, *own_r = own_Q + 16 * P;
-    double *own_dz = own_r + 4 * P, *own_inner = own_dz + 4 * P, *via_step = own_inner + n;
-    double *band = via_step + (size_t)(N + 1) * 2 * J;
-    for (int k = 0; k < N; ++k) {
-        double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
-        const double *zk = z + (size_t)k * P * Z, *Qk = Q + k * hessian_size(p);
-        const double *gradient = r + (size_t)k * P * Z;
-        double *condensed_rows = rows + k * rows_size(p);
-        if (!is_decoupled(p)) {
-            if (three_condense(p, m.T[k], zk, Qk, gradient, Sk, rk, (three_Rows *)condensed_rows))
-                return 1;
-        } else {
-            memset(Sk, 0, (size_t)W * W * sizeof(double));
-            memset(rk, 0, (size_t)W * sizeof(double));
-            for (int j = 0; j < J; ++j) {
-                double one[25], one_r[5];
-                const int at[5] = {j, J + j, 2 * J + j, 3 * J + j, B};
-                extract_coordinate(p, j, zk, Qk, gradient, own_z, own_Q, own_r);
-                if (one_condense(p, m.T[k], own_z, own_Q, own_r, one, one_r,
-                                  (one_Rows *)(condensed_rows + j * one_rows_size(n))))
-                    return 1;
-                for (int a = 0; a < 5; ++a) {
-                    rk[at[a]] += one_r[a];
-                    for (int b = 0; b < 5; ++b)
-                        Sk[at[a] * W + at[b]] += one[5 * a + b];
-                }
-            }
-        }
-        Sk[B * W + B] += Q_T[k];
-        rk[B] += r_T[k] + p->weights[k];
-    }
-    double common_hessian = 0.0, common_gradient = 0.0;
-    for (int k = 0; k < N; ++k) {  /* free durations are eliminated */
-        double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
-        common_hessian += p->proportions[k] * p->proportions[k] * Sk[B * W + B];
-        common_gradient += p->proportions[k] * rk[B];
-        if (!p->free[k] || Sk[B * W + B] == 0.0)
-            continue;
-        for (int i = 0; i < B; ++i) {
-            const double factor = Sk[i * W + B] / Sk[B * W + B];
-            for (int c = 0; c < B; ++c)
-                Sk[i * W + c] -= factor * Sk[B * W + c];
-            rk[i] -= factor * rk[B];
-        }
-    }
-    const double common = solve_via_points(p, S, right, common_hessian, common_gradient, via_step,
-                                           band);
-    *predicted_decrease = 0.0;
-    for (int k = 0; k < N; ++k) {
-        const double *Sk = S + (size_t)k * W * W, *rk = right + (size_t)k * W;
-        const double *border = via_step + (size_t)k * 2 * J;  /* v0, a0, v1, a1 in a row */
-        double dT = p->proportions[k] * common;
-        if (p->free[k]) {
-            dT = 0.0;
-            if (Sk[B * W + B] != 0.0) {
-                double sum = rk[B];
-                for (int i = 0; i < B; ++i)
-                    sum += Sk[B * W + i] * border[i];
-                dT = -sum / Sk[B * W + B];
-            }
-        }
-        step.T[k] = dT;
-        const double *zk = z + (size_t)k * P * Z;
-        double *to = dz + (size_t)k * P * Z, *inner = step.inner + (size_t)k * (n - 1) * J;
-        const double *condensed_rows = rows + k * rows_size(p);
-        if (!is_decoupled(p))
-            three_expand(p, m.T[k], zk, border, dT, (const three_Rows *)condensed_rows, inner, to);
-        else
-            for (int j = 0; j < J; ++j) {
-                const double own[4] = {border[j], border[J + j], border[2 * J + j],
-                                       border[3 * J + j]};
-                for (int i = 0; i < P; ++i)
-                    for (int a = 0; a < 4; ++a)
-                        own_z[4 * i + a] = zk[i * Z + a * J + j];
-                one_expand(p, m.T[k], own_z, own, dT,
-                             (const one_Rows *)(condensed_rows + j * one_rows_size(n)), own_inner,
-                             own_dz);
-                for (int i = 0; i < n - 1; ++i)
-                    inner[i * J + j] = own_inner[i];
-                for (int i = 0; i < P; ++i)
-                    for (int a = 0; a < 4; ++a)
-                        to[i * Z + a * J + j] = own_dz[4 * i + a];
-            }
-        const double *gradient = r + (size_t)k * P * Z;
-        for (int i = 0; i < P * Z; ++i)
-            *predicted_decrease -= gradient[i] * to[i];
-        *predicted_decrease -= (r_T[k] + p->weights[k]) * dT;
-    }
-    for (int k = 0; k < N - 1; ++k)
-        for (int j = 0; j < J; ++j) {
-            step.v[k * J + j] = via_step[(size_t)(k + 1) * 2 * J + j];
-            step.a[k * J + j] = via_step[(size_t)(k + 1) * 2 * J + J + j];
+    const Variables step = variables_at(p, direction);
+    const Scratch s = scratch_of(p);
+    double common_hessian, common_gradient;
+    if (condense_segments(p, &s, Q, r, r_T))
+        return 1;
+    eliminate_durations(p, &s, &common_hessian, &common_gradient);
+    const double common = solve_via_points(p, &s, common_hessian, common_gradient);
+    *predicted_decrease = expand_segments(p, &s, r, r_T, common, step, dz);
+    for (int k = 0; k < p->N - 1; ++k)
+        for (int j = 0; j < p->J; ++j) {
+            step.v[k * p->J + j] = s.via_step[(size_t)(k + 1) * 2 * p->J + j];
+            step.a[k * p->J + j] = s.via_step[(size_t)(k + 1) * 2 * p->J + p->J + j];
         }
     return 0;
 }

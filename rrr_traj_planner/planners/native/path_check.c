@@ -32,6 +32,9 @@ typedef struct {
     double time_scale, slowest, fastest;  /* found: see path_timing's dense check */
 } PathCheck;
 
+/* For solver/library.py, which compares it. */
+EXPORTED const int64_t size_of_path_check = sizeof(PathCheck);
+
 typedef struct {            /* over the motion */
     double rate, squared, cubed;  /* time scaling that limits require, to the power 1, 2, 3 */
     double slowest, fastest;      /* of the tip [m/s] */

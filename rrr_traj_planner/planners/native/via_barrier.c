@@ -13,10 +13,10 @@
 // limitations under the License.
 
 /* The logarithmic barrier of the via-point problem: values, gradients, Hessians and damping of its
- * parts (solver/via_barrier.py). */
+ * parts (solver/via_barrier.py; Boyd & Vandenberghe, Convex Optimization, 11.2 and 11.3). */
 #include "via_problem.h"
 
-#include "blocks.h"
+#include "convexify.h"
 #include "largest_displacement.h"
 
 #include <math.h>
@@ -99,9 +99,11 @@ static void add_log_derivatives(double slack, const double gradient[3], double s
             block[i][c] += relative[i] * relative[c];
 }
 
-/* Add the derivatives of -log(largest displacement - D), forward (sign 1) or backward (sign -1). */
-static void add_displacement_derivatives(const Law *law, double sign, double v0, double v1, double T,
-                                  double D, double slope[3], double block[3][3])
+/* Add the derivatives of -log(largest displacement - D), forward (sign 1) or backward (sign -1).
+ */
+static void add_displacement_derivatives(const Law *law, double sign, double v0, double v1,
+                                         double T, double D, double slope[3],
+                                         double block[3][3])
 {
     const double by[3] = {sign, sign, 1.0};
     DisplacementDerivatives at = displacement_derivatives(law, sign * v0, sign * v1, T);
@@ -150,6 +152,9 @@ static void differentiate(const ViaProblem *p)
         (*bound)[1] = slack * slack;
     }
 }
+
+/* For solver/library.py, which compares it. */
+EXPORTED const int64_t size_of_via_problem = sizeof(ViaProblem);
 
 /* Evaluate the barrier and its derivatives at the first iterate. */
 EXPORTED void via_begin(ViaProblem *p)

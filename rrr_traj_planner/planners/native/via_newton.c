@@ -12,9 +12,10 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* The Newton step of weight * objective + barrier of the via-point problem: a banded system, whose
- * solution costs time linear in the number of via points. */
-#include "blocks.h"
+/* The Newton step of weight * objective + barrier of the via-point problem (Boyd & Vandenberghe,
+ * Convex Optimization, 11.3): a banded system, whose solution costs time linear in the number of
+ * via points. */
+#include "band_cholesky.h"
 #include "via_problem.h"
 
 #include <string.h>

@@ -35,7 +35,7 @@ from rrr_traj_planner.planners.path_timing.constraints import (
     VELOCITY,
 )
 from rrr_traj_planner.planners.path_timing.table import PathTerms
-from rrr_traj_planner.planners.solver.library import Arena, KERNELS
+from rrr_traj_planner.planners.solver.library import Arena, KERNELS, same_size_as
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
@@ -59,6 +59,7 @@ class DenseCheck(NamedTuple):
         return self.slowest >= -BACKWARD * self.fastest
 
 
+@same_size_as('size_of_path_check')
 class _PathCheck(ctypes.Structure):  # as in native/path_check.c
     _fields_ = [('checks', ctypes.c_int32), ('stride', ctypes.c_int32),
                 ('rounding', ctypes.c_double),

@@ -22,14 +22,14 @@ interpreter lock: releasing it would cost more than the shortest calls.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import ctypes
 from ctypes import c_double, c_int32, c_int64, c_void_p
 from importlib.machinery import EXTENSION_SUFFIXES
 from itertools import accumulate
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
@@ -94,6 +94,33 @@ def load(folder: Path) -> Any:
 
 
 KERNELS = load(_NATIVE)
+
+_S = TypeVar('_S', bound=type[ctypes.Structure])
+
+
+def same_size_as(size: str) -> Callable[[_S], _S]:
+    """
+    Return a decorator of a structure that repeats one of the kernels: checks their sizes.
+
+    Parameters
+    ----------
+    size : str
+        Name of the kernels' constant that is the size of their structure.
+
+    Returns
+    -------
+    callable
+        Returns the structure unchanged; ImportError where the sizes differ.
+
+    """
+    def checked(structure: _S) -> _S:
+        theirs, ours = c_int64.in_dll(KERNELS, size).value, ctypes.sizeof(structure)
+        if theirs != ours:
+            raise ImportError(f'the compiled kernels were built from other sources: {size} is '
+                              f'{theirs}, not {ours}: {_BUILD}')
+        return structure
+
+    return checked
 
 
 class Arena:

@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.solver.library import Arena, contiguous, KERNELS
+from rrr_traj_planner.planners.solver.library import Arena, contiguous, KERNELS, same_size_as
 from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, DurationConstraints, Limits
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
@@ -40,6 +40,7 @@ class _Ramp(ctypes.Structure):
     _fields_ = [(name, ctypes.c_double) for name in ('end_q', 'mid_q', 'mid_qd', 'peak_jerk')]
 
 
+@same_size_as('size_of_problem')
 class _Problem(ctypes.Structure):  # as in native/timing_problem.h
     _fields_ = [
         *((name, ctypes.c_int32) for name in (
@@ -58,6 +59,7 @@ class _Problem(ctypes.Structure):  # as in native/timing_problem.h
 _STEP = 'direction', 'correction', 'rate', 'variables', 'slack'
 
 
+@same_size_as('size_of_step')
 class _Step(ctypes.Structure):  # as in native/timing_problem.h
     _fields_ = [*((name, ctypes.c_void_p) for name in _STEP),
                 *((name, ctypes.c_double) for name in (

@@ -29,7 +29,7 @@ import ctypes
 from typing import Any, Protocol
 
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.solver.library import Arena, KERNELS
+from rrr_traj_planner.planners.solver.library import Arena, KERNELS, same_size_as
 
 
 class Law(Protocol):
@@ -68,6 +68,7 @@ class ViaLimits(Protocol):
         """Return the largest via velocities, shape (n - 1, 3) [rad/s]."""
 
 
+@same_size_as('size_of_via_problem')
 class _ViaProblem(ctypes.Structure):  # as in native/via_problem.h
     _fields_ = [('n', ctypes.c_int32), *((name, ctypes.c_void_p) for name in (
         'displacements', 'slope', 'root', 'max_velocity', 'lowest', 'highest', 'least_T',
@@ -129,7 +130,6 @@ class ViaBarrier:
             self.arrays[name][...] = array
         self.arrays['damping'][:] = 0.0
         self.found: Any = _ViaProblem(n=n, **self.arrays.addresses)
-        self.found.arrays = self.arrays  # live as long as the problem
         self.at: Any = ctypes.byref(self.found)
         self.constraints = 12 * n + 6 * (n - 1)
         point = self.arrays['point']

@@ -12,14 +12,10 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* Small symmetric matrices. */
-#ifndef RRR_TRAJ_PLANNER_BLOCKS_H
-#define RRR_TRAJ_PLANNER_BLOCKS_H
+/* Symmetric banded systems. */
+#ifndef RRR_TRAJ_PLANNER_BAND_CHOLESKY_H
+#define RRR_TRAJ_PLANNER_BAND_CHOLESKY_H
 
-/* Make a symmetric block positive definite: scaled to a unit diagonal, its eigenvalues are
- * replaced by their magnitudes, bounded away from zero (Nocedal & Wright, Numerical Optimization,
- * 3.4). */
-void make_convex(double block[3][3]);
 /* Solve a symmetric banded system of m unknowns, stored as w entries from the diagonal down, for
  * right-hand sides (m, sides); both are overwritten. Returns 0, or 1 where the matrix is not
  * positive definite. */

@@ -12,16 +12,16 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* Symmetric bands, solved by Cholesky's method, and 3 x 3 blocks that are made positive definite:
- * eigenvalues by Jacobi's method (Golub & Van Loan, Matrix Computations, 4.3.5 and 8.5). */
-#include "blocks.h"
+/* 3 x 3 blocks that are made positive definite: eigenvalues by Jacobi's method (Golub & Van Loan,
+ * Matrix Computations, 8.5). */
+#include "convexify.h"
 
 #include <math.h>
-#include <stddef.h>
 
 /* For a block scaled to a unit diagonal, without unit: pivots above which it is positive definite
  * as it stands, the least eigenvalue that it is given, and entries that count as zero. */
 static const double CLEARLY_CONVEX = 1e-10, LEAST_EIGENVALUE = 1e-12, NOTHING = 1e-17;
+static const double TINY = 1e-300;  /* added to diagonal entries, which may be 0 */
 enum { SWEEPS = 30 };  /* at most: convergence is quadratic, some five are needed */
 
 static int is_clearly_convex(double a[3][3])
@@ -69,7 +69,7 @@ void make_convex(double block[3][3])
 {
     double scale[3], a[3][3], v[3][3];
     for (int i = 0; i < 3; ++i)
-        scale[i] = 1.0 / sqrt(fabs(block[i][i]) + 1e-300);
+        scale[i] = 1.0 / sqrt(fabs(block[i][i]) + TINY);
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k)
             a[i][k] = block[i][k] * scale[i] * scale[k];
@@ -83,37 +83,4 @@ void make_convex(double block[3][3])
                 sum += v[i][e] * fmax(fabs(a[e][e]), LEAST_EIGENVALUE) * v[k][e];
             block[i][k] = block[k][i] = sum / (scale[i] * scale[k]);
         }
-}
-
-int solve_band(double *band, double *right, int m, int w, int sides)
-{
-    for (int c = 0; c < m; ++c) {
-        double *column = band + (size_t)c * w, *own = right + (size_t)c * sides;
-        if (!(column[0] > 0.0) || !isfinite(column[0]))
-            return 1;
-        const double inverse = 1.0 / sqrt(column[0]);
-        const int below = c + w < m ? w : m - c;
-        column[0] = inverse;
-        for (int i = 1; i < below; ++i)
-            column[i] *= inverse;
-        for (int i = 1; i < below; ++i)
-            for (int k = i; k < below; ++k)
-                column[i * w + k - i] -= column[i] * column[k];
-        for (int s = 0; s < sides; ++s) {
-            own[s] *= inverse;
-            for (int i = 1; i < below; ++i)
-                own[i * sides + s] -= column[i] * own[s];
-        }
-    }
-    for (int c = m - 1; c >= 0; --c) {
-        const double *column = band + (size_t)c * w;
-        const int below = c + w < m ? w : m - c;
-        double *own = right + (size_t)c * sides;
-        for (int s = 0; s < sides; ++s) {
-            for (int i = 1; i < below; ++i)
-                own[s] -= column[i] * own[i * sides + s];
-            own[s] *= column[0];
-        }
-    }
-    return 0;
 }
