@@ -22,8 +22,8 @@ from time import perf_counter
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import TimeLimitError
 
-IMPROVING = 0.8  # part of the limit after which a motion is not improved any more
-GRACE = 0.2      # s after the limit until which points and checks of the answer may take
+IMPROVING = 0.8  # part of the limit after which a motion is not improved any more; chosen
+GRACE = 0.2      # s after the limit until which points and checks of the answer may take; chosen
 
 
 class Deadline:

@@ -29,10 +29,10 @@ from rrr_traj_planner.planners.tolerances import DURATION_MARGIN, TORQUE_TOLERAN
 from rrr_traj_planner.planners.torque_scaling import cannot_hold, torque_time_scale
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
-# Without unit.
+# Chosen values, without unit.
 ROUNDS = 12              # of lower accelerations, at most
 SCALING_STEP = 1.3       # factor between the scalings of durations that are tried in turn
-LARGEST_SCALING = 1e4
+LARGEST_SCALING = 1e4    # of durations, up to which feasible ones are sought
 BISECTIONS = 20          # of the scaling: to 1.3^(2^-20)
 
 

@@ -31,19 +31,20 @@ from rrr_traj_planner.core.errors import InvalidInputError
 SAMPLES, SAMPLES_OF_LIMITED = 2.0, 4.0
 
 # Least number of samples in a transition at full acceleration, so that a controller's quintics
-# through them keep the limits: chosen by trials.
+# through them keep the limits; chosen.
 SAMPLES_PER_TRANSITION = 5.0
 
 # Part of a ramp during which jerk is constant, and the ratio of the sampling's jerk limit to the
 # joints' own from which on ramps have that part: jerk then changes slowly enough for the samples.
-CRUISE, SLOW_ENOUGH = 0.6, 7.5
+# Chosen: on 56 random tasks motions then took 1.009 times the limit, instead of 1.022.
+CONSTANT_JERK_FRACTION, SLOW_ENOUGH = 0.6, 7.5
 
 
 class SamplingLimits(NamedTuple):
     """Limits with the jerk limit due to sampling, and the shape of ramps."""
 
     limits: JointLimits  # with finite limits on jerk
-    cruise: float        # part of a ramp during which jerk is constant
+    constant_jerk_fraction: float        # part of a ramp during which jerk is constant
 
 
 def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
@@ -76,8 +77,9 @@ def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
     """
     samples = np.where(np.isinf(limits.max_acceleration), SAMPLES, SAMPLES_OF_LIMITED)
     jerk = jerk_over_samples(np.pi, acceleration_scale(model, limits, q), samples, sample_period)
-    cruise = CRUISE if (SLOW_ENOUGH * limits.max_jerk <= jerk).all() else 0.0
-    return SamplingLimits(replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk)), cruise)
+    is_slow = (SLOW_ENOUGH * limits.max_jerk <= jerk).all()
+    return SamplingLimits(replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk)),
+                          CONSTANT_JERK_FRACTION if is_slow else 0.0)
 
 
 def jerk_over_samples(peak_jerk: float, acceleration: Array, samples: Array | float,

@@ -39,7 +39,7 @@ COARSE, FINE = 61, 601  # cells of joints 2 and 3 of the grid in which a path is
 def random_motion(seed, n=None, segments=None):
     """Return a grid, via points and a motion through them."""
     rng = np.random.default_rng(7000 + seed)
-    grid = Grid(n or int(rng.integers(4, 13)), cruise=(0.0, 0.6)[seed % 2])
+    grid = Grid(n or int(rng.integers(4, 13)), constant_jerk_fraction=(0.0, 0.6)[seed % 2])
     N = segments or int(rng.integers(1, 5))
     points = rng.uniform([-1.0, 0.8, -0.8], [1.0, 1.8, 0.8], (N + 1, 3))
     m = Variables(rng.normal(0.0, 1.0, (N, grid.n - 1, 3)), rng.normal(0.0, 0.3, (N - 1, 3)),

@@ -61,17 +61,17 @@ class PathCase:
         return ArmPath(self.model, self.limits, path, Posture(r.elbow), start)
 
     @property
-    def cruise(self):
+    def constant_jerk_fraction(self):
         """Return `sampling_jerk_limit` of the case's limits."""
         q = self.arm_path(self.arm_path.path.via_s).q
         return limits_for_sampling(
-            self.model, self.limits, q, self.request.sample_period).cruise
+            self.model, self.limits, q, self.request.sample_period).constant_jerk_fraction
 
     def timed(self, max_tip_speed=np.inf, **limits):
         """Return the fastest motion along the path, with limits changed."""
         return fastest_along(PathTask(
-            self.arm_path, replace(self.limits, **limits), self.cruise, max_tip_speed, False,
-            never)).trajectory
+            self.arm_path, replace(self.limits, **limits), self.constant_jerk_fraction,
+            max_tip_speed, False, never)).trajectory
 
     def planned(self, **changes):
         """Return the plan of the request, changed."""

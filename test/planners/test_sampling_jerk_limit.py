@@ -25,7 +25,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.planners.sampling_jerk_limit import (
     acceleration_scale,
-    CRUISE,
+    CONSTANT_JERK_FRACTION,
     limits_for_sampling,
 )
 
@@ -75,11 +75,13 @@ def test_jerk_cruises_where_every_joint_s_limit_lets_a_swing_last_thirty_samples
     model, q = random_poses(3)
     slow = np.pi * np.array((1.0, 2.0, 3.0)) / (30.0 * PERIOD)
     limits = JointLimits(max_acceleration=[1.0, 2.0, 3.0], max_effort=NONE, max_jerk=slow)
-    assert limits_for_sampling(model, limits, q, PERIOD * (1.0 - 1e-9)).cruise == CRUISE
-    assert limits_for_sampling(model, limits, q, PERIOD * (1.0 + 1e-9)).cruise == 0.0
+    shorter, longer = (limits_for_sampling(model, limits, q, PERIOD * factor)
+                       for factor in (1.0 - 1e-9, 1.0 + 1e-9))
+    assert shorter.constant_jerk_fraction == CONSTANT_JERK_FRACTION
+    assert longer.constant_jerk_fraction == 0.0
     for joint in range(3):
         fast = replace(limits, max_jerk=np.where(np.arange(3) == joint, np.inf, slow))
-        assert limits_for_sampling(model, fast, q, 0.5 * PERIOD).cruise == 0.0
+        assert limits_for_sampling(model, fast, q, 0.5 * PERIOD).constant_jerk_fraction == 0.0
 
 
 def test_everything_but_jerk_is_kept():

@@ -37,28 +37,30 @@ class RampShape:
 
     Parameters
     ----------
-    cruise : float
+    constant_jerk_fraction : float
         Fraction of the duration with constant jerk, in [0, 1); 0: a half-period.
 
     Attributes
     ----------
     peak_jerk : float
-        Largest jerk of the normalised ramp: pi / 2 for a half-period, towards 1 for more cruise.
+        Largest jerk of the normalised ramp: pi / 2 for a half-period, towards 1 for a larger
+        fraction of constant jerk.
 
     Raises
     ------
     InvalidInputError
-        If the cruise is not in [0, 1).
+        If the fraction is not in [0, 1).
 
     """
 
-    def __init__(self, cruise: float = 0.0) -> None:
-        if not 0.0 <= cruise < 1.0:
-            raise InvalidInputError(f'cruise is {cruise}, must be in [0, 1)')
-        self.cruise = cruise
-        self._rise = 0.5 * (1.0 - cruise)
+    def __init__(self, constant_jerk_fraction: float = 0.0) -> None:
+        if not 0.0 <= constant_jerk_fraction < 1.0:
+            raise InvalidInputError(
+                f'constant_jerk_fraction is {constant_jerk_fraction}, must be in [0, 1)')
+        self.constant_jerk_fraction = constant_jerk_fraction
+        self._rise = 0.5 * (1.0 - constant_jerk_fraction)
         self._rate = 0.5 * pi / self._rise      # angular frequency while jerk rises
-        self.peak_jerk = 1.0 / (cruise + 4.0 * self._rise / pi)
+        self.peak_jerk = 1.0 / (constant_jerk_fraction + 4.0 * self._rise / pi)
         # acceleration at the end of the rising jerk, and its integral until then
         self._part = self.peak_jerk / self._rate
         self._first = self._part * (self._rise - 1.0 / self._rate)

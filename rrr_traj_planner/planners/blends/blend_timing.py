@@ -37,10 +37,12 @@ from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 from scipy import sparse
 from scipy.optimize import linprog
 
-# Without unit.
+# Chosen values, without unit.
 ROUNDS = 40             # of linear programming, at most
 GAIN = 1e-5             # part of the time, below which a round is the last
 FIRST_TANGENTS = np.geomspace(1.0, 30.0, 12)  # of 1 / r, at these multiples of the first rates
+ROUNDING = 1e-9         # by which half of both transitions may exceed their line
+LOWEST_RATE = 1e-3      # bound of a linear program, as a part of the present rate
 SCALINGS = 60           # of times, until rounding in a linear program's solution is made up for
 # Least duration of the transition at which the jerk limit's tangent is taken, as a part of the
 # shorter line: at zero duration, between lines of equal velocity, the tangent would be vertical
@@ -109,7 +111,8 @@ def _feasible(problem: ViaProblem, lines: Array, transitions: Array | None) -> B
             problem.law, problem.displacements, lines) if transitions is None else transitions)
         velocity, change, halves = excess(problem, timing)
         if transitions is None:  # changes are feasible; transitions shorten like the root or less
-            change, halves = 0.0, np.sqrt(halves) if halves > 1.0 + 1e-9 else halves ** (2.0 / 3.0)
+            change = 0.0
+            halves = np.sqrt(halves) if halves > 1.0 + ROUNDING else halves ** (2.0 / 3.0)
         factor = max(velocity, change, halves)
         if factor <= 1.0:
             return timing
@@ -159,7 +162,7 @@ class _Program:
         answer = linprog(
             cost, A_ub=sparse.vstack([r.matrix for r in rows]).tocsc(),
             b_ub=np.concatenate([r.bound for r in rows]),
-            bounds=np.column_stack((np.concatenate((1e-3 * rates, low, np.zeros(n))),
+            bounds=np.column_stack((np.concatenate((LOWEST_RATE * rates, low, np.zeros(n))),
                                     np.concatenate((fastest_rates, high, np.full(n, np.inf))))))
         if answer.status != 0:
             return None

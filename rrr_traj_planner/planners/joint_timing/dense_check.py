@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Dense check of joint motions: by how much they exceed limits between the problem's points."""
+"""
+Dense check of joint motions: by how much they exceed limits between the problem's points.
+
+Time scaling: Hollerbach, Dynamic scaling of manipulator trajectories, 1984.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +57,7 @@ class DenseCheck:
 
     def __init__(self, task: JointTask, grid: Grid, m: Variables) -> None:
         self._task = task
-        elapsed, by_q, by_qd, by_qdd = _matrices(grid.n, grid.shape.cruise)
+        elapsed, by_q, by_qd, by_qdd = _matrices(grid.n, grid.shape.constant_jerk_fraction)
         nodes, v0, _ = grid.nodes(m)
         h, v0 = (m.T / grid.n)[:, np.newaxis, np.newaxis], v0[:, np.newaxis]
         self.q = task.points[:-1, np.newaxis] + h * (elapsed * v0 + h * (by_q @ nodes))
@@ -73,7 +77,7 @@ class DenseCheck:
         Return the least factor on all times with which limits other than positions hold.
 
         Velocity falls with the factor, acceleration and the torque beside gravity's with its
-        square, jerk with its cube (Hollerbach, Dynamic scaling of manipulator trajectories, 1984).
+        square, jerk with its cube.
 
         Returns
         -------
@@ -164,12 +168,12 @@ def _rise_between_samples(x: Array) -> Array:
 
 
 @lru_cache(maxsize=64)
-def _matrices(n: int, cruise: float) -> tuple[Array, Array, Array, Array]:
+def _matrices(n: int, constant_jerk_fraction: float) -> tuple[Array, Array, Array, Array]:
     """Return times / h, and the matrices q, qd, qdd of a `Grid` of n ramps, at all samples."""
     per_ramp, one = 2 * CHECKS, np.eye(n + 1)
     s = np.arange(per_ramp)[:, np.newaxis] / per_ramp
-    way, speed, part, _ = RampShape(cruise)(s)
-    whole = RampShape(cruise)(1.0)[0]
+    way, speed, part, _ = RampShape(constant_jerk_fraction)(s)
+    whole = RampShape(constant_jerk_fraction)(1.0)[0]
     at_node, rows = (np.zeros(n + 1), np.zeros(n + 1)), []
     for i in range(n + 1):
         a, rise = one[i], (one[i + 1] if i < n else one[i]) - one[i]

@@ -34,6 +34,7 @@ from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN
 from scipy import sparse
 from scipy.sparse import csgraph
 
+# Chosen values.
 RANGE_MARGIN = 4e-10    # rad, for the rounding of points at the end of a range
 CELLS = (48, 400)       # of each of the two joints; the finer grid where the coarser has no path
 SAMPLES = 40            # of a leg, at which gravity's torque is checked

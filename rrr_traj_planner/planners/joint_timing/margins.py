@@ -16,8 +16,8 @@
 Constraint margins: by how much limits are tightened at the points of the problem.
 
 A motion that keeps its limits at the points may exceed them slightly between. At the points beside
-such a place, and nowhere else, margins are enlarged by the excess, and the problem is solved
-again.
+such a place, and nowhere else, margins are enlarged by the excess, and the problem is solved again
+(an exchange method: Hettich & Kortanek, SIAM Review 35, 1993).
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 
-LARGER = 1.2                # enlargement of a margin, over the excess
-MOST_VELOCITY_MARGIN = 0.1  # part of a velocity limit
+LARGER = 1.2                # enlargement of a margin, over the excess; chosen
+MOST_VELOCITY_MARGIN = 0.1  # part of a velocity limit; chosen
 
 
 class Margins(NamedTuple):

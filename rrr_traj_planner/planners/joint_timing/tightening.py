@@ -15,7 +15,8 @@
 """
 Joint motions that keep their limits between the points too: margins, starts, the best so far.
 
-Each round starts from the last point near the central path that satisfies its margins.
+Each round starts from the last point near the central path that satisfies its margins
+(an exchange method: Hettich & Kortanek, SIAM Review 35, 1993).
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Ou
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 
-# Without unit.
+# Chosen values, without unit.
 SCHEDULE = Schedule(rounds=20, tolerance=1e-3, patience=4, growth=2.0)
 PARTS_OF_MARGINS = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)  # tried in turn where the whole is infeasible
 # Retries with a larger barrier parameter when no stored iterate satisfies the new margins:

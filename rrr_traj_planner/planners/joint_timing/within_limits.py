@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motions of ramps fitted to their limits exactly, by peaks in closed form instead of samples."""
+"""
+Motions of ramps fitted to their limits exactly, by peaks in closed form instead of samples.
+
+Time scaling: Hollerbach, Dynamic scaling of manipulator trajectories, 1984.
+"""
 
 from __future__ import annotations
 
@@ -24,6 +28,8 @@ from rrr_traj_planner.core.trajectory.torque import peak_torque
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 from rrr_traj_planner.planners.torque_scaling import torque_time_scale
+
+TIME_ROUNDING = 1e-12  # s, between a via time and the same knot of a profile
 
 
 def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
@@ -83,7 +89,7 @@ def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
 
     """
     beyond = np.zeros((2, len(task.points) - 1, 3))
-    starts = trajectory.via_times[1:-1] - 1e-12
+    starts = trajectory.via_times[1:-1] - TIME_ROUNDING
     limits = task.limits
     for j, profile in enumerate(trajectory.profiles):
         # a piece moves at most its peak velocity times its duration

@@ -44,7 +44,7 @@ from rrr_traj_planner.planners.transitions.transition_cruise import (
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of, ViaProblem
 
-# Without unit.
+# Chosen values, without unit.
 BEAM = 24                  # partial solutions that are retained
 # Durations tried, over the least one from rest to rest: finely spaced near it, up to very slow.
 GRID = np.concatenate((np.geomspace(0.4, 2.5, 36), np.geomspace(2.8, 60.0, 12)))
@@ -53,6 +53,7 @@ REFINING_PASSES = 16       # of coordinate descent, at most
 REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])  # over the pass's step
 FIRST_STEP = 0.08          # of the first pass, as a part of a duration
 STEP_REDUCTION = 0.5       # factor on it from pass to pass
+SHORTEST = 1e-6            # s, duration in place of a least one of 0
 SCALINGS = np.geomspace(1.0, 30.0, 40)  # of the durations, tried in turn until feasible
 
 
@@ -108,7 +109,7 @@ def _fastest(task: JointTask, problem: ViaProblem) -> Array:
 def _beam_search(problem: ViaProblem, should_stop: ShouldStop) -> Array:
     """Return durations by beam search; the longest of the grid where no beam is left."""
     D, law, limit = problem.displacements, problem.law, problem.max_velocity
-    grids = np.maximum(problem.rest_to_rest_times(), 1e-6)[:, np.newaxis] * GRID
+    grids = np.maximum(problem.rest_to_rest_times(), SHORTEST)[:, np.newaxis] * GRID
     v, elapsed, chosen = np.zeros((1, 3)), np.zeros(1), np.zeros((1, 0))
     for k in range(len(D) - 1):
         should_stop()
@@ -164,7 +165,7 @@ def _total(problem: ViaProblem, durations: Array) -> Array:
                             problem.displacements[k])
         allowed &= ((v >= problem.lowest[k]) & (v <= problem.highest[k])).all(axis=-1)
         v = np.nan_to_num(v)
-    grid = np.maximum(problem.rest_to_rest_times()[-1], 1e-6) * GRID
+    grid = np.maximum(problem.rest_to_rest_times()[-1], SHORTEST) * GRID
     last = stopping_time(problem.law, problem.max_velocity, v, problem.displacements[-1], grid)
     return np.where(allowed, durations[:, :-1].sum(axis=1) + last, np.inf)
 

@@ -49,6 +49,7 @@ from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of, ViaProblem
 
 NEWTON_STEPS = 60  # at most: convergence is quadratic, slower near a double root
+LAST_DIGIT = 1e-15  # part of a duration, step at which Newton's method has converged
 
 
 @register('cycloid_approach_b', misses_via_points=True, passing=ViaPointBehaviour('blend'))
@@ -128,6 +129,6 @@ def _lines(law: TransitionLaw, D: Array, durations: Array) -> Array | None:
             T[k] -= step
             if T[k] <= 0.0:
                 return None
-            if step <= 1e-15 * T[k]:
+            if step <= LAST_DIGIT * T[k]:
                 break
     return T

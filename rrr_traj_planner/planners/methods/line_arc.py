@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`line_arc`: lines and arcs of circles through every via point, as fast as the limits allow."""
+"""
+`line_arc`: lines and arcs of circles through every via point, as fast as the limits allow.
+
+The path is that of thesis 5.4.2; its timing: Bobrow, Dubowsky & Gibson, Time-optimal control of
+robotic manipulators along specified paths, IJRR 4, 1985.
+"""
 
 from __future__ import annotations
 

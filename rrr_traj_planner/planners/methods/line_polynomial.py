@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""`line_polynomial`: lines and zones of continuous curvature, as fast as the limits allow."""
+"""
+`line_polynomial`: lines and zones of continuous curvature, as fast as the limits allow.
+
+Zones: thesis (3.18); the timing: Bobrow, Dubowsky & Gibson, Time-optimal control of robotic
+manipulators along specified paths, IJRR 4, 1985.
+"""
 
 from __future__ import annotations
 

@@ -17,8 +17,9 @@
 
 The acceleration is a sequence of the thesis's half-period ramps (6.3), with constant jerk around
 the middle where the jerk limit is active (`core.motion_laws.ramps`). Node accelerations, via
-velocities and durations are optimised together (direct transcription) by a feasible interior-point
-method (`solver.interior_point`), starting from a motion with stops at every via point.
+velocities and durations are optimised together (direct transcription: Betts, Practical Methods for
+Optimal Control, 2010) by a feasible interior-point method (`solver.interior_point`), starting from
+a motion with stops at every via point.
 """
 
 from __future__ import annotations
@@ -38,6 +39,7 @@ from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.solver.ramps import grid_of
 from rrr_traj_planner.planners.tasks import JointTask
 
+# Chosen values; numbers of ramps, and parts without unit.
 RAMPS = 20              # in a segment
 RAMPS_ALONE = 32        # in a motion's only segment, with both acceleration and deceleration
 MOST_RAMPS = 40         # in a segment where the jerk limit allows short ramps
@@ -72,9 +74,10 @@ def plan(task: JointTask) -> Trajectory:
         If no path between two via points is found along which the motors can hold the arm.
 
     """
-    limits, cruise = limits_for_sampling(task.model, task.limits, task.points, task.sample_period)
+    limits, constant_jerk = limits_for_sampling(
+        task.model, task.limits, task.points, task.sample_period)
     task = replace(task, limits=limits)
-    grid = grid_of(_ramps(task), cruise)
+    grid = grid_of(_ramps(task), constant_jerk)
     found = fastest(task, grid) if task.durations is None else prescribed(
         task, grid, task.durations)
     if found is None:

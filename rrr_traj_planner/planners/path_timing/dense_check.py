@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Dense check of a motion along a path: by how much it exceeds limits between the points."""
+"""
+Dense check of a motion along a path: by how much it exceeds limits between the points.
+
+Time scaling: Hollerbach, Dynamic scaling of manipulator trajectories, 1984.
+"""
 
 from __future__ import annotations
 
@@ -87,7 +91,7 @@ def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> DenseChe
         With CHECKS samples between two points.
 
     """
-    N, n, ramp = len(m.T), problem.grid.n, _unit_ramp(problem.grid.shape.cruise)
+    N, n, ramp = len(m.T), problem.grid.n, _unit_ramp(problem.grid.shape.constant_jerk_fraction)
     arrays = Arena({'excess': (N, 2 * n + 1, QUANTITIES), 'bounds': (QUANTITIES,),
                     'scratch': ((CHECKED + 1) * (2 * n * CHECKS + 1) + n + 1,)})
     arrays['bounds'][:], arrays['excess'][:] = bounds, 0.0
@@ -126,8 +130,8 @@ def least_time_scale(terms: PathTerms, at: Progress, bounds: Array) -> float:
 
 
 @lru_cache(maxsize=64)
-def _unit_ramp(cruise: float) -> Array:
-    """Return a unit ramp's q, qd, qdd and jerk at all samples from its start, (2 CHECKS, 4)."""
-    values = np.stack(RampShape(cruise)(np.arange(2 * CHECKS) / (2 * CHECKS)), axis=1)
+def _unit_ramp(fraction: float) -> Array:
+    """Return a unit ramp's q, qd, qdd and jerk at all samples, (2 CHECKS, 4)."""
+    values = np.stack(RampShape(fraction)(np.arange(2 * CHECKS) / (2 * CHECKS)), axis=1)
     values.setflags(write=False)
     return values

@@ -95,7 +95,7 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     table = PathTable(task.arm_path)
     task.should_stop()
     N = len(table.ends) - 1
-    grid = grid_of(_ramps(N), task.cruise)
+    grid = grid_of(_ramps(N), task.constant_jerk_fraction)
     _check_held(task, table)
     steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
     task.should_stop()

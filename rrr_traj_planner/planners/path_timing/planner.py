@@ -39,17 +39,17 @@ from rrr_traj_planner.planners.tasks import CartesianTask
 Family = Callable[[Array, ArrayLike, ShouldStop, ArrayLike], CartesianPath]
 Design = Callable[[Array, ArrayLike], CartesianPath]  # of points and radii
 
-# Parts of the planning time:
+# Parts of the planning time; chosen:
 DESIGN = 0.3  # for the first path; its timing has the rest
 AGAIN = 0.4   # after which no other path is timed
 
-# Radii of zones, and what smaller ones must gain:
+# Radii of zones, and what smaller ones must gain; chosen:
 LEAST_PART = 1e-3  # of the largest radii: the path is then practically the polyline
 HALVED = 0.5       # factor where the arm cannot follow larger ones
 SMALLER = 0.7      # factor from one path to the next that is tried
 WORTH_IT = 1e-3    # part of the motion's duration
 
-STEP = 1e-3  # rad/s^2, steps of joint acceleration above which the note tells of them
+STEP = 1e-3  # rad/s^2, steps of joint acceleration above which the note tells of them; chosen
 
 
 def along(task: CartesianTask, family: Family) -> PathTrajectory:
@@ -187,10 +187,10 @@ def _path_task(task: CartesianTask, path: CartesianPath) -> PathTask:
         joints = check_workspace(
             task.model, task.limits, path, task.posture, task.start, task.should_stop)
     arm_path = ArmPath(task.model, task.limits, path, task.posture, joints.start)
-    limits, cruise = limits_for_sampling(
+    limits, fraction = limits_for_sampling(
         task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
     return PathTask(
-        arm_path, limits, cruise, task.max_tip_speed, task.steady_zones, task.should_stop)
+        arm_path, limits, fraction, task.max_tip_speed, task.steady_zones, task.should_stop)
 
 
 def _note(task: CartesianTask, timed: Timed, cut_short: bool) -> str:

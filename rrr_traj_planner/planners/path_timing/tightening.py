@@ -16,7 +16,8 @@
 Motions along a path that keep their limits between the points too.
 
 The first round is rough, under the limits themselves; each later one starts from a point near the
-central path of the one before, and its constraints are shifted from those limits to its own.
+central path of the one before, and its constraints are shifted from those limits to its own
+(an exchange method: Hettich & Kortanek, SIAM Review 35, 1993).
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 from rrr_traj_planner.planners.tolerances import START_SCALING
 
-# Without unit.
+# Chosen values, without unit.
 SCHEDULE = Schedule(rounds=8, tolerance=2e-3, patience=1, growth=1.7)
 ROUGH_GAP = 0.3         # part of the total time: the gap to which the first round converges
 CENTRES_BACK = 3        # which of the last centres a round with larger margins starts from

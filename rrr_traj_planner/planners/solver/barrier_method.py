@@ -32,7 +32,8 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 
-# Without unit. RELATIVE_GAP and POLISHED decide accuracy, the others the number of steps.
+# Chosen values, without unit. RELATIVE_GAP and POLISHED decide accuracy, the others the number of
+# steps.
 RELATIVE_GAP = 2e-7        # of the objective, at which the method ends
 CENTRED = 0.5              # Newton decrement squared at which the weight is raised,
 POLISHED = 1e-7            # and at the end: the answer then varies smoothly with the task

@@ -46,7 +46,7 @@ from rrr_traj_planner.planners.solver.line_search import (
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
-# Without unit. RELATIVE_GAP decides accuracy, the others the number of iterations.
+# Chosen values, without unit. RELATIVE_GAP decides accuracy, the others the number of iterations.
 RELATIVE_GAP = 1e-3          # of the objective, at which the method ends
 BARRIER_REDUCTION = 0.1      # factor on the barrier parameter
 CENTRED = 0.1                # predicted decrease / (constraints * barrier) at which it is lowered

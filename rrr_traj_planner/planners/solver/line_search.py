@@ -34,7 +34,7 @@ from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE
 from rrr_traj_planner.planners.solver.timing_problem import Step, TimingProblem
 
-# Without unit; sizes are parts of the whole Newton step.
+# Chosen values, without unit; sizes are parts of the whole Newton step.
 BACKTRACKS = 30              # reductions of one step's size, at most
 SUFFICIENT_DECREASE = 1e-4   # part of the predicted decrease of the merit (Armijo)
 SHORT = 0.05                 # size up to which a step is corrected, then replaced by the next

@@ -16,8 +16,9 @@
 Motions whose acceleration is a sequence of ramps between node values.
 
 Each segment between via points has n ramps of equal duration. The node accelerations are the
-unknowns: position and velocity are linear in them, acceleration keeps its limits everywhere if it
-does at the nodes, and jerk is continuous, zero at every node, its peaks known in closed form.
+unknowns (direct transcription: Betts, Practical Methods for Optimal Control, 2010): position and
+velocity are linear in them, acceleration keeps its limits everywhere if it does at the nodes, and
+jerk is continuous, zero at every node, its peaks known in closed form.
 """
 
 from __future__ import annotations
@@ -50,13 +51,13 @@ class States(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def grid_of(n: int, cruise: float) -> Grid:
+def grid_of(n: int, constant_jerk_fraction: float) -> Grid:
     """
     Return the grid of n ramps, computed once.
 
     Parameters
     ----------
-    n, cruise
+    n, constant_jerk_fraction
         As of `Grid`.
 
     Returns
@@ -65,7 +66,7 @@ def grid_of(n: int, cruise: float) -> Grid:
         Not to be changed.
 
     """
-    return Grid(n, cruise)
+    return Grid(n, constant_jerk_fraction)
 
 
 class Grid:
@@ -76,7 +77,7 @@ class Grid:
     ----------
     n : int
         Number of ramps, at least 4.
-    cruise : float
+    constant_jerk_fraction : float
         Part of each during which jerk is constant; 0: the thesis's half-periods (6.3).
 
     Attributes
@@ -95,8 +96,8 @@ class Grid:
 
     """
 
-    def __init__(self, n: int, cruise: float = 0.0) -> None:
-        self.n, self.shape = n, RampShape(cruise)
+    def __init__(self, n: int, constant_jerk_fraction: float = 0.0) -> None:
+        self.n, self.shape = n, RampShape(constant_jerk_fraction)
         one, whole = np.eye(n + 1), self.shape(1.0)[0]
         qd, q = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
         for j in range(n):

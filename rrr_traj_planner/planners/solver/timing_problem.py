@@ -15,10 +15,11 @@
 """
 The least-time problem over segments between via points, as the compiled kernels see it.
 
-The decision variables are those of `ramps` (direct transcription). Bounds hold for the states at
-the points of every segment, general constraints for functions of a state: torques, or the joints'
-velocities, accelerations, jerks and torques while the tip follows a path. Durations may be free,
-fixed or in fixed proportions, and have lower bounds.
+The decision variables are those of `ramps` (direct transcription: Betts, Practical Methods for
+Optimal Control, 2010). Bounds hold for the states at the points of every segment, general
+constraints for functions of a state: torques, or the joints' velocities, accelerations, jerks and
+torques while the tip follows a path. Durations may be free, fixed or in fixed proportions, and
+have lower bounds.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
-# Without unit; parts are of the duration.
+# Chosen values, without unit; parts are of the duration.
 LEAST_PART, MOST_PART = 1e-7, 0.49  # of lift-off: the cruise has a positive duration
 USUAL_PART = 1.0 / 3.0  # preferred among parts of equal time, by
 PREFERENCE = 1e-8       # penalty on the squared logarithm of their ratio, as a part of the time

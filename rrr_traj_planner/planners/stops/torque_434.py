@@ -41,6 +41,7 @@ from scipy.optimize import minimize
 # Starts beside the symmetric law: constant jerk, and either end longer than the other.
 STARTS = (Lin434(0.25, 0.25, 8.0, -8.0), Lin434(0.2, 0.45, 5.0, -0.1),
           Lin434(0.45, 0.2, 0.1, -5.0))
+# Chosen values, without unit.
 POINTS = np.linspace(0.0, 1.0, 9)  # samples of torque in lift-off, cruise and set-down each
 LEAST_CRUISE = 0.02                # part of the duration
 PARTS = (np.log(1e-5), np.log(0.97))  # bounds on the logarithm of lift-off's and set-down's part

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-The fastest motion through consecutive segments.
+The fastest motion through consecutive segments of transitions and cruises (thesis 4.2.3).
 
 Durations and via velocities are optimised together under the velocity, acceleration and jerk
 limits; segments whose torque exceeds its limits are then lengthened, and the others optimised
@@ -37,11 +37,11 @@ from rrr_traj_planner.planners.transitions.motion import (
 )
 from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
 
-# Numbers of rounds, at most:
+# Numbers of rounds, at most; chosen:
 STRAIGHTENING_ROUNDS = 5   # of reducing via velocities where gravity blocks the path
 SLOWING_ROUNDS = 8         # of lengthening the segments that lack torque
 OVERSHOOT_ROUNDS = 8       # of reducing via velocities where a joint overshoots its range
-BACKWARD = 1.0, 0.5        # exponents tried for shortening a segment lengthened too much
+BACKWARD = 1.0, 0.5        # exponents tried for shortening a segment lengthened too much; chosen
 
 
 def fastest(task: JointTask, problem: ViaProblem, least_T: Array | None) -> TimedMotion:

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motions through consecutive segments of given or least durations, slowed as torque requires."""
+"""
+Motions through consecutive segments of given or least durations, slowed as torque requires.
+
+All joints take the time of the slowest (thesis 4.2.3).
+"""
 
 from __future__ import annotations
 

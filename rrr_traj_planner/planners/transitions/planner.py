@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The planner of transition, cruise, transition in every segment, for any transition function."""
+"""The planner of transition, cruise, transition in every segment (thesis 4.2.3)."""
 
 from __future__ import annotations
 

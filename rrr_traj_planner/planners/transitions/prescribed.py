@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A motion through consecutive segments whose durations are prescribed."""
+"""A motion through consecutive segments (thesis 4.2.3) whose durations are prescribed."""
 
 from __future__ import annotations
 

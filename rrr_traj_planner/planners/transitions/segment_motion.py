@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The transitions and the cruise of a segment, from end velocities, displacement and duration."""
+"""
+The transitions and the cruise of a segment, from end velocities, displacement and duration.
+
+Thesis 4.2.3 and figure 4.5: transition, two transitions, or two transitions with a cruise between.
+"""
 
 from __future__ import annotations
 

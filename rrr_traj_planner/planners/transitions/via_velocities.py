@@ -32,7 +32,8 @@ from rrr_traj_planner.planners.solver.barrier_method import minimise, Solution
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
-START_MARGIN = 1.3  # the start's durations over the least ones from rest to rest
+START_MARGIN = 1.3   # the start's durations over the least ones from rest to rest; chosen
+LEAST_FACTOR = 1e-6  # of the start on prescribed durations, where nothing moves; chosen
 
 
 def least_time(problem: ViaProblem, least_T: Array | None = None,
@@ -83,7 +84,8 @@ def least_time_scale(problem: ViaProblem, durations: Array) -> tuple[float, Solu
 
     """
     n = len(problem.displacements)
-    factor = START_MARGIN * max(float((problem.rest_to_rest_times() / durations).max()), 1e-6)
+    least = float((problem.rest_to_rest_times() / durations).max())
+    factor = START_MARGIN * max(least, LEAST_FACTOR)
     solution = minimise(ViaBarrier(problem, np.zeros((n - 1, 3)), factor * durations,
                                    proportions=durations), never)
     return float(solution.durations[0] / durations[0]), solution

@@ -51,7 +51,7 @@ def test_without_cruise_it_is_the_thesis_s_half_period(seed):
 
 
 def test_a_ramp_is_a_half_period_if_nothing_is_said():
-    assert RampShape().cruise == 0.0
+    assert RampShape().constant_jerk_fraction == 0.0
     assert RampShape().peak_jerk == pytest.approx(0.5 * np.pi, **EXACT)
 
 
@@ -135,5 +135,6 @@ def test_stretching_runs_through_the_same_positions(cruise):
 
 @pytest.mark.parametrize('cruise', [-0.1, 1.0, np.nan])
 def test_a_cruise_that_leaves_no_time_to_rise_is_refused(cruise):
-    with pytest.raises(InvalidInputError, match=r'^cruise is .*, must be in \[0, 1\)$'):
+    with pytest.raises(InvalidInputError, match=(
+            r'^constant_jerk_fraction is .*, must be in \[0, 1\)$')):
         RampShape(cruise)

@@ -295,7 +295,8 @@ def test_position_velocity_and_acceleration_are_continuous_across_knots():
 
 def steepest_jerk(ramps):
     """Return how fast jerk changes: it rises as a sine does, in (1 - cruise) / 2 of a ramp."""
-    return (ramps.peaks()[1] * np.pi / ((1.0 - ramps.shape.cruise) * ramps.duration)).max()
+    rising = (1.0 - ramps.shape.constant_jerk_fraction) * ramps.duration
+    return (ramps.peaks()[1] * np.pi / rising).max()
 
 
 def test_jerk_is_zero_at_every_knot_and_continuous():
@@ -316,7 +317,7 @@ def test_jerk_cruises_only_where_every_joint_s_own_limit_shapes_the_motion():
     for m in outcomes()[0].values():
         if m.plan.via_times[-1] > 0.0:
             cruises[bool(np.isfinite(m.task.limits.max_jerk).all())] |= {
-                p.pieces.shape.cruise for p in m.plan.trajectory.profiles}
+                p.pieces.shape.constant_jerk_fraction for p in m.plan.trajectory.profiles}
     assert cruises[False] == {0.0}
     assert CRUISE in cruises[True]
 

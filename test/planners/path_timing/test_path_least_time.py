@@ -113,7 +113,7 @@ def test_a_motion_that_is_cut_short_keeps_its_limits_and_goes_on(seed, iteration
         return left[0] < 0
 
     found = fastest_along(PathTask(
-        case.arm_path, case.limits, case.cruise, np.inf, False, should_stop))
+        case.arm_path, case.limits, case.constant_jerk_fraction, np.inf, False, should_stop))
     m = Measured(case, None, found.trajectory)
     assert m.use().max() <= 1.0 + 1e-6
     assert m.motion.progress(m.t)[1].min() >= -1e-12
