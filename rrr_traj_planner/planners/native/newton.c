@@ -16,7 +16,6 @@
  * its duration (Schur complement), free durations are eliminated, and the velocities and
  * accelerations at the via points follow from a banded system. The cost is linear in ramps and
  * segments. */
-#include "band_cholesky.h"
 #include "timing_problem.h"
 
 #include <math.h>
@@ -32,11 +31,6 @@
 #include "riccati.inc"
 #undef J
 #undef FRONT
-
-static const double FIXED_PIVOT = 1e60;  /* diagonal entry of a velocity that does not change */
-/* Multiples of the diagonal added in turn until the band is positive definite (inertia correction:
- * Waechter & Biegler 2006, 3.1). */
-static const double REGULARISATION[] = {0.0, 1e-9, 1e-6, 1e-3, 1.0};
 
 /* With bounds alone the coordinates are coupled through the durations only. */
 static int is_decoupled(const Problem *p)
@@ -102,76 +96,6 @@ static Scratch scratch_of(const Problem *p)
     s.via_step = s.inner + p->n;
     s.band = s.via_step + (N + 1) * 2 * p->J;
     return s;
-}
-
-/* The banded system of velocities and accelerations at the via points, with two right-hand sides:
- * the gradient, and the coupling to the common factor. */
-static void assemble_via_points(const Problem *p, const double *S, const double *r, double *band,
-                                double *right)
-{
-    const int N = p->N, half = 2 * p->J, B = 2 * half, W = B + 1, w = 2 * half;
-    memset(band, 0, (size_t)(N - 1) * half * w * sizeof(double));
-    for (int k = 0; k < N - 1; ++k) {
-        const double *one = S + (size_t)k * W * W, *next = one + (size_t)W * W;
-        for (int i = 0; i < half; ++i) {
-            double *column = band + ((size_t)k * half + i) * w;
-            for (int c = i; c < half; ++c)
-                column[c - i] = one[(half + c) * W + half + i] + next[c * W + i];
-            if (k < N - 2)
-                for (int c = 0; c < half; ++c)
-                    column[half + c - i] = next[(half + c) * W + i];
-            right[2 * (k * half + i)] = r[(size_t)k * W + half + i] + r[(size_t)(k + 1) * W + i];
-            right[2 * (k * half + i) + 1] = p->proportions[k] * one[(half + i) * W + B]
-                + p->proportions[k + 1] * next[i * W + B];
-            if (i < p->J && p->fixed_velocity[k * p->J + i])
-                column[0] = FIXED_PIVOT;
-        }
-    }
-}
-
-/* Solve a system of m unknowns, band and right-hand sides in a row, regularised as far as
- * necessary: by its diagonal alone where nothing else helps. */
-static void solve_regularised(const double *band, double *solved, int m, int w)
-{
-    const size_t trials = sizeof REGULARISATION / sizeof *REGULARISATION;
-    const size_t all = (size_t)m * (w + 2);
-    double *right = solved + (size_t)m * w;
-    for (size_t trial = 0; trial < trials; ++trial) {
-        memcpy(solved, band, all * sizeof(double));
-        for (int c = 0; c < m; ++c)
-            solved[(size_t)c * w] += REGULARISATION[trial] * fabs(band[(size_t)c * w]);
-        if (!solve_band(solved, right, m, w, 2))
-            return;
-    }
-    memcpy(solved, band, all * sizeof(double));
-    for (int c = 0; c < m; ++c)
-        for (int s = 0; s < 2; ++s)
-            right[2 * c + s] /= fabs(band[(size_t)c * w]);
-}
-
-/* Solve for the steps of velocities and accelerations at the via points (N + 1, 2 J); returns the
- * step of the factor common to the durations of fixed proportions. */
-static double solve_via_points(const Problem *p, const Scratch *s, double common_hessian,
-                               double common_gradient)
-{
-    const int N = p->N, half = 2 * p->J, m = (N - 1) * half, w = 2 * half;
-    double *right = s->band + (size_t)m * w, *solved = right + 2 * m;
-    memset(s->via_step, 0, (size_t)(N + 1) * half * sizeof(double));
-    if (m == 0)
-        return common_hessian != 0.0 ? -common_gradient / common_hessian : 0.0;
-    assemble_via_points(p, s->S, s->right, s->band, right);
-    solve_regularised(s->band, solved, m, w);
-    const double *x = solved + (size_t)m * w;
-    double by_r = 0.0, by_common = 0.0, common = 0.0;
-    for (int c = 0; c < m; ++c) {
-        by_r += right[2 * c + 1] * x[2 * c];
-        by_common += right[2 * c + 1] * x[2 * c + 1];
-    }
-    if (common_hessian != 0.0)
-        common = -(common_gradient - by_r) / (common_hessian - by_common);
-    for (int c = 0; c < m; ++c)
-        s->via_step[half + c] = -(x[2 * c] + x[2 * c + 1] * common);
-    return common;
 }
 
 /* Condense a segment whose coordinates are coupled through its duration only. */
@@ -313,7 +237,8 @@ int newton_step(const Problem *p, const double *Q, const double *r, const double
     if (condense_segments(p, &s, Q, r, r_T))
         return 1;
     eliminate_durations(p, &s, &common_hessian, &common_gradient);
-    const double common = solve_via_points(p, &s, common_hessian, common_gradient);
+    const double common = solve_via_points(p, s.S, s.right, common_hessian, common_gradient,
+                                           s.via_step, s.band);
     *predicted_decrease = expand_segments(p, &s, r, r_T, common, step, dz);
     for (int k = 0; k < p->N - 1; ++k)
         for (int j = 0; j < p->J; ++j) {

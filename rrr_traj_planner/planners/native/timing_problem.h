@@ -146,6 +146,13 @@ void weighted_gradient(const Problem *p, const double *weights, double *gradient
                        double *gradient_T);
 double timing_log_sum(const Problem *p, const double *slack);
 
+/* via_points.c: from the condensed segments S (N, 4 J + 1, 4 J + 1) and right-hand sides r, the
+ * steps of velocities and accelerations at the via points, (N + 1, 2 J), and, returned, that of
+ * the factor common to the durations of fixed proportions. */
+double solve_via_points(const Problem *p, const double *S, const double *r,
+                        double common_hessian, double common_gradient, double *via_step,
+                        double *band);
+
 /* newton.c: the Newton step and the changes of the states along it, (N, P, Z); the predicted
  * decrease is minus the product of gradient and step. Returns 1 where the system is singular, else
  * 0. */

@@ -44,7 +44,7 @@ from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.planners.methods import time_optimal
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
-from rrr_traj_planner.planners.sampling_jerk_limit import CRUISE
+from rrr_traj_planner.planners.sampling_jerk_limit import CONSTANT_JERK_FRACTION
 from rrr_traj_planner.planners.tasks import JointTask
 
 NONE = np.full(3, np.inf)
@@ -319,7 +319,7 @@ def test_jerk_cruises_only_where_every_joint_s_own_limit_shapes_the_motion():
             cruises[bool(np.isfinite(m.task.limits.max_jerk).all())] |= {
                 p.pieces.shape.constant_jerk_fraction for p in m.plan.trajectory.profiles}
     assert cruises[False] == {0.0}
-    assert CRUISE in cruises[True]
+    assert CONSTANT_JERK_FRACTION in cruises[True]
 
 
 @pytest.mark.parametrize(('values', 'limit'), LIMITED)
