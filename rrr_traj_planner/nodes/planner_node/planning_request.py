@@ -120,8 +120,9 @@ def _check_via_points(message: PlanTrajectory.Request, config: PlannerConfig) ->
 def _check_range(field: str, value: float, low: float, high: float, unit: str) -> None:
     """Check a field that is in a range, or 0 for the node's default."""
     if value != 0.0 and not low <= value <= high:
-        raise InvalidInputError('{} is {} {}, must be 0 or in [{}, {}] {}'.format(
-            field, format_distinct(value, low, high)[0], unit, *format_distinct(value, low, high)[1:], unit))
+        given, least, most = format_distinct(value, low, high)
+        raise InvalidInputError(
+            f'{field} is {given} {unit}, must be 0 or in [{least}, {most}] {unit}')
 
 
 def _or_default(value: float, default: float) -> float:
