@@ -15,7 +15,7 @@
 """
 Tolerances and margins that several planners share, without unit.
 
-Chosen so that what a planner allows stays within the 1e-6 of a limit that the final check allows.
+Chosen; what exceeds a limit by LIMIT_ROUNDING or TORQUE_TOLERANCE passes the final check, 1e-6.
 """
 
 LIMIT_ROUNDING = 1e-7    # part of a limit up to which exceeding it is rounding

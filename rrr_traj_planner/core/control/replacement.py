@@ -38,7 +38,7 @@ from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.states import Desired
 from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
-from rrr_traj_planner.core.stopping.point_to_point import moved_on
+from rrr_traj_planner.core.stopping.point_to_point import extended_by_move
 from rrr_traj_planner.core.stopping.stop import Stop, stop
 from rrr_traj_planner.core.stopping.task import from_state
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, leaves
@@ -267,7 +267,7 @@ def _gone_to(takeover: Takeover, motion: ReferenceTrajectory) -> Replacement:
                                    nanoseconds(takeover.now), qd, qdd)
         return Replacement(_joined(takeover, late, 0))
     stopped, warnings = _stopped(takeover)
-    moved, torque = moved_on(stopped, motion.final, takeover.limits, takeover.model)
+    moved, torque = extended_by_move(stopped, motion.final, takeover.limits, takeover.model)
     unmet = tuple(
         f'moving to the last point requires {torque[i]:.1f} N m at {name}, limit '
         f'{takeover.limits.max_effort[i]:.1f} N m: holding position'

@@ -132,7 +132,7 @@ def gauss(half_width: float = HALF_WIDTH, order: int | None = None) -> Transitio
     half_width = _width(half_width)
     if order is None:
         steepest = min(1.0, half_width)
-        return _lowered('gauss', half_width, steepest, (
+        return _truncated('gauss', half_width, steepest, (
             _gauss, _first_integral, _second_integral, _slope))
     series = _series(order)
     slope = series.deriv()
@@ -142,22 +142,22 @@ def gauss(half_width: float = HALF_WIDTH, order: int | None = None) -> Transitio
         raise InvalidInputError(
             f'order {order} of the series does not fall up to {half_width} sigma')
     first = series.integ()
-    return _lowered(f'gauss of order {order}', half_width, steepest,
-                    (series, first, first.integ(), slope))
+    return _truncated(f'gauss of order {order}', half_width, steepest,
+                      (series, first, first.integ(), slope))
 
 
-def _lowered(name: str, k: float, steepest: float,
-             curves: tuple[Curve, Curve, Curve, Curve]) -> TransitionShape:
+def _truncated(name: str, k: float, steepest: float,
+               curves: tuple[Curve, Curve, Curve, Curve]) -> TransitionShape:
     """Return the shape of an even function of u, its odd and even integrals and its slope."""
     value, slope = curves[0], curves[3]
-    lowered = _Lowered(k, *curves)
+    truncated = _Truncated(k, *curves)
     return TransitionShape(
-        name, lowered.acceleration, lowered.velocity, lowered.position, lowered.jerk,
-        peak_acceleration=lowered.width / lowered.area * (float(value(0.0)) - lowered.end),
-        peak_jerk=lowered.width ** 2 / lowered.area * abs(float(slope(steepest))))
+        name, truncated.acceleration, truncated.velocity, truncated.position, truncated.jerk,
+        peak_acceleration=truncated.width / truncated.area * (float(value(0.0)) - truncated.end),
+        peak_jerk=truncated.width ** 2 / truncated.area * abs(float(slope(steepest))))
 
 
-class _Lowered:
+class _Truncated:
     """An even function of u, lowered to 0 at u = -k and k, over s in [0, 1]; can be pickled."""
 
     def __init__(self, k: float, value: Curve, first: Curve, second: Curve,

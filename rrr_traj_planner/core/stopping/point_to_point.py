@@ -58,8 +58,8 @@ class Move(NamedTuple):
     peak_torque: Array
 
 
-def moved_on(motion: ReferenceTrajectory, target: Array, limits: JointLimits,
-             model: RobotModel) -> Move:
+def extended_by_move(motion: ReferenceTrajectory, target: Array, limits: JointLimits,
+                     model: RobotModel) -> Move:
     """
     Return a motion that ends at rest, and then a move to a target.
 

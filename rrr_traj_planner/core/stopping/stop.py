@@ -33,7 +33,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.stopping.candidates import Indices, JointBrakes, Slowdowns
 from rrr_traj_planner.core.stopping.joint_brake import greatest_deceleration
-from rrr_traj_planner.core.stopping.point_to_point import moved_on, quickest
+from rrr_traj_planner.core.stopping.point_to_point import extended_by_move, quickest
 from rrr_traj_planner.core.stopping.stop_warnings import (
     deceleration_warnings,
     range_warnings,
@@ -162,7 +162,7 @@ def stop(motion: ReferenceTrajectory, now: float, limits: JointLimits, model: Ro
         warnings += more
     target = np.clip(found.final, limits.min_position, limits.max_position)
     if np.abs(target - found.final).max() > POSITION_TOLERANCE:
-        found = moved_on(found, target, limits, model).motion
+        found = extended_by_move(found, target, limits, model).motion
     found = ReferenceTrajectory(found.knots, found.coefficients, target, found.origin_ns)
     return Stop(found, tuple(warnings))
 
