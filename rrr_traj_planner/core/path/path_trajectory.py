@@ -201,7 +201,7 @@ class PathTrajectory(Trajectory):
 
     @cached_property
     def step_times(self) -> Array:
-        """Times at which joins with a step of curvature are passed [s]; see `Trajectory`."""
+        """Return when joins with a step of curvature are passed [s]; see `Trajectory`."""
         stepping = self.acceleration_steps().max(axis=1, initial=0.0) > LEAST_STEP
         found = np.asarray(self.join_times[stepping])
         make_read_only((found,))
