@@ -24,7 +24,8 @@ import numpy as np
 import pinocchio
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.urdf import urdf
-from rrr_traj_planner.core.dynamics import equations, forward_dynamics, inverse_dynamics
+from rrr_traj_planner.core.dynamics import equations
+from rrr_traj_planner.core.dynamics.rigid_body import forward_dynamics, inverse_dynamics
 from tasks import ARM
 
 SEED = 11

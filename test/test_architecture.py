@@ -14,8 +14,11 @@
 
 """The rules of layers, folders and files: who imports whom, and how much is in one."""
 
+import ast
 from collections import Counter
 from graphlib import CycleError, TopologicalSorter
+from importlib import import_module
+from importlib.util import find_spec
 import sys
 
 from helpers.package import FILES, imports_of, layer_of, LAYERS, MODULES, modules_of, PACKAGE
@@ -112,3 +115,19 @@ def test_a_circle_of_folders_would_be_found():
 def test_the_files_of_methods_are_the_planner_ids():
     names = [m.split('.')[-1] for m in MODULES if '.planners.methods.' in m]
     assert sorted(set(names) - {'__init__'}) == planner_ids()
+
+
+def test_benchmarks_import_only_what_the_package_has():
+    """No test runs them: a renamed function would be noticed by the next user of `make bench`."""
+    missing = []
+    for file in sorted((ROOT / 'benchmarks').glob('*.py')):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if not isinstance(node, ast.ImportFrom) or not node.module.startswith(PACKAGE):
+                continue
+            module = import_module(node.module)
+            names = {f'{node.module}.{alias.name}' for alias in node.names
+                     if not hasattr(module, alias.name)}
+            is_package = hasattr(module, '__path__')
+            missing += [f'{file.name}: {name}' for name in names
+                        if not (is_package and find_spec(name))]
+    assert not missing
