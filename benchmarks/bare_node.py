@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A node that serves `plan_trajectory` and cannot plan: how fast any such node can start."""
+"""
+A node that serves `plan_trajectory` and cannot plan: how fast any such node can start.
+
+It sends responses again that DDS drops, as our nodes do: see `ServiceNode`.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +25,8 @@ from contextlib import suppress
 import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
-from rclpy.node import Node
 from rclpy.signals import uninstall_signal_handlers
+from rrr_traj_planner.nodes.process.service_node import ServiceNode
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
 
@@ -44,7 +48,7 @@ def spin_until_signal(executor: SingleThreadedExecutor) -> None:
 def main() -> None:
     """Spin until SIGINT."""
     rclpy.init()
-    node, executor = Node('bare'), SingleThreadedExecutor()
+    node, executor = ServiceNode('bare'), SingleThreadedExecutor()
     answer = PlanTrajectory.Response(error_code=PlanTrajectory.Response.SUCCESS)
     node.create_service(PlanTrajectory, 'plan_trajectory', lambda request, response: answer)
     executor.add_node(node)

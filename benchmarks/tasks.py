@@ -25,6 +25,8 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import whole_turns
+from rrr_traj_planner.core.kinematics.postures import ELBOWS, Posture
+from rrr_traj_planner.planners.posture_choice import first_possible
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.via_points import joint_via_points
@@ -54,7 +56,9 @@ class Task:
     def joint_task(self) -> JointTask:
         """Return what a joint-space planner is given for it."""
         r = self.request
-        q = joint_via_points(self.model, self.limits, r.via_points, None, r.elbow)
+        q = first_possible(
+            [Posture(elbow) for elbow in ((r.elbow,) if r.elbow else ELBOWS)],
+            lambda posture: joint_via_points(self.model, self.limits, r.via_points, None, posture))
         return JointTask(self.model, self.limits, q, None, r.sample_period)
 
     def asked_of(self, planner_id: str) -> PlanningRequest:
