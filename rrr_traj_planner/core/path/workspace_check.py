@@ -31,7 +31,12 @@ from rrr_traj_planner.core.errors import (
     UnreachableError,
 )
 from rrr_traj_planner.core.kinematics.along_path import unlimited_joint_path
-from rrr_traj_planner.core.kinematics.joint_ranges import range_error, whole_turns
+from rrr_traj_planner.core.kinematics.joint_ranges import (
+    nearest_turns,
+    range_error,
+    TURN,
+    whole_turns,
+)
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
@@ -46,7 +51,9 @@ SHORTEST_STEP = 1e-9  # m
 # with practically unbounded velocity. Chosen.
 AXIS_CLEARANCE = 1e-6   # m
 FINEST = 1e-8           # m^2: no excursion of a squared distance larger than this is missed
-FINEST_ANGLE = 0.01 * JOINT_ROUNDING  # rad, the same of a joint: less than later checks find
+COARSE_ANGLE = 1e-8     # rad, the same of a joint; within NEAR_END [rad] of an end of its range
+FINEST_ANGLE = 0.01 * JOINT_ROUNDING  # rad: less than later checks find
+NEAR_END = 1e-6
 # Bound on a second derivative between two samples, over the larger of theirs; chosen.
 SAFETY = 2.0
 
@@ -118,7 +125,8 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
         high = np.maximum(joints.q[:-1], joints.q[1:]) + excursion
         least, most = joints.q.min(axis=0), joints.q.max(axis=0)
         # Only where an extreme may be higher than the highest sample is a finer grid needed.
-        open_ = ((low < least - FINEST_ANGLE) | (high > most + FINEST_ANGLE)).any(axis=1)
+        open_ = ((low < least - _resolution(least, limits.min_position))
+                 | (high > most + _resolution(most, limits.max_position))).any(axis=1)
         open_ &= h[:, 0] > SHORTEST_STEP
         if not open_.any():
             break
@@ -252,6 +260,14 @@ def _check_axis(model: RobotModel, path: CartesianPath, planes: AxisPlanes) -> N
             f'{place}: the tip would pass joint axis 1 (singularity) at {passed} m, where '
             f'{model.joint_names[0]} would need unbounded velocity; least {bound} m',
             model.joint_names[0], distance, AXIS_CLEARANCE, via_point=nearest)
+
+
+def _resolution(extreme: Array, end: Array) -> Array:
+    """Return the resolution of joints' extremes: fine where they are near the range's end."""
+    with np.errstate(invalid='ignore'):  # infinite ends
+        beyond = extreme - end
+        is_near = np.abs(beyond - TURN * nearest_turns(beyond)) < NEAR_END
+    return np.where(is_near, FINEST_ANGLE, COARSE_ANGLE)
 
 
 def _check_ranges(model: RobotModel, limits: JointLimits, path: CartesianPath,

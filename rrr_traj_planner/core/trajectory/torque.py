@@ -36,6 +36,12 @@ STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s
 
+# Time scaling up to which a motion's largest torques stay where they were: their values there are
+# then below the largest by a part of the order of its square. On either side of that time, as
+# torque may step there.
+SLIGHT = 5e-4
+BESIDE = 1e-8 * np.array((-1.0, 0.0, 1.0))  # s
+
 UNLIMITED = JointLimits(max_effort=np.full(3, np.inf))
 
 
@@ -64,6 +70,8 @@ class TorqueSweep:
     def __init__(self, model: RobotModel, times: Array, gravity: Array, torque: Array) -> None:
         self.model, self.times, self.gravity, self.torque = model, times, gravity, torque
         self._peaks: dict[bytes, TorquePeaks] = {}
+        self._before: dict[bytes, TorquePeaks] = {}  # of the motion before a slight time scaling
+        self._factor = 1.0                           # of that scaling
 
     def scaled(self, factor: float) -> TorqueSweep:
         """
@@ -82,8 +90,11 @@ class TorqueSweep:
         """
         if factor == 1.0:
             return self
-        return TorqueSweep(self.model, self.times * factor, self.gravity,
-                           self.gravity + (self.torque - self.gravity) / factor ** 2)
+        found = TorqueSweep(self.model, self.times * factor, self.gravity,
+                            self.gravity + (self.torque - self.gravity) / factor ** 2)
+        if abs(factor - 1.0) <= SLIGHT:
+            found._before, found._factor = self._peaks, factor
+        return found
 
     def squared_scaling(self, limits: JointLimits) -> Array:
         """
@@ -121,8 +132,19 @@ class TorqueSweep:
         """
         key = limits.max_effort.tobytes()
         if key not in self._peaks:
-            self._peaks[key] = self._refined(limits, trajectory)
+            self._peaks[key] = (self._moved(self._before[key], trajectory) if key in self._before
+                                else self._refined(limits, trajectory))
         return self._peaks[key]
+
+    def _moved(self, before: TorquePeaks, trajectory: Trajectory) -> TorquePeaks:
+        """Return the extremes of a motion slightly scaled in time, from those of the other."""
+        time = before.effort.time * self._factor
+        beside = (time + BESIDE[:, np.newaxis]).ravel()
+        torque = gravity_and_torque(self.model, *trajectory(beside)[:3])[1].reshape(3, 3, 3)
+        largest = np.abs(torque).max(axis=0).diagonal()
+        return TorquePeaks(
+            Extreme(largest.copy(), time),
+            Extreme(before.scaling.value / self._factor, before.scaling.time * self._factor))
 
     def _refined(self, limits: JointLimits, trajectory: Trajectory) -> TorquePeaks:
         """Return the extremes, refined between the times of the grid."""
