@@ -21,7 +21,6 @@ Int. J. Robotics Research 4(3), 1985.
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -245,26 +244,6 @@ class PathTrajectory(Trajectory):
                                 self.via_times * factor, self.join_times * factor, self.note)
         self.pass_cache(slower, factor)
         return slower
-
-    def noted(self, note: str) -> PathTrajectory:
-        """
-        Return the same motion with a note.
-
-        Parameters
-        ----------
-        note : str
-            Remark.
-
-        Returns
-        -------
-        PathTrajectory
-            Otherwise the same.
-
-        """
-        found = copy(self)
-        self.pass_cache(found, 1.0)
-        found.note = note
-        return found
 
     def acceleration_steps(self) -> Array:
         """Return the steps of joint acceleration at the joins [rad/s^2], (joins, 3)."""

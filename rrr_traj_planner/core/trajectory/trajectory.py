@@ -17,8 +17,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from copy import copy
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +27,8 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import positive
+
+Same = TypeVar('Same', bound='Trajectory')
 
 DURATION_ROUNDING = 1e-12  # relative, of a sum of durations
 
@@ -102,6 +105,26 @@ class Trajectory(ReadOnlyArrays, ABC):
 
         """
         slower.cache.update((name, of.scaled(factor)) for name, of in self.cache.items())
+
+    def noted(self: Same, note: str) -> Same:
+        """
+        Return the same motion with a note.
+
+        Parameters
+        ----------
+        note : str
+            Remark.
+
+        Returns
+        -------
+        Trajectory
+            Otherwise the same.
+
+        """
+        found = copy(self)
+        self.pass_cache(found, 1.0)
+        found.note = note
+        return found
 
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled or copied."""

@@ -28,7 +28,6 @@ from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
-from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.prescribed import prescribed
@@ -82,9 +81,7 @@ def plan(task: JointTask) -> Trajectory:
         task, grid, task.durations)
     if found is None:
         raise cannot_be_held(task, grid)
-    trajectory = found.trajectory
-    return PiecewiseTrajectory(trajectory.profiles, trajectory.via_times,
-                               unconverged_note(found.gap, found.cost))
+    return found.trajectory.noted(unconverged_note(found.gap, found.cost))
 
 
 def _ramps(task: JointTask) -> int:
