@@ -2,6 +2,9 @@
 
 SHELL := /bin/bash
 in_env := source scripts/env.bash &&
+
+# Tests of nodes wait more than they compute: one process more than cores, four at most.
+WORKERS := $(shell n=$$(nproc); echo $$((n < 4 ? n + 1 : 4)))
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 .PHONY: help setup demo test lint bench clean
@@ -16,7 +19,7 @@ demo: setup  ## plan a motion through via points and run it on the simulated arm
 	@$(in_env) demo $(ARGS)
 
 test: lint  ## linters and every test; options for pytest in ARGS
-	@$(in_env) python -m pytest -n auto --maxprocesses 4 --dist loadfile $(ARGS)
+	@$(in_env) python -m pytest -n $(WORKERS) --dist loadfile $(ARGS)
 
 lint: setup  ## ruff, flake8 with ament_flake8's rules, mypy on the core and the planners
 	@$(in_env) ruff check && python -m flake8 && mypy
