@@ -36,9 +36,8 @@ STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s
 
-# Time scaling up to which a motion's largest torques stay where they were: their values there are
-# then below the largest by a part of the order of its square. On either side of that time, as
-# torque may step there.
+# Time scaling up to which a peak of torque stays where it was: its value there is then too low by a
+# part of the order of the square. On either side of that time, as torque may step there.
 SLIGHT = 5e-4
 BESIDE = 1e-8 * np.array((-1.0, 0.0, 1.0))  # s
 
@@ -132,8 +131,10 @@ class TorqueSweep:
         """
         key = limits.max_effort.tobytes()
         if key not in self._peaks:
-            self._peaks[key] = (self._moved(self._before[key], trajectory) if key in self._before
-                                else self._refined(limits, trajectory))
+            moved = self._moved(self._before[key], trajectory) if key in self._before else None
+            if moved is None or (np.abs(self.torque) > moved.effort.value).any():
+                moved = self._refined(limits, trajectory)  # another peak is the largest now
+            self._peaks[key] = moved
         return self._peaks[key]
 
     def _moved(self, before: TorquePeaks, trajectory: Trajectory) -> TorquePeaks:
