@@ -36,8 +36,8 @@ STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s
 
-# Time scaling up to which a peak of torque stays where it was: its value there is then too low by a
-# part of the order of the square. On either side of that time, as torque may step there.
+# Time scaling up to which a peak of torque stays where it was: its value there is then too low
+# by a part of the order of the square. On either side of that time, as torque may step there.
 SLIGHT = 5e-4
 BESIDE = 1e-8 * np.array((-1.0, 0.0, 1.0))  # s
 
