@@ -23,10 +23,11 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
-from rrr_traj_planner.core.trajectory.maximum import Extreme, maximum_over_time
+from rrr_traj_planner.core.trajectory.maximum import Extreme, maximum_over_time, SAME_TIME
 from rrr_traj_planner.core.trajectory.time_scaling import (
     gravity_and_torque,
     squared_scaling_if_held,
+    TORQUE_TOLERANCE,
 )
 from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 
@@ -36,10 +37,11 @@ STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s
 
-# Time scaling up to which a peak of torque stays where it was: its value there is then too low
-# by a part of the order of the square. On either side of that time, as torque may step there.
+# Time scaling up to which a peak of torque is sought where it was, by one parabola through torques
+# NEIGHBOUR of the grid's mean step apart. Peaks so found are too low by up to 3e-9 on 400 random
+# motions (relative; 1e-6 with four times the scaling) and 7e-8 on 40 paths with steps, measured.
 SLIGHT = 5e-4
-BESIDE = 1e-8 * np.array((-1.0, 0.0, 1.0))  # s
+NEIGHBOUR = 0.1
 
 UNLIMITED = JointLimits(max_effort=np.full(3, np.inf))
 
@@ -132,20 +134,34 @@ class TorqueSweep:
         key = limits.max_effort.tobytes()
         if key not in self._peaks:
             moved = self._moved(self._before[key], trajectory) if key in self._before else None
-            if moved is None or (np.abs(self.torque) > moved.effort.value).any():
-                moved = self._refined(limits, trajectory)  # another peak is the largest now
+            # Another peak may be the largest after the scaling.
+            if moved is None or (np.abs(self.torque)
+                                 > moved.effort.value * (1.0 + TORQUE_TOLERANCE)).any():
+                moved = self._refined(limits, trajectory)
             self._peaks[key] = moved
         return self._peaks[key]
 
     def _moved(self, before: TorquePeaks, trajectory: Trajectory) -> TorquePeaks:
         """Return the extremes of a motion slightly scaled in time, from those of the other."""
         time = before.effort.time * self._factor
-        beside = (time + BESIDE[:, np.newaxis]).ravel()
-        torque = gravity_and_torque(self.model, *trajectory(beside)[:3])[1].reshape(3, 3, 3)
-        largest = np.abs(torque).max(axis=0).diagonal()
+        apart = NEIGHBOUR * self.times[-1] / len(self.times)
+        times = time + np.multiply.outer((-apart, -SAME_TIME, 0.0, SAME_TIME, apart), np.ones(3))
+        values = self._efforts(trajectory, times)
+        left, middle, right = values[0], values[2], values[-1]
+        with np.errstate(divide='ignore', invalid='ignore'):  # vertex of the parabola
+            shift = 0.5 * apart * (right - left) / (2.0 * middle - left - right)
+        vertex = time + np.clip(np.nan_to_num(shift), -apart, apart)
+        times = np.vstack((times, vertex))
+        values = np.vstack((values, self._efforts(trajectory, vertex[np.newaxis])))
+        best = values.argmax(axis=0), np.arange(3)
         return TorquePeaks(
-            Extreme(largest.copy(), time),
+            Extreme(values[best], times[best]),
             Extreme(before.scaling.value / self._factor, before.scaling.time * self._factor))
+
+    def _efforts(self, trajectory: Trajectory, times: Array) -> Array:
+        """Return magnitudes of torque, each joint's at times of its own, (n, 3) [N m]."""
+        torque = gravity_and_torque(self.model, *trajectory(times.ravel())[:3])[1]
+        return np.abs(torque.reshape(-1, 3, 3).diagonal(axis1=1, axis2=2))
 
     def _refined(self, limits: JointLimits, trajectory: Trajectory) -> TorquePeaks:
         """Return the extremes, refined between the times of the grid."""

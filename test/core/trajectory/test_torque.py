@@ -112,6 +112,52 @@ def test_motion_slowed_down_by_the_factor_brings_the_peak_to_the_limit_exactly(a
     assert (all_fit <= effort * (1.0 + 1e-9)).all()
 
 
+def slightly_scaled(arm, trajectory, factor):
+    """Return a motion after a time scaling, the torque peaks before which are known."""
+    peak_torque(arm, trajectory)
+    return trajectory.time_scaled(factor)
+
+
+@pytest.mark.parametrize(('arm', 'seed'), CASES)
+def test_peaks_after_a_slight_time_scaling_are_those_of_a_very_dense_grid(arm, seed):
+    rng = np.random.default_rng(seed)
+    for factor in 1.0 + np.array([5e-4, -5e-4, rng.uniform(-5e-4, 5e-4)]):
+        scaled = slightly_scaled(arm, trajectory_of(seed), float(factor))
+        assert_is_peak(peak_torque(arm, scaled), scaled,
+                       lambda *state: inverse_dynamics(arm, *state))
+
+
+def test_of_two_peaks_the_one_counts_that_a_slight_time_scaling_makes_the_largest():
+    # Joint 2 raises the stretched arm slowly from where gravity asks most, then swings it quickly
+    # where it asks less. The time scaling at which both peaks are equal is found by bisection.
+    arm, largest = RobotModel(), []
+    raised = [transition(2.0, 0.0, 0.0, 0.6), transition(2.0, 0.6, 0.6, 0.0)]
+    swung = [transition(0.5, 1.2, 0.0, 0.8), transition(0.5, 1.4, 0.8, -0.8),
+             transition(0.5, 1.4, -0.8, 0.0)]
+    others = [JointProfile(joined([cruise(5.5, q, 0.0)])) for q in (0.0, 0.5 * np.pi)]
+    motion = PiecewiseTrajectory(
+        [others[0], JointProfile(joined([*raised, *swung])), others[1]], [0.0, 5.5])
+
+    def peaks(factor):
+        scaled = motion.time_scaled(factor)
+        t = dense_times(scaled, SAMPLES_PER_PIECE)
+        torque = np.abs(inverse_dynamics(arm, *scaled(t)[:3]))[:, 1]
+        return [torque[part].max() for part in (t < 4.0 * factor, t >= 4.0 * factor)]
+
+    low, high = 0.1, 10.0
+    assert peaks(low)[0] < peaks(low)[1]
+    assert peaks(high)[0] > peaks(high)[1]
+    for _ in range(50):
+        middle = np.sqrt(low * high)
+        low, high = (low, middle) if peaks(middle)[0] > peaks(middle)[1] else (middle, high)
+    for factor in (1.0 + 4e-4, 1.0 - 4e-4):
+        scaled = slightly_scaled(arm, motion.time_scaled(low * factor ** -0.5), factor)
+        peak = peak_torque(arm, scaled)
+        assert_is_peak(peak, scaled, lambda *state: inverse_dynamics(arm, *state))
+        largest.append(peak.time[1] < 4.0 * low)
+    assert len(set(largest)) == 2
+
+
 def test_factor_below_one_tells_what_speed_is_left():
     trajectory = trajectory_of(3)
     effort = 4.0 * peak_torque(RobotModel(), trajectory).value

@@ -16,11 +16,13 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 
 from helpers.arm_process import arm_process, ended
 from helpers.places import ROOT
 import pytest
+from rrr_traj_planner.nodes.process.node_runner import create_node
 from sensor_msgs.msg import JointState
 
 
@@ -38,6 +40,16 @@ def test_wrong_file_stops_the_node_with_one_line(tmp_path, yaml, text):
     assert text in errors
     assert errors.startswith('simulated_arm: ')
     assert errors.count('\n') == 1
+
+
+def test_what_is_loaded_when_a_node_is_created_is_exempt_from_garbage_collection():
+    made = [object()]
+    try:
+        assert create_node(lambda: made) is made
+        assert gc.get_freeze_count() > 0
+        assert not any(found is made for found in gc.get_objects())
+    finally:
+        gc.unfreeze()
 
 
 def test_file_that_is_missing_stops_the_node():
