@@ -142,7 +142,11 @@ def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningReque
 def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
              trajectory: Trajectory, min_spacing: float,
              overshoot_before: bool) -> tuple[TrajectoryPoints, SplineExcess]:
-    """Return the same, for overshoot before steps only or on either side."""
+    """
+    Return points, divided until the quintics keep limits or no interval can be divided.
+
+    At steps of acceleration the quintic overshoots on the side with a margin, or before all steps.
+    """
     times = sample_times(trajectory, request.sample_period, request.max_points)
     while True:
         request.should_stop()

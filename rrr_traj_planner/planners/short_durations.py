@@ -55,7 +55,7 @@ def durations_too_short(durations: Array, feasible: Array, segments: Sequence[in
     feasible : ndarray, shape (n,)
         Feasible ones [s].
     segments : sequence of int, optional
-        The numbers of the segments that are too short; empty: not told.
+        The numbers of the segments that are too short; empty: not named in the message.
     which : str
         What the feasible ones are, for the message.
 

@@ -31,7 +31,9 @@ T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
 @dataclass(frozen=True, eq=False)
 class JointTask(ReadOnlyArrays):
     """
-    The task of a joint-space planner: points of which neighbours differ, except over a dwell.
+    The task of a joint-space planner.
+
+    Consecutive points differ, except where the arm is to dwell at a point for a prescribed time.
 
     Parameters
     ----------
@@ -50,7 +52,7 @@ class JointTask(ReadOnlyArrays):
     should_stop : callable
         As in `PlanningRequest`.
     half_transition : float
-        Likewise [s].
+        Half the length of the transitions of 4-1-4, as in `PlanningRequest` [s].
 
     """
 

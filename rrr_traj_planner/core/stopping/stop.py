@@ -91,7 +91,7 @@ Found = tuple[ReferenceTrajectory, float]
 
 
 class Family(Protocol):
-    """Candidates of one kind."""
+    """Candidate stops of one form, of which each has a cost: its weighted time to rest."""
 
     cost: Array
 

@@ -194,7 +194,11 @@ def _path_task(task: CartesianTask, path: CartesianPath) -> PathTask:
 
 
 def _note(task: CartesianTask, timed: Timed, cut_short: bool) -> str:
-    """Return the note: acceleration steps, and the gap, unknown if not every path was tried."""
+    """
+    Return the note: acceleration steps, and how much faster a motion may be.
+
+    The latter has no bound if not every path was tried.
+    """
     notes = []
     most = timed.trajectory.acceleration_steps().max(axis=0, initial=0.0)
     if most.max() > STEP:

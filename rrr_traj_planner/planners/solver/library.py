@@ -77,7 +77,7 @@ def load(folder: Path) -> Any:
     Raises
     ------
     ImportError
-        If the library is not there, or was built from other sources.
+        If the library is missing or lacks a function.
 
     """
     paths = [folder / f'kernels{suffix}' for suffix in EXTENSION_SUFFIXES]

@@ -44,7 +44,7 @@ class TightenedProblem(Protocol):
         """Return the solution; None where no start is known that satisfies the margins."""
 
     def eased(self) -> bool:
-        """Find a new start, relaxing the margins if necessary; return whether there may be one."""
+        """Relax the margins for another start; return False where none is left to try."""
 
     def finished(self, outcome: Outcome, tolerance: float) -> bool:
         """

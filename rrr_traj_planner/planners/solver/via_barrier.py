@@ -104,7 +104,7 @@ class ViaBarrier:
     arrays : Arena
         The kernels' arrays, under the names of native/via_problem.h.
     constraints : int
-        The number of logarithms.
+        Number of inequality constraints, each a logarithm of the barrier.
     velocities, durations : ndarray
         The iterate: shapes (n - 1, 3) and (n,) [rad/s, s].
 

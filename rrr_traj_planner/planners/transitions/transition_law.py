@@ -31,14 +31,14 @@ from rrr_traj_planner.core.arrays import Array
 
 class TransitionLaw(NamedTuple):
     """
-    The coefficients of the least duration; fields broadcast with joints, shape (3,).
+    Coefficients of the least duration of a change of velocity, for each joint.
 
     For a function with peak acceleration A u / t and peak jerk B u / t^2, the slope is
     A / max_acceleration and the root is sqrt(B / max_jerk), 0 without a jerk limit.
     """
 
-    slope: Array  # [s^2/rad]
-    root: Array   # [s sqrt(s/rad)]
+    slope: Array  # [s^2/rad], (3,)
+    root: Array   # [s sqrt(s/rad)], (3,)
 
     def least_time(self, change: Array) -> Array:
         """

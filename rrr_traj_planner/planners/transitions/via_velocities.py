@@ -16,8 +16,8 @@
 Velocities at the via points and durations of the segments that take least total time.
 
 For one joint, the least time of a segment as a function of its end velocities is bounded by a
-second-order cone, so the problem is convex except for the bound on the other side (a joint that
-could be faster must last as long as the others). A Newton step solves a banded system: its cost is
+second-order cone: this constraint on durations is convex. Its opposite is not: a joint that could
+be faster must still take as long as the others. A Newton step solves a banded system: its cost is
 linear in the number of via points. Method: `solver.barrier_method`.
 """
 
