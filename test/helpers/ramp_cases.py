@@ -25,7 +25,7 @@ from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 from scipy import ndimage
 
@@ -44,7 +44,7 @@ def random_motion(seed, n=None, segments=None):
     points = rng.uniform([-1.0, 0.8, -0.8], [1.0, 1.8, 0.8], (N + 1, 3))
     m = Variables(rng.normal(0.0, 1.0, (N, grid.n - 1, 3)), rng.normal(0.0, 0.3, (N - 1, 3)),
                   rng.normal(0.0, 0.5, (N - 1, 3)), rng.uniform(0.7, 2.5, N))
-    return grid, points, restored(grid, points, m)
+    return grid, points, grid.restored(points, m)
 
 
 def random_step(seed, m):
@@ -154,3 +154,11 @@ def _parts_of(task, cells, most, poses):
     parts = ndimage.label(_shares(task, cells) <= most)[0]
     corner = ((poses[:, 1:] - low) / (high - low) * (cells - 1)).astype(int)
     return [set(parts[i:i + 2, j:j + 2].ravel().tolist()) - {0} for i, j in corner]
+
+
+def nodes_of(m):
+    """Return accelerations of all nodes, (N, n + 1, J), and velocities at segments' ends."""
+    rest = np.zeros((1, m.inner.shape[-1]))
+    a, v = np.concatenate((rest, m.a, rest)), np.concatenate((rest, m.v, rest))
+    nodes = np.concatenate((a[:-1, np.newaxis], m.inner, a[1:, np.newaxis]), axis=1)
+    return nodes, v[:-1], v[1:]

@@ -23,7 +23,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.dynamics import equations
-from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, FAR, Limits, TORQUE
+from rrr_traj_planner.planners.solver.limits import FAR, Limits
 from rrr_traj_planner.planners.solver.ramps import Grid
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 
@@ -83,9 +83,9 @@ class JointConstraints:
         general = np.zeros((P, 3), bool)
         general[1:] = self.with_torque
         effort = np.concatenate((np.full((N, 1, 3), FAR), self.effort), axis=1)
+        arm = np.array(equations.constants(self._model)) if self.with_torque else None
         return TimingProblem(self.grid, self.points, Limits(
-            TORQUE if self.with_torque else BOUNDS_ALONE, lower, upper, bounded, -effort, effort,
-            general, self.least_T, np.array(equations.constants(self._model))), self._workspace)
+            lower, upper, bounded, -effort, effort, general, self.least_T, arm), self._workspace)
 
     def _bounds(self) -> tuple[Array, Array, BoolArray]:
         """Return lower and upper bounds on states (N, P, 12), and which are limited (P, 12)."""
@@ -94,14 +94,14 @@ class JointConstraints:
         inside = np.r_[1:n, n + 1:2 * n + 1]  # not at the via points, where position is given
         fastest = limits.max_velocity - self._velocity_margins[:, 1:]
         above, below = self._margins[:, :, inside]
-        for kind, points, lowest, highest in (
+        for column, points, lowest, highest in (
                 (0, inside, limits.min_position - EDGE + below,
                  limits.max_position + EDGE - above),
                 (1, np.arange(1, 2 * n + 1), -fastest, fastest),
                 (2, np.arange(1, n + 1), -limits.max_acceleration, limits.max_acceleration),
                 (3, np.arange(n + 1, 2 * n + 1), -limits.max_jerk, limits.max_jerk)):
-            bounds[0][:, points, kind] = np.maximum(lowest, -FAR)
-            bounds[1][:, points, kind] = np.minimum(highest, FAR)
-            bounded[points, kind] = np.isfinite(highest).any() or np.isfinite(lowest).any()
+            bounds[0][:, points, column] = np.maximum(lowest, -FAR)
+            bounds[1][:, points, column] = np.minimum(highest, FAR)
+            bounded[points, column] = np.isfinite(highest).any() or np.isfinite(lowest).any()
         lower, upper = bounds.reshape(2, N, 2 * n + 1, 12)
         return lower, upper, bounded.reshape(-1, 12)

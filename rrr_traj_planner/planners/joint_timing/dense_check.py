@@ -20,14 +20,14 @@ Time scaling: Hollerbach, Dynamic scaling of manipulator trajectories, 1984.
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.motion_laws.ramps import RampShape
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
+from rrr_traj_planner.planners.solver.dense_check import excess_near_points, rise_between_samples
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
@@ -57,13 +57,9 @@ class DenseCheck:
 
     def __init__(self, task: JointTask, grid: Grid, m: Variables) -> None:
         self._task = task
-        elapsed, by_q, by_qd, by_qdd = _matrices(grid.n, grid.shape.constant_jerk_fraction)
-        nodes, v0, _ = grid.nodes(m)
-        h, v0 = (m.T / grid.n)[:, np.newaxis, np.newaxis], v0[:, np.newaxis]
-        self.q = task.points[:-1, np.newaxis] + h * (elapsed * v0 + h * (by_q @ nodes))
-        self.qd, self.qdd = v0 + h * (by_qd @ nodes), by_qdd @ nodes
-        self._peak_jerk = np.abs(grid.shape.peak_jerk * np.diff(nodes, axis=1) / h).max(
-            axis=(0, 1))
+        self.q, self.qd, self.qdd, jerk = np.moveaxis(
+            grid.samples(task.points, m, 2 * CHECKS), 2, 0)
+        self._peak_jerk = np.abs(jerk).max(axis=(0, 1))  # a ramp's is sampled at its middle
 
     @cached_property
     def tau(self) -> Array | None:
@@ -100,7 +96,7 @@ class DenseCheck:
         Shape (2, N, 3), upper and lower end [rad]; 0 within.
         """
         limits, q = self._task.limits, self.q
-        turns, rise = self.qd[:, :-1] * self.qd[:, 1:] < 0.0, _rise_between_samples(q)
+        turns, rise = self.qd[:, :-1] * self.qd[:, 1:] < 0.0, rise_between_samples(q)
         rise = np.where(turns, np.maximum(rise[:, :-1], rise[:, 1:]), 0.0)
         most, least = (f(q[:, :-1], q[:, 1:]) for f in (np.maximum, np.minimum))
         beyond = np.stack(((most + rise - limits.max_position).max(axis=1),
@@ -117,73 +113,15 @@ class DenseCheck:
             [rad/s], [N m].
 
         """
-        velocity = _near_points(np.abs(self.qd), self._task.limits.max_velocity)
+        velocity = _near_points(self.qd, self._task.limits.max_velocity)
         if self.tau is None:
             return velocity, np.zeros_like(velocity)
-        return velocity, _near_points(np.abs(self.tau), self._task.limits.max_effort)
-
-
-def near_points(x: Array, limit: Array, checks: int, half_width: int) -> Array:
-    """
-    Return by how much densely sampled magnitudes exceed a limit near each point.
-
-    Parameters
-    ----------
-    x : ndarray, shape (N, 2 n checks + 1, K)
-        Magnitudes, in the order of time.
-    limit : ndarray, shape (K,)
-        Infinite where there is none.
-    checks : int
-        Samples between two of a segment's 2 n + 1 points.
-    half_width : int
-        Number of samples on either side that count as near a point.
-
-    Returns
-    -------
-    ndarray, shape (N, 2 n + 1, K)
-        Nodes, then the middles between them.
-
-    """
-    peaks = x + _rise_between_samples(x)
-    excess = np.where(peaks > limit, peaks - limit * (1.0 - LIMIT_ROUNDING), 0.0)
-    padded = np.pad(excess, ((0, 0), (half_width, half_width), (0, 0)), mode='edge')
-    width = x.shape[1] - 1
-    near = np.max([padded[:, k:k + width + 1:checks] for k in range(2 * half_width + 1)], axis=0)
-    return np.concatenate((near[:, ::2], near[:, 1::2]), axis=1)
+        return velocity, _near_points(self.tau, self._task.limits.max_effort)
 
 
 def _near_points(x: Array, limit: Array) -> Array:
-    """Return the same; excess near a segment's first point also counts for both points beside."""
-    near, n = near_points(x, limit, CHECKS, CHECKS // 2), (x.shape[1] - 1) // (2 * CHECKS)
+    """Return excess; near a segment's first point it also counts for both points beside."""
+    near, n = excess_near_points(x, limit, CHECKS, CHECKS // 2), (x.shape[1] - 1) // (2 * CHECKS)
     near[:-1, n] = np.maximum(near[:-1, n], near[1:, 0])
     near[:, n + 1] = np.maximum(near[:, n + 1], near[:, 0])
     return near
-
-
-def _rise_between_samples(x: Array) -> Array:
-    """Return the rise of a smooth quantity between samples: 1/8 of its second difference."""
-    rise = np.abs(np.diff(x, 2, axis=1)) / 8.0
-    near = np.pad(rise, ((0, 0), (2, 2), (0, 0)), mode='edge')
-    return np.asarray(np.max([near[:, k:k + x.shape[1]] for k in range(3)], axis=0))
-
-
-@lru_cache(maxsize=64)
-def _matrices(n: int, constant_jerk_fraction: float) -> tuple[Array, Array, Array, Array]:
-    """Return times / h, and the matrices q, qd, qdd of a `Grid` of n ramps, at all samples."""
-    per_ramp, one = 2 * CHECKS, np.eye(n + 1)
-    s = np.arange(per_ramp)[:, np.newaxis] / per_ramp
-    way, speed, part, _ = RampShape(constant_jerk_fraction)(s)
-    whole = RampShape(constant_jerk_fraction)(1.0)[0]
-    at_node, rows = (np.zeros(n + 1), np.zeros(n + 1)), []
-    for i in range(n + 1):
-        a, rise = one[i], (one[i + 1] if i < n else one[i]) - one[i]
-        q, qd = at_node
-        rows.append((q + qd * s + 0.5 * a * s * s + rise * way, qd + a * s + rise * speed,
-                     a + rise * part))
-        at_node = q + qd + 0.5 * a + rise * whole, qd + a + 0.5 * rise
-    count = per_ramp * n + 1
-    elapsed = np.arange(count)[:, np.newaxis] / per_ramp
-    by = tuple(np.concatenate([row[k] for row in rows])[:count] for k in range(3))
-    for matrix in (elapsed, *by):
-        matrix.setflags(write=False)
-    return elapsed, by[0], by[1], by[2]

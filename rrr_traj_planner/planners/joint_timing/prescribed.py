@@ -30,7 +30,7 @@ from rrr_traj_planner.planners.joint_timing.tightening import tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
 from rrr_traj_planner.planners.short_durations import durations_too_short, whole_microseconds
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables, with_durations
 from rrr_traj_planner.planners.tasks import JointTask
 
 # Without unit.
@@ -156,7 +156,7 @@ def _fastest_of_free(task: JointTask, grid: Grid, durations: Array,
     free, z = np.isnan(durations), _scaling(solved, durations)
     m = solved.motion
     z = float(np.nanmax(m.T / durations))
-    start = restored(grid, task.points, Variables(
+    start = grid.restored(task.points, Variables(
         m.inner * z ** 2, m.v * z, m.a * z ** 2, np.where(free, m.T / z, durations)))
     constraints = DurationConstraints(free, np.zeros(len(free)), free.astype(float),
                                       _no_stops(durations))

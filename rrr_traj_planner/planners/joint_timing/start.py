@@ -25,7 +25,7 @@ from rrr_traj_planner.planners.joint_timing.feasible_path import (
     gravity_ratio,
     statically_feasible_path,
 )
-from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables, with_durations
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables, with_durations
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN, START_SCALING
 from rrr_traj_planner.planners.via_points import torque_texts
@@ -62,7 +62,7 @@ def rest_to_rest(task: JointTask, constraints: JointConstraints) -> Variables | 
         return None
     rest = np.zeros((len(nodes) - 1, 3))
     m = Variables(nodes[:, 1:-1], rest, rest, np.ones(len(nodes)))
-    return restored(grid, task.points, with_durations(m, T))
+    return grid.restored(task.points, with_durations(m, T))
 
 
 def _fastest_paths(task: JointTask, constraints: JointConstraints) -> tuple[Array, Array]:
@@ -130,7 +130,7 @@ def rest_to_rest_shapes(grid: Grid, points: Array) -> Array:
 
     """
     shape = np.sin(2.0 * np.pi * np.arange(grid.n + 1) / grid.n)
-    shape *= grid.n ** 2 / (grid.q[grid.n] @ shape)
+    shape *= grid.n ** 2 / (grid.displacement @ shape[1:-1])
     return shape[:, np.newaxis] * np.diff(points, axis=0)[:, np.newaxis]
 
 

@@ -20,7 +20,6 @@
 #include <string.h>
 
 enum { DURATION_WEIGHT = 3 };   /* multiplicity of a least duration's logarithm: one per joint */
-static const double FAR = 1e6;  /* s, for no upper bound of a duration: as in solver/limits.py */
 
 /* For solver/library.py, which compares them. */
 EXPORTED const int64_t size_of_problem = sizeof(Problem), size_of_step = sizeof(Step);
@@ -33,7 +32,7 @@ static double *duration_slacks(const Problem *p, double *slack)
 static void general_at(const Problem *p, int k, int i, const double *z, double *x,
                        double *gradient, const double *weights, double *second)
 {
-    if (p->kind == TORQUE)
+    if (p->arm)
         torque_at(p->arm, z, x, gradient, weights, second);
     else
         path_at(p, k, i, z, x, gradient, weights, second);
@@ -67,7 +66,7 @@ void slacks_at(const Problem *p, const double *T, const double *z, double part, 
         }
         double *duration_slack = duration_slacks(p, slack) + 2 * k;
         duration_slack[1] = p->least_T ? T[k] - p->least_T[k] : 1.0;
-        duration_slack[0] = p->least_T ? FAR - duration_slack[1] : 1.0;
+        duration_slack[0] = p->least_T ? p->longest - duration_slack[1] : 1.0;
     }
     const size_t all = slacks_size(p);
     for (size_t i = 0; i < all && p->shifted; ++i)
@@ -143,7 +142,7 @@ static inline void add_constraint(const double *g, int first, int end, int Z, do
 static inline void add_general_constraint(const Problem *p, int e, const double *g, double f,
                                           double weight, double *r, double *Q)
 {
-    if (p->kind == TORQUE)
+    if (p->arm)
         add_constraint(g, 1, 9, 12, f, weight, r, Q);  /* q2, q3, velocities, accelerations */
     else if (e < 3)
         add_constraint(g, 0, 2, 4, f, weight, r, Q);
@@ -209,7 +208,7 @@ EXPORTED void timing_linearise(const Problem *p, double barrier)
 {
     const Variables m = variables_at(p, p->variables);
     const double *dual = p->dual;
-    const int Z = 4 * p->J, P = 2 * p->n + 1, whole = p->kind != BOUNDS_ALONE;
+    const int Z = 4 * p->J, P = 2 * p->n + 1, whole = !bounds_alone(p);
     motion_states(p, m, p->states);
     memset(p->gradient, 0, (size_t)p->N * P * Z * sizeof(double));
     memset(p->hessian, 0, p->N * hessian_size(p) * sizeof(double));
@@ -234,7 +233,7 @@ EXPORTED void timing_linearise(const Problem *p, double barrier)
         const size_t at = 2 * ((size_t)p->N * constraints_of(p) + k);
         double *duration_slack = p->slack + at, *inverse = p->inverse + at;
         duration_slack[1] = p->least_T ? m.T[k] - p->least_T[k] : 1.0;
-        duration_slack[0] = p->least_T ? FAR - duration_slack[1] : 1.0;
+        duration_slack[0] = p->least_T ? p->longest - duration_slack[1] : 1.0;
         inverse[0] = 1.0 / duration_slack[0], inverse[1] = 1.0 / duration_slack[1];
         if (p->least_T) {
             p->gradient_T[k] = DURATION_WEIGHT * barrier * (inverse[0] - inverse[1]);

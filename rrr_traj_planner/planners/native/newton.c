@@ -35,7 +35,7 @@
 /* With bounds alone the coordinates are coupled through the durations only. */
 static int is_decoupled(const Problem *p)
 {
-    return p->J == 1 || p->kind == BOUNDS_ALONE;
+    return p->J == 1 || bounds_alone(p);
 }
 
 static size_t rows_size(const Problem *p)
@@ -66,7 +66,7 @@ static void extract_coordinate(const Problem *p, int j, const double *z, const d
             own_z[4 * i + a] = z[i * Z + a * J + j];
             own_r[4 * i + a] = r[i * Z + a * J + j];
             for (int b = 0; b < 4; ++b)
-                own_Q[16 * i + 4 * a + b] = p->kind != BOUNDS_ALONE
+                own_Q[16 * i + 4 * a + b] = !bounds_alone(p)
                     ? Q[((size_t)i * Z + a * J + j) * Z + b * J + j]
                     : a == b ? Q[(size_t)i * Z + a * J + j] : 0.0;
         }

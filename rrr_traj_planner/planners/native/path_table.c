@@ -17,6 +17,8 @@
 #include "timing_problem.h"
 #include "path_table.h"
 
+enum { SPEED = 12, ALONG, QUANTITIES };  /* those limited: of the joints, then of the tip */
+
 /* Columns of the table at position s of a segment, and their derivatives by s up to an order. */
 static void table_at(const Problem *p, int segment, int point, double s, int order,
                      double found[3][KINDS][3])
@@ -96,4 +98,22 @@ void path_at(const Problem *p, int segment, int point, const double *z, double *
         joint_gradients(d, s, j, z, gradient + 4 * j);
     for (int j = 0; second && j < 3; ++j)
         add_joint_hessian(d, s, ss, j, z, weights, second);
+}
+
+/* The limited quantities x (N, samples, QUANTITIES), and gravity's torque (N, samples, 3), at
+ * states z (N, samples, 4); at_points: whether the samples are the problem's points
+ * (path_timing/constraints.py). */
+EXPORTED void path_quantities(const Problem *p, int32_t samples, int32_t at_points,
+                              const double *z, double *x, double *gravity)
+{
+    for (int k = 0; k < p->N; ++k)
+        for (int i = 0; i < samples; ++i, z += 4, x += QUANTITIES, gravity += 3) {
+            double found[3][KINDS][3];
+            const double (*d)[3] = (const double (*)[3])found[0];
+            table_at(p, k, at_points ? i : -1, z[0], 0, found);
+            limited_quantities(d, z[1], z[2], z[3], x);
+            x[SPEED] = z[1], x[ALONG] = z[2];
+            for (int j = 0; j < 3; ++j)
+                gravity[j] = d[G][j];
+        }
 }

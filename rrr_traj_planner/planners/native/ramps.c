@@ -15,64 +15,92 @@
 /* Sequences of ramps: states of a motion, and steps after which it meets the via points again. */
 #include "timing_problem.h"
 
-static double node(const Problem *p, Variables m, int k, int i, int j)
+static double node(int J, int N, int n, Variables m, int k, int i, int j)
 {
     if (i == 0)
-        return k == 0 ? 0.0 : m.a[(k - 1) * p->J + j];
-    if (i == p->n)
-        return k == p->N - 1 ? 0.0 : m.a[k * p->J + j];
-    return m.inner[((size_t)k * (p->n - 1) + i - 1) * p->J + j];
+        return k == 0 ? 0.0 : m.a[(k - 1) * J + j];
+    if (i == n)
+        return k == N - 1 ? 0.0 : m.a[k * J + j];
+    return m.inner[((size_t)k * (n - 1) + i - 1) * J + j];
+}
+
+void motion_samples(int J, int N, int n, double end_q, const double *points, Variables m,
+                    const Samples *at, double *z)
+{
+    const int per = at->per_ramp, first = at->nodes_first;
+    const size_t Z = 4 * (size_t)J, step = Z * (first ? 1 : per);  /* from node to node */
+    for (int k = 0; k < N; ++k, z += ((size_t)n * per + 1) * Z) {
+        const double h = m.T[k] / n;
+        for (int j = 0; j < J; ++j) {
+            double q = points[k * J + j], v = k == 0 ? 0.0 : m.v[(k - 1) * J + j];
+            double a = node(J, N, n, m, k, 0, j);
+            for (int i = 0; i <= n; ++i) {
+                double *to = z + i * step + j;
+                to[0] = q, to[J] = v, to[2 * J] = a, to[3 * J] = 0.0;
+                if (i == n)
+                    break;
+                const double next = node(J, N, n, m, k, i + 1, j), rise = next - a;
+                to = z + (first ? n + 1 + (size_t)i * (per - 1) : (size_t)i * per + 1) * Z + j;
+                for (int r = 1; r < per; ++r, to += Z) {
+                    const double u = (double)r / per, *unit = at->unit[r];
+                    to[0] = ramp_q(h, u, q, v, a, rise, unit[0]);
+                    to[J] = ramp_qd(h, u, v, a, rise, unit[1]);
+                    to[2 * J] = a + unit[2] * rise;
+                    to[3 * J] = unit[3] * rise / h;
+                }
+                q = ramp_q(h, 1.0, q, v, a, rise, end_q);
+                v = ramp_qd(h, 1.0, v, a, rise, 0.5);
+                a = next;
+            }
+        }
+    }
+}
+
+/* For solver/ramps.py. */
+EXPORTED void ramps_sample(int32_t J, int32_t N, int32_t n, double end_q, const double *points,
+                           double *variables, int32_t per_ramp, int32_t nodes_first,
+                           const double (*unit)[4], double *z)
+{
+    const Samples at = {per_ramp, nodes_first, unit};
+    motion_samples(J, N, n, end_q, points, variables_of(J, N, n, variables), &at, z);
 }
 
 void motion_states(const Problem *p, Variables m, double *z)
 {
-    const int J = p->J, n = p->n, P = 2 * n + 1;
-    for (int k = 0; k < p->N; ++k) {
+    const double unit[2][4] = {{0.0}, {p->ramp.mid_q, p->ramp.mid_qd, 0.5, p->ramp.peak_jerk}};
+    const Samples at = {2, 1, unit};
+    motion_samples(p->J, p->N, p->n, p->ramp.end_q, p->points, m, &at, z);
+}
+
+void meet_points(int J, int N, int n, double end_q, const double *points, const double *shapes,
+                 Variables m)
+{
+    for (int k = 0; k < N; ++k) {
         const double h = m.T[k] / n;
         for (int j = 0; j < J; ++j) {
-            double q = p->points[k * J + j], v = k == 0 ? 0.0 : m.v[(k - 1) * J + j];
-            for (int i = 0; i <= n; ++i) {
-                double *at = z + ((size_t)k * P + i) * 4 * J + j;
-                const double a = node(p, m, k, i, j);
-                at[0] = q, at[J] = v, at[2 * J] = a, at[3 * J] = 0.0;
-                if (i == n)
-                    break;
-                const double rise = node(p, m, k, i + 1, j) - a;
-                at += (size_t)(n + 1) * 4 * J;
-                at[0] = q + h * (0.5 * v + h * (0.125 * a + p->ramp.mid_q * rise));
-                at[J] = v + h * (0.5 * a + p->ramp.mid_qd * rise);
-                at[2 * J] = a + 0.5 * rise;
-                at[3 * J] = p->ramp.peak_jerk * rise / h;
-                q += h * (v + h * (0.5 * a + p->ramp.end_q * rise));
-                v += h * (a + 0.5 * rise);
+            const double v0 = k == 0 ? 0.0 : m.v[(k - 1) * J + j];
+            const double v1 = k == N - 1 ? 0.0 : m.v[k * J + j];
+            double dv = 0.0, dq = 0.0;  /* changes of v / h and of q / h^2; then residuals */
+            for (int i = 0; i < n; ++i) {
+                const double a = node(J, N, n, m, k, i, j);
+                const double rise = node(J, N, n, m, k, i + 1, j) - a;
+                dq = ramp_q(1.0, 1.0, dq, dv, a, rise, end_q);
+                dv = ramp_qd(1.0, 1.0, dv, a, rise, 0.5);
             }
+            dv = (v1 - v0) / h - dv;
+            dq = (points[(k + 1) * J + j] - points[k * J + j] - m.T[k] * v0) / (h * h) - dq;
+            for (int i = 0; i < n - 1; ++i)
+                m.inner[((size_t)k * (n - 1) + i) * J + j] +=
+                    shapes[2 * i] * dv + shapes[2 * i + 1] * dq;
         }
     }
 }
 
-/* Change inner accelerations smoothly so that the motion meets the via points exactly. */
-static void restore(const Problem *p, Variables m)
+/* For solver/ramps.py. */
+EXPORTED void ramps_meet_points(int32_t J, int32_t N, int32_t n, double end_q,
+                                const double *points, const double *shapes, double *variables)
 {
-    const int J = p->J, n = p->n;
-    for (int k = 0; k < p->N; ++k) {
-        const double h = m.T[k] / n;
-        for (int j = 0; j < J; ++j) {
-            const double v0 = k == 0 ? 0.0 : m.v[(k - 1) * J + j];
-            const double v1 = k == p->N - 1 ? 0.0 : m.v[k * J + j];
-            double dv = 0.0, dq = 0.0;  /* changes of v / h and of q / h^2; then residuals */
-            for (int i = 0; i < n; ++i) {
-                const double a = node(p, m, k, i, j), rise = node(p, m, k, i + 1, j) - a;
-                dq += dv + 0.5 * a + p->ramp.end_q * rise;
-                dv += a + 0.5 * rise;
-            }
-            dv = (v1 - v0) / h - dv;
-            dq = (p->points[(k + 1) * J + j] - p->points[k * J + j] - m.T[k] * v0) / (h * h)
-                - dq;
-            for (int i = 0; i < n - 1; ++i)
-                m.inner[((size_t)k * (n - 1) + i) * J + j] +=
-                    p->restore[2 * i] * dv + p->restore[2 * i + 1] * dq;
-        }
-    }
+    meet_points(J, N, n, end_q, points, shapes, variables_of(J, N, n, variables));
 }
 
 /* Take a step of the variables in normalised time: velocities times T and accelerations times T^2
@@ -104,6 +132,6 @@ int step_motion(const Problem *p, Variables m, Variables step, double size, Vari
                 / (slower * slower);
         }
     }
-    restore(p, moved);
+    meet_points(J, p->N, n, p->ramp.end_q, p->points, p->restore, moved);
     return 1;
 }

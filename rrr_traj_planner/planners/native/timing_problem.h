@@ -30,14 +30,13 @@
 #include <stdint.h>
 
 enum { MOST_JOINTS = 3, MOST_GENERAL = 12 };
-enum { BOUNDS_ALONE, TORQUE, PATH };  /* kinds of general constraints */
 
 /* Constraints of a segment are bounds on states, then general ones, each two-sided: slacks,
  * multipliers and shifts are (N, bounds + general, 2), upper and lower, then (N, 2) for least
  * durations. */
 typedef struct {
     int32_t J, N, n;        /* coordinates, segments, ramps in a segment */
-    int32_t kind, E;        /* of the general constraints, and their greatest number at a point */
+    int32_t E;              /* greatest number of general constraints at a point */
     int32_t bounds, general;  /* numbers of constraints of a segment */
     int32_t intervals;      /* of a path's table, in a segment */
     Ramp ramp;
@@ -48,13 +47,15 @@ typedef struct {
     const int32_t *bound_at, *general_at;  /* the limited ones: offsets into (P, Z) and (P, E) */
     const uint8_t *has_general;            /* (P) */
     const double *least_T;  /* (N), least durations, or NULL */
+    double longest;         /* by how much durations may be above the least ones */
     /* A duration is free, or the multiple of a common factor, or fixed (proportion 0) */
     const uint8_t *free;    /* (N) */
     const double *proportions;      /* (N) */
     const double *weights;  /* (N), of the durations in the objective */
     const uint8_t *fixed_velocity;  /* (N - 1, J), whether a via velocity does not change */
-    const double *arm;      /* coefficients of the equations of motion, where kind is TORQUE */
-    const double *table;    /* (N, 4, intervals, COLUMNS), cubic coefficients, where it is PATH */
+    /* General constraints are limits on torque, or on motion along a path; NULL where not so: */
+    const double *arm;      /* coefficients of the equations of motion */
+    const double *table;    /* (N, 4, intervals, COLUMNS), cubic coefficients */
     const double *overshoot;  /* (N, 2, 3), added to ddq and to c at the segments' ends */
 
     double *variables;      /* the iterate; see Variables */
@@ -87,11 +88,13 @@ typedef struct {
 
 static inline size_t points_of(const Problem *p) { return 2 * (size_t)p->n + 1; }
 
+static inline int bounds_alone(const Problem *p) { return !p->arm && !p->table; }
+
 /* The size of a segment's Hessian: (P, Z, Z); with bounds alone it is diagonal, (P, Z). */
 static inline size_t hessian_size(const Problem *p)
 {
     const size_t Z = 4 * p->J;
-    return points_of(p) * Z * (p->kind == BOUNDS_ALONE ? 1 : Z);
+    return points_of(p) * Z * (bounds_alone(p) ? 1 : Z);
 }
 
 static inline size_t constraints_of(const Problem *p)
@@ -104,13 +107,6 @@ static inline size_t slacks_size(const Problem *p)
     return 2 * (size_t)p->N * (constraints_of(p) + 1);
 }
 
-/* The unknowns of a motion, contiguous in memory. */
-typedef struct {
-    double *inner;          /* (N, n - 1, J), accelerations at a segment's inner nodes */
-    double *v, *a;          /* (N - 1, J), velocities and accelerations at via points */
-    double *T;              /* (N), durations */
-} Variables;
-
 static inline size_t variables_size(const Problem *p)
 {
     return ((size_t)p->N * (p->n - 1) + 2 * (size_t)(p->N - 1)) * p->J + p->N;
@@ -118,12 +114,7 @@ static inline size_t variables_size(const Problem *p)
 
 static inline Variables variables_at(const Problem *p, double *memory)
 {
-    Variables m;
-    m.inner = memory;
-    m.v = m.inner + (size_t)p->N * (p->n - 1) * p->J;
-    m.a = m.v + (size_t)(p->N - 1) * p->J;
-    m.T = m.a + (size_t)(p->N - 1) * p->J;
-    return m;
+    return variables_of(p->J, p->N, p->n, memory);
 }
 
 /* ramps.c: the states of a motion, and a step of its variables after which it meets the via

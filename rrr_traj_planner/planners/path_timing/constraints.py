@@ -12,19 +12,24 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The joints' and the tip's limits as constraints on the motion along a path, for the solver."""
+"""
+The joints' and the tip's limits as constraints on the motion along a path, for the solver.
+
+Time scaling: Hollerbach, Dynamic scaling of manipulator trajectories, 1984.
+"""
 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.planners.path_timing.table import PathTable, PathTerms
-from rrr_traj_planner.planners.solver.limits import FAR, Limits, PATH
-from rrr_traj_planner.planners.solver.ramps import Grid, States, Variables
+from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
+from rrr_traj_planner.planners.path_timing.table import PathTable
+from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
+from rrr_traj_planner.planners.solver.limits import FAR, Limits
+from rrr_traj_planner.planners.solver.ramps import Grid
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 
 QUANTITIES = 14  # three each of velocity, acceleration, jerk and torque, then:
@@ -34,41 +39,6 @@ SPEED, ALONG = 12, 13  # the tip's speed, and its acceleration along the path
 # Bound on the tip's acceleration along pieces of constant speed [m/s^2]: a barrier method needs an
 # interior.
 STEADY = 1e-3
-
-
-class Progress(NamedTuple):
-    """Position, speed, acceleration and jerk along the path at points, shape (N, p) each."""
-
-    s: Array
-    sd: Array
-    sdd: Array
-    sddd: Array
-
-
-def limited(terms: PathTerms, at: Progress) -> Array:
-    """
-    Return the limited quantities.
-
-    Torques are those of Bobrow, Dubowsky & Gibson (1985): m sdd + c sd^2 + g.
-
-    Parameters
-    ----------
-    terms : PathTerms
-        Of the path at the points.
-    at : Progress
-        Of the motion.
-
-    Returns
-    -------
-    ndarray, shape (N, p, QUANTITIES)
-        Velocity, acceleration, jerk, torque of each joint, the tip's speed and acceleration.
-
-    """
-    _, v, a, j = (f[..., np.newaxis] for f in at)
-    return np.concatenate((
-        terms.dq * v, terms.ddq * v ** 2 + terms.dq * a,
-        v * (terms.dddq * v ** 2 + 3.0 * terms.ddq * a) + terms.dq * j,
-        terms.m * a + terms.c * v ** 2 + terms.g, v, a), axis=-1)
 
 
 def all_bounds(limits: JointLimits, max_tip_speed: float) -> Array:
@@ -145,57 +115,60 @@ class PathConstraints:
         lower[..., along], upper[..., along] = self._lower[..., SPEED:], self._upper[..., SPEED:]
         bounded[:, along] = self._limited[SPEED:]
         return TimingProblem(self.grid, self.points, Limits(
-            PATH, lower, upper, bounded, self._lower[..., :SPEED], self._upper[..., :SPEED],
+            lower, upper, bounded, self._lower[..., :SPEED], self._upper[..., :SPEED],
             np.tile(self._limited[:SPEED], (P, 1)), table=self.table.coefficients,
             overshoot=self.table.overshoot), self._workspace)
 
-    def terms(self, s: Array) -> PathTerms:
-        """
-        Return the path's terms, with a quintic's overshoot added at the ends of pieces.
 
-        Parameters
-        ----------
-        s : ndarray, shape (N, 2 n + 1)
-            Path lengths of a motion's points [m].
-
-        Returns
-        -------
-        PathTerms
-            Of the path there.
-
-        """
-        terms = self.table(s)
-        if not self.table.overshoot.any():
-            return terms
-        ddq, c = terms.ddq.copy(), terms.c.copy()
-        ddq[:, self.grid.n] += self.table.overshoot[:, 0]
-        c[:, self.grid.n] += self.table.overshoot[:, 1]
-        return terms._replace(ddq=ddq, c=c)
-
-
-def progress_at(grid: Grid, points: Array, m: Variables) -> Progress:
+def limited_quantities(problem: TimingProblem, z: Array, at_points: bool) -> tuple[Array, Array]:
     """
-    Return a motion's progress at its points: the nodes, then the middles between them.
+    Return the limited quantities of a motion along a path.
+
+    Torques are those of Bobrow, Dubowsky & Gibson (1985): m sdd + c sd^2 + g.
 
     Parameters
     ----------
-    grid : Grid
-        Discretisation: n ramps per segment.
-    points : ndarray, shape (N + 1, 1)
-        Path lengths where the pieces meet [m].
-    m : Variables
-        The motion.
+    problem : TimingProblem
+        Of the path.
+    z : ndarray, shape (N, p, 4)
+        Position [m], speed, acceleration and jerk along it; row k is on piece k.
+    at_points : bool
+        Whether these are the problem's points, at the last of which, on each piece, a quintic's
+        overshoot is added.
 
     Returns
     -------
-    Progress
-        Of shape (N, 2 n + 1).
+    tuple of ndarray
+        Velocity, acceleration, jerk, torque of each joint, the tip's speed and acceleration,
+        (N, p, QUANTITIES), and gravity's torque, (N, p, 3).
 
     """
-    return _progress(grid, grid.states(points, m))
+    z = contiguous(z)
+    x, gravity = np.empty((*z.shape[:2], QUANTITIES)), np.empty((*z.shape[:2], 3))
+    KERNELS.path_quantities(problem.at, z.shape[1], at_points, z.ctypes.data, x.ctypes.data,
+                            gravity.ctypes.data)
+    return x, gravity
 
 
-def _progress(grid: Grid, at: States) -> Progress:
-    jerk = np.zeros_like(at.q[..., 0])
-    jerk[:, grid.n + 1:] = at.jerk[..., 0]  # zero at the nodes, at its peak between them
-    return Progress(at.q[..., 0], at.qd[..., 0], at.qdd[..., 0], jerk)
+def least_time_scale(x: Array, gravity: Array, bounds: Array) -> float:
+    """
+    Return the least factor on all times with which limits hold at given points.
+
+    Parameters
+    ----------
+    x, gravity : ndarray
+        As returned by `limited_quantities`.
+    bounds : ndarray, shape (..., QUANTITIES)
+        On magnitudes, infinite where there is none; that on acceleration along the path is left
+        out.
+
+    Returns
+    -------
+    float
+        At most 1 where they hold as it is; infinite where no factor helps.
+
+    """
+    ratio = (np.abs(x) / bounds).reshape(-1, QUANTITIES).max(axis=0)
+    by_torque = squared_scaling(bounds[..., TORQUE], gravity, x[..., TORQUE])
+    return float(max(*ratio[VELOCITY], ratio[SPEED], np.sqrt(ratio[ACCELERATION].max()),
+                     np.cbrt(ratio[JERK].max()), np.sqrt(by_torque.max())))

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
 
 def motion_with_speeds(grid: Grid, ends: Array, speeds: Array) -> Variables:
@@ -43,7 +43,7 @@ def motion_with_speeds(grid: Grid, ends: Array, speeds: Array) -> Variables:
     T = 2.0 * np.diff(ends) / (speeds[1:] + speeds[:-1])
     N, share = len(T), np.arange(1, grid.n) / grid.n
     rise = (np.diff(speeds) / T)[:, np.newaxis] * (1.0 - np.cos(2.0 * np.pi * share))
-    return restored(grid, ends[:, np.newaxis], Variables(
+    return grid.restored(ends[:, np.newaxis], Variables(
         rise[..., np.newaxis], speeds[1:-1, np.newaxis], np.zeros((N - 1, 1)), T))
 
 
@@ -67,5 +67,5 @@ def uniform_along(grid: Grid, ends: Array) -> Variables:
     T = np.diff(ends)
     T[[0, -1]] *= 2.0
     N = len(T)
-    return restored(grid, ends[:, np.newaxis], Variables(
+    return grid.restored(ends[:, np.newaxis], Variables(
         np.zeros((N, grid.n - 1, 1)), np.ones((N - 1, 1)), np.zeros((N - 1, 1)), T))

@@ -103,28 +103,6 @@ class PathTable:
             arm_path.model, q, np.stack((at_rest, at_rest, dq)), np.stack((at_rest, dq, ddq)))
         return PathTerms(dq, ddq, dddq, by_sdd - g, by_sd - g, g)
 
-    def __call__(self, s: Array) -> PathTerms:
-        """
-        Return the terms along the path.
-
-        Parameters
-        ----------
-        s : ndarray, shape (N, p)
-            Path lengths [m]; row k is on piece k.
-
-        Returns
-        -------
-        PathTerms
-            Of shape (N, p, 3) each.
-
-        """
-        u = (s - self.ends[:-1, np.newaxis]) / self._lengths[:, np.newaxis] * INTERVALS
-        index = np.clip(u.astype(int), 0, INTERVALS - 1)
-        x = ((u - index) / INTERVALS)[..., np.newaxis]
-        rows = np.arange(len(s))[:, np.newaxis]
-        c3, c2, c1, c0 = (self.coefficients[rows, k, index] for k in range(4))
-        return PathTerms(*np.split(((c3 * x + c2) * x + c1) * x + c0, 6, axis=-1))
-
 
 @cache
 def _spline() -> Array:

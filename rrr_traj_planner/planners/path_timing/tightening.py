@@ -26,15 +26,12 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.planners.path_timing.constraints import (
     all_bounds,
+    least_time_scale,
+    limited_quantities,
     PathConstraints,
-    progress_at,
     QUANTITIES,
 )
-from rrr_traj_planner.planners.path_timing.dense_check import (
-    dense_check,
-    DenseCheck,
-    least_time_scale,
-)
+from rrr_traj_planner.planners.path_timing.dense_check import dense_check, DenseCheck
 from rrr_traj_planner.planners.path_timing.initial_speeds import initial_speeds_of
 from rrr_traj_planner.planners.path_timing.start import motion_with_speeds, uniform_along
 from rrr_traj_planner.planners.path_timing.table import PathTable
@@ -169,6 +166,7 @@ def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
         m = uniform_along(grid, table.ends)
     else:
         m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))
-    at = progress_at(grid, constraints.points, m)
+    z = np.concatenate(grid.states(constraints.points, m), axis=-1)
+    x, gravity = limited_quantities(constraints.problem, z, at_points=True)
     return time_scaled(m, START_SCALING * least_time_scale(
-        constraints.terms(at.s), at, bounds - constraints.margins))
+        x, gravity, bounds - constraints.margins))

@@ -23,13 +23,15 @@ from rrr_traj_planner.core.arrays import Array, BoolArray
 
 FAR = 1e6  # stands for no bound, in SI units and rad: never active
 
-BOUNDS_ALONE, TORQUE, PATH = range(3)  # kinds of general constraints; as in timing_problem.h
-
 
 class Limits(NamedTuple):
-    """Limits as arrays; P = 2 n + 1 points of a segment, at each E general constraints."""
+    """
+    Limits as arrays; P = 2 n + 1 points of a segment, at each E general constraints.
 
-    kind: int               # of the general constraints: BOUNDS_ALONE (none), TORQUE or PATH
+    The general constraints are on torque if the arm is given, on motion along a path if its table
+    is; else there are none.
+    """
+
     lower: Array            # (N, P, 4 J), of position, velocity, acceleration and jerk
     upper: Array
     bounded: BoolArray      # (P, 4 J), which of these are limited
@@ -37,9 +39,14 @@ class Limits(NamedTuple):
     general_upper: Array
     general: BoolArray      # (P, E), which of these are limited
     least_T: Array | None = None    # (N,), least durations [s]
-    arm: Array | None = None      # coefficients of the equations of motion, of TORQUE
-    table: Array | None = None    # (N, 4, intervals, 18), cubic coefficients, of PATH
-    overshoot: Array | None = None  # (N, 2, 3), added to ddq and to c at segments' ends, of PATH
+    arm: Array | None = None      # coefficients of the equations of motion
+    table: Array | None = None    # (N, 4, intervals, 18), cubic coefficients of a path's terms
+    overshoot: Array | None = None  # (N, 2, 3), added to ddq and to c at its segments' ends
+
+    @property
+    def bounds_alone(self) -> bool:
+        """Return whether there are no general constraints."""
+        return self.arm is None and self.table is None
 
 
 class DurationConstraints(NamedTuple):

@@ -31,7 +31,6 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from rrr_traj_planner.planners.solver.library import KERNELS
-from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE
 from rrr_traj_planner.planners.solver.timing_problem import Step, TimingProblem
 
 # Chosen values, without unit; sizes are parts of the whole Newton step.
@@ -109,7 +108,7 @@ def predicted_decrease_of(problem: TimingProblem) -> float | None:
 def _newton_steps(problem: TimingProblem) -> Iterator[tuple[Step, Step]]:
     """Yield the Newton steps, each with memory for its correction."""
     exact, exact_corrected, plain, plain_corrected = problem.steps
-    if problem.limits.kind != BOUNDS_ALONE:
+    if not problem.limits.bounds_alone:
         if KERNELS.timing_newton(problem.at, 1, exact.at) and exact.found.predicted_decrease > 0.0:
             yield exact, exact_corrected
     if KERNELS.timing_newton(problem.at, 0, plain.at):

@@ -30,6 +30,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.ramps import Ramps, RampShape
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
 
 
 class Variables(NamedTuple):
@@ -40,14 +41,37 @@ class Variables(NamedTuple):
     a: Array         # accelerations there [rad/s^2], (N - 1, J)
     T: Array         # durations [s], (N,)
 
+    def flat(self) -> Array:
+        """Return all unknowns as one vector, as the kernels take them."""
+        return np.concatenate([f.ravel() for f in self])
+
+    def with_values(self, flat: Array) -> Variables:
+        """
+        Return a motion of the same shape.
+
+        Parameters
+        ----------
+        flat : ndarray
+            Its unknowns as one vector, see `flat`.
+
+        Returns
+        -------
+        Variables
+            Views of the vector.
+
+        """
+        ends = np.cumsum([f.size for f in self])
+        return Variables(*(part.reshape(f.shape) for part, f in zip(
+            np.split(flat, ends[:-1]), self)))
+
 
 class States(NamedTuple):
-    """The states of a motion at the nodes, then at the middles between them."""
+    """The states of a motion at the nodes, then at the middles between them: (N, 2 n + 1, J)."""
 
-    q: Array     # shape (N, 2 n + 1, 3)
+    q: Array
     qd: Array
     qdd: Array
-    jerk: Array  # the peak of each ramp, signed, shape (N, n, 3)
+    jerk: Array  # 0 at the nodes, at its peaks between them
 
 
 @lru_cache(maxsize=64)
@@ -71,7 +95,7 @@ def grid_of(n: int, constant_jerk_fraction: float) -> Grid:
 
 class Grid:
     """
-    The constant matrices of n ramps in a segment, of duration h each.
+    n ramps in a segment, of duration h each.
 
     Parameters
     ----------
@@ -84,13 +108,8 @@ class Grid:
     ----------
     shape : RampShape
         Of every ramp.
-    qdd, qd, q : ndarray, shape (2 n + 1, n + 1)
-        Times the node accelerations: acceleration, change of velocity / h and displacement / h^2
-        at the points, without the start velocity's part.
-    jerk : ndarray, shape (n, n + 1)
-        Times the node accelerations: peaks of jerk times h.
-    elapsed : ndarray, shape (2 n + 1,)
-        Time of each point / h.
+    displacement : ndarray, shape (n - 1,)
+        Of a segment from rest, by each inner acceleration, divided by h^2.
     restore : ndarray, shape (n - 1, 2)
         Smooth inner accelerations that change velocity by h, and displacement by h^2.
 
@@ -98,71 +117,83 @@ class Grid:
 
     def __init__(self, n: int, constant_jerk_fraction: float = 0.0) -> None:
         self.n, self.shape = n, RampShape(constant_jerk_fraction)
-        one, whole = np.eye(n + 1), self.shape(1.0)[0]
-        qd, q = np.zeros((n + 1, n + 1)), np.zeros((n + 1, n + 1))
-        for j in range(n):
-            qd[j + 1] = qd[j] + 0.5 * (one[j] + one[j + 1])
-            q[j + 1] = q[j] + qd[j] + 0.5 * one[j] + whole * (one[j + 1] - one[j])
-        rise = one[1:] - one[:-1]
-        way, speed, _, _ = self.shape(0.5)
-        self.qdd = np.vstack((one, 0.5 * (one[1:] + one[:-1])))
-        self.qd = np.vstack((qd, qd[:-1] + 0.5 * one[:-1] + speed * rise))
-        self.q = np.vstack((q, q[:-1] + 0.5 * qd[:-1] + 0.125 * one[:-1] + way * rise))
-        self.jerk = self.shape.peak_jerk * rise
-        self.elapsed = np.concatenate((np.arange(n + 1.0), np.arange(n) + 0.5))
-        self.restore = self._restoring_shapes()
-
-    def _restoring_shapes(self) -> Array:
-        """Return inner accelerations, sine-shaped, for a unit of velocity and of displacement."""
-        s = np.arange(1, self.n) / self.n
+        self._end_q = float(self.shape(1.0)[0])
+        none = np.zeros((0, n - 1))
+        one_each = Variables(np.eye(n - 1)[np.newaxis], none, none, np.array([float(n)]))
+        self.displacement, velocity, _, _ = self.samples(
+            np.zeros((1, n - 1)), one_each, 1)[0, n]
+        s = np.arange(1, n) / n
         shapes = np.stack((np.sin(np.pi * s), np.sin(2.0 * np.pi * s)), axis=1)
-        gains = np.stack((self.qd[self.n], self.q[self.n]))[:, 1:-1] @ shapes
-        return shapes @ np.linalg.inv(gains)
+        gains = np.stack((velocity, self.displacement)) @ shapes
+        self.restore = contiguous(shapes @ np.linalg.inv(gains))
 
-    def nodes(self, m: Variables) -> tuple[Array, Array, Array]:
+    def samples(self, points: Array, m: Variables, per_ramp: int) -> Array:
         """
-        Return accelerations of all nodes, and velocities at the segments' ends.
+        Return the states of a motion at equally spaced times of every ramp.
 
         Parameters
         ----------
+        points : ndarray, shape (N + 1, J)
+            Via points [rad]; each segment is integrated from its own.
         m : Variables
             The motion.
+        per_ramp : int
+            Samples of each ramp, from its start on.
 
         Returns
         -------
-        tuple of ndarray
-            Accelerations (N, n + 1, 3) [rad/s^2]; velocities at starts and at ends (N, 3) [rad/s].
+        ndarray, shape (N, n per_ramp + 1, 4, J)
+            Position [rad], velocity, acceleration and jerk, in the order of time.
 
         """
-        rest = np.zeros((1, m.inner.shape[-1]))
-        a, v = np.concatenate((rest, m.a, rest)), np.concatenate((rest, m.v, rest))
-        nodes = np.concatenate((a[:-1, np.newaxis], m.inner, a[1:, np.newaxis]), axis=1)
-        return nodes, v[:-1], v[1:]
+        return self._sampled(points, m, per_ramp, nodes_first=False)
 
     def states(self, points: Array, m: Variables) -> States:
         """
-        Return the states of a motion; each segment is integrated from its own via point.
+        Return the states of a motion at a problem's points.
 
         Parameters
         ----------
-        points : ndarray, shape (N + 1, 3)
-            Via points [rad].
-        m : Variables
-            The motion.
+        points, m
+            As of `samples`.
 
         Returns
         -------
         States
-            Position [rad], velocity [rad/s], acceleration [rad/s^2], peaks of jerk [rad/s^3].
+            Position [rad], velocity [rad/s], acceleration [rad/s^2], jerk [rad/s^3].
 
         """
-        nodes, v0, _ = self.nodes(m)
-        h = (m.T / self.n)[:, np.newaxis, np.newaxis]
-        v0 = v0[:, np.newaxis]
-        displacement = h * (self.elapsed[:, np.newaxis] * v0 + h * (self.q @ nodes))
-        return States(
-            points[:-1, np.newaxis] + displacement,
-            v0 + h * (self.qd @ nodes), self.qdd @ nodes, (self.jerk @ nodes) / h)
+        return States(*np.moveaxis(self._sampled(points, m, 2, nodes_first=True), 2, 0))
+
+    def _sampled(self, points: Array, m: Variables, per_ramp: int, nodes_first: bool) -> Array:
+        (N, _, J), points, flat = m.inner.shape, contiguous(points), m.flat()
+        z = np.empty((N, self.n * per_ramp + 1, 4, J))
+        unit = _unit_ramp(self.shape.constant_jerk_fraction, per_ramp)
+        KERNELS.ramps_sample(J, N, self.n, self._end_q, points.ctypes.data, flat.ctypes.data,
+                             per_ramp, nodes_first, unit.ctypes.data, z.ctypes.data)
+        return z
+
+    def restored(self, points: Array, m: Variables) -> Variables:
+        """
+        Return the motion with inner accelerations corrected so that it meets the via points.
+
+        Parameters
+        ----------
+        points : ndarray, shape (N + 1, J)
+            Via points [rad].
+        m : Variables
+            The motion, up to rounding or a step's second order.
+
+        Returns
+        -------
+        Variables
+            With the same via velocities, via accelerations and durations.
+
+        """
+        (N, _, J), points, flat = m.inner.shape, contiguous(points), m.flat()
+        KERNELS.ramps_meet_points(J, N, self.n, self._end_q, points.ctypes.data,
+                                  self.restore.ctypes.data, flat.ctypes.data)
+        return m.with_values(flat)
 
     def profiles(self, points: Array, m: Variables) -> list[JointProfile]:
         """
@@ -181,10 +212,10 @@ class Grid:
             A ramp from node to node.
 
         """
-        n, (nodes, _, _), at = self.n, self.nodes(m), self.states(points, m)
-        h, J = np.repeat(m.T / n, n), m.inner.shape[-1]
+        n, at, J = self.n, self.states(points, m), m.inner.shape[-1]
+        h = np.repeat(m.T / n, n)
         q, qd, a, rise = (f.reshape(-1, J).T for f in (
-            at.q[:, :n], at.qd[:, :n], nodes[:, :-1], np.diff(nodes, axis=1)))
+            at.q[:, :n], at.qd[:, :n], at.qdd[:, :n], np.diff(at.qdd[:, :n + 1], axis=1)))
         return [JointProfile(Ramps(h, q[j], qd[j], a[j], rise[j], self.shape)) for j in range(J)]
 
     def trajectory(self, points: Array, m: Variables) -> PiecewiseTrajectory:
@@ -206,33 +237,6 @@ class Grid:
         """
         return PiecewiseTrajectory(
             self.profiles(points, m), np.concatenate(([0.0], np.cumsum(m.T))))
-
-
-def restored(grid: Grid, points: Array, m: Variables) -> Variables:
-    """
-    Return the motion with inner accelerations corrected so that it meets the via points exactly.
-
-    Parameters
-    ----------
-    grid : Grid
-        Discretisation: n ramps per segment.
-    points : ndarray, shape (N + 1, 3)
-        Via points [rad].
-    m : Variables
-        The motion, up to rounding or a step's second order.
-
-    Returns
-    -------
-    Variables
-        With the same via velocities, via accelerations and durations.
-
-    """
-    nodes, v0, v1 = grid.nodes(m)
-    h = (m.T / grid.n)[:, np.newaxis]
-    target = np.stack(((v1 - v0) / h, (np.diff(points, axis=0) - m.T[:, np.newaxis] * v0)
-                       / h ** 2), axis=1)
-    residual = target - np.stack((grid.qd[grid.n], grid.q[grid.n])) @ nodes
-    return m._replace(inner=m.inner + grid.restore @ residual)
 
 
 def time_scaled(m: Variables, factor: float) -> Variables:
@@ -273,3 +277,11 @@ def with_durations(m: Variables, T: Array) -> Variables:
 
     """
     return m._replace(inner=m.inner * ((m.T / T) ** 2)[:, np.newaxis, np.newaxis], T=T)
+
+
+@lru_cache(maxsize=64)
+def _unit_ramp(constant_jerk_fraction: float, per_ramp: int) -> Array:
+    """Return q, qd, qdd and jerk of a ramp of unit duration and rise at samples, (per_ramp, 4)."""
+    values = np.stack(RampShape(constant_jerk_fraction)(np.arange(per_ramp) / per_ramp), axis=1)
+    values.setflags(write=False)
+    return values

@@ -31,7 +31,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.solver.library import Arena, contiguous, KERNELS, same_size_as
-from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE, DurationConstraints, Limits
+from rrr_traj_planner.planners.solver.limits import DurationConstraints, FAR, Limits
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
 STEPS = 4  # of one iteration: two Newton steps, each followed by its second-order correction
@@ -45,15 +45,18 @@ class _Ramp(ctypes.Structure):
 class _Problem(ctypes.Structure):  # as in native/timing_problem.h
     _fields_ = [
         *((name, ctypes.c_int32) for name in (
-            'J', 'N', 'n', 'kind', 'E', 'bounds', 'general', 'intervals')),
+            'J', 'N', 'n', 'E', 'bounds', 'general', 'intervals')),
         ('ramp', _Ramp),
         *((name, ctypes.c_void_p) for name in (
             'points', 'restore', 'lower', 'upper', 'general_lower', 'general_upper', 'bound_at',
-            'general_at', 'has_general', 'least_T', 'free', 'proportions', 'weights',
-            'fixed_velocity', 'arm', 'table', 'overshoot', 'variables', 'states', 'values',
-            'jacobian', 'slack', 'inverse', 'dual', 'shift', 'hessian', 'exact', 'gradient',
-            'gradient_T', 'hessian_T', 'trial_variables', 'trial_states', 'trial_values',
-            'trial_slack', 'trial_gradient', 'trial_gradient_T', 'step_states', 'newton')),
+            'general_at', 'has_general', 'least_T')),
+        ('longest', ctypes.c_double),
+        *((name, ctypes.c_void_p) for name in (
+            'free', 'proportions', 'weights', 'fixed_velocity', 'arm', 'table', 'overshoot',
+            'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual', 'shift',
+            'hessian', 'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables',
+            'trial_states', 'trial_values', 'trial_slack', 'trial_gradient', 'trial_gradient_T',
+            'step_states', 'newton')),
         ('shifted', ctypes.c_int32)]
 
 
@@ -131,11 +134,11 @@ class TimingProblem:
         self.grid, self.points, self.limits = grid, points, limits
         self._workspace = workspace or Workspace()
         N, n, J = len(points) - 1, grid.n, points.shape[1]
-        (way, speed, _, _), whole = grid.shape(0.5), grid.shape(1.0)[0]
+        (mid_q, mid_qd, _, _), end_q = grid.shape(0.5), grid.shape(1.0)[0]
         self._problem = _Problem(
-            J=J, N=N, n=n, kind=limits.kind, E=limits.general_lower.shape[-1],
+            J=J, N=N, n=n, E=limits.general_lower.shape[-1], longest=FAR,
             intervals=0 if limits.table is None else limits.table.shape[2],
-            ramp=_Ramp(float(whole), float(way), float(speed), grid.shape.peak_jerk))
+            ramp=_Ramp(float(end_q), float(mid_q), float(mid_qd), grid.shape.peak_jerk))
         self._bound_arrays: dict[str, Array] = {}
         bound_at, general_at = (np.flatnonzero(which) for which in (
             limits.bounded, limits.general))
@@ -165,12 +168,12 @@ class TimingProblem:
         P, Z, E = 2 * n + 1, 4 * J, p.E
         unknowns = N * (n - 1) * J + 2 * (N - 1) * J + N
         slacks, states, values = 2 * N * (p.bounds + p.general + 1), (N, P, Z), (N, P, E)
-        hessian = states if p.kind == BOUNDS_ALONE else (N, P, Z, Z)
+        hessian = states if self.limits.bounds_alone else (N, P, Z, Z)
         shapes: dict[str, tuple[int, ...]] = {
             'variables': (unknowns,), 'states': states, 'values': values,
             'jacobian': (N, P, E, Z), 'slack': (slacks,), 'inverse': (slacks,),
             'dual': (slacks,), 'shift': (slacks,), 'hessian': hessian,
-            'exact': (0,) if p.kind == BOUNDS_ALONE else hessian, 'gradient': states,
+            'exact': (0,) if self.limits.bounds_alone else hessian, 'gradient': states,
             'gradient_T': (N,), 'hessian_T': (N,), 'trial_variables': (unknowns,),
             'trial_states': states, 'trial_values': values, 'trial_slack': (slacks,),
             'trial_gradient': states, 'trial_gradient_T': (N,), 'step_states': states,
@@ -205,7 +208,7 @@ class TimingProblem:
             Which durations and via velocities may change.
 
         """
-        self.arrays['variables'][:] = np.concatenate([f.ravel() for f in motion])
+        self.arrays['variables'][:] = motion.flat()
         self.arrays['shift'][:] = 0.0
         self._problem.shifted = 0
         self._bind('free', durations.free.astype(np.uint8))
@@ -254,7 +257,7 @@ class TimingProblem:
             Positive where the constraint holds strictly.
 
         """
-        flat = np.concatenate([f.ravel() for f in motion])
+        flat = motion.flat()
         found = np.empty(self.arrays['slack'].size)
         KERNELS.timing_slacks(self.at, flat.ctypes.data, found.ctypes.data)
         return found
@@ -283,7 +286,7 @@ class TimingProblem:
         Parameters
         ----------
         variables : ndarray
-            The fields of `Variables`, flattened and concatenated.
+            See `Variables.flat`.
 
         Returns
         -------
@@ -292,7 +295,6 @@ class TimingProblem:
 
         """
         N, n, J = self._shape
-        ends = N * (n - 1) * J, N * (n - 1) * J + (N - 1) * J, len(variables) - N
-        return Variables(variables[:ends[0]].reshape(N, n - 1, J),
-                         variables[ends[0]:ends[1]].reshape(N - 1, J),
-                         variables[ends[1]:ends[2]].reshape(N - 1, J), variables[ends[2]:])
+        at_points = np.empty((N - 1, J))
+        return Variables(np.empty((N, n - 1, J)), at_points, at_points, np.empty(N)).with_values(
+            variables)

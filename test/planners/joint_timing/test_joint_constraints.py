@@ -22,7 +22,6 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
-from rrr_traj_planner.planners.solver.limits import BOUNDS_ALONE
 
 SEEDS = range(6)
 
@@ -52,7 +51,7 @@ def test_slacks_are_limits_less_states(seed):
         assert found[0][:, where] == pytest.approx(limit - value[:, where])
         assert found[1][:, where] == pytest.approx(limit + value[:, where])
         assert np.isnan(np.delete(found, where, axis=2)).all()
-    assert jerk[0][:, n + 1:] == pytest.approx(LIMITS.max_jerk - at.jerk)
+    assert jerk[0][:, n + 1:] == pytest.approx(LIMITS.max_jerk - at.jerk[:, n + 1:])
     assert np.isnan(jerk[:, :, :n + 1]).all()
     assert q[0][:, inside] == pytest.approx(LIMITS.max_position - at.q[:, inside], abs=1e-9)
     assert q[1][:, inside] == pytest.approx(at.q[:, inside] - LIMITS.min_position, abs=1e-9)
@@ -84,7 +83,7 @@ def test_limits_that_are_infinite_never_bind():
     limits = JointLimits([-9.0] * 3, [9.0] * 3, NONE, NONE, NONE, NONE)
     found = bounds(limits, grid, points)
     assert not found.with_torque
-    assert found.problem.limits.kind == BOUNDS_ALONE
+    assert found.problem.limits.bounds_alone
     assert found.problem.limits.bounded.reshape(-1, 4, 3).any(axis=(0, 2)).tolist() == [
         True, False, False, False]  # the ranges
     some = replace(limits, max_effort=[np.inf, 200.0, np.inf], max_jerk=[np.inf, 5.0, np.inf])

@@ -28,7 +28,7 @@ from rrr_traj_planner.planners.joint_timing.margins import LARGER, Margins, MOST
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise
-from rrr_traj_planner.planners.solver.ramps import restored, time_scaled
+from rrr_traj_planner.planners.solver.ramps import time_scaled
 from rrr_traj_planner.planners.tasks import JointTask
 
 SEEDS = range(8)
@@ -251,7 +251,7 @@ def test_joints_that_leave_their_range_beside_a_via_point_at_its_end_stop_there(
         limits = replace(LIMITS, max_effort=NONE, max_position=np.where(
             np.arange(3) == j, points[k, j], LIMITS.max_position))
         task = JointTask(ARM, limits, points, None, 0.01)
-        m = restored(grid, points, m)
+        m = grid.restored(points, m)
         margins = Margins.none(grid, 3)
         slow = rest_to_rest(task, constraints_with(margins, task, grid))
         at_rest = margins.widened(task, grid, slow, DenseCheck(task, grid, m)).at_rest

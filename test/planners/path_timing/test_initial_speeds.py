@@ -16,6 +16,7 @@
 
 from dataclasses import replace
 
+from helpers.path_terms import demands, terms_at
 from helpers.random_paths import PathCase, PLANNERS, random_case
 import numpy as np
 import pytest
@@ -25,8 +26,6 @@ from rrr_traj_planner.planners.path_timing.constraints import (
     ACCELERATION,
     all_bounds,
     JERK,
-    limited,
-    progress_at,
     TORQUE,
     VELOCITY,
 )
@@ -57,9 +56,9 @@ def test_a_motion_of_these_speeds_keeps_every_limit(seed):
     limits = limits_of(case)
     table, bounds = PathTable(case.arm_path), all_bounds(limits, np.inf)
     m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))
-    at = progress_at(grid, table.ends[:, np.newaxis], m)
-    demand = table(at.s)
-    x = np.abs(limited(demand, at))
+    at = np.concatenate(grid.states(table.ends[:, np.newaxis], m), axis=-1)
+    demand = terms_at(table, at[..., 0])
+    x = np.abs(demands(demand, at))
     for kind in (VELOCITY, ACCELERATION, JERK):
         assert (x[..., kind] <= bounds[kind]).all()
     assert (x[..., TORQUE] <= np.maximum(bounds[TORQUE], 1.05 * np.abs(demand.g))).all()
@@ -70,7 +69,7 @@ def test_every_speed_is_held_down_by_a_neighbour_or_by_a_limit_of_its_own(seed):
     case = random_case(seed)
     table, bounds = PathTable(case.arm_path), all_bounds(limits_of(case), np.inf)
     speeds = initial_speeds_of(table, bounds)
-    d = table(table.places)
+    d = table.values
     for k in range(1, len(speeds) - 1):
         own = np.inf
         for piece in (k - 1, k):

@@ -16,18 +16,18 @@
 
 from dataclasses import replace
 
+from helpers.path_terms import demands, terms_at
 from helpers.random_paths import NONE, random_case
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.planners.path_timing.constraints import (
-    limited,
+    limited_quantities,
     PathConstraints,
-    progress_at,
     QUANTITIES,
 )
 from rrr_traj_planner.planners.path_timing.table import PathTable
-from rrr_traj_planner.planners.solver.ramps import Grid, restored, Variables
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
 SEEDS = range(12)
 LIMITS = JointLimits(max_jerk=[10.0] * 3, max_effort=[300.0] * 3)
@@ -47,7 +47,7 @@ def random_problem(seed, limits=LIMITS, max_tip_speed=TIP_SPEED, margin=0.0, ste
     inner = rng.normal(0.0, 0.05, (N, grid.n - 1, 1))
     m = Variables(inner, speed[:, np.newaxis], rng.normal(0.0, 0.05, (N - 1, 1)), L.copy())
     m.T[[0, -1]] *= 2.0
-    return constraints, restored(grid, constraints.points, m)
+    return constraints, grid.restored(constraints.points, m)
 
 
 def slacks_of(constraints, m):
@@ -61,8 +61,9 @@ def slacks_of(constraints, m):
 
 
 def demands_of(constraints, m):
-    at = progress_at(constraints.grid, constraints.points, m)
-    return at, limited(constraints.terms(at.s), at)
+    """Return the states at the points, (N, p, 4), and the limited quantities by the kernel."""
+    at = np.concatenate(constraints.grid.states(constraints.points, m), axis=-1)
+    return at, limited_quantities(constraints.problem, at, at_points=True)[0]
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -79,13 +80,30 @@ def test_slacks_are_limits_less_quantities(seed):
     assert lower[0, 0, 12] > 1e3                            # but rests at the start
 
 
+@pytest.mark.parametrize('at_points', [True, False])
+@pytest.mark.parametrize('seed', SEEDS)
+def test_quantities_are_those_of_the_table_s_terms(seed, at_points):
+    constraints, m = random_problem(seed)
+    table, n = constraints.table, constraints.grid.n
+    at = np.concatenate(constraints.grid.states(constraints.points, m), axis=-1)
+    at[..., 0] = np.clip(at[..., 0], table.ends[:-1, np.newaxis], table.ends[1:, np.newaxis])
+    terms = terms_at(table, at[..., 0])
+    if at_points:  # the last of each piece, where a quintic's overshoot is added
+        terms.ddq[:, n] += table.overshoot[:, 0]
+        terms.c[:, n] += table.overshoot[:, 1]
+    x, gravity = limited_quantities(constraints.problem, at, at_points)
+    expected = demands(terms, at)
+    assert x == pytest.approx(expected, abs=1e-11 * (1.0 + np.abs(expected).max()))
+    assert gravity == pytest.approx(terms.g, rel=1e-11, abs=1e-11)
+
+
 @pytest.mark.parametrize('seed', SEEDS)
 def test_quantities_are_those_of_the_exact_motion(seed):
     # Joint motion by the chain rule from the path itself, without the table.
     constraints, m = random_problem(seed)
     at, x = demands_of(constraints, m)
     inside = slice(1, constraints.grid.n)
-    s, v, a, j = (f[:, inside, np.newaxis] for f in at)
+    s, v, a, j = (at[:, inside, k, np.newaxis] for k in range(4))
     q, dq, ddq, dddq = (f.reshape(*s.shape[:2], 3) for f in random_case(
         seed, points=3).arm_path(s.ravel()))
     for k, own in enumerate((dq * v, ddq * v ** 2 + dq * a,

@@ -14,6 +14,7 @@
 
 """Dense checks of a motion along a path: against a denser evaluation, and by laws."""
 
+from helpers.path_terms import demands, terms_at
 from helpers.random_paths import random_case
 import numpy as np
 import pytest
@@ -21,9 +22,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.planners.path_timing.constraints import (
     ACCELERATION,
     JERK,
-    limited,
     PathConstraints,
-    Progress,
     QUANTITIES,
     SPEED,
     TORQUE,
@@ -32,7 +31,7 @@ from rrr_traj_planner.planners.path_timing.constraints import (
 from rrr_traj_planner.planners.path_timing.dense_check import dense_check
 from rrr_traj_planner.planners.path_timing.start import motion_with_speeds
 from rrr_traj_planner.planners.path_timing.table import PathTable
-from rrr_traj_planner.planners.solver.ramps import Grid, restored, time_scaled
+from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled
 
 SEEDS = range(8)
 DENSE = 300          # evaluations a ramp
@@ -50,7 +49,7 @@ def random_look(seed, ramps=6):
     m = motion_with_speeds(grid, table.ends, speeds)
     m = m._replace(inner=m.inner + rng.normal(0.0, 0.1, m.inner.shape),
                    a=rng.normal(0.0, 0.1, m.a.shape))
-    return table, grid, restored(grid, table.ends[:, np.newaxis], m)
+    return table, grid, grid.restored(table.ends[:, np.newaxis], m)
 
 
 def look(table, grid, m, bounds):
@@ -66,9 +65,9 @@ def dense(table, grid, m):
     profile = grid.profiles(table.ends[:, np.newaxis], m)[0]
     starts = np.concatenate(([0.0], np.cumsum(m.T)[:-1]))
     t = starts[:, np.newaxis] + m.T[:, np.newaxis] * np.linspace(0.0, 1.0, grid.n * DENSE + 1)
-    at = Progress(*(f.reshape(t.shape) for f in profile(t.ravel())))
-    at = at._replace(s=np.clip(at.s, table.ends[:-1, np.newaxis], table.ends[1:, np.newaxis]))
-    return limited(table(at.s), at)
+    at = np.stack([f.reshape(t.shape) for f in profile(t.ravel())], axis=-1)
+    s = np.clip(at[..., 0], table.ends[:-1, np.newaxis], table.ends[1:, np.newaxis])
+    return demands(terms_at(table, s), at)
 
 
 def exceeded_bounds(x, part=0.8):
@@ -137,6 +136,6 @@ def test_a_tip_that_goes_back_is_seen():
     bounds = np.full(QUANTITIES, np.inf)
     assert look(table, grid, m, bounds).is_forward
     back = m._replace(v=m.v * np.where(np.arange(len(m.v)) == 1, -1.0, 1.0)[:, np.newaxis])
-    seen = look(table, grid, restored(grid, table.ends[:, np.newaxis], back), bounds)
+    seen = look(table, grid, grid.restored(table.ends[:, np.newaxis], back), bounds)
     assert seen.slowest <= -0.2
     assert not seen.is_forward

@@ -14,6 +14,7 @@
 
 """What the table of a path gives, against the path itself, differences and the dynamics."""
 
+from helpers.path_terms import terms_at
 from helpers.random_paths import random_case
 import numpy as np
 import pytest
@@ -58,7 +59,7 @@ def exact(arm_path, s):
 def test_table_is_the_exact_demand_to_its_accuracy(seed):
     arm_path, table = random_table(seed)
     s = inner_places(table, seed)
-    for ours, wanted, accuracy in zip(table(s), exact(arm_path, s), ACCURACY):
+    for ours, wanted, accuracy in zip(terms_at(table, s), exact(arm_path, s), ACCURACY):
         assert np.abs(ours - wanted).max() <= accuracy * np.abs(wanted).max()
 
 
@@ -66,15 +67,16 @@ def test_table_is_the_exact_demand_to_its_accuracy(seed):
 def test_table_is_exact_at_its_own_places(seed):
     arm_path, table = random_table(seed)
     s = table.places[:, 1:-1]
-    for ours, wanted in zip(table(s), exact(arm_path, s)):
+    for ours, wanted in zip(terms_at(table, s), exact(arm_path, s)):
         assert ours == pytest.approx(wanted, abs=AT_PLACES * (1.0 + np.abs(wanted).max()))
-    assert table.values.g[:, 1:-1] == pytest.approx(table(s).g, abs=1e-9)
+    assert table.values.g[:, 1:-1] == pytest.approx(terms_at(table, s).g, abs=1e-9)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_ends_of_pieces_have_the_values_of_their_own_side(seed):
     arm_path, table = random_table(seed)
-    first, last = (table(table.ends[k:len(table.ends) - 1 + k, np.newaxis]) for k in (0, 1))
+    first, last = (
+        terms_at(table, table.ends[k:len(table.ends) - 1 + k, np.newaxis]) for k in (0, 1))
     from_right = arm_path(table.ends[:-1])
     from_left = arm_path(table.ends[1:], left=True)
     for ours, theirs in ((first, from_right), (last, from_left)):
@@ -96,7 +98,7 @@ def test_torque_of_a_motion_is_what_the_table_says(seed):
     arm_path, table = random_table(seed)
     s = inner_places(table, seed)
     v, a = np.random.default_rng(seed).normal(size=(2, *s.shape, 1))
-    d = table(s)
+    d = terms_at(table, s)
     q, dq, ddq, _ = (x.reshape(*s.shape, 3) for x in arm_path(s.ravel()))
     tau = inverse_dynamics(arm_path.model, *(x.reshape(-1, 3) for x in (
         q, dq * v, ddq * v ** 2 + dq * a))).reshape(*s.shape, 3)

@@ -23,6 +23,7 @@ from helpers.ramp_cases import (
     closer,
     FREE,
     LIMITS,
+    nodes_of,
     NONE,
     random_motion,
     slow_start,
@@ -115,7 +116,7 @@ def test_every_iterate_is_strictly_feasible_and_through_the_via_points(seed, lim
         assert problem.is_within(m)
         at = grid.states(points, m)
         assert at.q[:, grid.n] == pytest.approx(points[1:], abs=1e-10)
-        assert at.qd[:, grid.n] == pytest.approx(grid.nodes(m)[2], abs=1e-10)
+        assert at.qd[:, grid.n] == pytest.approx(nodes_of(m)[2], abs=1e-10)
     assert outcome.motion.T.sum() <= start.T.sum()
 
 
@@ -276,7 +277,7 @@ def test_returned_motions_keep_the_conditions_of_optimality(seed, limits):
 
     def ends(m):
         at = grid.states(points, m)
-        return np.concatenate((at.q[:, grid.n] - points[1:], at.qd[:, grid.n] - grid.nodes(m)[2]))
+        return np.concatenate((at.q[:, grid.n] - points[1:], at.qd[:, grid.n] - nodes_of(m)[2]))
 
     count = count_of(problem)
     E, slack = by_unknowns(ends), problem.slacks(motion)[:count]

@@ -20,14 +20,27 @@ import re
 from helpers.places import ROOT
 import pytest
 from rrr_traj_planner.core.dynamics.equations import Constants
-from rrr_traj_planner.planners.path_timing.dense_check import _PathCheck
 from rrr_traj_planner.planners.solver.library import load, same_size_as
 from rrr_traj_planner.planners.solver.timing_problem import _Problem, _Step
 from rrr_traj_planner.planners.solver.via_barrier import _ViaProblem
 
 NATIVE = ROOT / 'rrr_traj_planner' / 'planners' / 'native'
-REPEATED = {'problem': _Problem, 'step': _Step, 'via_problem': _ViaProblem,
-            'path_check': _PathCheck}
+REPEATED = {'problem': _Problem, 'step': _Step, 'via_problem': _ViaProblem}
+C_TYPES = {'int32_t': 'c_int', 'double': 'c_double', 'Ramp': '_Ramp'}
+
+
+def declared_fields(name):
+    """Return the fields of a structure of the C headers, each with the ctypes type it needs."""
+    struct = name.title().replace('_', '')
+    headers = '\n'.join(path.read_text() for path in sorted(NATIVE.glob('*.h')))
+    body = re.search(rf'typedef struct \{{([^}}]*)\}} {struct};', headers)[1]
+    fields = []
+    for declaration in re.sub(r'/\*.*?\*/', '', body, flags=re.S).split(';')[:-1]:
+        words = declaration.replace('const ', '').split(maxsplit=1)
+        for field in words[1].split(','):
+            ctype = 'c_void_p' if '*' in field else C_TYPES[words[0]]
+            fields.append((re.search(r'\w+', field)[0], ctype))
+    return fields
 
 
 def test_every_exported_size_is_that_of_a_repeated_structure():
@@ -45,6 +58,12 @@ def test_a_structure_of_another_size_is_refused(name):
 
     with pytest.raises(ImportError, match=f'other sources: size_of_{name} .*make setup'):
         same_size_as(f'size_of_{name}')(Longer)
+
+
+@pytest.mark.parametrize('name', REPEATED)
+def test_a_structure_has_the_fields_of_its_header_in_their_order(name):
+    assert declared_fields(name) == [
+        (field, ctype.__name__) for field, ctype in REPEATED[name]._fields_]
 
 
 def test_kernels_that_are_not_built_are_named(tmp_path):

@@ -14,7 +14,15 @@
 
 """Chains of ramps against single ramps, quadrature and finite differences."""
 
-from helpers.ramp_cases import bounds, LIMITS, random_motion, random_step, shifted, stepped
+from helpers.ramp_cases import (
+    bounds,
+    LIMITS,
+    nodes_of,
+    random_motion,
+    random_step,
+    shifted,
+    stepped,
+)
 import numpy as np
 import pytest
 from rrr_traj_planner.core.motion_laws.ramps import Ramps
@@ -25,7 +33,6 @@ from rrr_traj_planner.planners.joint_timing.start import (
 )
 from rrr_traj_planner.planners.solver.ramps import (
     Grid,
-    restored,
     time_scaled,
     Variables,
     with_durations,
@@ -43,7 +50,7 @@ def moved_by(grid, points, m, step, size):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_states_are_those_of_consecutive_ramps(seed):
     grid, points, m = random_motion(seed)
-    at, (nodes, v0, _) = grid.states(points, m), grid.nodes(m)
+    at, (nodes, v0, _) = grid.states(points, m), nodes_of(m)
     for k, T in enumerate(m.T):
         q, qd = points[k], v0[k]
         for i in range(grid.n):
@@ -54,13 +61,13 @@ def test_states_are_those_of_consecutive_ramps(seed):
                 assert at.q[k, row] == pytest.approx(expected[0], **EXACT)
                 assert at.qd[k, row] == pytest.approx(expected[1], **EXACT)
                 assert at.qdd[k, row] == pytest.approx(expected[2], **EXACT)
-            assert at.jerk[k, i] == pytest.approx(piece.at(0.5)[3], **EXACT)
+            assert at.jerk[k, grid.n + 1 + i] == pytest.approx(piece.at(0.5)[3], **EXACT)
             q, qd = piece.at(1.0)[:2]
 
 
 def test_states_are_the_integrals_of_the_acceleration():
     grid, points, m = random_motion(2, n=6, segments=1)
-    nodes, h = grid.nodes(m)[0][0], m.T[0] / 6
+    nodes, h = nodes_of(m)[0][0], m.T[0] / 6
     t = np.linspace(0.0, m.T[0], 6 * 4000 + 1)
     i = np.minimum((t / h).astype(int), 5)
     s = (t / h - i)[:, np.newaxis]
@@ -74,10 +81,28 @@ def test_states_are_the_integrals_of_the_acceleration():
     assert at.qd[0] == pytest.approx(qd[rows], abs=1e-6)
 
 
+@pytest.mark.parametrize('per_ramp', [1, 2, 7, 24])
+@pytest.mark.parametrize('seed', SEEDS[:4])
+def test_samples_are_those_of_consecutive_ramps_in_the_order_of_time(seed, per_ramp):
+    grid, points, m = random_motion(seed)
+    (nodes, qd, _), q = nodes_of(m), points[:-1]
+    h = (m.T / grid.n)[:, np.newaxis]
+    found = grid.samples(points, m, per_ramp)
+    assert found.shape == (len(m.T), grid.n * per_ramp + 1, 4, 3)
+    for i in range(grid.n):
+        piece = Ramps(h, q, qd, nodes[:, i], nodes[:, i + 1] - nodes[:, i], grid.shape)
+        for r in range(per_ramp):
+            expected = np.stack(piece.at(r / per_ramp), axis=1)
+            assert found[:, i * per_ramp + r] == pytest.approx(expected, **EXACT)
+        q, qd = piece.at(1.0)[:2]
+    assert found[:, -1] == pytest.approx(
+        np.stack((q, qd, nodes[:, -1], np.zeros_like(q)), axis=1), **EXACT)
+
+
 @pytest.mark.parametrize('seed', SEEDS)
 def test_restored_motions_meet_every_via_point_at_its_velocity(seed):
     grid, points, m = random_motion(seed)
-    at, (_, _, v1) = grid.states(points, m), grid.nodes(m)
+    at, (_, _, v1) = grid.states(points, m), nodes_of(m)
     assert at.q[:, grid.n] == pytest.approx(points[1:], **EXACT)
     assert at.qd[:, grid.n] == pytest.approx(v1, **EXACT)
 
@@ -86,9 +111,9 @@ def test_restored_motions_meet_every_via_point_at_its_velocity(seed):
 def test_restoring_changes_nothing_but_inner_accelerations_and_those_only_once(seed):
     grid, points, m = random_motion(seed)
     off = m._replace(inner=m.inner + random_step(seed, m).inner)
-    back = restored(grid, points, off)
-    assert all(f is g for f, g in zip(back[1:], off[1:]))
-    assert restored(grid, points, back).inner == pytest.approx(back.inner, **EXACT)
+    back = grid.restored(points, off)
+    assert all((f == g).all() for f, g in zip(back[1:], off[1:]))
+    assert grid.restored(points, back).inner == pytest.approx(back.inner, **EXACT)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
@@ -100,7 +125,7 @@ def test_moved_motions_meet_every_via_point_at_its_velocity(seed, size):
     moved = moved_by(grid, points, m, step, size)
     assert grid.states(points, moved).q[:, grid.n] == pytest.approx(points[1:], **EXACT)
     assert grid.states(points, moved).qd[:, grid.n] == pytest.approx(
-        grid.nodes(moved)[2], **EXACT)
+        nodes_of(moved)[2], **EXACT)
     assert moved.T == pytest.approx(m.T + size * step.T)
 
 
@@ -122,8 +147,8 @@ def test_a_step_that_keeps_the_ends_to_first_order_is_followed_to_first_order(se
     step = step._replace(T=0.1 * step.T)
     # mend the step's own inner accelerations: its ends must not move to first order
     tiny = 1e-6
-    inner = (restored(grid, points, shifted(m, step, tiny)).inner
-             - restored(grid, points, shifted(m, step, -tiny)).inner) / (2.0 * tiny)
+    inner = (grid.restored(points, shifted(m, step, tiny)).inner
+             - grid.restored(points, shifted(m, step, -tiny)).inner) / (2.0 * tiny)
     step = step._replace(inner=inner)
     for size in (1e-3, 1e-4):
         moved = moved_by(grid, points, m, step, size)
@@ -138,7 +163,7 @@ def test_a_step_that_keeps_the_ends_to_first_order_is_followed_to_first_order(se
 def test_a_via_point_follows_the_stretch_of_the_much_shorter_of_its_segments(first):
     grid, points, m = random_motion(5, segments=2)
     short = np.array([first, not first])
-    m = restored(grid, points, m._replace(T=np.where(short, 1e-2, 1.0)))
+    m = grid.restored(points, m._replace(T=np.where(short, 1e-2, 1.0)))
     nothing = Variables(*(np.zeros_like(f) for f in m))
     factor = 1.3
     step = nothing._replace(v=-0.3 * m.v, a=-0.6 * m.a, T=np.where(short, 0.3 * m.T, 0.0))
@@ -160,7 +185,8 @@ def test_trajectories_run_through_the_states(seed):
     starts = np.concatenate(([0.0], np.cumsum(m.T)))
     assert trajectory.via_times == pytest.approx(starts)
     for k, T in enumerate(m.T):
-        q, qd, qdd, _ = trajectory(starts[k] + T * grid.elapsed / grid.n)
+        share = np.concatenate((np.arange(grid.n + 1.0), np.arange(grid.n) + 0.5)) / grid.n
+        q, qd, qdd, _ = trajectory(starts[k] + T * share)
         for found, expected in ((q, at.q), (qd, at.qd), (qdd, at.qdd)):
             assert found == pytest.approx(expected[k], rel=1e-9, abs=1e-9)
 

@@ -16,7 +16,17 @@
 
 from dataclasses import replace
 
-from helpers.ramp_cases import ARM, bounds, flat, FREE, LIMITS, NONE, random_motion, slow_start
+from helpers.ramp_cases import (
+    ARM,
+    bounds,
+    flat,
+    FREE,
+    LIMITS,
+    nodes_of,
+    NONE,
+    random_motion,
+    slow_start,
+)
 from helpers.random_cases import central_difference
 from helpers.random_paths import random_case
 import numpy as np
@@ -56,15 +66,13 @@ class Case:
     def states(self, x):
         """Return position, velocity, acceleration and jerk at the points, (N, P, 4, J)."""
         at = self.problem.grid.states(self.problem.points, self.problem.motion(x))
-        jerk = np.zeros_like(at.q)
-        jerk[:, self.problem.grid.n + 1:] = at.jerk
-        return np.stack((at.q, at.qd, at.qdd, jerk), axis=2)
+        return np.stack(at, axis=2)
 
     def ends(self, x):
         """Return what must stay 0: position and velocity at segments' ends beside the points'."""
         n, m = self.problem.grid.n, self.problem.motion(x)
         at = self.states(x)[:, n]
-        v1 = self.problem.grid.nodes(m)[2]
+        v1 = nodes_of(m)[2]
         return np.concatenate(((at[:, 0] - self.problem.points[1:]).ravel(),
                                (at[:, 1] - v1).ravel()))
 

@@ -1,0 +1,76 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Limits between a problem's points: what densely sampled quantities reach, and by how much too far.
+
+Between samples a smooth quantity rises by at most an eighth of its second difference, up to terms
+of higher order (the error of linear interpolation).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
+from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
+
+
+def rise_between_samples(x: Array) -> Array:
+    """
+    Return the rise of smooth quantities between each sample and its neighbours.
+
+    Parameters
+    ----------
+    x : ndarray, shape (N, W, K)
+        Samples, at least 3, of each of N segments.
+
+    Returns
+    -------
+    ndarray, shape (N, W, K)
+        An eighth of the largest second difference there.
+
+    """
+    x, rise = contiguous(x), np.empty(x.shape)
+    KERNELS.rise_between_samples(*x.shape, x.ctypes.data, rise.ctypes.data)
+    return rise
+
+
+def excess_near_points(x: Array, limit: Array, checks: int, reach: int) -> Array:
+    """
+    Return by how much the magnitudes of sampled quantities exceed limits near each point.
+
+    Parameters
+    ----------
+    x : ndarray, shape (N, 2 n checks + 1, K)
+        Samples of n ramps in each segment, in the order of time.
+    limit : ndarray, shape (K,)
+        On magnitudes; infinite where there is none.
+    checks : int
+        Samples from one of a segment's 2 n + 1 points to the next.
+    reach : int
+        Number of samples on either side that count as near a point.
+
+    Returns
+    -------
+    ndarray, shape (N, 2 n + 1, K)
+        Nodes, then the middles between them; 0 where the limit holds.
+
+    """
+    x, limit, (N, samples, K) = contiguous(x), contiguous(limit), x.shape
+    n = (samples - 1) // (2 * checks)
+    excess, scratch = np.empty((N, 2 * n + 1, K)), np.empty(samples)
+    KERNELS.excess_near_points(N, n, checks, reach, K, x.ctypes.data, limit.ctypes.data,
+                               LIMIT_ROUNDING, excess.ctypes.data, scratch.ctypes.data)
+    return excess

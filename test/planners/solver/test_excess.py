@@ -1,0 +1,62 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Excess of sampled quantities between a problem's points: against sums written plainly."""
+
+import numpy as np
+import pytest
+from rrr_traj_planner.planners.solver.dense_check import excess_near_points, rise_between_samples
+from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
+
+SEEDS = range(6)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_a_parabola_rises_between_samples_by_no_more_than_reported(seed):
+    # its largest value between two samples is at most 1/8 of its second difference above both
+    rng = np.random.default_rng(seed)
+    t, (peak, top, bend) = np.arange(9.0), rng.uniform((0.0, -1.0, 0.1), (8.0, 1.0, 3.0))
+    x = top - bend * (t - peak) ** 2
+    rise = rise_between_samples(x[np.newaxis, :, np.newaxis])[0, :, 0]
+    assert rise == pytest.approx(np.full(9, 2.0 * bend / 8.0))
+    assert (x + rise).max() >= top - 1e-12
+
+
+def test_the_rise_is_that_of_the_largest_second_difference_beside_a_sample():
+    x = np.zeros((2, 7, 2))
+    x[1, 3, 1] = 8.0  # second differences 8, -16, 8 at samples 2, 3, 4 of one quantity alone
+    rise = rise_between_samples(x)
+    assert rise[1, :, 1].tolist() == [0.0, 1.0, 2.0, 2.0, 2.0, 1.0, 0.0]
+    rise[1, :, 1] = 0.0
+    assert not rise.any()
+
+
+@pytest.mark.parametrize('checks, reach', [(1, 0), (2, 2), (4, 4), (12, 6), (8, 11)])
+@pytest.mark.parametrize('seed', SEEDS)
+def test_excess_is_the_largest_within_reach_of_each_point(seed, checks, reach):
+    rng = np.random.default_rng(seed)
+    N, n, K = rng.integers(1, 4), rng.integers(1, 6), rng.integers(1, 5)
+    x = rng.normal(size=(N, 2 * n * checks + 1, K))
+    limit = np.where(rng.random(K) < 0.3, np.inf, rng.uniform(0.5, 3.0, K))
+    found = excess_near_points(x, limit, checks, reach)
+    peaks = np.abs(x) + rise_between_samples(x)
+    order = [*range(0, 2 * n + 1, 2), *range(1, 2 * n, 2)]  # the nodes, then the middles
+    assert found.shape == (N, 2 * n + 1, K)
+    for k in range(N):
+        for row, point in enumerate(order):
+            near = peaks[k, max(point * checks - reach, 0):point * checks + reach + 1]
+            for e in range(K):
+                over = [p - limit[e] * (1.0 - LIMIT_ROUNDING)
+                        for p in near[:, e] if p > limit[e]]
+                assert found[k, row, e] == pytest.approx(max(over, default=0.0))
