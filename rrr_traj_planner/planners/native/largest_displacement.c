@@ -63,6 +63,25 @@ static double least_time(const Law *law, double u)
     return fmax(law->slope * u, law->root * sqrt(u));
 }
 
+/* TransitionLaw of transitions/transition_law.py, for count cases of three joints each. */
+EXPORTED void least_transition_times(int32_t count, const double *slope, const double *root,
+                                     const double *change, double *T)
+{
+    for (int i = 0; i < JOINTS * count; ++i) {
+        const Law law = {slope[i % JOINTS], root[i % JOINTS], INFINITY};
+        T[i] = least_time(&law, fabs(change[i]));
+    }
+}
+
+EXPORTED void largest_velocity_changes(int32_t count, const double *slope, const double *root,
+                                       const double *T, double *change)
+{
+    for (int i = 0; i < JOINTS * count; ++i) {
+        const Law law = {slope[i % JOINTS], root[i % JOINTS], INFINITY};
+        change[i] = largest_change(&law, T[i]);
+    }
+}
+
 /* The displacement with shortest transitions to and from a cruise not below either end velocity.
  */
 static double displacement(const Law *law, double cruise, double v0, double v1, double T)

@@ -39,6 +39,8 @@ _BUILD = 'build the package, which needs a C compiler: "make setup", or "pip ins
 
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     'largest_displacement_at': (None, [c_int32, *[c_void_p] * 10]),
+    'largest_velocity_changes': (None, [c_int32, *[c_void_p] * 4]),
+    'least_transition_times': (None, [c_int32, *[c_void_p] * 4]),
     'cruise_covering': (None, [c_int32, c_int32, *[c_void_p] * 8]),
     'via_attempt': (c_double, [c_void_p, c_double]),
     'via_begin': (None, [c_void_p]),

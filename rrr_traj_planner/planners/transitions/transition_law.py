@@ -23,10 +23,12 @@ determine a segment.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
 
 
 class TransitionLaw(NamedTuple):
@@ -55,8 +57,7 @@ class TransitionLaw(NamedTuple):
             [s].
 
         """
-        change = np.abs(change)
-        return np.maximum(self.slope * change, self.root * np.sqrt(change))
+        return self._by(KERNELS.least_transition_times, change)
 
     def largest_change(self, duration: Array) -> Array:
         """
@@ -73,6 +74,13 @@ class TransitionLaw(NamedTuple):
             Its magnitude [rad/s].
 
         """
-        with np.errstate(divide='ignore'):
-            by_jerk = np.where(self.root > 0.0, (duration / self.root) ** 2, np.inf)
-        return np.minimum(duration / self.slope, by_jerk)
+        return self._by(KERNELS.largest_velocity_changes, duration)
+
+    def _by(self, kernel: Callable[..., None], values: Array) -> Array:
+        """Return a kernel's results for values of shapes that broadcast to (..., 3)."""
+        shape = np.broadcast_shapes(np.shape(values), self.slope.shape)
+        values, slope, root = (contiguous(x) for x in (
+            np.broadcast_to(values, shape), self.slope, self.root))
+        found = np.empty(shape)
+        kernel(found.size // 3, *(x.ctypes.data for x in (slope, root, values, found)))
+        return found
