@@ -29,5 +29,5 @@ bench: setup  ## run the benchmarks; options in ARGS
 	@$(in_env) OPENBLAS_NUM_THREADS=1 python benchmarks/run.py $(ARGS)
 
 clean:  ## leave what a fresh clone has
-	rm -rf rrr_traj_planner/planners/native/*.so .venv build install log .*_cache .hypothesis demo_*.png
+	rm -rf rrr_traj_planner/core/native/*.so .venv build install log .*_cache .hypothesis demo_*.png
 	find . -name __pycache__ -prune -exec rm -rf {} +

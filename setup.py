@@ -25,11 +25,12 @@ from setuptools.command.install_scripts import install_scripts
 from setuptools.errors import BaseError, CCompilerError
 
 NAME = 'rrr_traj_planner'
-NATIVE = f'{NAME}/planners/native'
+NATIVE = [f'{NAME}/core/native', f'{NAME}/planners/native']
 
 KERNELS = Extension(
-    f'{NATIVE}/kernels'.replace('/', '.'), sorted(glob(f'{NATIVE}/*.c')),
-    depends=sorted(glob(f'{NATIVE}/*.h') + glob(f'{NATIVE}/*.inc')),
+    f'{NATIVE[0]}/kernels'.replace('/', '.'),
+    [path for folder in NATIVE for path in sorted(glob(f'{folder}/*.c'))], include_dirs=NATIVE,
+    depends=[path for folder in NATIVE for path in sorted(glob(f'{folder}/*.[hi]*'))],
     extra_compile_args=['-std=c99', '-O3', '-fno-math-errno', '-fno-trapping-math',
                         '-fvisibility=hidden'])
 
@@ -43,7 +44,7 @@ class BuildKernels(build_ext):
             super().build_extension(extension)
         except (BaseError, CCompilerError) as error:
             raise SystemExit(
-                f'{NAME} needs a C compiler for its kernels, {NATIVE}: {error}') from None
+                f'{NAME} needs a C compiler for its kernels, {" and ".join(NATIVE)}: {error}') from None
 
 
 # SIGINT and SIGTERM wait until a script can answer them (nodes/process/signals.py): Python's

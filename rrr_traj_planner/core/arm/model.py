@@ -18,8 +18,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
+from rrr_traj_planner.core.arm.chain import Chain
+from rrr_traj_planner.core.arm.tables import ArmTables, tables_of
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
@@ -111,6 +114,24 @@ class RobotModel(ReadOnlyArrays):
         if self.inertia[0, 1] <= 0.0 and min(
                 self.inertia[1, 0], self.inertia[1, 1] + self.mass[1] * self.l2 ** 2) <= 0.0:
             raise InvalidInputError('the arm can have no inertia about joint axis 1')
+
+    @cached_property
+    def chain(self) -> Chain:
+        """The joints and links, in the base frame with all joints at zero."""
+        elbow = np.array((self.a2, 0.0, self.d1))
+        shoulder = np.array((0.0, 0.0, self.d1))
+        (I1, I2, I3), down = self.inertia, np.array((0.0, 0.0, -1.0))
+        return Chain(
+            axis=np.array(((0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, -1.0, 0.0))),
+            point=np.array((shoulder, shoulder, elbow)), tip=elbow + self.d4 * down,
+            mass=self.mass, centre=np.array((
+                shoulder, shoulder + (self.l2, 0.0, 0.0), elbow + self.l3 * down)),
+            inertia=np.array((np.diag(I1[[0, 2, 1]]), np.diag(I2[[0, 2, 1]]), np.diag(I3))))
+
+    @cached_property
+    def tables(self) -> ArmTables:
+        """The coefficients of its kinematics and dynamics."""
+        return tables_of(self.chain, np.array((0.0, 0.0, -self.gravity)), np.zeros(3))
 
     @property
     def reach(self) -> tuple[float, float]:

@@ -13,27 +13,25 @@
 # limitations under the License.
 
 """
-Dynamics of the arm for one state (shape (3,)) or many (shape (..., 3)).
+Dynamics of the arm for one state (shape (3,)) or many (shape (..., 3)), by its tables.
 
-Thesis (5.36)-(5.54) corrected. One state is computed with Python floats, ten times as fast as
-NumPy with single numbers.
+tau = M(q) qdd + C(q, qd) qd + g(q): thesis (5.39), where H stands for the inertia matrix M and h
+for the Coriolis and centrifugal torques C qd.
 """
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arm.compiled_arm import compiled, KERNELS
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.tables import ELEMENTS
 from rrr_traj_planner.core.arrays import Array, joint_states
-from rrr_traj_planner.core.dynamics import equations
 
 
 def inertia_matrix(model: RobotModel, q: ArrayLike) -> Array:
     """
-    Return the joint-space inertia matrix M (5.40-5.48 corrected).
+    Return the joint-space inertia matrix M (thesis 5.40-5.48).
 
     Parameters
     ----------
@@ -53,13 +51,7 @@ def inertia_matrix(model: RobotModel, q: ArrayLike) -> Array:
         If the shape is wrong, or a value not finite.
 
     """
-    t = _terms(model, *_split(q=q))
-    M = np.zeros(np.shape(q) + (3,))
-    M[..., 0, 0] = t.M11
-    M[..., 1, 1] = t.M22
-    M[..., 1, 2] = M[..., 2, 1] = t.M23
-    M[..., 2, 2] = t.M33
-    return M
+    return _inertia_and_bias(model, *_states(q=q, qd=np.zeros(3)))[0]
 
 
 def coriolis_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
@@ -84,8 +76,8 @@ def coriolis_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
         If a shape is wrong, or a value not finite.
 
     """
-    at, rates = _split(q=q, qd=qd)
-    return _joined(*equations.coriolis_torques(_terms(model, at), *rates))
+    q, qd = _states(q=q, qd=qd)
+    return _inertia_and_bias(model, q, qd)[1] - gravity_torque(model, q)
 
 
 def gravity_torque(model: RobotModel, q: ArrayLike) -> Array:
@@ -110,8 +102,8 @@ def gravity_torque(model: RobotModel, q: ArrayLike) -> Array:
         If the shape is wrong, or a value not finite.
 
     """
-    t = _terms(model, *_split(q=q))
-    return _joined(0.0, t.g2, t.g3)
+    q, rest = _states(q=q, qd=np.zeros(3))
+    return _inertia_and_bias(model, q, rest)[1]
 
 
 def inverse_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
@@ -136,8 +128,11 @@ def inverse_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayL
         If a shape is wrong, or a value not finite.
 
     """
-    at, rates, accelerations = _split(q=q, qd=qd, qdd=qdd)
-    return _joined(*equations.torques(_terms(model, at), *rates, *accelerations))
+    states = _states(q=q, qd=qd, qdd=qdd)
+    tau, arm = np.empty(states[0].shape), compiled(model)
+    KERNELS.arm_inverse_dynamics(
+        arm.address, tau.size // 3, *(x.ctypes.data for x in (*states, tau)))
+    return tau
 
 
 def forward_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, tau: ArrayLike) -> Array:
@@ -162,8 +157,9 @@ def forward_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, tau: ArrayL
         If a shape is wrong, or a value not finite.
 
     """
-    at, rates, torques = _split(q=q, qd=qd, tau=tau)
-    return _joined(*equations.accelerations(_terms(model, at), *rates, *torques))
+    q, qd, tau = _states(q=q, qd=qd, tau=tau)
+    M, bias = _inertia_and_bias(model, q, qd)
+    return np.linalg.solve(M, (tau - bias)[..., np.newaxis])[..., 0]
 
 
 def kinetic_energy(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
@@ -188,15 +184,14 @@ def kinetic_energy(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
         If a shape is wrong, or a value not finite.
 
     """
-    at, (qd1, qd2, qd3) = _split(q=q, qd=qd)
-    t = _terms(model, at)
-    return np.asarray(0.5 * (t.M11 * (qd1 * qd1) + t.M22 * (qd2 * qd2) + t.M33 * (qd3 * qd3))
-                      + t.M23 * qd2 * qd3)
+    q, qd = _states(q=q, qd=qd)
+    M, _ = _inertia_and_bias(model, q, qd)
+    return np.asarray(0.5 * np.einsum('...i,...ij,...j->...', qd, M, qd))
 
 
 def potential_energy(model: RobotModel, q: ArrayLike) -> Array:
     """
-    Return the potential energy, zero with both links at the shoulder's height (5.37 corrected).
+    Return the potential energy, whose mean over all positions is zero (5.37).
 
     Parameters
     ----------
@@ -216,38 +211,23 @@ def potential_energy(model: RobotModel, q: ArrayLike) -> Array:
         If the shape is wrong, or a value not finite.
 
     """
-    k = equations.constants(model)
-    _, q2, q3 = _split(q=q)[0]
-    return np.asarray(k.upper_weight * np.sin(q2) - k.fore_weight * np.cos(q2 + q3))
+    (q,), arm = _states(q=q), compiled(model)
+    energy = np.empty(q.shape[:-1])
+    KERNELS.arm_potential_energy(arm.address, energy.size, q.ctypes.data, energy.ctypes.data)
+    return energy
 
 
-def _split(**values: ArrayLike) -> list[tuple[Any, Any, Any]]:
-    """Return the values joint by joint: floats of one state, arrays of many."""
-    found: list[tuple[Any, Any, Any]] = []
-    for value in values.values():
-        if type(value) is not np.ndarray or value.shape != (3,) or value.dtype != np.float64:
-            break
-        x1, x2, x3 = value.tolist()
-        if not math.isfinite(x1 + x2 + x3):
-            break
-        found.append((x1, x2, x3))
-    else:  # one state, checked without NumPy: the case of a control loop
-        return found
-    return [tuple(array.tolist()) if array.ndim == 1 else (
-        array[..., 0], array[..., 1], array[..., 2]) for array in joint_states(**values)]
+def _states(**values: ArrayLike) -> list[Array]:
+    """Return checked values of one shape, as the kernels read them."""
+    return [np.ascontiguousarray(x) for x in np.broadcast_arrays(*joint_states(**values))]
 
 
-def _joined(a: Any, b: Any, c: Any) -> Array:
-    """Return the values of three joints, floats or arrays that broadcast, as one array."""
-    if type(a) is type(b) is type(c) is float:
-        return np.array((a, b, c))
-    a, b, c = np.broadcast_arrays(a, b, c)
-    out = np.empty(a.shape + (3,))
-    out[..., 0], out[..., 1], out[..., 2] = a, b, c
-    return out
-
-
-def _terms(model: RobotModel, q: tuple[Any, Any, Any]) -> equations.Terms:
-    _, q2, q3 = q
-    sin, cos = (math.sin, math.cos) if type(q2) is float else (np.sin, np.cos)
-    return equations.terms(equations.constants(model), q2, q3, sin, cos)
+def _inertia_and_bias(model: RobotModel, q: Array, qd: Array) -> tuple[Array, Array]:
+    """Return M (..., 3, 3) and the torques of velocity and gravity (..., 3)."""
+    elements, bias, arm = np.empty((*q.shape[:-1], 6)), np.empty(q.shape), compiled(model)
+    KERNELS.arm_inertia_and_bias(arm.address, q.size // 3, *(
+        x.ctypes.data for x in (q, qd, elements, bias)))
+    M = np.empty((*q.shape, 3))
+    for k, (i, j) in enumerate(ELEMENTS):
+        M[..., i, j] = M[..., j, i] = elements[..., k]
+    return M, bias

@@ -19,10 +19,10 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
+from rrr_traj_planner.core.arm.compiled_arm import compiled
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.dynamics import equations
 from rrr_traj_planner.planners.solver.limits import FAR, Limits
 from rrr_traj_planner.planners.solver.ramps import Grid
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
@@ -83,7 +83,7 @@ class JointConstraints:
         general = np.zeros((P, 3), bool)
         general[1:] = self.with_torque
         effort = np.concatenate((np.full((N, 1, 3), FAR), self.effort), axis=1)
-        arm = np.array(equations.constants(self._model)) if self.with_torque else None
+        arm = compiled(self._model) if self.with_torque else None
         return TimingProblem(self.grid, self.points, Limits(
             lower, upper, bounded, -effort, effort, general, self.least_T, arm), self._workspace)
 

@@ -143,7 +143,7 @@ static inline void add_general_constraint(const Problem *p, int e, const double 
                                           double weight, double *r, double *Q)
 {
     if (p->arm)
-        add_constraint(g, 1, 9, 12, f, weight, r, Q);  /* q2, q3, velocities, accelerations */
+        add_constraint(g, 0, 9, 12, f, weight, r, Q);  /* by position, velocity, acceleration */
     else if (e < 3)
         add_constraint(g, 0, 2, 4, f, weight, r, Q);
     else if (e < 6 || e >= 9)

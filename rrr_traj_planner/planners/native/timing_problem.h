@@ -23,6 +23,7 @@
 #ifndef RRR_TRAJ_PLANNER_TIMING_PROBLEM_H
 #define RRR_TRAJ_PLANNER_TIMING_PROBLEM_H
 
+#include "arm.h"
 #include "export.h"
 #include "ramps.h"
 
@@ -54,7 +55,7 @@ typedef struct {
     const double *weights;  /* (N), of the durations in the objective */
     const uint8_t *fixed_velocity;  /* (N - 1, J), whether a via velocity does not change */
     /* General constraints are limits on torque, or on motion along a path; NULL where not so: */
-    const double *arm;      /* coefficients of the equations of motion */
+    const Arm *arm;
     const double *table;    /* (N, 4, intervals, COLUMNS), cubic coefficients */
     const double *overshoot;  /* (N, 2, 3), added to ddq and to c at the segments' ends */
 
@@ -122,10 +123,9 @@ static inline Variables variables_at(const Problem *p, double *memory)
 void motion_states(const Problem *p, Variables m, double *z);
 int step_motion(const Problem *p, Variables m, Variables step, double size, Variables moved);
 
-/* torque.c and path_table.c: the general constraints at a point. Values x (E), gradients by state
- * (E, Z), and second derivatives (Z, Z) of the weighted sum, which are added; each may be NULL. */
-void torque_at(const double *arm, const double *z, double *x, double *gradient,
-               const double *weights, double *second);
+/* path_table.c: the general constraints at a point, as torque_at of arm.h. Values x (E), gradients
+ * by state (E, Z), and second derivatives (Z, Z) of the weighted sum, which are added; each may be
+ * NULL. */
 void path_at(const Problem *p, int segment, int point, const double *z, double *x,
              double *gradient, const double *weights, double *second);
 

@@ -23,7 +23,8 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
+from rrr_traj_planner.core.kernels import contiguous
+from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 

@@ -12,32 +12,20 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""
-The compiled kernels: the C code of `planners/native`, called through ctypes.
-
-A kernel is a plain function over arrays that Python owns; a structure holds their addresses, made
-once for each problem. A call takes microseconds to a few milliseconds and keeps Python's global
-interpreter lock: releasing it would cost more than the shortest calls.
-"""
+"""The compiled kernels of the planners, `planners/native`, and memory for their arrays."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-import ctypes
+from collections.abc import Mapping
 from ctypes import c_double, c_int32, c_int64, c_void_p
-from importlib.machinery import EXTENSION_SUFFIXES
 from itertools import accumulate
 import math
-from pathlib import Path
-from typing import Any, TypeVar
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kernels import declared
 
-_NATIVE = Path(__file__).parents[1] / 'native'
-_BUILD = 'build the package, which needs a C compiler: "make setup", or "pip install -e ."'
-
-_SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
+KERNELS = declared({
     'largest_displacement_at': (None, [c_int32, *[c_void_p] * 10]),
     'largest_velocity_changes': (None, [c_int32, *[c_void_p] * 4]),
     'least_transition_times': (None, [c_int32, *[c_void_p] * 4]),
@@ -64,70 +52,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     'timing_newton_size': (c_int64, [c_void_p]),
     'timing_slacks': (c_double, [c_void_p] * 3),
     'timing_trial': (c_int32, [c_void_p, c_void_p, *[c_double] * 3]),
-}
-
-
-def load(folder: Path) -> Any:
-    """
-    Return the compiled kernels.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder of the shared library.
-
-    Returns
-    -------
-    ctypes.PyDLL
-        With arguments and results of every kernel declared.
-
-    Raises
-    ------
-    ImportError
-        If the library is missing or lacks a function.
-
-    """
-    paths = [folder / f'kernels{suffix}' for suffix in EXTENSION_SUFFIXES]
-    found = next((path for path in paths if path.exists()), None)
-    if found is None:
-        raise ImportError(f'no compiled kernels in {folder}: {_BUILD}')
-    library = ctypes.PyDLL(str(found))
-    for name, (result, arguments) in _SIGNATURES.items():
-        if not hasattr(library, name):
-            raise ImportError(f'{found} was built from other sources, without {name}: {_BUILD}')
-        kernel = getattr(library, name)
-        kernel.restype, kernel.argtypes = result, arguments
-    return library
-
-
-KERNELS = load(_NATIVE)
-
-_S = TypeVar('_S', bound=type[ctypes.Structure])
-
-
-def same_size_as(size: str) -> Callable[[_S], _S]:
-    """
-    Return a decorator of a structure that repeats one of the kernels: checks their sizes.
-
-    Parameters
-    ----------
-    size : str
-        Name of the kernels' constant that is the size of their structure.
-
-    Returns
-    -------
-    callable
-        Returns the structure unchanged; ImportError where the sizes differ.
-
-    """
-    def checked(structure: _S) -> _S:
-        theirs, ours = c_int64.in_dll(KERNELS, size).value, ctypes.sizeof(structure)
-        if theirs != ours:
-            raise ImportError(f'the compiled kernels were built from other sources: {size} is '
-                              f'{theirs}, not {ours}: {_BUILD}')
-        return structure
-
-    return checked
+})
 
 
 class Arena:
@@ -158,21 +83,3 @@ class Arena:
         """Return an array: a view of the memory that kernels write into."""
         start, end = self._parts[name]
         return self._block[start:end].reshape(self._shapes[name])
-
-
-def contiguous(values: Array) -> Array:
-    """
-    Return an array in the layout that kernels read.
-
-    Parameters
-    ----------
-    values : ndarray
-        Numbers.
-
-    Returns
-    -------
-    ndarray
-        Of float64, in C order; the same array where it is already.
-
-    """
-    return np.ascontiguousarray(values, dtype=float)

@@ -19,6 +19,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from rrr_traj_planner.core.arm.compiled_arm import CompiledArm
 from rrr_traj_planner.core.arrays import Array, BoolArray
 
 FAR = 1e6  # stands for no bound, in SI units and rad: never active
@@ -39,7 +40,7 @@ class Limits(NamedTuple):
     general_upper: Array
     general: BoolArray      # (P, E), which of these are limited
     least_T: Array | None = None    # (N,), least durations [s]
-    arm: Array | None = None      # coefficients of the equations of motion
+    arm: CompiledArm | None = None
     table: Array | None = None    # (N, 4, intervals, 18), cubic coefficients of a path's terms
     overshoot: Array | None = None  # (N, 2, 3), added to ddq and to c at its segments' ends
 

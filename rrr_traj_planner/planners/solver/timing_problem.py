@@ -30,7 +30,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.solver.library import Arena, contiguous, KERNELS, same_size_as
+from rrr_traj_planner.core.kernels import contiguous, same_size_as
+from rrr_traj_planner.planners.solver.library import Arena, KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints, FAR, Limits
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 
@@ -147,9 +148,11 @@ class TimingProblem:
                 ('points', points), ('restore', grid.restore), ('lower', limits.lower),
                 ('upper', limits.upper), ('general_lower', limits.general_lower),
                 ('general_upper', limits.general_upper), ('least_T', limits.least_T),
-                ('arm', limits.arm), ('table', limits.table), ('overshoot', limits.overshoot)):
+                ('table', limits.table), ('overshoot', limits.overshoot)):
             if values is not None:
                 self._bind(name, contiguous(values))
+        if limits.arm is not None:
+            self._problem.arm = limits.arm.address
         self._bind('bound_at', bound_at.astype(np.int32))
         self._bind('general_at', general_at.astype(np.int32))
         self._bind('has_general', limits.general.any(axis=1).astype(np.uint8))

@@ -29,7 +29,8 @@ import ctypes
 from typing import Any, Protocol
 
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.solver.library import Arena, KERNELS, same_size_as
+from rrr_traj_planner.core.kernels import same_size_as
+from rrr_traj_planner.planners.solver.library import Arena, KERNELS
 
 
 class Law(Protocol):

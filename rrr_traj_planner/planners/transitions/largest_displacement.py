@@ -25,7 +25,8 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
+from rrr_traj_planner.core.kernels import contiguous
+from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 

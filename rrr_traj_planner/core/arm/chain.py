@@ -1,0 +1,175 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+A chain of three revolute joints: its axes, its tip and the masses that hang on it.
+
+Everything is given in the base frame with all joints at zero (product of exponentials: Lynch and
+Park, Modern Robotics, 2017, section 4.1), so that no convention for the links' frames is needed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, finite_array
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
+
+# Sine of the angle between joint axes 1 and 2 up to which they count as parallel: descriptions
+# from CAD are rounded to 1e-4 rad at worst.
+PARALLEL = 1e-3
+
+# Relative difference up to which an inertia tensor counts as symmetric and its principal moments
+# as satisfying the triangle inequality.
+INERTIA_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Chain(ReadOnlyArrays):
+    """
+    Three revolute joints in series, and their links.
+
+    All vectors are in the base frame with the joints at zero.
+
+    Parameters
+    ----------
+    axis : array_like, shape (3, 3)
+        A row for each joint: direction of its axis, normalised here.
+    point : array_like, shape (3, 3)
+        A point of each joint's axis [m].
+    tip : array_like, shape (3,)
+        Position of the tip, fixed to link 3 [m].
+    mass : array_like, shape (3,)
+        Masses of the links [kg].
+    centre : array_like, shape (3, 3)
+        Their centres of mass [m].
+    inertia : array_like, shape (3, 3, 3)
+        Their inertia tensors about their centres of mass [kg m^2].
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is not finite, an axis is zero, axes 1 and 2 are parallel, the tip lies on joint
+        axis 3, a mass is negative, or an inertia tensor is not symmetric or has a negative
+        principal moment.
+
+    """
+
+    axis: Array
+    point: Array
+    tip: Array
+    mass: Array
+    centre: Array
+    inertia: Array
+
+    def __post_init__(self) -> None:
+        """Check the values, normalise the axes and make the arrays read-only."""
+        for name, shape in (('axis', (3, 3)), ('point', (3, 3)), ('tip', (3,)), ('mass', (3,)),
+                            ('centre', (3, 3)), ('inertia', (3, 3, 3))):
+            object.__setattr__(self, name, finite_array(name, getattr(self, name), shape))
+        length = np.linalg.norm(self.axis, axis=1)
+        if (length == 0.0).any():
+            raise InvalidInputError(f'axis of joint {int(length.argmin()) + 1} is zero')
+        object.__setattr__(self, 'axis', self.axis / length[:, np.newaxis])
+        super().__post_init__()
+        self._check_geometry()
+        self._check_inertia()
+
+    def _check_geometry(self) -> None:
+        """Refuse a chain whose tip moves in a plane, or does not move with joint 3."""
+        if np.linalg.norm(np.cross(self.axis[0], self.axis[1])) < PARALLEL:
+            raise InvalidInputError(
+                'joint axes 1 and 2 are parallel: the tip moves in a plane or on few spheres, and '
+                'no arm of this kind is planned for')
+        if np.linalg.norm(np.cross(self.axis[2], self.tip - self.point[2])) == 0.0:
+            raise InvalidInputError('the tip is on joint axis 3, which does not move it')
+
+    def _check_inertia(self) -> None:
+        """Refuse negative masses and tensors that no body has even without regard to its shape."""
+        if (self.mass < 0.0).any():
+            raise InvalidInputError(f'mass is {self.mass.tolist()} kg, must not be negative')
+        for i, tensor in enumerate(self.inertia, 1):
+            size = np.abs(tensor).max(initial=0.0)
+            if np.abs(tensor - tensor.T).max() > INERTIA_TOLERANCE * size:
+                raise InvalidInputError(f'inertia of link {i} is not symmetric')
+            if np.linalg.eigvalsh(tensor)[0] < -INERTIA_TOLERANCE * size:
+                raise InvalidInputError(f'inertia of link {i} has a negative principal moment')
+
+    @cached_property
+    def size(self) -> float:
+        """Upper bound on the tip's distance from joint axis 1 [m], for tolerances."""
+        steps = np.diff(np.vstack((self.point, self.tip)), axis=0)
+        return float(np.linalg.norm(steps, axis=1).sum())
+
+    def link_poses(self, q: Array) -> list[tuple[Array, Array]]:
+        """
+        Return where the links are, as motions from where they are with all joints at zero.
+
+        Parameters
+        ----------
+        q : ndarray, shape (..., 3)
+            Joint positions [rad].
+
+        Returns
+        -------
+        list of three tuples of ndarray
+            Of each link, rotation R (..., 3, 3) and translation t (..., 3) [m]: what was at x is
+            at R x + t.
+
+        """
+        R, t, poses = np.eye(3), np.zeros(3), []
+        for j in range(3):
+            turn = _rotation(self.axis[j], q[..., j])
+            t = _applied(R, self.point[j] - turn @ self.point[j]) + t
+            R = R @ turn
+            poses.append((R, t))
+        return poses
+
+    def axes_at(self, poses: list[tuple[Array, Array]]) -> tuple[Array, Array]:
+        """
+        Return the joints' axes at given poses of the links.
+
+        Parameters
+        ----------
+        poses : list of tuples
+            As returned by `link_poses`.
+
+        Returns
+        -------
+        tuple of ndarray, shape (..., 3, 3)
+            A row for each joint: its direction, and a point of it [m].
+
+        """
+        moved = [(np.broadcast_to(self.axis[0], poses[0][1].shape),
+                  np.broadcast_to(self.point[0], poses[0][1].shape))]
+        moved += [(R @ axis, R @ point + t)
+                  for (R, t), axis, point in zip(poses, self.axis[1:], self.point[1:])]
+        directions, points = zip(*moved)
+        return np.stack(directions, axis=-2), np.stack(points, axis=-2)
+
+
+def _rotation(axis: Array, angle: Array) -> Array:
+    """Return rotations about an axis, shape (..., 3, 3) (Rodrigues)."""
+    x, y, z = axis
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = angle[..., np.newaxis, np.newaxis]
+    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
+
+
+def _applied(R: Array, x: Array) -> Array:
+    """Return R x for arrays of both."""
+    return np.asarray((R @ x[..., np.newaxis])[..., 0])

@@ -1,0 +1,39 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* An arm of three revolute joints as tables of trigonometric coefficients (core/arm/tables.py):
+ * kinematics and dynamics, with their derivatives, of any such arm. */
+#ifndef RRR_TRAJ_PLANNER_ARM_H
+#define RRR_TRAJ_PLANNER_ARM_H
+
+#include <stdint.h>
+
+/* The coefficients that are not zero. Basis functions of a joint's position q are numbered: 1,
+ * cos q, sin q, cos 2 q, sin 2 q. */
+typedef struct {
+    int32_t tip_count, inertia_count, potential_count;
+    const int32_t *tip_at;        /* (tip_count, 4): coordinate; functions of q1, q2, q3 */
+    const int32_t *inertia_at;    /* (inertia_count, 3): element of M; functions of q2, q3 */
+    const int32_t *potential_at;  /* (potential_count, 3): functions of q1, q2, q3 */
+    const double *tip, *inertia, *potential;  /* the coefficients [m], [kg m^2], [J] */
+    const double *viscous;        /* (3), friction [N m s/rad] */
+} Arm;
+
+/* The joint torques x (3) of a motion at the state z (q, qd, qdd, jerk of each joint: 12), viscous
+ * friction included; their gradients by z (3, 12); and added to second (12, 12), the second
+ * derivatives of their weighted sum. Each may be NULL. */
+void torque_at(const Arm *arm, const double *z, double *x, double *gradient,
+               const double *weights, double *second);
+
+#endif
