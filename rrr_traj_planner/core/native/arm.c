@@ -36,51 +36,78 @@ EXPORTED const int64_t size_of_arm = sizeof(Arm);
  * (a + b) (a + b + 1) / 2 + b. */
 enum { ORDERS_0 = 1, ORDERS_1 = 3, ORDERS_2 = 6, ORDERS_3 = 10 };
 
-static void inertia_derivatives(const Arm *arm, const Basis *by, int order,
-                                double (*M)[ELEMENTS])
+/* order: a constant at every call, so that the loops unroll. */
+static inline void add_inertia(const Arm *arm, const Basis *by, const int order,
+                               double (*M)[ELEMENTS])
 {
-    static const int numbers[] = {ORDERS_0, ORDERS_1, ORDERS_2, ORDERS_3};
-    memset(M, 0, numbers[order] * sizeof *M);
     for (int n = 0; n < arm->inertia_count; ++n) {
         const int32_t *at = arm->inertia_at + 3 * n;
-        const int e = at[0], f = at[1], g = at[2];
+        const double x = arm->inertia[n];
+        double second[MOST_ORDER + 1], third[MOST_ORDER + 1];
+        for (int d = 0; d <= order; ++d) {
+            second[d] = x * by[1].d[d][at[1]];
+            third[d] = by[2].d[d][at[2]];
+        }
         for (int total = 0, row = 0; total <= order; ++total)
             for (int b = 0; b <= total; ++b, ++row)
-                M[row][e] += arm->inertia[n] * by[1].d[total - b][f] * by[2].d[b][g];
+                M[row][at[0]] += second[total - b] * third[b];
     }
 }
 
-/* Derivatives of the potential energy: first (3), second (3, 3) and third (3, 3, 3); the last two
- * are computed up to an order. */
+static void inertia_derivatives(const Arm *arm, const Basis *by, int order,
+                                double (*M)[ELEMENTS])
+{
+    if (order == 1) {
+        memset(M, 0, ORDERS_1 * sizeof *M);
+        add_inertia(arm, by, 1, M);
+    } else if (order == 2) {
+        memset(M, 0, ORDERS_2 * sizeof *M);
+        add_inertia(arm, by, 2, M);
+    } else {
+        memset(M, 0, ORDERS_3 * sizeof *M);
+        add_inertia(arm, by, 3, M);
+    }
+}
+
+/* Derivatives of the potential energy: first (3), second (3, 3) and third (3, 3, 3), of these those
+ * with indices in ascending order, up to an order. */
 typedef struct {
     double first[3], second[3][3], third[3][3][3];
 } Gravity;
-
-static double potential_derivative(const double *x, const int32_t *at, const Basis *by, int a,
-                                   int b, int c)
-{
-    return *x * by[0].d[a][at[0]] * by[1].d[b][at[1]] * by[2].d[c][at[2]];
-}
 
 static void gravity_derivatives(const Arm *arm, const Basis *by, int order, Gravity *g)
 {
     memset(g, 0, sizeof *g);
     for (int n = 0; n < arm->potential_count; ++n) {
         const int32_t *at = arm->potential_at + 3 * n;
-        const double *x = arm->potential + n;
-        for (int i = 0; i < 3; ++i) {
-            g->first[i] += potential_derivative(x, at, by, i == 0, i == 1, i == 2);
-            for (int j = i; order > 1 && j < 3; ++j) {
-                int k[3] = {0};
-                ++k[i], ++k[j];
-                g->second[i][j] += potential_derivative(x, at, by, k[0], k[1], k[2]);
-                for (int l = j; order > 2 && l < 3; ++l) {
-                    int m[3] = {k[0], k[1], k[2]};
-                    ++m[l];
-                    g->third[i][j][l] += potential_derivative(x, at, by, m[0], m[1], m[2]);
-                }
-            }
+        double a[MOST_ORDER + 1], b[MOST_ORDER + 1], c[MOST_ORDER + 1];
+        for (int d = 0; d <= order; ++d) {
+            a[d] = arm->potential[n] * by[0].d[d][at[0]];
+            b[d] = by[1].d[d][at[1]], c[d] = by[2].d[d][at[2]];
         }
+        g->first[0] += a[1] * b[0] * c[0];
+        g->first[1] += a[0] * b[1] * c[0];
+        g->first[2] += a[0] * b[0] * c[1];
+        if (order < 2)
+            continue;
+        g->second[0][0] += a[2] * b[0] * c[0];
+        g->second[0][1] += a[1] * b[1] * c[0];
+        g->second[0][2] += a[1] * b[0] * c[1];
+        g->second[1][1] += a[0] * b[2] * c[0];
+        g->second[1][2] += a[0] * b[1] * c[1];
+        g->second[2][2] += a[0] * b[0] * c[2];
+        if (order < 3)
+            continue;
+        g->third[0][0][0] += a[3] * b[0] * c[0];
+        g->third[0][0][1] += a[2] * b[1] * c[0];
+        g->third[0][0][2] += a[2] * b[0] * c[1];
+        g->third[0][1][1] += a[1] * b[2] * c[0];
+        g->third[0][1][2] += a[1] * b[1] * c[1];
+        g->third[0][2][2] += a[1] * b[0] * c[2];
+        g->third[1][1][1] += a[0] * b[3] * c[0];
+        g->third[1][1][2] += a[0] * b[2] * c[1];
+        g->third[1][2][2] += a[0] * b[1] * c[2];
+        g->third[2][2][2] += a[0] * b[0] * c[3];
     }
 }
 
@@ -145,9 +172,11 @@ EXPORTED void arm_potential_energy(const Arm *arm, int32_t n, const double *q, d
         Basis by[3];
         bases(q, 0, by);
         energy[s] = 0.0;
-        for (int k = 0; k < arm->potential_count; ++k)
-            energy[s] += potential_derivative(arm->potential + k, arm->potential_at + 3 * k, by,
-                                              0, 0, 0);
+        for (int k = 0; k < arm->potential_count; ++k) {
+            const int32_t *at = arm->potential_at + 3 * k;
+            energy[s] += arm->potential[k] * by[0].d[0][at[0]] * by[1].d[0][at[1]]
+                * by[2].d[0][at[2]];
+        }
     }
 }
 
@@ -156,13 +185,15 @@ static int second_row(int i, int j) { return 3 + (i == 2) + (j == 2); }
 
 static int third_row(int i, int j, int k) { return 6 + (i == 2) + (j == 2) + (k == 2); }
 
+static const int element[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};  /* of M, by row and column */
+
 /* Columns of the state: q, qd, qdd, jerk of the joints. */
 enum { Q, QD = 3, QDD = 6, STATE = 12 };
 
 static void torque_gradients(const double (*M)[ELEMENTS], const Gravity *g, const double *viscous,
                              const double *qd, const double *qdd, double (*to)[STATE])
 {
-    double product[3][3] = {{0.0}}, column[3], unit[3];  /* M_k qd */
+    double product[3][3] = {{0.0}}, column[3];  /* M_k qd */
     memset(to, 0, 3 * sizeof *to);
     for (int k = 1; k < 3; ++k)
         times(M[k], qd, product[k]);
@@ -178,17 +209,13 @@ static void torque_gradients(const double (*M)[ELEMENTS], const Gravity *g, cons
     for (int i = 0; i < 3; ++i)
         for (int m = 0; m < 3; ++m)
             to[i][Q + m] += i < m ? g->second[i][m] : g->second[m][i];
-    for (int j = 0; j < 3; ++j) {
-        double by[2][3];
-        memset(unit, 0, sizeof unit);
-        unit[j] = 1.0;
-        times(M[1], unit, by[0]), times(M[2], unit, by[1]);
-        times(M[0], unit, column);
-        for (int i = 0; i < 3; ++i) {
-            to[i][QD + j] = qd[1] * by[0][i] + qd[2] * by[1][i] + product[j][i] - product[i][j];
-            to[i][QDD + j] = column[i];
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            const int e = element[i][j];
+            to[i][QD + j] = qd[1] * M[1][e] + qd[2] * M[2][e] + product[j][i] - product[i][j];
+            to[i][QDD + j] = M[0][e];
         }
-        to[j][QD + j] += viscous[j];
+        to[i][QD + i] += viscous[i];
     }
 }
 
@@ -199,29 +226,31 @@ static void add_torque_hessian(const double (*M)[ELEMENTS], const Gravity *g, co
     double by_w[3][3] = {{0.0}};  /* M_k w */
     for (int k = 1; k < 3; ++k)
         times(M[k], w, by_w[k]);
-    for (int m = 0; m < 3; ++m)
-        for (int n = 0; n < 3; ++n) {
-            double sum = 0.0;
-            for (int i = 0; i < 3; ++i) {
-                const int low = i < m ? (i < n ? i : n) : m < n ? m : n;
-                const int high = i > m ? (i > n ? i : n) : m > n ? m : n;
-                sum += w[i] * g->third[low][i + m + n - low - high][high];
-            }
-            to[Q + m][Q + n] += sum;
-        }
+    const double (*const V)[3][3] = g->third;
+    const double h00 = w[0] * V[0][0][0] + w[1] * V[0][0][1] + w[2] * V[0][0][2];
+    const double h01 = w[0] * V[0][0][1] + w[1] * V[0][1][1] + w[2] * V[0][1][2];
+    const double h02 = w[0] * V[0][0][2] + w[1] * V[0][1][2] + w[2] * V[0][2][2];
+    to[Q][Q] += h00, to[Q][Q + 1] += h01, to[Q + 1][Q] += h01;
+    to[Q][Q + 2] += h02, to[Q + 2][Q] += h02;
+    to[Q + 1][Q + 1] += w[0] * V[0][1][1] + w[1] * V[1][1][1] + w[2] * V[1][1][2];
+    to[Q + 2][Q + 2] += w[0] * V[0][2][2] + w[1] * V[1][2][2] + w[2] * V[2][2][2];
+    const double h12 = w[0] * V[0][1][2] + w[1] * V[1][1][2] + w[2] * V[1][2][2];
+    to[Q + 1][Q + 2] += h12, to[Q + 2][Q + 1] += h12;
     for (int m = 1; m < 3; ++m) {
         double of_w[2][3], of_qd[2][3];  /* M_km w and M_km qd */
         for (int k = 1; k < 3; ++k) {
             times(M[second_row(k, m)], w, of_w[k - 1]);
             times(M[second_row(k, m)], qd, of_qd[k - 1]);
         }
-        for (int n = 1; n < 3; ++n) {
+        for (int n = m; n < 3; ++n) {
             double sum = dot(of_w[n - 1], qdd), third[3];
             for (int k = 1; k < 3; ++k) {
                 times(M[third_row(k, m, n)], qd, third);
                 sum += qd[k] * dot(w, third) - 0.5 * w[k] * dot(qd, third);
             }
             to[Q + m][Q + n] += sum;
+            if (n > m)
+                to[Q + n][Q + m] += sum;
         }
         for (int j = 0; j < 3; ++j) {
             const double sum = qd[1] * of_w[0][j] + qd[2] * of_w[1][j]
@@ -233,12 +262,8 @@ static void add_torque_hessian(const double (*M)[ELEMENTS], const Gravity *g, co
     }
     for (int j = 0; j < 3; ++j)
         for (int l = 0; l < 3; ++l) {
-            double unit[3] = {0.0}, product[3], sum = by_w[l][j] + by_w[j][l];
-            unit[l] = 1.0;
-            for (int i = 1; i < 3; ++i) {
-                times(M[i], unit, product);
-                sum -= w[i] * product[j];
-            }
+            const int e = element[j][l];
+            const double sum = by_w[l][j] + by_w[j][l] - w[1] * M[1][e] - w[2] * M[2][e];
             to[QD + j][QD + l] += sum;
         }
 }
