@@ -32,7 +32,10 @@ NEGLIGIBLE = 1e-14
 KERNELS = declared({
     'arm_inertia_and_bias': (None, [c_void_p, c_int32, *[c_void_p] * 4]),
     'arm_inverse_dynamics': (None, [c_void_p, c_int32, *[c_void_p] * 4]),
+    'arm_jacobian': (None, [c_void_p, c_int32, *[c_void_p] * 2]),
+    'arm_jacobian_rate': (None, [c_void_p, c_int32, *[c_void_p] * 3]),
     'arm_potential_energy': (None, [c_void_p, c_int32, *[c_void_p] * 2]),
+    'arm_tip': (None, [c_void_p, c_int32, *[c_void_p] * 2]),
 })
 
 

@@ -13,22 +13,23 @@
 # limitations under the License.
 
 """
-Forward kinematics: the tip's position, its Jacobian and the Jacobian's time derivative.
+Forward kinematics by the arm's table: the tip, its Jacobian and the Jacobian's time derivative.
 
-Thesis (5.3)-(5.7) corrected, (5.18).
+Thesis (5.3)-(5.7), (5.18).
 """
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arm.compiled_arm import compiled, KERNELS
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, joint_states, joint_values
 
 
 def forward_kinematics(model: RobotModel, q: ArrayLike) -> Array:
     """
-    Return the tip's position in the base frame (5.3-5.7 corrected).
+    Return the tip's position in the base frame (5.3-5.7).
 
     Parameters
     ----------
@@ -48,9 +49,10 @@ def forward_kinematics(model: RobotModel, q: ArrayLike) -> Array:
         If the shape is wrong, or a value not finite.
 
     """
-    q = joint_values('q', q)
-    r, h = _reach_and_height(model, q)
-    return np.stack((np.cos(q[..., 0]) * r, np.sin(q[..., 0]) * r, model.d1 + h), axis=-1)
+    q, arm = np.ascontiguousarray(joint_values('q', q)), compiled(model)
+    tip = np.empty(q.shape)
+    KERNELS.arm_tip(arm.address, q.size // 3, q.ctypes.data, tip.ctypes.data)
+    return tip
 
 
 def radial_distance(model: RobotModel, q: ArrayLike) -> Array:
@@ -75,7 +77,8 @@ def radial_distance(model: RobotModel, q: ArrayLike) -> Array:
         If the shape is wrong, or a value not finite.
 
     """
-    return _reach_and_height(model, joint_values('q', q))[0]
+    q = joint_values('q', q)
+    return np.asarray(model.a2 * np.cos(q[..., 1]) + model.d4 * np.sin(q[..., 1] + q[..., 2]))
 
 
 def jacobian(model: RobotModel, q: ArrayLike) -> Array:
@@ -100,13 +103,10 @@ def jacobian(model: RobotModel, q: ArrayLike) -> Array:
         If the shape is wrong, or a value not finite.
 
     """
-    q = joint_values('q', q)
-    s1, c1 = np.sin(q[..., 0]), np.cos(q[..., 0])
-    Z1, Z2, Z3, Z4 = _z_terms(model, q)
-    zero = np.zeros_like(s1)
-    return matrix((-Z3 * s1, Z4 * c1, Z1 * c1),
-                  (Z3 * c1, Z4 * s1, Z1 * s1),
-                  (zero, Z3, Z2))
+    q, arm = np.ascontiguousarray(joint_values('q', q)), compiled(model)
+    J = np.empty((*q.shape, 3))
+    KERNELS.arm_jacobian(arm.address, q.size // 3, q.ctypes.data, J.ctypes.data)
+    return J
 
 
 def jacobian_rate(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
@@ -131,32 +131,11 @@ def jacobian_rate(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
         If a shape is wrong, or a value not finite.
 
     """
-    q, qd = np.broadcast_arrays(*joint_states(q=q, qd=qd))
-    s1, c1 = np.sin(q[..., 0]), np.cos(q[..., 0])
-    qd1, qd2, qd23 = qd[..., 0], qd[..., 1], qd[..., 1] + qd[..., 2]
-    Z1, Z2, Z3, Z4 = _z_terms(model, q)
-    Z1_rate, Z2_rate = -Z2 * qd23, Z1 * qd23
-    Z3_rate = Z2_rate - model.a2 * np.sin(q[..., 1]) * qd2
-    Z4_rate = -Z2 * qd23 - model.a2 * np.cos(q[..., 1]) * qd2
-    return matrix(
-        (-Z3_rate * s1 - Z3 * c1 * qd1, Z4_rate * c1 - Z4 * s1 * qd1,
-         Z1_rate * c1 - Z1 * s1 * qd1),
-        (Z3_rate * c1 - Z3 * s1 * qd1, Z4_rate * s1 + Z4 * c1 * qd1, Z1_rate * s1 + Z1 * c1 * qd1),
-        (np.zeros_like(s1), Z3_rate, Z2_rate))
-
-
-def _reach_and_height(model: RobotModel, q: Array) -> tuple[Array, Array]:
-    """Return the tip's signed distance from joint axis 1 and height above the shoulder [m]."""
-    q23 = q[..., 1] + q[..., 2]
-    return (model.a2 * np.cos(q[..., 1]) + model.d4 * np.sin(q23),
-            model.a2 * np.sin(q[..., 1]) - model.d4 * np.cos(q23))
-
-
-def _z_terms(model: RobotModel, q: Array) -> tuple[Array, Array, Array, Array]:
-    """Return Z1 to Z4 of equation 5.18."""
-    q23 = q[..., 1] + q[..., 2]
-    Z1, Z2 = model.d4 * np.cos(q23), model.d4 * np.sin(q23)
-    return (Z1, Z2, Z2 + model.a2 * np.cos(q[..., 1]), Z1 - model.a2 * np.sin(q[..., 1]))
+    q, qd = (np.ascontiguousarray(x) for x in np.broadcast_arrays(*joint_states(q=q, qd=qd)))
+    rate, arm = np.empty((*q.shape, 3)), compiled(model)
+    KERNELS.arm_jacobian_rate(arm.address, q.size // 3, *(
+        x.ctypes.data for x in (q, qd, rate)))
+    return rate
 
 
 def matrix(*rows: tuple[Array, Array, Array]) -> Array:
