@@ -134,7 +134,8 @@ class Chain(ReadOnlyArrays):
         R, t, poses = np.eye(3), np.zeros(3), []
         for j in range(3):
             turn = _rotation(self.axis[j], q[..., j])
-            t = _applied(R, self.point[j] - turn @ self.point[j]) + t
+            centred = self.point[j] - turn @ self.point[j]
+            t = t + np.asarray((R @ centred[..., np.newaxis])[..., 0])
             R = R @ turn
             poses.append((R, t))
         return poses
@@ -167,9 +168,4 @@ def _rotation(axis: Array, angle: Array) -> Array:
     x, y, z = axis
     K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     angle = angle[..., np.newaxis, np.newaxis]
-    return np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
-
-
-def _applied(R: Array, x: Array) -> Array:
-    """Return R x for arrays of both."""
-    return np.asarray((R @ x[..., np.newaxis])[..., 0])
+    return np.asarray(np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K))

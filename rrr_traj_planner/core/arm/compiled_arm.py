@@ -26,9 +26,6 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kernels import declared, same_size_as
 
-# Coefficients up to this part of their table's largest one are rounding.
-NEGLIGIBLE = 1e-14
-
 KERNELS = declared({
     'arm_inertia_and_bias': (None, [c_void_p, c_int32, *[c_void_p] * 4]),
     'arm_inverse_dynamics': (None, [c_void_p, c_int32, *[c_void_p] * 4]),
@@ -63,15 +60,16 @@ class CompiledArm:
     """
 
     def __init__(self, model: RobotModel) -> None:
-        self._arm, self._arrays = _Arm(), [np.zeros(3)]
-        self._arm.viscous = self._arrays[0].ctypes.data
+        self._arm, viscous = _Arm(), np.zeros(3)
+        self._arrays: list[Any] = [viscous]
+        self._arm.viscous = viscous.ctypes.data
         for name, table in model.tables._asdict().items():
             self._bind(name, table)
         self.address: Any = ctypes.addressof(self._arm)
 
     def _bind(self, name: str, table: Array) -> None:
         """Give the kernels the indices and values of a table's coefficients."""
-        at = np.argwhere(np.abs(table) > NEGLIGIBLE * np.abs(table).max(initial=0.0))
+        at = np.argwhere(table)
         values, indices = table[tuple(at.T)], np.ascontiguousarray(at, dtype=np.int32)
         self._arrays += [values, indices]
         setattr(self._arm, name, values.ctypes.data)

@@ -16,8 +16,8 @@
 An arm as three tables of trigonometric coefficients: tip, inertia matrix, potential energy.
 
 Of any chain of three revolute joints the tip's position and the potential energy are of degree 1
-in each joint's cosine and sine; the inertia matrix does not depend on joint 1 and is of degree 2 in
-joints 2 and 3. So samples at three and at five equally spaced angles determine them exactly (a
+in each joint's cosine and sine; the inertia matrix does not depend on joint 1 and is of degree 2
+in joints 2 and 3. So samples at three and at five equally spaced angles determine them exactly (a
 discrete Fourier transform), and all derivatives follow from the coefficients.
 """
 
@@ -31,6 +31,10 @@ from rrr_traj_planner.core.arrays import Array
 
 # Elements of the inertia matrix M, in the order of the table.
 ELEMENTS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+
+# Part of a table's scale up to which a coefficient is rounding: of the transform, sums of up to 27
+# samples, each from some ten products of rotations.
+ROUNDING = 1e-14
 
 
 class ArmTables(NamedTuple):
@@ -68,11 +72,20 @@ def tables_of(chain: Chain, gravity: Array, rotor_inertia: Array) -> ArmTables:
     inertia += np.diag(rotor_inertia)
     elements = np.stack([inertia[..., i, j] for i, j in ELEMENTS])
     of_three, of_five = _from_samples(3), _from_samples(5)
-    coefficients = np.einsum('ai,bj,ck,ijk->abc', of_three, of_three, of_three, potential)
-    coefficients[0, 0, 0] = 0.0
-    return ArmTables(
-        np.einsum('ai,bj,ck,ijkx->xabc', of_three, of_three, of_three, tip),
-        np.einsum('bj,ck,xjk->xbc', of_five, of_five, elements), coefficients)
+    of_tip = np.einsum('ai,bj,ck,ijkx->xabc', of_three, of_three, of_three, tip)
+    of_inertia = np.einsum('bj,ck,xjk->xbc', of_five, of_five, elements)
+    of_potential = np.einsum('ai,bj,ck,ijk->abc', of_three, of_three, of_three, potential)
+    of_potential[0, 0, 0] = 0.0
+    root = np.sqrt([np.abs(of_inertia[k]).max() for k in (0, 3, 5)])  # M_ij^2 < M_ii M_jj
+    scale = np.array([root[i] * root[j] for i, j in ELEMENTS])
+    return ArmTables(_cleared(of_tip, np.abs(of_tip).max()),
+                     _cleared(of_inertia, scale[:, np.newaxis, np.newaxis]),
+                     _cleared(of_potential, np.abs(of_potential).max()))
+
+
+def _cleared(table: Array, scale: Array | float) -> Array:
+    """Return a table without coefficients that are rounding."""
+    return np.where(np.abs(table) > ROUNDING * scale, table, 0.0)
 
 
 def _from_samples(n: int) -> Array:

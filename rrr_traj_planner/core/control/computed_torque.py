@@ -23,7 +23,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rrr_traj_planner.core.dynamics.equations import Terms, torques
+from rrr_traj_planner.core.dynamics.arm_dynamics import Terms, torques
 from rrr_traj_planner.core.scalars import positive
 from rrr_traj_planner.core.states import Desired, State, Triple
 
@@ -77,7 +77,7 @@ def computed_torque(t: Terms, stiffness: float, damping: float, state: State,
     Parameters
     ----------
     t : Terms
-        The equations' terms at the state's position.
+        At the state.
     stiffness, damping : float
         wn^2 [1/s^2] and 2 zeta wn [1/s].
     state : tuple of 6 floats
@@ -93,8 +93,7 @@ def computed_torque(t: Terms, stiffness: float, damping: float, state: State,
     """
     q1, q2, q3, qd1, qd2, qd3 = state
     p1, p2, p3, v1, v2, v3, a1, a2, a3 = desired
-    return torques(t, qd1, qd2, qd3,
-                   a1 + damping * (v1 - qd1) + stiffness * (p1 - q1),
+    return torques(t, a1 + damping * (v1 - qd1) + stiffness * (p1 - q1),
                    a2 + damping * (v2 - qd2) + stiffness * (p2 - q2),
                    a3 + damping * (v3 - qd3) + stiffness * (p3 - q3))
 

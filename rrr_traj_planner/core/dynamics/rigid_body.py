@@ -159,7 +159,7 @@ def forward_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, tau: ArrayL
     """
     q, qd, tau = _states(q=q, qd=qd, tau=tau)
     M, bias = _inertia_and_bias(model, q, qd)
-    return np.linalg.solve(M, (tau - bias)[..., np.newaxis])[..., 0]
+    return np.asarray(np.linalg.solve(M, (tau - bias)[..., np.newaxis])[..., 0])
 
 
 def kinetic_energy(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:

@@ -12,13 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Energy balance of the arm: work, losses, kinetic energy."""
+"""Energy balance of the arm: work and losses."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from rrr_traj_planner.core.dynamics.equations import Terms
 from rrr_traj_planner.core.states import Triple
 
 
@@ -63,29 +62,6 @@ class EnergyLedger:
         """Set all entries to zero."""
         for entry in fields(self):
             setattr(self, entry.name, 0.0)
-
-
-def kinetic(t: Terms, qd: tuple[float, ...]) -> float:
-    """
-    Return the kinetic energy.
-
-    Parameters
-    ----------
-    t : Terms
-        The equations' terms at the pose.
-    qd : tuple of 3 floats
-        Joint velocities [rad/s].
-
-    Returns
-    -------
-    float
-        [J].
-
-    """
-    qd1, qd2, qd3 = qd
-    energy: float = (0.5 * (t.M11 * qd1 * qd1 + t.M22 * qd2 * qd2 + t.M33 * qd3 * qd3)
-                     + t.M23 * qd2 * qd3)
-    return energy
 
 
 def work(torque: Triple, before: tuple[float, ...], after: tuple[float, ...]) -> float:

@@ -24,27 +24,29 @@ the start of a step: up to a step late, without an error of energy, since nothin
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import inf
 from typing import NamedTuple
 
 from rrr_traj_planner.core.arm.friction import Friction
-from rrr_traj_planner.core.dynamics.equations import Constants, Terms
-from rrr_traj_planner.core.simulation.energy import EnergyLedger, kinetic
+from rrr_traj_planner.core.dynamics.arm_dynamics import ArmDynamics, kinetic_energy, Terms
+from rrr_traj_planner.core.dynamics.constrained import (
+    held_and_stopped,
+    permitted,
+    Range,
+    rates_with_reactions,
+)
+from rrr_traj_planner.core.simulation.energy import EnergyLedger
 from rrr_traj_planner.core.simulation.friction_step import Dissipation, friction_step, Load, rates
 from rrr_traj_planner.core.simulation.joint_stops import (
     clipped,
     Contact,
     contact,
     FREE,
-    held,
-    permitted,
     SHORTEST_REBOUND,
     widened,
 )
 from rrr_traj_planner.core.simulation.root_finding import EVENT_TOLERANCE, locate_event
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
-from rrr_traj_planner.core.simulation.stiction import Range, resting_accelerations
 from rrr_traj_planner.core.states import State, Triple
 
 # Largest number of events in a step, chosen; joints in contact or at rest then stay so until its
@@ -65,10 +67,8 @@ class FrictionDynamics:
 
     Parameters
     ----------
-    k : Constants
-        The arm's constants.
-    terms : callable
-        The equations' terms at a state.
+    arm : ArmDynamics
+        The arm.
     bounds : Bounds
         Ends of the joints' ranges: hard stops, or where bumpers begin [rad].
     friction : Friction
@@ -80,10 +80,9 @@ class FrictionDynamics:
 
     """
 
-    def __init__(self, k: Constants, terms: Callable[[State], Terms],
-                 bounds: Bounds, friction: Friction, bumper: SoftStops,
+    def __init__(self, arm: ArmDynamics, bounds: Bounds, friction: Friction, bumper: SoftStops,
                  ledger: EnergyLedger) -> None:
-        self._constants, self._terms, self._ledger = k, terms, ledger
+        self._arm, self._ledger = arm, ledger
         self._low, self._high = bounds
         self._bumper = bumper
         (v1, v2, v3), (c1, c2, c3) = friction.viscous.tolist(), friction.coulomb.tolist()
@@ -110,17 +109,14 @@ class FrictionDynamics:
         """
         hard, left = Bounds(*widened(state, self._low, self._high, self._bumper.width)), h
         for _ in range(MOST_EVENTS):
-            t = self._terms(state)
-            state, load, slip = self._after_impacts(t, state, torque, hard, SHORTEST_REBOUND * h)
-            taken, state = self._until_event(t, state, load, slip, left, hard)
+            state, load, slip = self._after_impacts(state, torque, hard, SHORTEST_REBOUND * h)
+            taken, state = self._until_event(state, load, slip, left, hard)
             left -= taken
             if left <= 0.0:
                 break
-        t = self._terms(state)
         if left > 0.0:
-            state = self._step_with_joints_locked(t, state, torque, left, hard)
-            t = self._terms(state)
-        qd = self._velocities_after_impact(t, state[3:], contact(state, *hard))
+            state = self._step_with_joints_locked(state, torque, left, hard)
+        qd = self._velocities_after_impact(self._arm(state), state[3:], contact(state, *hard))
         return state[:3] + _at_rest(qd, self._coulomb)
 
     def _velocities_after_impact(self, t: Terms, qd: Triple, at: Contact) -> Triple:
@@ -128,24 +124,24 @@ class FrictionDynamics:
         if at == FREE:
             return qd
         after = permitted(t, qd, at)
-        self._ledger.stops += kinetic(t, qd) - kinetic(t, after)
+        self._ledger.stops += kinetic_energy(t, qd) - kinetic_energy(t, after)
         return after
 
-    def _after_impacts(self, t: Terms, state: State, torque: Triple, hard: Bounds,
+    def _after_impacts(self, state: State, torque: Triple, hard: Bounds,
                        shortest: float) -> tuple[State, Load, Contact]:
         """Return the state after impacts, the load from there on, and the sliding directions."""
-        at = contact(state, *hard)
+        t, at = self._arm(state), contact(state, *hard)
         qd = _at_rest(self._velocities_after_impact(t, state[3:], at), self._coulomb)
         (qd1, qd2, qd3), (c1, c2, c3) = qd, self._coulomb
         q, lock = state[:3], FREE
         slip = _signs(qd, self._coulomb)
         load = self._load(state, torque, slip)
         if at != FREE or 0.0 in qd:
-            x, _ = rates(load, t, q, qd)
+            x, _ = rates(load, self._arm(q + qd), q, qd)
             ranges = (_range(c1, qd1, x[0], at[0], shortest),
                       _range(c2, qd2, x[1], at[1], shortest),
                       _range(c3, qd3, x[2], at[2], shortest))
-            a = resting_accelerations(t, x, ranges)
+            a = rates_with_reactions(t, x, ranges)
             lock = (_locked(a[0], ranges[0]), _locked(a[1], ranges[1]), _locked(a[2], ranges[2]))
             qd, lock = self._brought_to_rest(t, qd, lock, at)
             slip = _signs((qd[0] or a[0], qd[1] or a[1], qd[2] or a[2]), self._coulomb)
@@ -155,12 +151,9 @@ class FrictionDynamics:
     def _brought_to_rest(self, t: Terms, qd: Triple, lock: Contact,
                          at: Contact) -> tuple[Triple, Contact]:
         """Return velocities with the joints that rest at rest, and those joints."""
-        after = held(t, qd, lock)
-        if (at[1] and at[1] * after[1] < 0.0) or (at[2] and at[2] * after[2] < 0.0):
-            # the impulse that stops one joint drives the other into its stop
-            lock, after = (lock[0], 1, 1), (after[0], 0.0, 0.0)
+        after, lock = held_and_stopped(t, qd, lock, at)
         if after != qd:
-            self._ledger.stops += kinetic(t, qd) - kinetic(t, after)
+            self._ledger.stops += kinetic_energy(t, qd) - kinetic_energy(t, after)
         return after, lock
 
     def _load(self, state: State, torque: Triple, slip: Contact) -> Load:
@@ -175,11 +168,13 @@ class FrictionDynamics:
         return Load((n1 - c1 * s1, n2 - c2 * s2, n3 - c3 * s3), self._viscous, FREE, sides, edges,
                     self._bumper)
 
-    def _until_event(self, t: Terms, state: State, load: Load, slip: Contact, h: float,
+    def _until_event(self, state: State, load: Load, slip: Contact, h: float,
                      hard: Bounds) -> tuple[float, State]:
         """Return the time of the next event, or h, and the state then."""
+        t = self._arm(state)
+
         def trial(x: float) -> tuple[State, Dissipation]:
-            return friction_step(self._constants, t, state, load, x)
+            return friction_step(self._arm, t, state, load, x)
 
         taken, (after, lost) = h, trial(h)
         margin = self._margin(after, load, slip, hard)
@@ -205,7 +200,7 @@ class FrictionDynamics:
                     margin = min(margin, q - self._low[i], self._high[i] - q)
         return margin
 
-    def _step_with_joints_locked(self, t: Terms, state: State, torque: Triple, h: float,
+    def _step_with_joints_locked(self, state: State, torque: Triple, h: float,
                                  hard: Bounds) -> State:
         """Return the state after a time in which joints in contact or at rest are locked."""
         at = contact(state, *hard)
@@ -213,10 +208,10 @@ class FrictionDynamics:
         lock = (int(at[0] or c[0] and abs(qd[0]) <= EVENT_TOLERANCE),
                 int(at[1] or c[1] and abs(qd[1]) <= EVENT_TOLERANCE),
                 int(at[2] or c[2] and abs(qd[2]) <= EVENT_TOLERANCE))
-        before = state[:3] + self._brought_to_rest(t, qd, lock, FREE)[0]
+        before = state[:3] + self._brought_to_rest(self._arm(state), qd, lock, FREE)[0]
         slip = _signs(before[3:], c)
         load = self._load(before, torque, slip)._replace(lock=lock)
-        after, lost = friction_step(self._constants, t, before, load, h)
+        after, lost = friction_step(self._arm, self._arm(before), before, load, h)
         self._record_losses(lost, slip, before, after)
         return clipped(after, *hard)
 

@@ -20,11 +20,11 @@ The Nyström method of `time_step`; the energy dissipated is integrated with it,
 
 from __future__ import annotations
 
-from math import cos, sin
 from typing import NamedTuple
 
-from rrr_traj_planner.core.dynamics.equations import accelerations, Constants, Terms, terms
-from rrr_traj_planner.core.simulation.joint_stops import Contact, FREE, held
+from rrr_traj_planner.core.dynamics.arm_dynamics import accelerations, ArmDynamics, Terms
+from rrr_traj_planner.core.dynamics.constrained import held
+from rrr_traj_planner.core.simulation.joint_stops import Contact, FREE
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.states import State, Triple
 
@@ -56,7 +56,7 @@ def rates(load: Load, t: Terms, q: Triple, qd: Triple) -> tuple[Triple, Dissipat
     load : Load
         What acts on the joints.
     t : Terms
-        The equations' terms at the pose.
+        At the state.
     q, qd : tuple of 3 floats
         Positions [rad] and velocities [rad/s].
 
@@ -79,23 +79,23 @@ def rates(load: Load, t: Terms, q: Triple, qd: Triple) -> tuple[Triple, Dissipat
                 pushes[i] = side * push
                 lost += heat
         n = (n[0] + pushes[0], n[1] + pushes[1], n[2] + pushes[2])
-    a = accelerations(t, qd1, qd2, qd3, *n)
+    a = accelerations(t, *n)
     if load.lock != FREE:
         a = held(t, a, load.lock)
     return a, Dissipation(v1 * qd1 * qd1 + v2 * qd2 * qd2 + v3 * qd3 * qd3, lost)
 
 
-def friction_step(k: Constants, t: Terms, state: State, load: Load,
+def friction_step(arm: ArmDynamics, t: Terms, state: State, load: Load,
                   h: float) -> tuple[State, Dissipation]:
     """
     Return the state after a time step, and the energy dissipated.
 
     Parameters
     ----------
-    k : Constants
-        The arm's constants.
+    arm : ArmDynamics
+        The arm.
     t : Terms
-        The equations' terms at the state.
+        At the state.
     state : tuple of 6 floats
         Positions [rad] and velocities [rad/s]; those of joints that are held must be 0.
     load : Load
@@ -116,11 +116,12 @@ def friction_step(k: Constants, t: Terms, state: State, load: Load,
     q, qd, half = state[:3], state[3:], 0.5 * h
     a, lost_a = rates(load, t, q, qd)
     middle = _along(q, half, _along(qd, 0.5 * half, a))
-    t = terms(k, middle[1], middle[2], sin, cos)
-    b, lost_b = rates(load, t, middle, _along(qd, half, a))
-    c, lost_c = rates(load, t, middle, _along(qd, half, b))
-    end = _along(q, h, _along(qd, half, c))
-    d, lost_d = rates(load, terms(k, end[1], end[2], sin, cos), end, _along(qd, h, c))
+    later = _along(qd, half, a)
+    b, lost_b = rates(load, arm(middle + later), middle, later)
+    later = _along(qd, half, b)
+    c, lost_c = rates(load, arm(middle + later), middle, later)
+    end, later = _along(q, h, _along(qd, half, c)), _along(qd, h, c)
+    d, lost_d = rates(load, arm(end + later), end, later)
     sixth = h / 6.0
     (a1, a2, a3), (b1, b2, b3), (c1, c2, c3), (d1, d2, d3) = a, b, c, d
     mean = _along(qd, sixth, (a1 + b1 + c1, a2 + b2 + c2, a3 + b3 + c3))

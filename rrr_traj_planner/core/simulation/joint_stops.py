@@ -12,18 +12,10 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""
-Hard joint stops: unilateral constraints with inelastic impacts.
-
-The velocities after an impact, or the accelerations in contact, are the permitted ones nearest to
-the unconstrained ones in the kinetic metric: Moreau's law of inelastic impact (Moreau, Unilateral
-contact and dry friction in finite freedom dynamics, 1988) and Gauss's principle of least
-constraint. Since this is a projection, a stop never adds energy.
-"""
+"""Hard joint stops: which joints are in contact with theirs."""
 
 from __future__ import annotations
 
-from rrr_traj_planner.core.dynamics.equations import Terms
 from rrr_traj_planner.core.states import State, Triple
 
 # For each joint: 1 at its lower stop, -1 at its upper one, 0 free.
@@ -55,76 +47,6 @@ def contact(state: State, low: Triple, high: Triple) -> Contact:
     """
     q1, q2, q3 = state[:3]
     return (_side(q1, low[0], high[0]), _side(q2, low[1], high[1]), _side(q3, low[2], high[2]))
-
-
-def permitted(t: Terms, x: Triple, at: Contact) -> Triple:
-    """
-    Return the permitted joint rates nearest to the free ones.
-
-    Minimises (y - x)' M (y - x) over y that moves no joint further into its stop. Joint 1 is
-    inertially uncoupled (M12 = M13 = 0).
-
-    Parameters
-    ----------
-    t : Terms
-        The equations' terms at the pose.
-    x : tuple of 3 floats
-        Free velocities [rad/s] or accelerations [rad/s^2].
-    at : tuple of 3 ints
-        The stops in contact.
-
-    Returns
-    -------
-    tuple of 3 floats
-        Rates; exactly 0.0 for a joint that its stop holds.
-
-    """
-    (x1, x2, x3), (s1, s2, s3) = x, at
-    if s1 * x1 < 0.0:
-        x1 = 0.0
-    stopped_2, stopped_3 = s2 * x2 < 0.0, s3 * x3 < 0.0
-    if not (stopped_2 or stopped_3):
-        return x1, x2, x3
-    if stopped_2:
-        other = x3 + t.M23 / t.M33 * x2  # keeps the generalised momentum of joint 3
-        if s3 * other >= 0.0:
-            return x1, 0.0, other
-    if stopped_3:
-        other = x2 + t.M23 / t.M22 * x3
-        if s2 * other >= 0.0:
-            return x1, other, 0.0
-    return x1, 0.0, 0.0
-
-
-def held(t: Terms, x: Triple, lock: Contact) -> Triple:
-    """
-    Return accelerations with some joints held at rest by constraint torques of any size.
-
-    Parameters
-    ----------
-    t : Terms
-        The equations' terms at the pose.
-    x : tuple of 3 floats
-        Free accelerations [rad/s^2].
-    lock : tuple of 3 ints
-        Not 0 for each joint that is held.
-
-    Returns
-    -------
-    tuple of 3 floats
-        Accelerations [rad/s^2].
-
-    """
-    (x1, x2, x3), (s1, s2, s3) = x, lock
-    if s1:
-        x1 = 0.0
-    if s2 and s3:
-        return x1, 0.0, 0.0
-    if s2:
-        return x1, 0.0, x3 + t.M23 / t.M33 * x2
-    if s3:
-        return x1, x2 + t.M23 / t.M22 * x3, 0.0
-    return x1, x2, x3
 
 
 def widened(state: State, low: Triple, high: Triple,

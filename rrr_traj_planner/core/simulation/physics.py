@@ -21,26 +21,25 @@ the state after it. Friction and bumpers are in `friction_dynamics`.
 
 from __future__ import annotations
 
-from math import copysign, cos, sin
+from math import copysign
 
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.dynamics.equations import (
+from rrr_traj_planner.core.dynamics.arm_dynamics import (
     accelerations,
-    constants,
+    ArmDynamics,
+    kinetic_energy,
     Terms,
-    terms,
     torques,
 )
-from rrr_traj_planner.core.simulation.energy import EnergyLedger, kinetic
+from rrr_traj_planner.core.dynamics.constrained import held, held_and_stopped, permitted
+from rrr_traj_planner.core.simulation.energy import EnergyLedger
 from rrr_traj_planner.core.simulation.friction_dynamics import Bounds, FrictionDynamics
 from rrr_traj_planner.core.simulation.joint_stops import (
     clipped,
     Contact,
     contact,
     FREE,
-    held,
-    permitted,
     SHORTEST_REBOUND,
     widened,
 )
@@ -79,6 +78,8 @@ class ArmPhysics:
     ----------
     ledger : EnergyLedger
         The same.
+    terms : ArmDynamics
+        The terms of the equations of motion at a state.
 
     """
 
@@ -88,11 +89,11 @@ class ArmPhysics:
                  monitor: SaturationAndContactMonitor | None = None) -> None:
         self.low, self.high, self._monitor = low, high, monitor or SaturationAndContactMonitor()
         self.ledger = EnergyLedger() if ledger is None else ledger
-        self._constants = constants(model)
+        self.terms = ArmDynamics(model)
         self._bumper, friction = soft_stops or SoftStops(), friction or Friction()
         self._viscous, self._coulomb = friction.viscous.tolist(), friction.coulomb.tolist()
         self._with_friction = None if friction.is_none and not self._bumper.width else (
-            FrictionDynamics(self._constants, self.terms, Bounds(low, high), friction,
+            FrictionDynamics(self.terms, Bounds(low, high), friction,
                              self._bumper, self.ledger))
 
     def bumper_energy(self, state: State) -> float:
@@ -112,23 +113,6 @@ class ArmPhysics:
         """
         return self._bumper.energy(state, self.low, self.high)
 
-    def terms(self, state: State) -> Terms:
-        """
-        Return the terms of the equations of motion at a state.
-
-        Parameters
-        ----------
-        state : tuple of 6 floats
-            Positions [rad] and velocities [rad/s].
-
-        Returns
-        -------
-        Terms
-            As from `equations.terms`.
-
-        """
-        return terms(self._constants, state[1], state[2], sin, cos)
-
     def step(self, t: Terms, state: State, torque: Triple, h: float) -> State:
         """
         Return the state after a time step.
@@ -136,7 +120,7 @@ class ArmPhysics:
         Parameters
         ----------
         t : Terms
-            The terms at the state (`terms(state)`).
+            `terms(state)`.
         state : tuple of 6 floats
             Positions [rad] and velocities [rad/s].
         torque : tuple of 3 floats
@@ -156,7 +140,7 @@ class ArmPhysics:
         (l1, l2, l3), (u1, u2, u3) = self.low, self.high
         q1, q2, q3 = state[:3]
         if l1 < q1 < u1 and l2 < q2 < u2 and l3 < q3 < u3:
-            after = free_step(self._constants, t, state, torque, h)
+            after = free_step(self.terms, t, state, torque, h)
             q1, q2, q3 = after[:3]
             if l1 <= q1 <= u1 and l2 <= q2 <= u2 and l3 <= q3 <= u3:
                 return after
@@ -172,7 +156,7 @@ class ArmPhysics:
         if a != FREE or b != FREE:
             at = (a[0] or b[0], a[1] or b[1], a[2] or b[2])
             v1, v2, v3 = after[3:]
-            net = torques(t, qd1, qd2, qd3, (v1 - qd1) / h, (v2 - qd2) / h, (v3 - qd3) / h)
+            net = torques(t, (v1 - qd1) / h, (v2 - qd2) / h, (v3 - qd3) / h)
             r1, r2, r3 = (
                 _beyond(total - own + viscous * v, coulomb) for total, own, v, viscous, coulomb in
                 zip(net, torque, after[3:], self._viscous, self._coulomb))
@@ -186,9 +170,9 @@ class ArmPhysics:
         for _ in range(MOST_IMPACTS):
             t, at = self.terms(state), contact(state, low, high)
             qd = state[3:]
-            state, lock = _after_impact(t, state, torque, at, SHORTEST_REBOUND * h)
+            state, lock = self._after_impact(t, state, torque, at, SHORTEST_REBOUND * h)
             self._record_impact(t, qd, state[3:])
-            taken, state = self._until_impact(t, state, torque, left, lock, low, high)
+            taken, state = self._until_impact(state, torque, left, lock, low, high)
             left -= taken
             if left <= 0.0:
                 break
@@ -197,59 +181,59 @@ class ArmPhysics:
         if left > 0.0:
             qd = held(t, state[3:], at)
             self._record_impact(t, state[3:], qd)
-            state = held_step(self._constants, t, state[:3] + qd, torque, left, at)
-            state = clipped(state, low, high)
+            state = state[:3] + qd
+            state = clipped(held_step(self.terms, self.terms(state), state, torque, left, at),
+                            low, high)
             t, at = self.terms(state), contact(state, low, high)
         qd = permitted(t, state[3:], at)
         self._record_impact(t, state[3:], qd)
         return state[:3] + qd
 
+    def _after_impact(self, t: Terms, state: State, torque: Triple, at: Contact,
+                      shortest: float) -> tuple[State, Contact]:
+        """
+        Return the state after impacts, and the joints at rest on their stops.
+
+        A joint is at rest if it is pressed into its stop without velocity, or with one so small
+        that it would return within the shortest time [s].
+        """
+        if at == FREE:
+            return state, FREE
+        qd = qd1, qd2, qd3 = permitted(t, state[3:], at)
+        a1, a2, a3 = accelerations(self.terms(state[:3] + qd), *torque)
+        s1, s2, s3 = at
+        reach = 0.5 * shortest
+        slow = (s1 if s1 * qd1 <= -s1 * a1 * reach else 0,
+                s2 if s2 * qd2 <= -s2 * a2 * reach else 0,
+                s3 if s3 * qd3 <= -s3 * a3 * reach else 0)
+        pressed = permitted(t, (a1, a2, a3), slow)
+        lock = (s1 if slow[0] and pressed[0] == 0.0 else 0,
+                s2 if slow[1] and pressed[1] == 0.0 else 0,
+                s3 if slow[2] and pressed[2] == 0.0 else 0)
+        qd, lock = held_and_stopped(t, qd, lock, at)
+        return state[:3] + qd, lock
+
     def _record_impact(self, t: Terms, before: Triple, after: Triple) -> None:
         """Record the energy lost in an impact."""
         if after != before:
-            self.ledger.stops += kinetic(t, before) - kinetic(t, after)
+            self.ledger.stops += kinetic_energy(t, before) - kinetic_energy(t, after)
 
-    def _until_impact(self, t: Terms, state: State, torque: Triple, h: float, lock: Contact,
+    def _until_impact(self, state: State, torque: Triple, h: float, lock: Contact,
                       low: Triple, high: Triple) -> tuple[float, State]:
         """Return the time [s] until a joint reaches a stop, or h, and the state then."""
-        k = self._constants
-        after = held_step(k, t, state, torque, h, lock)
+        arm, t = self.terms, self.terms(state)
+        after = held_step(arm, t, state, torque, h, lock)
         if _overshoot(after, low, high) <= 0.0:
             return h, after
         before, taken = 0.0, h
         for _ in range(BISECTIONS):
             middle = 0.5 * (before + taken)
-            trial = held_step(k, t, state, torque, middle, lock)
+            trial = held_step(arm, t, state, torque, middle, lock)
             if _overshoot(trial, low, high) > 0.0:
                 taken, after = middle, trial
             else:
                 before = middle
         return taken, clipped(after, low, high)
-
-
-def _after_impact(t: Terms, state: State, torque: Triple, at: Contact,
-                  shortest: float) -> tuple[State, Contact]:
-    """
-    Return the state after impacts, and the joints at rest on their stops.
-
-    A joint is at rest if it is pressed into its stop without velocity, or with one so small that
-    it would return within the shortest time [s].
-    """
-    if at == FREE:
-        return state, FREE
-    qd1, qd2, qd3 = permitted(t, state[3:], at)
-    a1, a2, a3 = accelerations(t, qd1, qd2, qd3, *torque)
-    s1, s2, s3 = at
-    reach = 0.5 * shortest
-    slow = (s1 if s1 * qd1 <= -s1 * a1 * reach else 0, s2 if s2 * qd2 <= -s2 * a2 * reach else 0,
-            s3 if s3 * qd3 <= -s3 * a3 * reach else 0)
-    pressed = permitted(t, (a1, a2, a3), slow)
-    lock = (s1 if slow[0] and pressed[0] == 0.0 else 0, s2 if slow[1] and pressed[1] == 0.0 else 0,
-            s3 if slow[2] and pressed[2] == 0.0 else 0)
-    qd1, qd2, qd3 = held(t, (qd1, qd2, qd3), lock)
-    if s2 * qd2 < 0.0 or s3 * qd3 < 0.0:  # one joint's impulse drives the other into its stop
-        lock, qd2, qd3 = (lock[0], s2, s3), 0.0, 0.0
-    return state[:3] + (qd1, qd2, qd3), lock
 
 
 def _beyond(torque: float, friction: float) -> float:

@@ -16,30 +16,28 @@
 Integration step of qdd = f(q, qd), of fourth order.
 
 Nyström's method for second-order equations (Hairer, Nørsett and Wanner, Solving Ordinary
-Differential Equations I, section II.14): the two inner stages share one position, so that a step
-takes three evaluations of the equations' terms. Torques are constant over a step (zero-order
-hold).
+Differential Equations I, section II.14): the two inner stages share one position. Torques are
+constant over a step (zero-order hold).
 """
 
 from __future__ import annotations
 
-from math import cos, sin
-
-from rrr_traj_planner.core.dynamics.equations import accelerations, Constants, Terms, terms
-from rrr_traj_planner.core.simulation.joint_stops import Contact, FREE, held
+from rrr_traj_planner.core.dynamics.arm_dynamics import accelerations, ArmDynamics, Terms
+from rrr_traj_planner.core.dynamics.constrained import held
+from rrr_traj_planner.core.simulation.joint_stops import Contact, FREE
 from rrr_traj_planner.core.states import State, Triple
 
 
-def free_step(k: Constants, t: Terms, state: State, torque: Triple, h: float) -> State:
+def free_step(arm: ArmDynamics, t: Terms, state: State, torque: Triple, h: float) -> State:
     """
     Return the state after a time step of an arm without stops.
 
     Parameters
     ----------
-    k : Constants
-        The arm's constants.
+    arm : ArmDynamics
+        The arm.
     t : Terms
-        The equations' terms at the state.
+        At the state.
     state : tuple of 6 floats
         Positions [rad] and velocities [rad/s].
     torque : tuple of 3 floats
@@ -57,12 +55,16 @@ def free_step(k: Constants, t: Terms, state: State, torque: Triple, h: float) ->
     n1, n2, n3 = torque
     half = 0.5 * h
     eighth = 0.5 * half * half
-    a1, a2, a3 = accelerations(t, qd1, qd2, qd3, n1, n2, n3)
-    t = terms(k, q2 + half * qd2 + eighth * a2, q3 + half * qd3 + eighth * a3, sin, cos)
-    b1, b2, b3 = accelerations(t, qd1 + half * a1, qd2 + half * a2, qd3 + half * a3, n1, n2, n3)
-    c1, c2, c3 = accelerations(t, qd1 + half * b1, qd2 + half * b2, qd3 + half * b3, n1, n2, n3)
-    t = terms(k, q2 + h * (qd2 + half * c2), q3 + h * (qd3 + half * c3), sin, cos)
-    d1, d2, d3 = accelerations(t, qd1 + h * c1, qd2 + h * c2, qd3 + h * c3, n1, n2, n3)
+    a1, a2, a3 = accelerations(t, n1, n2, n3)
+    m1, m2, m3 = (q1 + half * qd1 + eighth * a1, q2 + half * qd2 + eighth * a2,
+                  q3 + half * qd3 + eighth * a3)
+    b1, b2, b3 = accelerations(arm((m1, m2, m3, qd1 + half * a1, qd2 + half * a2,
+                                    qd3 + half * a3)), n1, n2, n3)
+    c1, c2, c3 = accelerations(arm((m1, m2, m3, qd1 + half * b1, qd2 + half * b2,
+                                    qd3 + half * b3)), n1, n2, n3)
+    d1, d2, d3 = accelerations(arm((
+        q1 + h * (qd1 + half * c1), q2 + h * (qd2 + half * c2), q3 + h * (qd3 + half * c3),
+        qd1 + h * c1, qd2 + h * c2, qd3 + h * c3)), n1, n2, n3)
     sixth = h / 6.0
     return (q1 + h * (qd1 + sixth * (a1 + b1 + c1)),
             q2 + h * (qd2 + sixth * (a2 + b2 + c2)),
@@ -72,7 +74,7 @@ def free_step(k: Constants, t: Terms, state: State, torque: Triple, h: float) ->
             qd3 + sixth * (a3 + 2.0 * (b3 + c3) + d3))
 
 
-def held_step(k: Constants, t: Terms, state: State, torque: Triple, h: float,
+def held_step(arm: ArmDynamics, t: Terms, state: State, torque: Triple, h: float,
               lock: Contact) -> State:
     """
     Return the state after a time step in which stops hold some joints at rest.
@@ -81,7 +83,7 @@ def held_step(k: Constants, t: Terms, state: State, torque: Triple, h: float,
 
     Parameters
     ----------
-    k, t, state, torque, h
+    arm, t, state, torque, h
         As in `free_step`.
     lock : tuple of 3 ints
         Not 0 for each joint that is held; its velocity must be 0.
@@ -93,19 +95,17 @@ def held_step(k: Constants, t: Terms, state: State, torque: Triple, h: float,
 
     """
     if lock == FREE:
-        return free_step(k, t, state, torque, h)
+        return free_step(arm, t, state, torque, h)
 
-    def acceleration(at: Terms, qd: Triple) -> Triple:
-        return held(at, accelerations(at, *qd, *torque), lock)
+    def acceleration(at: Terms) -> Triple:
+        return held(at, accelerations(at, *torque), lock)
 
     q, qd = state[:3], state[3:]
-    a = acceleration(t, qd)
+    a = acceleration(t)
     middle = _moved(q, qd, a, 0.5 * h)
-    t = terms(k, middle[1], middle[2], sin, cos)
-    b = acceleration(t, _added(qd, a, 0.5 * h))
-    c = acceleration(t, _added(qd, b, 0.5 * h))
-    end = _moved(q, qd, c, h)
-    d = acceleration(terms(k, end[1], end[2], sin, cos), _added(qd, c, h))
+    b = acceleration(arm(middle + _added(qd, a, 0.5 * h)))
+    c = acceleration(arm(middle + _added(qd, b, 0.5 * h)))
+    d = acceleration(arm(_moved(q, qd, c, h) + _added(qd, c, h)))
     sixth = h / 6.0
     return _moved(q, qd, _added(_added(a, b, 1.0), c, 1.0), h, sixth) + _added(
         qd, _added(_added(a, d, 1.0), _added(b, c, 1.0), 2.0), sixth)

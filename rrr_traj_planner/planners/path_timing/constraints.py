@@ -25,9 +25,9 @@ from functools import cached_property
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.kernels import contiguous
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
 from rrr_traj_planner.planners.path_timing.table import PathTable
-from rrr_traj_planner.core.kernels import contiguous
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import FAR, Limits
 from rrr_traj_planner.planners.solver.ramps import Grid

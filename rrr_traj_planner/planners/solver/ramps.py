@@ -28,9 +28,9 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kernels import contiguous
 from rrr_traj_planner.core.motion_laws.ramps import Ramps, RampShape
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.kernels import contiguous
 from rrr_traj_planner.planners.solver.library import KERNELS
 
 

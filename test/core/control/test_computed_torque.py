@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from math import cos, inf, sin
+from math import inf
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ from rrr_traj_planner.core.control.computed_torque import (
     ControllerGains,
     saturated,
 )
-from rrr_traj_planner.core.dynamics.equations import constants, terms
+from rrr_traj_planner.core.dynamics.arm_dynamics import ArmDynamics
 from rrr_traj_planner.core.dynamics.rigid_body import (
     forward_dynamics,
     gravity_torque,
@@ -42,7 +42,7 @@ TORQUE_TOLERANCE = 1e-9
 
 
 def law(state, desired):
-    t = terms(constants(MODEL), state[1], state[2], sin, cos)
+    t = ArmDynamics(MODEL)(state)
     return np.array(computed_torque(t, GAINS.stiffness, GAINS.damping, state, desired))
 
 

@@ -14,18 +14,17 @@
 
 """Dynamics: by Pinocchio, by hand, and by the laws that any arm obeys."""
 
-from math import cos, sin
-
 from helpers import thesis_cases as thesis
 from helpers.pinocchio_arm import PinocchioArm
 from helpers.random_cases import ARMS, central_difference, random_model, random_states
+from helpers.random_chains import random_arm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.arm_dynamics import accelerations, ArmDynamics, torques
 from rrr_traj_planner.core.dynamics.rigid_body import (
     coriolis_torque,
-    equations,
     forward_dynamics,
     gravity_torque,
     inertia_matrix,
@@ -238,15 +237,15 @@ def test_many_states_at_once_equal_one_by_one():
 
 
 def test_floats_and_arrays_give_the_same_equations():
-    arm = ARMS[1]
-    k = equations.constants(arm)
+    arm = random_arm(1)
+    dynamics = ArmDynamics(arm)
     for q, qd, x in zip(*(v.tolist() for v in random_states(np.random.default_rng(55), 100))):
-        t = equations.terms(k, q[1], q[2], sin, cos)
+        t = dynamics((*q, *qd))
         assert all(type(value) is float for value in t)
-        assert equations.torques(t, *qd, *x) == pytest.approx(
+        assert torques(t, *x) == pytest.approx(
             inverse_dynamics(arm, [q], [qd], [x])[0], rel=1e-12, abs=1e-10)
-        assert equations.accelerations(t, *qd, *x) == pytest.approx(
-            forward_dynamics(arm, [q], [qd], [x])[0], rel=1e-12, abs=1e-10)
+        assert accelerations(t, *x) == pytest.approx(
+            forward_dynamics(arm, [q], [qd], [x])[0], rel=1e-11, abs=1e-10)
 
 
 @pytest.mark.parametrize('function', [inverse_dynamics, forward_dynamics])

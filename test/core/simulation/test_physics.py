@@ -21,7 +21,7 @@ from math import inf, pi
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.dynamics.equations import constants
+from rrr_traj_planner.core.dynamics.arm_dynamics import ArmDynamics
 from rrr_traj_planner.core.dynamics.rigid_body import (
     forward_dynamics,
     kinetic_energy,
@@ -37,8 +37,8 @@ STEP = 1e-3
 LOW, HIGH = (0.0, 0.0, -pi), (pi / 2.0, pi, 2.0 * pi)
 
 # Largest difference of potential energy between two poses [J]: what energies are measured by.
-_K = constants(MODEL)
-ENERGY_SCALE = 2.0 * (_K.upper_weight + _K.fore_weight)
+ENERGY_SCALE = 2.0 * MODEL.gravity * float(
+    MODEL.mass[1] * MODEL.l2 + MODEL.mass[2] * (MODEL.a2 + MODEL.l3))
 
 
 def energy(state):
@@ -86,11 +86,11 @@ def test_method_is_of_fourth_order():
 
 def test_a_step_with_joints_held_is_the_step_of_the_rest_of_the_arm():
     physics, state = unlimited(), (0.3, 0.5, -0.4, 1.0, 0.0, 1.5)
-    after = held_step(constants(MODEL), physics.terms(state), state, NO_TORQUE, STEP, (0, 1, 0))
+    after = held_step(ArmDynamics(MODEL), physics.terms(state), state, NO_TORQUE, STEP, (0, 1, 0))
     assert (after[1], after[4]) == (0.5, 0.0)
     heavy = RobotModel(inertia=MODEL.inertia + np.array([[0, 0, 0], [0, 0, 1e15], [0, 0, 0]]))
     other = ArmPhysics(heavy, (-inf,) * 3, (inf,) * 3)  # joint 2 too heavy to be moved
-    expected = free_step(constants(heavy), other.terms(state), state, NO_TORQUE, STEP)
+    expected = free_step(ArmDynamics(heavy), other.terms(state), state, NO_TORQUE, STEP)
     np.testing.assert_allclose(after, expected, atol=1e-12)
 
 
