@@ -17,14 +17,13 @@
 from __future__ import annotations
 
 import argparse
-import math
 
 from measuring import in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
 import pinocchio
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.urdf import urdf
-from rrr_traj_planner.core.dynamics import equations
+from rrr_traj_planner.core.dynamics.arm_dynamics import accelerations, ArmDynamics
 from rrr_traj_planner.core.dynamics.rigid_body import forward_dynamics, inverse_dynamics
 from tasks import ARM
 
@@ -60,14 +59,12 @@ def _inverse(q: np.ndarray, qd: np.ndarray, qdd: np.ndarray, repetitions: int) -
 
 
 def _forward(q: np.ndarray, qd: np.ndarray, tau: np.ndarray, repetitions: int) -> list[Row]:
-    """Return the function for arrays and the equations in floats, over `pinocchio.aba`."""
+    """Return the function for arrays and the dynamics in floats, over `pinocchio.aba`."""
     model, data = _in_pinocchio()
-    constants, state = equations.constants(ARM), (*qd.tolist(), *tau.tolist())
-    q2, q3 = q[1:].tolist()
+    dynamics, state, torque = ArmDynamics(ARM), (*q.tolist(), *qd.tolist()), tau.tolist()
 
     def in_floats() -> tuple[float, float, float]:
-        return equations.accelerations(
-            equations.terms(constants, q2, q3, math.sin, math.cos), *state)
+        return accelerations(dynamics(state), *torque)
 
     def theirs() -> np.ndarray:
         return pinocchio.aba(model, data, q, qd, tau)

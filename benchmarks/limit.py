@@ -28,7 +28,7 @@ from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
-from rrr_traj_planner.core.dynamics import equations
+from rrr_traj_planner.core.arm.tables import ELEMENTS
 from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.planning import plan
@@ -133,9 +133,27 @@ class _Problem:
         return tuple(_column(place[s], at[0][s], at[1][s], TIME_SHARE[s] * T) for s in (0, 1))
 
 
-def _torques(task: JointTask, q: ca.SX, v: ca.SX, a: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
-    terms = equations.terms(equations.constants(task.model), q[:, 1], q[:, 2], ca.sin, ca.cos)
-    return equations.torques(terms, *(x[:, j] for x in (v, a) for j in range(3)))
+def _torques(task: JointTask, q: ca.SX, v: ca.SX, a: ca.SX) -> list[ca.SX]:
+    """Return Lagrange's torques of each joint at all rows of states, from the arm's tables."""
+    one = [ca.SX.sym(name, 3) for name in 'qva']
+    by, tables = [_functions(one[0], j) for j in range(3)], task.model.tables
+    M = ca.SX(3, 3)
+    for (i, j), element in zip(ELEMENTS, tables.inertia):
+        M[i, j] = M[j, i] = sum(element[k, m] * by[1][k] * by[2][m]
+                                for k, m in np.argwhere(element))
+    V = sum(tables.potential[k, m, n] * by[0][k] * by[1][m] * by[2][n]
+            for k, m, n in np.argwhere(tables.potential))
+    momentum = M @ one[1]
+    torque = ca.Function('torque', one, [
+        M @ one[2] + ca.jtimes(momentum, *one[:2]) + ca.gradient(V, one[0])
+        - ca.gradient(0.5 * ca.dot(one[1], momentum), one[0])])
+    rows = [torque(*(x[k, :].T for x in (q, v, a))).T for k in range(q.rows())]
+    return ca.horzsplit(ca.vertcat(*rows))
+
+
+def _functions(q: ca.SX, joint: int) -> list[ca.SX]:
+    """Return 1, cos q, sin q, cos 2 q, sin 2 q of a joint."""
+    return [1.0, *(f(k * q[joint]) for k in (1, 2) for f in (ca.cos, ca.sin))]
 
 
 def _column(q: np.ndarray, v: np.ndarray, a: np.ndarray, T: np.ndarray) -> np.ndarray:

@@ -20,7 +20,7 @@ import math
 
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.dynamics import equations
+from rrr_traj_planner.core.dynamics.arm_dynamics import ArmDynamics, torques
 from rrr_traj_planner.planners.tasks import JointTask
 import ruckig
 import toppra
@@ -73,10 +73,9 @@ def both(bound: np.ndarray) -> np.ndarray:
 
 def torque_of(model: RobotModel):
     """Return an arm's inverse dynamics of one state, in floats: the fastest there is here."""
-    k = equations.constants(model)
+    dynamics = ArmDynamics(model)
 
     def torque(q, qd, qdd):
-        terms = equations.terms(k, float(q[1]), float(q[2]), math.sin, math.cos)
-        return np.array(equations.torques(terms, *qd.tolist(), *qdd.tolist()))
+        return np.array(torques(dynamics((*q.tolist(), *qd.tolist())), *qdd.tolist()))
 
     return torque

@@ -19,20 +19,21 @@ import re
 
 from helpers.places import ROOT
 import pytest
-from rrr_traj_planner.core.dynamics.equations import Constants
-from rrr_traj_planner.planners.solver.library import load, same_size_as
+from rrr_traj_planner.core.arm.compiled_arm import _Arm
+from rrr_traj_planner.core.kernels import declared, load, same_size_as
 from rrr_traj_planner.planners.solver.timing_problem import _Problem, _Step
 from rrr_traj_planner.planners.solver.via_barrier import _ViaProblem
 
-NATIVE = ROOT / 'rrr_traj_planner' / 'planners' / 'native'
-REPEATED = {'problem': _Problem, 'step': _Step, 'via_problem': _ViaProblem}
+SOURCES = [path for layer in ('core', 'planners')
+           for path in sorted((ROOT / 'rrr_traj_planner' / layer / 'native').glob('*.[ch]'))]
+REPEATED = {'arm': _Arm, 'problem': _Problem, 'step': _Step, 'via_problem': _ViaProblem}
 C_TYPES = {'int32_t': 'c_int', 'double': 'c_double', 'Ramp': '_Ramp'}
 
 
 def declared_fields(name):
     """Return the fields of a structure of the C headers, each with the ctypes type it needs."""
     struct = name.title().replace('_', '')
-    headers = '\n'.join(path.read_text() for path in sorted(NATIVE.glob('*.h')))
+    headers = '\n'.join(path.read_text() for path in SOURCES)
     body = re.search(rf'typedef struct \{{([^}}]*)\}} {struct};', headers)[1]
     fields = []
     for declaration in re.sub(r'/\*.*?\*/', '', body, flags=re.S).split(';')[:-1]:
@@ -44,7 +45,7 @@ def declared_fields(name):
 
 
 def test_every_exported_size_is_that_of_a_repeated_structure():
-    exported = {name for path in NATIVE.glob('*.c')
+    exported = {name for path in SOURCES
                 for name in re.findall(r'size_of_(\w+) = sizeof', path.read_text())}
     assert exported == set(REPEATED)
 
@@ -71,6 +72,6 @@ def test_kernels_that_are_not_built_are_named(tmp_path):
         load(tmp_path)
 
 
-def test_the_arm_s_constants_have_one_order():
-    order = re.search(r'enum \{\s*(A2,[^}]*?)\s*\}', (NATIVE / 'torque.c').read_text())[1]
-    assert [name.strip().lower() for name in order.split(',')] == list(Constants._fields)
+def test_kernels_without_a_function_are_those_of_other_sources():
+    with pytest.raises(ImportError, match='other sources, without no_such_kernel: .*make setup'):
+        declared({'no_such_kernel': (None, [])})
