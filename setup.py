@@ -43,8 +43,8 @@ class BuildKernels(build_ext):
         try:
             super().build_extension(extension)
         except (BaseError, CCompilerError) as error:
-            raise SystemExit(
-                f'{NAME} needs a C compiler for its kernels, {" and ".join(NATIVE)}: {error}') from None
+            raise SystemExit(f'{NAME} needs a C compiler for its kernels, '
+                             f'{" and ".join(NATIVE)}: {error}') from None
 
 
 # SIGINT and SIGTERM wait until a script can answer them (nodes/process/signals.py): Python's

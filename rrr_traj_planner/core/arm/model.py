@@ -117,7 +117,7 @@ class RobotModel(ReadOnlyArrays):
 
     @cached_property
     def chain(self) -> Chain:
-        """The joints and links, in the base frame with all joints at zero."""
+        """Joints and links, in the base frame with all joints at zero."""
         elbow = np.array((self.a2, 0.0, self.d1))
         shoulder = np.array((0.0, 0.0, self.d1))
         (I1, I2, I3), down = self.inertia, np.array((0.0, 0.0, -1.0))
@@ -130,7 +130,7 @@ class RobotModel(ReadOnlyArrays):
 
     @cached_property
     def tables(self) -> ArmTables:
-        """The coefficients of its kinematics and dynamics."""
+        """Coefficients of its kinematics and dynamics."""
         return tables_of(self.chain, np.array((0.0, 0.0, -self.gravity)), np.zeros(3))
 
     @property

@@ -141,8 +141,7 @@ class TimingProblem:
             intervals=0 if limits.table is None else limits.table.shape[2],
             ramp=_Ramp(float(end_q), float(mid_q), float(mid_qd), grid.shape.peak_jerk))
         self._bound_arrays: dict[str, Array] = {}
-        bound_at, general_at = (np.flatnonzero(which) for which in (
-            limits.bounded, limits.general))
+        bound_at, general_at = map(np.flatnonzero, (limits.bounded, limits.general))
         self._problem.bounds, self._problem.general = len(bound_at), len(general_at)
         for name, values in (
                 ('points', points), ('restore', grid.restore), ('lower', limits.lower),
@@ -151,8 +150,7 @@ class TimingProblem:
                 ('table', limits.table), ('overshoot', limits.overshoot)):
             if values is not None:
                 self._bind(name, contiguous(values))
-        if limits.arm is not None:
-            self._problem.arm = limits.arm.address
+        self._problem.arm = limits.arm and limits.arm.address
         self._bind('bound_at', bound_at.astype(np.int32))
         self._bind('general_at', general_at.astype(np.int32))
         self._bind('has_general', limits.general.any(axis=1).astype(np.uint8))
@@ -298,6 +296,5 @@ class TimingProblem:
 
         """
         N, n, J = self._shape
-        at_points = np.empty((N - 1, J))
-        return Variables(np.empty((N, n - 1, J)), at_points, at_points, np.empty(N)).with_values(
-            variables)
+        via = np.empty((N - 1, J))
+        return Variables(np.empty((N, n - 1, J)), via, via, np.empty(N)).with_values(variables)
