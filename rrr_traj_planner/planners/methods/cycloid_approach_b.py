@@ -37,14 +37,14 @@ from rrr_traj_planner.planners.blends.blend_motion import (
     trajectory,
 )
 from rrr_traj_planner.planners.blends.blend_timing import fastest
-from rrr_traj_planner.planners.prescribed_by_search import (
+from rrr_traj_planner.planners.registration import register
+from rrr_traj_planner.planners.tasks import JointTask
+from rrr_traj_planner.planners.torque_scaling import slowed_for_torque
+from rrr_traj_planner.planners.transitions.prescribed_by_search import (
     feasible_motion,
     least_durations_except_dwells,
     within_torque,
 )
-from rrr_traj_planner.planners.registration import register
-from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.torque_scaling import slowed_for_torque
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of, ViaProblem
 

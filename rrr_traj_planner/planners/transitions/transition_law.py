@@ -76,3 +76,10 @@ class TransitionLaw(NamedTuple):
         with np.errstate(divide='ignore'):
             by_jerk = np.where(self.root > 0.0, (duration / self.root) ** 2, np.inf)
         return np.minimum(duration / self.slope, by_jerk)
+
+
+class SegmentLimits(NamedTuple):
+    """The limits of a segment's motion between given velocities."""
+
+    law: TransitionLaw
+    max_velocity: Array  # [rad/s], (3,)
