@@ -58,7 +58,8 @@ SAME_POSTURE = 1e-4  # rad
 ZERO_DISPLACEMENT = 1e-14  # rad
 
 # Motions are planned for sample periods up to this, so that a longer sample_period does not slow
-# them: the answer has additional points where its quintics need them.
+# them: the answer has additional points where its quintics need them. The default sample_period;
+# half and twice of it change none of 28 random plans by `cycloid`.
 LONGEST_SPACING = 0.01  # s
 
 

@@ -43,6 +43,7 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.planners.planning_problem import PlanningProblem
 
 # A start this close to where postures meet counts as in all of them: noise must not decide.
+# Chosen, a hundred times the 1e-4 rad of a coarse encoder.
 MEETING = 0.01  # rad
 
 Answer = TypeVar('Answer')

@@ -52,15 +52,15 @@ from rrr_traj_planner.planners.transitions.transition_cruise import (
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of, ViaProblem
 
-# Chosen values, without unit.
+# Chosen values, without unit. On 12 random tasks half and twice of BEAM change nothing; with a
+# grid half as fine one motion is 13 % faster and one 4 % slower, with one twice as fine one is 3 %
+# faster: the search finds a local optimum.
 BEAM = 24                  # partial solutions that are retained
 # Durations tried, over the least one from rest to rest: finely spaced near it, up to very slow.
 GRID = np.concatenate((np.geomspace(0.4, 2.5, 36), np.geomspace(2.8, 60.0, 12)))
 REFINED_SEGMENTS = 12      # at most: beyond, the beam search's result is not refined
-REFINING_PASSES = 16       # of coordinate descent, at most
-REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])  # over the pass's step
-FIRST_STEP = 0.08          # of the first pass, as a part of a duration
-STEP_REDUCTION = 0.5       # factor on it from pass to pass
+PASSES = 0.08 * 0.5 ** np.arange(16.0)  # of coordinate descent: largest steps, parts of a duration
+REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])  # over the largest
 SHORTEST = 1e-6            # s, duration in place of a least one of 0
 SCALINGS = np.geomspace(1.0, 30.0, 40)  # of the durations, tried in turn until feasible
 
@@ -149,8 +149,8 @@ def _best(limits: SegmentLimits, v: Array, elapsed: Array, D: Array, grid: Array
 
 def _refined(problem: ViaProblem, durations: Array, should_stop: ShouldStop) -> Array:
     """Return durations improved by coordinate descent with decreasing steps."""
-    best, step = _total(problem, durations[np.newaxis])[0], FIRST_STEP
-    for _ in range(REFINING_PASSES):
+    best = _total(problem, durations[np.newaxis])[0]
+    for step in PASSES:
         if should_stop():
             break
         for k in range(len(durations) - 1):
@@ -159,7 +159,6 @@ def _refined(problem: ViaProblem, durations: Array, should_stop: ShouldStop) -> 
             totals = _total(problem, trials)
             if totals.min() < best:
                 best, durations = totals.min(), trials[totals.argmin()]
-        step *= STEP_REDUCTION
     last = best - durations[:-1].sum()
     return np.append(durations[:-1], last) if np.isfinite(best) else durations
 

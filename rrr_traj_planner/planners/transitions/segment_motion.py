@@ -32,8 +32,6 @@ from rrr_traj_planner.planners.solver.library import contiguous, KERNELS
 from rrr_traj_planner.planners.transitions.largest_displacement import largest_cruise
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
-BISECTIONS = 60  # of a cruise velocity: to the last digit
-
 
 class Segments(NamedTuple):
     """What the motions of consecutive segments are to meet."""
@@ -221,8 +219,9 @@ def _cruise_covering(law: TransitionLaw, low: Array, high: Array, segments: Segm
     """Return the least cruise velocity, shortest transitions given, that covers a displacement."""
     given = [contiguous(x) for x in (*law, low, *segments)]
     found = high.copy()
+    bisections = 60  # to the last digit
     KERNELS.cruise_covering(
-        len(segments.T), BISECTIONS, *(x.ctypes.data for x in (*given, found)))
+        len(segments.T), bisections, *(x.ctypes.data for x in (*given, found)))
     return found
 
 

@@ -21,9 +21,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.transitions.largest_displacement import largest_displacement
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
-NEWTON_STEPS = 12  # at most: convergence is quadratic
 ROUNDING = 1e-11   # part of a displacement
-BISECTIONS = 26    # of a duration: to 1.5e-8 of the bracket
 
 
 def cruise_velocity(limits: SegmentLimits, v0: Array, T: Array, D: Array) -> Array:
@@ -64,7 +62,7 @@ def _change(law: TransitionLaw, ahead: Array, T: Array) -> Array:
         jerk_limited = law.root * np.sqrt(u) > law.slope * u
         if jerk_limited.any():  # concave and increasing: Newton from below stays below the root
             x = ahead / T
-            for _ in range(NEWTON_STEPS):
+            for _ in range(12):  # convergence is quadratic
                 t = law.root * np.sqrt(x)
                 x = x + np.maximum(ahead - x * T + 0.5 * x * t, 0.0) / (T - 0.75 * t)
             fits = np.abs(x * T - 0.5 * x * law.least_time(x) - ahead) <= ROUNDING * ahead
@@ -161,7 +159,7 @@ def bisected(limits: SegmentLimits, v0: Array, D: Array, low: Array, high: Array
     """
     found = np.isfinite(high)
     v0, low, least = v0[found], low[found], high.copy()
-    for _ in range(BISECTIONS):
+    for _ in range(26):  # to 1.5e-8 of the bracket
         middle = 0.5 * (low + least[found])
         fits = can_stop(limits, v0, middle[:, np.newaxis], D)
         low, least[found] = np.where(fits, low, middle), np.where(fits, middle, least[found])

@@ -29,7 +29,6 @@ from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
 LEAST_VELOCITY = 1e-9      # rad/s, bound of a via velocity that must be zero
-OVERSHOOT_REDUCTION = 0.5  # factor on the bounds of via velocities in each round
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +93,7 @@ def slower_at(problem: ViaProblem, segments: BoolArray) -> ViaProblem:
 
     """
     at_ends = segments[:-1] | segments[1:]
-    factor = np.where(at_ends, OVERSHOOT_REDUCTION, 1.0)
+    factor = np.where(at_ends, 0.5, 1.0)
     return replace(problem, lowest=np.minimum(problem.lowest * factor, -LEAST_VELOCITY),
                    highest=np.maximum(problem.highest * factor, LEAST_VELOCITY))
 
