@@ -44,9 +44,6 @@ NEEDED_ORDER = 9
 # overflow, and the highest order, whose last coefficient is 1e-188.
 LEAST_WIDTH, MOST_WIDTH, MOST_ORDER = 0.1, 100.0, 100
 
-# Rounding of a polynomial's zeros: imaginary part of a real one, distance of another zero from 0.
-REAL_ZERO, POSITIVE_ZERO = 1e-9, 1e-6
-
 
 def maclaurin(u: Any, order: int) -> Array:
     """
@@ -226,8 +223,9 @@ def _width(half_width: Any) -> float:
 def _inner_zeros(polynomial: Polynomial, end: float) -> Array:
     """Return the zeros of a polynomial strictly between 0 and an end."""
     zeros = polynomial.roots()
-    real = zeros.real[np.abs(zeros.imag) < REAL_ZERO]
-    return np.asarray(real[(real > POSITIVE_ZERO) & (real < end)])
+    # Rounding of zeros: imaginary part of a real one, distance of another from 0.
+    real = zeros.real[np.abs(zeros.imag) < 1e-9]
+    return np.asarray(real[(real > 1e-6) & (real < end)])
 
 
 GAUSS = gauss()

@@ -47,10 +47,6 @@ from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.stiction import Range, resting_accelerations
 from rrr_traj_planner.core.states import State, Triple
 
-# Largest number of events in a step, chosen; joints in contact or at rest then stay so until its
-# end.
-MOST_EVENTS = 16
-
 
 class Bounds(NamedTuple):
     """Ends of the joints' ranges [rad]."""
@@ -109,7 +105,8 @@ class FrictionDynamics:
 
         """
         hard, left = Bounds(*widened(state, self._low, self._high, self._bumper.width)), h
-        for _ in range(MOST_EVENTS):
+        # in a step, chosen; then joints in contact or at rest stay so until its end
+        for _ in range(16):
             t = self._terms(state)
             state, load, slip = self._after_impacts(t, state, torque, hard, SHORTEST_REBOUND * h)
             taken, state = self._until_event(t, state, load, slip, left, hard)

@@ -24,13 +24,20 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.states import Desired, State
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
-# Range violation treated as rounding, and the same for a motion touching a range's end [rad].
-POSITION_TOLERANCE, TOUCH = 1e-9, 1e-6
+# A motion that exceeds a range's end by no more than this touches it [rad]; chosen: as much as the
+# points of a planned motion may exceed it by.
+TOUCH = 1e-6
 
-# Time samples of the range check.
+# What candidates must keep: limits to a relative tolerance, at so many samples of time. Chosen:
+# warnings use both, so that a stop that was accepted gives none.
+LIMIT_TOLERANCE, FINE = 1e-4, 241
+
+# Samples of time in the search for when a motion leaves the ranges; chosen: 1 ms apart
+# in a motion of a second.
 RANGE_SAMPLES = 1001
 
 # Tracking error above which the measured state is braked instead of the command: command outside
@@ -115,8 +122,8 @@ class StopTask:
 
         """
         low, high = self.limits.min_position, self.limits.max_position
-        return (np.where(q < low - POSITION_TOLERANCE, q - TOUCH, low),
-                np.where(q > high + POSITION_TOLERANCE, q + TOUCH, high))
+        return (np.where(q < low - JOINT_ROUNDING, q - TOUCH, low),
+                np.where(q > high + JOINT_ROUNDING, q + TOUCH, high))
 
 
 def time_inside(motion: ReferenceTrajectory, now: float, limits: JointLimits) -> float:

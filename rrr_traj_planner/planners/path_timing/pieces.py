@@ -29,6 +29,8 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.path.path_trajectory import ArmPath
 
+# Chosen: on 7 random paths half of PARTS makes motions 0.2 % slower in the mean, twice 0.05 %
+# faster; half and twice of NEAR change none.
 PARTS = 8        # least number of pieces of equal length
 NEAR = 1.5       # largest ratio of a piece's length to the distance of its middle to a singularity
 SHORTEST = 1e-9  # m, length of pieces that are not halved again

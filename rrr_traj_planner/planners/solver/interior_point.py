@@ -46,7 +46,10 @@ from rrr_traj_planner.planners.solver.line_search import (
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
-# Chosen values, without unit. RELATIVE_GAP decides accuracy, the others the number of iterations.
+# Chosen values, without unit. RELATIVE_GAP decides accuracy, the others the number of iterations:
+# half and twice of each (a hundred times of DUAL_CORRIDOR) change durations of 28 random tasks by
+# less than 0.01 % in the mean, by 0.2 % at most. RAISES and ITERATIONS, backstops, were not
+# varied.
 RELATIVE_GAP = 1e-3          # of the objective, at which the method ends
 BARRIER_REDUCTION = 0.1      # factor on the barrier parameter
 CENTRED = 0.1                # predicted decrease / (constraints * barrier) at which it is lowered

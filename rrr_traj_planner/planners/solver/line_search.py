@@ -33,7 +33,10 @@ from typing import NamedTuple
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.timing_problem import Step, TimingProblem
 
-# Chosen values, without unit; sizes are parts of the whole Newton step.
+# Chosen values, without unit; sizes are parts of the whole Newton step. SUFFICIENT_DECREASE and
+# TO_BOUNDARY are usual (Nocedal & Wright 3.1, 19.2); half and twice of the others (LONGEST_RETRY:
+# 0.5 and 0.99) change durations of 28 random tasks by 0.02 % in the mean, by 0.6 % at most.
+# BACKTRACKS, a backstop, was not varied.
 BACKTRACKS = 30              # reductions of one step's size, at most
 SUFFICIENT_DECREASE = 1e-4   # part of the predicted decrease of the merit (Armijo)
 SHORT = 0.05                 # size up to which a step is corrected, then replaced by the next

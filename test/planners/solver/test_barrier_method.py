@@ -22,7 +22,7 @@ from rrr_traj_planner.planners.solver.barrier_method import RELATIVE_GAP
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 from rrr_traj_planner.planners.transitions.largest_displacement import largest_displacement
-from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scale
 from scipy.optimize import minimize
@@ -49,8 +49,8 @@ def slacks(problem, v, T):
     change = problem.law.largest_change(t)
     law, most, D = problem.law, problem.max_velocity, problem.displacements
     return np.concatenate([x.ravel() for x in (
-        largest_displacement(law, most, v0, v1, t) - D,
-        largest_displacement(law, most, -v0, -v1, t) + D,
+        largest_displacement(SegmentLimits(law, most), v0, v1, t) - D,
+        largest_displacement(SegmentLimits(law, most), -v0, -v1, t) + D,
         change - (v1 - v0), change + (v1 - v0), problem.highest - v, v - problem.lowest)])
 
 

@@ -24,8 +24,8 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.motion_laws.cycloid import transition
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.prescribed_by_search import feasible_motion
 from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.transitions.prescribed_by_search import feasible_motion
 
 PROFILE = JointProfile(transition(*(np.array([x]) for x in (1.0, 0.0, 0.0, 0.0))))
 MOTION = PiecewiseTrajectory([PROFILE] * 3, [0.0, 1.0])
