@@ -210,7 +210,7 @@ def _limited(limits: SegmentLimits, segments: Segments) -> Parts:
     first, last = law.least_time(high - v0), law.least_time(high - v1)
     with np.errstate(divide='ignore', invalid='ignore'):
         longer = np.clip(2.0 * (v1 * T - D) / (v1 - v0), 0.0, T)
-    single = _displacement(law, v1, segments) >= D
+    single = v1 * T - 0.5 * (v1 - v0) * law.least_time(v1 - v0) >= D
     return Parts(np.where(single, np.where(v1 > v0, longer, 0.0), first),
                  np.where(single, v1, high), np.where(single, 0.0, last))
 
@@ -223,10 +223,3 @@ def _cruise_covering(law: TransitionLaw, low: Array, high: Array, segments: Segm
     KERNELS.cruise_covering(
         len(segments.T), bisections, *(x.ctypes.data for x in (*given, found)))
     return found
-
-
-def _displacement(law: TransitionLaw, cruise: Array, segments: Segments) -> Array:
-    """Return the displacement with shortest transitions to and from a cruise."""
-    v0, v1, T, _ = segments
-    return cruise * T - 0.5 * ((cruise - v0) * law.least_time(cruise - v0)
-                               + (cruise - v1) * law.least_time(cruise - v1))
