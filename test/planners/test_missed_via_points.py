@@ -17,23 +17,16 @@
 from dataclasses import replace
 import re
 
+from helpers.planning_cases import ARM, LIMITS, through
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.missed_via_points import miss_note, Misses
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import PlanningRequest
 
-ARM, LIMITS = RobotModel(), JointLimits()
 PLANNERS = ['cycloid_approach_b', 'poly_414']
 Q = np.array([[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [0.2, 1.3, -0.5], [0.6, 1.6, 0.0]])
 SAID = re.compile(r'(\d+) by ([\d.e-]+) m \(([\d.e-]+) rad\)')
-
-
-def through(q, **request):
-    return PlanningRequest(forward_kinematics(ARM, q), **request)
 
 
 def said(note):

@@ -15,37 +15,23 @@
 """4-1-4, after Paul: the thesis's t_acc, its times, and where t_acc is less."""
 
 from dataclasses import replace
+from functools import partial
 
-from helpers.thesis_cases import POINTS
+from helpers.planning_cases import ARM, FREE, LIMITS, STRONG, table, through
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.errors import InvalidInputError, TimingError
+from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.methods.poly_414 import planned
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.tasks import JointTask, T_ACC
 
-ARM, LIMITS = RobotModel(), JointLimits()
-STRONG = replace(LIMITS, max_effort=[150.0, 250.0, 200.0])  # joint 2 as table 6.3 needs it
-FREE = replace(LIMITS, max_effort=np.full(3, np.inf))
+table, through = (partial(f, planner_id='poly_414') for f in (table, through))
 ROOM = 1e-5  # relative: durations are a little longer than the least
 
 # Joint angles at table 6.1's points.
 Q_6_1 = np.radians([[30.0464, 54.0815, 14.2147], [50.0921, 88.8437, 4.4472],
                     [40.1792, 96.9387, -2.3015]])
-
-
-def table(name, **request):
-    return PlanningRequest([POINTS[f'{name} point {k}'][0] for k in (1, 2, 3)],
-                           planner_id='poly_414', **request)
-
-
-def through(q, **request):
-    return PlanningRequest(forward_kinematics(ARM, np.asarray(q, dtype=float)),
-                           planner_id='poly_414', **request)
 
 
 def transitions(trajectory):
@@ -146,14 +132,6 @@ def test_prescribed_durations_without_room_for_t_acc_reduce_it():
                   through(q, segment_durations=[0.6, 6.0]))
     assert answer.via_times == pytest.approx([0.0, 0.6, 6.6], abs=1e-9)
     assert transitions(answer.trajectory) == pytest.approx([0.4, 0.4, 1.0], rel=1e-9)
-
-
-def test_durations_too_short_are_refused_with_feasible_ones_that_are_then_accepted():
-    request = table('6.1', segment_durations=[1.0, 1.0])
-    with pytest.raises(TimingError, match='are too short: feasible are ') as no:
-        plan(ARM, LIMITS, request)
-    answer = plan(ARM, LIMITS, replace(request, segment_durations=no.value.least_durations))
-    assert np.diff(answer.via_times) == pytest.approx(no.value.least_durations, abs=1e-9)
 
 
 def test_half_a_transition_s_length_is_what_the_request_says():

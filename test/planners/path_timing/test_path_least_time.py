@@ -16,8 +16,9 @@
 
 from functools import cache
 
+from helpers.measured_motions import Measured
 from helpers.phase_plane import least_time
-from helpers.random_paths import Measured, NONE, PathCase, random_case
+from helpers.random_paths import NONE, PathCase, random_case
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -114,7 +115,7 @@ def test_a_motion_that_is_cut_short_keeps_its_limits_and_goes_on(seed, iteration
 
     found = fastest_along(PathTask(
         case.arm_path, case.limits, case.constant_jerk_fraction, np.inf, False, should_stop))
-    m = Measured(case, None, found.trajectory)
-    assert m.use().max() <= 1.0 + 1e-6
-    assert m.motion.progress(m.t)[1].min() >= -1e-12
+    m = Measured(case, trajectory=found.trajectory)
+    assert m.utilisation().max() <= 1.0 + 1e-6
+    assert m.trajectory.progress(m.t)[1].min() >= -1e-12
     assert found.gap > 0.0
