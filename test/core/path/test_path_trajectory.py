@@ -29,7 +29,7 @@ from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory.sampling import sample
 
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))
-SEEDS = range(16)
+SEEDS = range(8)
 DIFFERENCE = 1e-6   # of the largest value
 ON_PATH = 1e-11     # m
 

@@ -25,7 +25,7 @@ ROUNDING = 1e-12
 # A parabola between samples of a two-thousandth of a piece: (pi / 2,000)^2 / 2.
 SAMPLES_PER_PIECE = 2000
 BETWEEN_SAMPLES = 1.3e-6
-CASES = range(40)
+CASES = range(12)
 
 
 def trajectory_of(seed):

@@ -27,7 +27,7 @@ from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 LAWS = {'acceleration': TransitionLaw(np.full(3, 2.0), np.zeros(3)),
         'jerk': TransitionLaw(np.full(3, 2.0), np.full(3, 1.6)),
         'some joints': TransitionLaw(np.array([2.0, 0.4, 1.0]), np.array([0.0, 0.9, 3.0]))}
-CASES = [(name, seed) for name in LAWS for seed in range(10)]
+CASES = [(name, seed) for name in LAWS for seed in range(5)]
 
 
 def case(name, seed):

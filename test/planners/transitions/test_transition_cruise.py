@@ -23,7 +23,7 @@ from rrr_traj_planner.planners.transitions.transition_cruise import (
 )
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
-SEEDS = range(25)
+SEEDS = range(10)
 BRUTE_FORCE = 5e-3  # steps of duration are 0.3 %; steps of cruise cost 0.1 %
 LIMIT = np.array([1.0, 2.0, 0.7])
 
