@@ -58,7 +58,7 @@ def test_length_of_any_size_fits_minus_one():
     assert finite_array('x', np.zeros((0, 3)), (-1, 3)).shape == (0, 3)
 
 
-def test_any_shape_is_accepted_where_none_is_asked_for():
+def test_any_shape_is_accepted_where_none_is_required():
     assert finite_array('x', 2).shape == ()
     assert finite_array('x', [[1], [2]]).shape == (2, 1)
 

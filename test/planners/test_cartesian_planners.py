@@ -141,7 +141,7 @@ def test_segment_durations_are_refused(planner_id):
 
 @each_planner
 @pytest.mark.parametrize('elbow', ['up', 'down'])
-def test_a_start_leads_in_along_the_path_from_its_tip(planner_id, elbow):
+def test_path_begins_at_the_start_s_tip(planner_id, elbow):
     tips = np.array([(1.0, 0.0, 0.6), (1.0, 0.3, 0.7), (0.8, 0.4, 0.9)])
     start = inverse_kinematics(MODEL, tips[0], elbow)
     whole = planned(planner_id, tips, elbow=elbow)
@@ -169,14 +169,14 @@ def test_without_an_elbow_a_start_on_branch_down_stays_on_it(planner_id):
 
 
 @each_planner
-def test_what_is_left_is_told_where_planning_is_stopped_before_it_begins(planner_id):
+def test_note_bounds_the_time_to_save_where_planning_is_stopped_at_once(planner_id):
     found = planned(planner_id, [(1.0, 0.0, 0.6), (1.0, 0.3, 0.7), (0.8, 0.4, 0.9)],
                     should_stop=lambda: True)
     assert 'planning ended before it converged: ' in found.note
 
 
 @each_planner
-def test_without_an_elbow_the_branch_that_keeps_the_limits_is_taken(planner_id):
+def test_without_an_elbow_the_branch_within_the_limits_is_taken(planner_id):
     tips = [(1.0, 0.0, 0.6), (1.0, 0.3, 0.6)]
     down = np.array([inverse_kinematics(MODEL, p, 'down') for p in tips])
     limits = replace(FREE, min_position=down.min(axis=0) - 0.2,

@@ -71,7 +71,7 @@ def test_approach_a_has_one_transition_then_a_cruise_and_in_the_last_segment_one
             assert len(joint[-1]) <= 3
 
 
-def test_slowed_motion_uses_some_limit_up():
+def test_slowed_motion_reaches_some_limit():
     # A motion that is at no limit of its own, nor bound to its samples, could be faster.
     idle = {}
     for seed, m in planned_motions('cycloid').items():
@@ -121,7 +121,7 @@ def test_cycloid_is_not_slower_than_approach_a_where_torque_slows_the_motion():
 
 
 @pytest.mark.parametrize('seed', range(12))
-def test_stopped_at_once_it_is_no_slower_than_with_stops_and_says_what_could_be_saved(seed):
+def test_stopped_at_once_it_is_no_slower_than_with_stops_and_reports_what_could_be_saved(seed):
     task = task_for('cycloid', seed)
     request, limits = task.request, replace(task.limits, max_effort=np.full(3, np.inf))
     stopped = plan(task.model, limits, replace(request, should_stop=lambda: True))
@@ -130,5 +130,5 @@ def test_stopped_at_once_it_is_no_slower_than_with_stops_and_says_what_could_be_
     duration = stopped.trajectory.duration
     assert best.trajectory.duration <= duration * (1.0 + 1e-9)
     assert duration == pytest.approx(stops.trajectory.duration, rel=1e-5)
-    one_way = np.diff(task.q, axis=0).any(axis=1).sum() == 1  # its time is known in closed form
-    assert stopped.note.startswith('planning ended before it converged: ') == (not one_way)
+    one_segment = np.diff(task.q, axis=0).any(axis=1).sum() == 1  # its time has a closed form
+    assert stopped.note.startswith('planning ended before it converged: ') == (not one_segment)

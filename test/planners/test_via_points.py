@@ -54,7 +54,7 @@ def test_random_points_come_back_from_their_tips(seed):
 
 
 @pytest.mark.parametrize('elbow', ['up', 'down'])
-def test_a_branch_that_is_asked_for_is_taken_for_every_point(elbow):
+def test_requested_elbow_branch_holds_for_every_point(elbow):
     q = joint_via_points(ARM, WIDE, tips('6.1 point 1', '6.3 point 1'), None, Posture(elbow))
     assert forward_kinematics(ARM, q) == pytest.approx(tips('6.1 point 1', '6.3 point 1'))
     assert ((q[:, 2] < np.pi / 2) == (elbow == 'up')).all()

@@ -61,7 +61,7 @@ def test_line_that_begins_at_the_command_is_followed_as_a_line():
     np.testing.assert_allclose(motion(NOW + 0.5)[:3], Q + 0.1, atol=1e-12)
 
 
-def test_first_point_ahead_is_led_into_by_what_it_carries():
+def test_first_point_ahead_is_approached_by_the_order_of_what_it_specifies():
     ahead = Q + 0.1
     linear = replaced(takeover(MOVING, FAST), single(ahead, 1.0), NOW_NS, LEAD)
     np.testing.assert_allclose(linear(NOW + 0.5)[:3], Q + 0.05, atol=1e-12)
@@ -96,12 +96,12 @@ def test_join_is_the_earliest_within_limits():
     early = TrajectoryPoints(*(getattr(points, f)[i - 1:] for f in (
         'times', 'positions', 'velocities', 'accelerations', 'has_velocity',
         'has_acceleration')))
-    earlier = replaced(takeover(limits=FAST), early, NOW_NS, LEAD)  # led into
+    earlier = replaced(takeover(limits=FAST), early, NOW_NS, LEAD)  # approached
     _, states = commands(earlier, NOW + float(points.times[i - 1]))
     assert np.abs(states[:, 6:]).max() > 1.0
 
 
-def test_trajectory_under_way_is_joined_where_it_is_now():
+def test_trajectory_that_has_begun_is_joined_where_it_is_now():
     points = smooth_points(Q)
     motion = replaced(takeover(), points, nanoseconds(NOW - 0.5), LEAD)
     assert_smooth(REST, motion)
@@ -109,7 +109,7 @@ def test_trajectory_under_way_is_joined_where_it_is_now():
     assert motion.knots[1] > 0.5
 
 
-def test_single_point_due_now_is_gone_to_at_a_rate_within_the_limits():
+def test_single_point_due_now_is_reached_within_the_limits():
     target = Q + np.array([0.4, -0.3, 0.2])
     for command in (REST, MOVING):
         motion = replaced(takeover(command), single(target, 0.0), NOW_NS, LEAD)
@@ -159,7 +159,7 @@ def test_first_point_ahead_that_is_too_far_is_joined_within_the_limits(lead, off
     np.testing.assert_allclose(motion(motion.end + 0.1)[:3], points.positions[-1], atol=1e-12)
 
 
-def test_line_that_would_step_too_fast_is_joined_within_the_limits():
+def test_line_with_too_large_a_velocity_step_is_joined_within_the_limits():
     points = positions_only((0.0, Q + 0.03), (1.0, Q + 0.05), (2.0, Q + 0.07))
     # 0.3 rad/s at once, where 0.1 s of 1 rad/s^2 allow 0.1
     motion = replaced(takeover(), points, nanoseconds(NOW + 0.1), LEAD)
@@ -177,7 +177,7 @@ def test_single_point_ahead_that_is_too_far_is_reached_late():
     np.testing.assert_allclose(motion(motion.end + 0.1)[:3], Q + 0.1, atol=1e-12)
 
 
-def test_stream_of_moving_points_is_caught_up_with_within_the_limits():
+def test_stream_of_moving_points_is_followed_within_the_limits():
     leader, command = Q.copy(), REST
     for step in range(150):  # 100 Hz, 0.3 rad/s from the first message on
         now = NOW + 0.01 * step
@@ -193,7 +193,7 @@ def test_stream_of_moving_points_is_caught_up_with_within_the_limits():
     np.testing.assert_allclose(command[3:6], 0.3, atol=1e-3)
 
 
-def test_join_keeps_torque_limits_where_acceleration_has_none():
+def test_join_is_within_torque_limits_where_acceleration_has_none():
     limits = replace(LIMITS, max_acceleration=np.full(3, inf),
                      max_effort=np.array([150.0, 200.0, 200.0]))
     motion = replaced(takeover(limits=limits), smooth_points(Q + 0.1), NOW_NS, LEAD)

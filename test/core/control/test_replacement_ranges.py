@@ -49,11 +49,11 @@ def turning_points(motion):
     return np.array(found)
 
 
-def down_and_up(end, way, duration, n=201):
+def down_and_up(end, stroke, duration, n=201):
     """Return points on which joint 1 goes to an end of its range and turns back there."""
     t, w = np.linspace(0.0, duration, n), 2.0 * np.pi / duration
-    first = (end + 0.5 * way * (1.0 + np.cos(w * t)), -0.5 * way * w * np.sin(w * t),
-             -0.5 * way * w ** 2 * np.cos(w * t))
+    first = (end + 0.5 * stroke * (1.0 + np.cos(w * t)), -0.5 * stroke * w * np.sin(w * t),
+             -0.5 * stroke * w ** 2 * np.cos(w * t))
     states = np.tile(np.array([(0.0, 1.0, 0.2), (0.0,) * 3, (0.0,) * 3])[:, np.newaxis], (1, n, 1))
     states[..., 0] = first
     return TrajectoryPoints(t, *states, np.full(n, True), np.full(n, True))
@@ -65,9 +65,9 @@ def test_no_join_leaves_a_range_between_samples(end):
     joined = 0
     for seed in range(40):
         rng = np.random.default_rng(seed)
-        way, duration, away, late = rng.uniform([0.01, 1.0, 0.0, 0.0], [0.3, 4.0, 0.1, 0.5])
+        stroke, duration, away, late = rng.uniform([0.01, 1.0, 0.0, 0.0], [0.3, 4.0, 0.1, 0.5])
         command = (end + inward * away, 1.0 + rng.uniform(-0.5, 0.5), 0.2, *(0.0,) * 6)
-        motion = replaced(takeover(command), down_and_up(end, inward * way, duration),
+        motion = replaced(takeover(command), down_and_up(end, inward * stroke, duration),
                           NOW_NS - nanoseconds(late * duration), LEAD)
         if isinstance(motion, ReferenceTrajectory):
             joined += 1
@@ -77,7 +77,7 @@ def test_no_join_leaves_a_range_between_samples(end):
     assert joined > 30
 
 
-def test_trajectory_out_of_reach_is_left_for_its_end_without_leaving_a_range():
+def test_trajectory_out_of_reach_is_replaced_by_its_end_without_leaving_a_range():
     # joint_1 is 0.02 rad before its end and needs 0.02 to stop: no quintic leads back in time
     command = (0.02, 1.0, 0.2, -0.2, *(0.0,) * 5)
     limits = replace(LIMITS, max_jerk=np.full(3, inf))
@@ -111,18 +111,18 @@ def test_last_point_rounded_to_four_digits_is_inside():
 
 @pytest.mark.parametrize(('joint', 'end'), [(0, 0.0), (0, np.pi / 2), (2, -np.pi), (1, np.pi)])
 @pytest.mark.parametrize('before', [0.0, 0.02, 0.3])
-@pytest.mark.parametrize('speed', [0.2, 0.9])
-def test_point_that_is_met_late_does_not_lead_the_arm_out_of_a_range(joint, end, before, speed):
+@pytest.mark.parametrize('velocity', [0.2, 0.9])
+def test_no_joint_leaves_a_range_for_a_point_that_is_reached_late(joint, end, before, velocity):
     side = np.sign(end - Q[joint])
     command = np.array(REST)
     command[joint] = end - side * (before + 0.3)
     q, qd = command[:3].copy(), np.zeros(3)
-    q[joint], qd[joint] = end - side * before, side * speed
+    q[joint], qd[joint] = end - side * before, side * velocity
     # 0.3 rad in 0.1 s is too much; meanwhile the point would be so much further
-    motion, *told = replacement(takeover(tuple(command.tolist())), TrajectoryPoints(
+    motion, *others = replacement(takeover(tuple(command.tolist())), TrajectoryPoints(
         [0.1], [q], [qd], np.zeros((1, 3)), [True], [True]), NOW_NS, LEAD)
     states = commands(motion, motion.end + 0.1)[1]
     assert (side * (states[:, joint] - end)).max() <= 1e-4
-    arrived = motion.final[joint] + 0.5 * motion.final_velocity[joint] * speed  # v^2 / 2 A on
+    arrived = motion.final[joint] + 0.5 * motion.final_velocity[joint] * velocity  # v^2 / 2 A on
     assert side * (arrived - end) <= 1e-4
-    assert told == [(), False]
+    assert others == [(), False]

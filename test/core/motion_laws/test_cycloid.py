@@ -160,10 +160,10 @@ def test_consecutive_pieces_join_without_a_step():
         fourth = ramp(rng.uniform(0.1, 2.0), third.at(1.0)[0], v1, 0.0, peak)
         fifth = general_transition(*fourth.at(1.0)[:2], fourth.at(1.0)[1] + 2.0, peak,
                                    1.2 * peak, 1.5 * peak)
-        chain = (first, second, third, fourth, fifth)
-        for before, after in zip(chain[:-1], chain[1:]):
+        pieces = (first, second, third, fourth, fifth)
+        for before, after in zip(pieces[:-1], pieces[1:]):
             assert before.at(1.0)[:3] == pytest.approx(after.at(0.0)[:3], abs=ROUNDING)
-        for before, after in zip(chain[:3], chain[1:4]):  # full periods and ramps: jerk too
+        for before, after in zip(pieces[:3], pieces[1:4]):  # full periods and ramps: jerk too
             assert before.at(1.0)[3] == pytest.approx(after.at(0.0)[3], abs=1e-10)
 
 

@@ -108,17 +108,17 @@ def test_verdict_is_that_of_a_dense_scan():
         p = path(np.linspace(0.0, path.length, 1001))[0]
         try:
             q = np.array([inverse_kinematics(MODEL, x, 'up') for x in p])
-            room = min((q - limits.min_position).min(), (limits.max_position - q).min())
+            margin = min((q - limits.min_position).min(), (limits.max_position - q).min())
         except RrrPlannerError:
-            room = -1.0
+            margin = -1.0
         try:
             found = check_workspace(MODEL, limits, path, Posture())
         except RrrPlannerError:
             verdicts.append(False)
-            assert room < 1e-3
+            assert margin < 1e-3
         else:
             verdicts.append(True)
-            assert room >= -1e-9
+            assert margin >= -1e-9
             assert (found.least <= q.min(axis=0) + 2e-8).all()
             assert (found.most >= q.max(axis=0) - 2e-8).all()
     assert 10 < sum(verdicts) < 50

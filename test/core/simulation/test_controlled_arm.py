@@ -223,7 +223,7 @@ def test_reset_puts_the_arm_back_at_rest():
     np.testing.assert_allclose(arm.state[:3], Q, atol=1e-12)
 
 
-def test_replacement_mid_way_does_not_jump():
+def test_replacement_during_motion_does_not_jump():
     arm = ControlledArm(SETTINGS, Q)
     arm.follow(quintic(Q, Q + (0.3, -0.3, 0.4), 2.0), 0)
     arm.advance(900)

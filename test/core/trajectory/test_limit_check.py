@@ -67,14 +67,14 @@ def test_all_violations_are_reported():
 
 
 @pytest.mark.parametrize('name', ['velocity', 'acceleration', 'jerk', 'effort'])
-def test_room_for_rounding_is_a_millionth_of_the_limit(name):
+def test_tolerance_for_rounding_is_a_millionth_of_the_limit(name):
     at_limit = np.array(AT_THE_LIMITS[name])
     assert check(**{name: at_limit * (1.0 + 0.9e-6)}) == []
     assert [v.joint for v in check(**{name: at_limit * (1.0 + 1.1e-6)})] == [0, 1, 2]
 
 
 @pytest.mark.parametrize(('name', 'outward'), [('min_position', -1.0), ('max_position', 1.0)])
-def test_room_for_rounding_of_a_position_is_a_nanoradian(name, outward):
+def test_tolerance_for_rounding_of_a_position_is_a_nanoradian(name, outward):
     at_limit = np.array(AT_THE_LIMITS[name])
     assert check(**{name: at_limit + outward * 0.9e-9}) == []
     assert [v.joint for v in check(**{name: at_limit + outward * 1.1e-9})] == [0, 1, 2]

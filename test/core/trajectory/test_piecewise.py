@@ -141,10 +141,10 @@ def test_peaks_of_a_swing_there_and_back_are_what_a_hand_calculation_gives():
 def test_positions_are_passed_when_the_profile_is_there(seed):
     rng = np.random.default_rng(seed)
     speeds = np.concatenate(([0.0], 10.0 ** rng.uniform(-4.0, 1.0, 5), [0.0]))
-    pieces, way = [], rng.normal()
+    pieces, position = [], rng.normal()
     for begin, end in zip(speeds, speeds[1:]):
-        pieces.append(transition(10.0 ** rng.uniform(-3.0, 1.0), way, begin, end))
-        way = float(pieces[-1].at(1.0)[0])
+        pieces.append(transition(10.0 ** rng.uniform(-3.0, 1.0), position, begin, end))
+        position = float(pieces[-1].at(1.0)[0])
     profile = JointProfile(joined(pieces))
     times = np.sort(np.append(rng.uniform(0.0, profile.duration, 20), profile.knots[1:-1]))
     positions = profile(times)[0]
@@ -155,7 +155,7 @@ def test_positions_are_passed_when_the_profile_is_there(seed):
 
 
 def test_rest_is_passed_at_the_start_and_the_same_position_twice():
-    profile = JointProfile(joined([transition(2.0, 1.0, 0.0, 3.0)]))  # 3 rad on the way
+    profile = JointProfile(joined([transition(2.0, 1.0, 0.0, 3.0)]))  # 3 rad in between
     assert profile.passed(np.array([1.0, 2.5, 2.5])) == pytest.approx(
         [0.0, *[profile.passed(np.array([2.5]))[0]] * 2], abs=ROUNDING)
     assert profile.passed(np.array([])).shape == (0,)

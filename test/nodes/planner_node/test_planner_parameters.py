@@ -41,9 +41,9 @@ def test_parameters_fill_what_a_request_leaves_out(ros):
     assert response.trajectory.joint_names == ['a', 'b', 'c']
     assert stamps(response.trajectory)[1] == 50_000_000
     assert response.via_times[-1] > 3.5  # cycloid takes 2.85 s
-    asked = plan(ros, sample_period=0.02, planner_id='cycloid')
-    assert stamps(asked.trajectory)[1] == 20_000_000
-    assert asked.via_times[-1] < 2.9
+    requested = plan(ros, sample_period=0.02, planner_id='cycloid')
+    assert stamps(requested.trajectory)[1] == 20_000_000
+    assert requested.via_times[-1] < 2.9
     assert plan(ros, frame='base_link').error_code == CODES.FRAME_TRANSFORM_FAILURE
 
 

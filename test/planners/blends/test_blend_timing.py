@@ -23,7 +23,7 @@ from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 SEEDS = range(12)
 ROUNDING = 1.0 + 1e-9
-GRID = 400            # times of each line that the search looks at, at steps of 1 %
+GRID = 400            # times of each line that the search evaluates, at steps of 1 %
 
 
 def never():

@@ -71,7 +71,7 @@ def test_tables_take_less_than_stops_at_the_via_points(name, with_stops):
     assert plan(ARM, FREE, table(name)).trajectory.duration < with_stops
 
 
-def test_one_joint_on_a_straight_way_takes_the_time_of_one_segment():
+def test_one_joint_in_one_direction_takes_the_time_of_one_segment():
     # 1.2 rad in two equal halves, 1 rad/s^2: as without the point between, 2 sqrt(2 * 1.2) s.
     limits = replace(FREE, max_velocity=np.full(3, np.inf), max_jerk=np.full(3, np.inf))
     q = [[0.1, 1.5, 0.0], [0.7, 1.5, 0.0], [1.3, 1.5, 0.0]]
@@ -109,7 +109,7 @@ def test_next_to_no_duration_is_refused_with_feasible_ones_that_are_then_accepte
     assert np.diff(answer.via_times) == pytest.approx(offered, abs=1e-9)
 
 
-def test_a_way_that_cannot_be_held_and_a_missing_limit_are_refused():
+def test_a_path_that_cannot_be_held_and_a_missing_limit_are_refused():
     weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
     q = [[0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
     for durations in (None, [9.0]):

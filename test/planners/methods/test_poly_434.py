@@ -30,14 +30,14 @@ from rrr_traj_planner.planners.planning import plan
 table, through = (partial(f, planner_id='poly_434') for f in (table, through))
 LIGHT = replace(FREE, max_jerk=np.full(3, np.inf))
 
-# Degrees, from the verified joint angles of both tables: the longest way of each segment, joint
-# 2's and then joint 1's of table 6.1, joint 3's and then joint 2's of table 6.3.
+# Degrees, from the verified joint angles of both tables: the largest displacement of each segment,
+# joint 2's and then joint 1's of table 6.1, joint 3's and then joint 2's of table 6.3.
 LONGEST = {'6.1': (88.8437 - 54.0815, 50.0921 - 40.1792),
            '6.3': (9.1332 + 29.4763, 58.4486 - 26.1272)}
 
 
 @pytest.mark.parametrize('name', LONGEST)
-def test_tables_take_the_root_of_6_way_over_acceleration_in_each_segment(name):
+def test_tables_take_the_root_of_6_displacement_over_acceleration_in_each_segment(name):
     answer = plan(ARM, STRONG, table(name))
     assert np.diff(answer.via_times) == pytest.approx(
         np.sqrt(6.0 * np.deg2rad(LONGEST[name])), rel=5e-6)
@@ -73,7 +73,7 @@ def test_every_segment_is_a_quartic_a_cubic_and_a_quartic_of_equal_length_on_tab
             assert T == pytest.approx([T.mean()] * 3, rel=1e-3)
 
 
-def test_jerk_steps_but_keeps_its_limit():
+def test_jerk_steps_within_its_limit():
     limits = replace(FREE, max_jerk=[2.0, 3.0, 4.0])
     answer = plan(ARM, limits, table('6.1'))
     t = times_within(answer.trajectory, 50)
@@ -82,7 +82,7 @@ def test_jerk_steps_but_keeps_its_limit():
     assert (start / limits.max_jerk).max() == pytest.approx(1.0, rel=1e-4)
 
 
-def test_the_way_back_is_the_same_motion_backwards():
+def test_the_reverse_task_has_the_same_motion_backwards():
     q = [[0.3, 1.4, 0.0], [0.9, 1.7, -0.4]]
     forth, back = (plan(ARM, FREE, through(points)).trajectory for points in (q, q[::-1]))
     assert forth.duration == pytest.approx(back.duration, rel=1e-12)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What planners that stop at every via point do with durations, stays and heavy ways."""
+"""Planners that stop at every via point: durations, stays, and refused paths."""
 
 from dataclasses import replace
 
@@ -27,7 +27,7 @@ from rrr_traj_planner.planners.request import PlanningRequest
 # From rest to rest over D at an acceleration of at most 1 rad/s^2 it takes the root of this times
 # D: two cycloid transitions of 2 v each, D = 2 v^2; a 4-3-4 of three equal parts.
 ROOTS = {'cycloid_approach_c': 8.0, 'poly_434': 6.0}
-SEGMENT_1 = np.deg2rad(50.0921 - 40.1792)  # joint 1's way in table 6.1, the longest there
+SEGMENT_1 = np.deg2rad(50.0921 - 40.1792)  # joint 1's displacement in table 6.1, the longest there
 
 each_planner = pytest.mark.parametrize('planner_id', ROOTS)
 
@@ -65,7 +65,7 @@ def test_durations_too_short_are_refused_by_segment_with_feasible_ones(planner_i
 
 
 @each_planner
-def test_a_way_that_cannot_be_held_is_refused_by_segment(planner_id):
+def test_a_path_that_cannot_be_held_is_refused_by_segment(planner_id):
     # Half-way the forearm is level: 12 * 9.81 * 0.5 = 58.9 N m.
     weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
     q = [[0.2, 1.5, -1.5], [0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]

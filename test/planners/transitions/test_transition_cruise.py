@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Segments of approach (a): the cruise that arrives, and the last one's way to rest."""
+"""Segments of approach (a): the cruise that arrives, and how the last one comes to rest."""
 
 import numpy as np
 import pytest

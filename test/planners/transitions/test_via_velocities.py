@@ -58,10 +58,10 @@ def covers(u, v0, v1, T, slope):
 def is_feasible(v0, v1, T, D, limit, slope):
     """Return whether D lies between the extremes over cruise velocities that fit the time."""
     # Both transitions fit while |u - v0| + |u - v1| <= T / slope.
-    room = 0.5 * (T / slope - abs(v1 - v0))
-    if room < 0.0:
+    left = 0.5 * (T / slope - abs(v1 - v0))
+    if left < 0.0:
         return False
-    low, high = max(min(v0, v1) - room, -limit), min(max(v0, v1) + room, limit)
+    low, high = max(min(v0, v1) - left, -limit), min(max(v0, v1) + left, limit)
     # Displacement rises with u: from the lowest cruise that fits to the highest.
     return covers(low, v0, v1, T, slope) <= D <= covers(high, v0, v1, T, slope)
 
@@ -250,9 +250,9 @@ def test_stopped_early_it_has_a_motion_that_is_feasible_and_says_how_far_it_may_
     problem = random_problem(600 + seed, 4)
     best = least_time(problem).durations.sum()
     for most in (0, 5, 20):
-        asked = iter(range(most + 1))
-        v, T, gap = least_time(problem, should_stop=lambda a=asked, most=most: next(a) == most)
-        assert next(asked, None) is None
+        calls = iter(range(most + 1))
+        v, T, gap = least_time(problem, should_stop=lambda a=calls, most=most: next(a) == most)
+        assert next(calls, None) is None
         ends = np.vstack((np.zeros(3), v, np.zeros(3)))
         for k, j in np.ndindex(problem.displacements.shape):
             assert is_feasible(ends[k, j], ends[k + 1, j], T[k], problem.displacements[k, j],
