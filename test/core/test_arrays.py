@@ -80,7 +80,7 @@ def test_bounds_may_be_infinite_but_not_nan():
 
 
 @pytest.mark.parametrize('shape', [(3,), (5, 3), (2, 5, 3), (0, 3)])
-def test_joint_values_keep_any_leading_axes(shape):
+def test_joint_values_have_any_leading_axes(shape):
     assert joint_values('q', np.ones(shape)).shape == shape
 
 

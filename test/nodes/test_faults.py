@@ -160,7 +160,7 @@ def test_arm_continues_when_the_planner_is_killed(ros):
         assert arm.process.poll() is None
 
 
-def test_what_killed_nodes_leave_in_shared_memory_keeps_none_from_starting(ros):
+def test_nodes_start_despite_what_killed_nodes_leave_in_shared_memory(ros):
     left = set()
     for _ in range(3):
         with Script(script('planner'), *QUIET) as planner:

@@ -54,7 +54,7 @@ def test_table_6_3_is_refused_with_the_thesis_s_own_torque(planner_id):
 
 
 @each_planner
-def test_gravity_too_large_between_points_is_refused_with_the_place(planner_id):
+def test_gravity_too_large_between_points_is_refused_with_the_path_coordinate(planner_id):
     # Gravity's torque on joint 2 is 102.6 and 175.7 N m at the ends, and 184.4 N m between them.
     limits = replace(FREE, max_effort=(150.0, 180.0, 200.0))
     with pytest.raises(LimitViolationError,
@@ -72,7 +72,7 @@ def test_reversal_is_refused_by_number(planner_id):
 
 
 @each_planner
-def test_line_through_the_hole_is_refused_with_place_and_nearest_point(planner_id):
+def test_line_through_the_inner_workspace_limit_is_refused_with_the_path_coordinate(planner_id):
     with pytest.raises(UnreachableError,
                        match=r'^at 0\.3 m along the path, between via points 0 and 1 \(nearest: '
                              r'[01]\): the tip would be 0\.19 m from the shoulder'):
@@ -80,7 +80,7 @@ def test_line_through_the_hole_is_refused_with_place_and_nearest_point(planner_i
 
 
 @each_planner
-def test_line_across_joint_axis_1_is_refused_with_place_and_nearest_point(planner_id):
+def test_line_across_joint_axis_1_is_refused_with_path_coordinate_and_nearest_point(planner_id):
     with pytest.raises(LimitViolationError,
                        match=r'^at 1\.\d* m along the path, .*\(nearest: [01]\): the tip would '
                              r'pass joint axis 1'):
@@ -112,7 +112,7 @@ def test_joint_1_stands_still_on_lines_in_a_plane_with_its_axis(planner_id, tips
 
 
 @each_planner
-def test_joint_limit_between_points_is_refused_with_the_place(planner_id):
+def test_joint_limit_between_points_is_refused_with_the_path_coordinate(planner_id):
     tips = [(1.2, -0.5, 0.6), (1.2, 0.7, 0.6)]
     nearest = inverse_kinematics(MODEL, (1.2, 0.0, 0.6), 'up')[2]  # least, at y = 0
     limits = replace(FREE, min_position=(-4.0, -4.0, nearest + 1e-3))
@@ -125,7 +125,7 @@ def test_joint_limit_between_points_is_refused_with_the_place(planner_id):
 
 @each_planner
 @pytest.mark.parametrize('y', [-0.52, -0.54, -0.56, -0.58, -0.6, -0.62])
-def test_a_range_that_is_left_between_points_by_a_hair_is_refused_too(planner_id, y):
+def test_a_range_that_is_left_by_nanoradians_between_points_is_refused_too(planner_id, y):
     # 2e-9 rad are more than rounding. The extreme is no sample of any grid.
     nearest = inverse_kinematics(MODEL, (1.2, 0.0, 0.6), 'up')[2]
     limits = replace(FREE, min_position=(-4.0, -4.0, nearest + 2e-9))
@@ -216,6 +216,6 @@ def test_points_are_counted_as_the_request_does(planner_id, tips, start, blamed,
 
 
 @each_planner
-def test_a_last_leg_that_its_zone_all_but_fills_does_not_hold_the_motion_up(planner_id):
+def test_a_last_leg_that_its_blend_zone_nearly_fills_does_not_slow_the_motion(planner_id):
     tips = [(1.0, 0.0, 0.6), (1.0, 0.117, 0.6), (1.0004, 0.1179, 0.6005)]
     assert planned(planner_id, tips).trajectory.duration < 2.0

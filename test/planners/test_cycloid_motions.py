@@ -84,7 +84,7 @@ def test_slowed_motion_reaches_some_limit():
     assert idle == {}
 
 
-def test_torque_slows_a_motion_no_more_than_running_the_same_path_slower_would():
+def test_torque_slows_a_motion_no_more_than_time_scaling_would():
     slower = {}
     for seed, m in list(planned_motions('cycloid').items())[::3]:
         task = m.task

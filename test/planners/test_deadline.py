@@ -66,7 +66,7 @@ def lissajous(n):
     return np.sin(np.stack((3.0 * t, 2.0 * t, 5.0 * t + 0.3), axis=1))
 
 
-def test_it_asks_for_the_best_so_far_and_then_gives_up():
+def test_deadline_requests_the_best_so_far_and_then_gives_up():
     clock = Clock()
     deadline = Deadline(1.0, clock)
     for now, answer in ((100.0, False), (100.79, False), (100.81, True), (100.99 + GRACE, True)):
@@ -138,7 +138,7 @@ def test_a_path_through_many_points_is_given_up_in_time_and_says_in_which_step()
 
 
 @pytest.mark.parametrize('planner_id', ['time_optimal', 'line_arc', 'line_polynomial'])
-def test_time_is_to_blame_where_a_motion_is_too_slow_for_its_points(planner_id):
+def test_refusal_names_the_time_limit_where_a_motion_is_too_slow_for_its_points(planner_id):
     request = PlanningRequest([0.6, 0.0, 1.0] + [0.1, 0.15, 0.1] * lissajous(12),
                               planner_id=planner_id, sample_period=0.01)
     fast, slow = (len(plan(RobotModel(), LIMITS, replace(

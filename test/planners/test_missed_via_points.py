@@ -58,7 +58,7 @@ def test_via_points_are_counted_as_the_caller_counts_them(planner_id):
 
 
 @pytest.mark.parametrize('planner_id', PLANNERS)
-def test_two_points_alone_are_hit_and_nothing_is_said(planner_id):
+def test_two_points_alone_are_passed_exactly_without_a_note(planner_id):
     answer = plan(ARM, LIMITS, through(Q[:2], planner_id=planner_id))
     assert answer.note == ''
     assert answer.trajectory(answer.via_times)[0] == pytest.approx(Q[:2], abs=1e-9)

@@ -36,7 +36,7 @@ def slower_than(least):
     return lambda durations: MOTION if (durations >= np.array(least)).all() else None
 
 
-def test_durations_that_have_a_motion_are_kept():
+def test_durations_with_a_motion_are_accepted():
     assert feasible_motion(slower_than([1.0, 2.0]), np.array([1.0, 2.0])) is MOTION
 
 

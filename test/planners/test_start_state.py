@@ -89,7 +89,7 @@ def test_motions_from_random_starts_begin_there_or_are_refused(planner_id):
 
 
 @pytest.mark.parametrize('planner_id', CARTESIAN)
-def test_a_path_that_only_another_turn_of_joint_1_keeps_in_range_is_refused(planner_id):
+def test_a_path_in_range_only_on_another_turn_of_joint_1_is_refused(planner_id):
     # From 2.9 rad on to 3.7: in range from -3.4 rad on, but that is not where the arm is.
     limits = turning(-1.2 * np.pi, 1.1 * np.pi, replace(LIMITS, max_effort=STRONG))
     points = around(2.9, 3.3, 3.7)
@@ -101,7 +101,7 @@ def test_a_path_that_only_another_turn_of_joint_1_keeps_in_range_is_refused(plan
 
 
 @pytest.mark.parametrize('planner_id', CARTESIAN)
-def test_a_start_on_the_axis_goes_only_where_joint_1_points(planner_id):
+def test_a_start_on_the_axis_leaves_it_only_in_the_direction_of_joint_1(planner_id):
     start = np.array([0.4, 2.2, 0.5])
     start[2] = np.arcsin(-0.9 * np.cos(2.2) / 0.7) - 2.2 + 2.0 * np.pi  # the tip on joint axis 1
     assert np.hypot(*tip(*start)[:2]) < 1e-12

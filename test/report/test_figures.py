@@ -151,7 +151,7 @@ def test_path_lengths_rise_to_the_whole_path(plans):
     assert s[[0, -1]] == pytest.approx([0.0, trajectory.arm_path.path.length], abs=1e-9)
 
 
-def test_arm_points_keep_the_links_lengths():
+def test_arm_points_are_the_links_lengths_apart():
     model, q = RobotModel(), np.random.default_rng(3).uniform(-3.0, 3.0, (50, 3))
     base, shoulder, elbow, tip = np.moveaxis(arm_points(model, q), 1, 0)
     for one, other, length in ((base, shoulder, model.d1), (shoulder, elbow, model.a2),
@@ -240,7 +240,7 @@ def test_page_that_is_no_report_is_not_overwritten(tmp_path):
     assert page.read_text() == '<h1>My own</h1>'
 
 
-def test_list_of_files_that_leads_elsewhere_removes_nothing(tmp_path):
+def test_list_of_files_outside_the_folder_removes_nothing(tmp_path):
     outside = tmp_path / 'outside.csv'
     outside.write_text('x')
     folder = tmp_path / 'report'

@@ -202,7 +202,7 @@ def test_free_angles_do_not_break_the_choice_of_turns():
     assert -2.5 < q[1, 0] < 2.5
 
 
-def test_a_point_on_the_axis_is_not_to_blame_for_a_neighbour_out_of_range():
+def test_a_neighbour_out_of_range_is_not_reported_as_the_point_on_the_axis():
     points = np.vstack(([(0.0, 0.0, 1.6)], around(1.0), [(0.0, 0.0, 1.7)], around(0.2)))
     q = joint_sequence(ARM, ranges(0.0, 0.5), points, UP)
     assert q[:, 0] == pytest.approx([0.5, 1.0, 0.5, 0.2])

@@ -141,7 +141,7 @@ def test_velocity_and_position_are_integrals_of_acceleration():
         assert piece.at(1.0)[0] == pytest.approx(position + velocity * T + moved, abs=1e-10)
 
 
-def test_motion_just_after_the_start_keeps_its_digits():
+def test_motion_just_after_the_start_is_exact_to_all_digits():
     # 1 - cos(x) = x^2 / 2 for small x: written as a difference it would be 0 here.
     s, T, change = 1e-9, 2.0, 3.0
     q, _, acceleration, _ = transition(T, 0.0, 0.0, change).at(s)

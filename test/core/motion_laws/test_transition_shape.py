@@ -94,7 +94,7 @@ def test_derivatives_of_a_transition_are_by_time(function):
             assert slope == pytest.approx(piece.at(s)[order + 1], abs=1e-7)
 
 
-def test_cruise_keeps_its_velocity(function):
+def test_cruise_has_constant_velocity(function):
     piece = function.cruise(2.0, 0.3, -0.4)
     assert np.array(piece.at(0.75)) == pytest.approx([0.3 - 0.4 * 1.5, -0.4, 0.0, 0.0])
 

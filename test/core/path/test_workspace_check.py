@@ -79,7 +79,7 @@ def test_line_past_joint_axis_1_at_a_millimetre_is_followed_half_a_turn():
         2.0 * np.arctan(800.0), abs=1e-9)
 
 
-def test_joint_range_left_between_points_by_a_hair_is_refused_and_kept_by_a_hair_is_not():
+def test_joint_range_that_is_left_by_a_nanoradian_between_points_is_refused():
     path = line_arc([[1.2, -0.5, 0.6], [1.2, 0.7, 0.6]], [])
     # Joint 3 is least where the line is nearest to the shoulder: between its ends, at y = 0.
     nearest = inverse_kinematics(MODEL, (1.2, 0.0, 0.6), 'up')[2]

@@ -190,7 +190,7 @@ def test_goal_that_is_missed_is_given_up_after_its_time():
     assert arm.violation[-1] == GOAL_TIME_EXCEEDED
 
 
-def test_goal_that_is_met_is_kept():
+def test_goal_that_is_reached_stays_reached():
     arm = arm_with(tolerances=Tolerances((0.01,) * 3, (1e-3,) * 3, goal_time=0.2))
     arm.follow(line(Q + (0.3, 0.0, 0.0), 1.0), 0)
     arm.advance(3000)

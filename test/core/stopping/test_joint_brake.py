@@ -31,7 +31,7 @@ def random_brakes(seed):
     return v, a, A, J, joint_brake(v, a, greatest_deceleration(v, a, A, J), J)
 
 
-def test_brake_ends_at_rest_and_keeps_its_bounds():
+def test_brake_ends_at_rest_within_its_bounds():
     v, a, A, J, brake = random_brakes(1)
     t = np.linspace(0.0, 1.0, 101)[:, np.newaxis] * brake.duration
     _, velocity, acceleration, jerk = brake.at(t)

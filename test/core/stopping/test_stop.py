@@ -71,7 +71,7 @@ def test_stop_starts_from_the_command_and_ends_at_rest():
         np.testing.assert_allclose(motion(motion.end - 1e-9), motion(motion.end + 1e-9), atol=1e-7)
 
 
-def test_stop_keeps_acceleration_and_jerk_limits_and_ranges():
+def test_stop_is_within_acceleration_and_jerk_limits_and_ranges():
     for command in random_commands(20):
         motion, warnings = stopped(command)
         times, states = sampled(motion)

@@ -37,7 +37,7 @@ def check(limits=LIMITS, **changes):
     return violations(limits, Peaks(**extremes), effort)
 
 
-def test_motion_exactly_at_every_limit_keeps_them():
+def test_motion_exactly_at_every_limit_is_within_them():
     assert check() == []
 
 
@@ -53,7 +53,7 @@ def test_violation_tells_joint_quantity_value_limit_and_unit(name, values, text)
     assert [violation.text(NAMES) for violation in found] == [text]
 
 
-def test_violation_keeps_its_values():
+def test_violation_holds_value_and_limit():
     violation, = check(jerk=(0.0, 8.5, 0.0))
     assert violation == (1, 'jerk', 8.5, 8.0, 'rad/s^3')
 

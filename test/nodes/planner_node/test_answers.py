@@ -72,7 +72,7 @@ def test_start_state_s_names_come_in_any_order(ask):
     assert response.via_times[0] > 0.0
 
 
-def test_one_via_point_will_do_with_a_start_state(ask):
+def test_one_via_point_is_enough_with_a_start_state(ask):
     response = ask(plan_request(TABLE_6_1[1:2], start=START))
     assert_good(response, TABLE_6_1[1:2], START)
     assert len(response.via_times) == 1
@@ -115,7 +115,7 @@ def test_acceleration_scaled_to_a_quarter_doubles_the_time(ask):
     assert slow.via_times[-1] / full.via_times[-1] == pytest.approx(2.0, rel=1e-3)
 
 
-def test_velocity_scaled_down_is_kept(ask):
+def test_scaled_velocity_limit_holds(ask):
     slow = ask(plan_request(max_velocity_scaling_factor=0.1))
     assert_good(slow, scale=(0.1, 1.0))
     assert max(slow.peak_velocity) == pytest.approx(0.1, rel=1e-3)

@@ -76,7 +76,7 @@ def test_same_request_has_the_same_answer(request):
     ((A, A, A), CODES.SUCCESS, '', -1),
     ((A, B) * 3, CODES.SUCCESS, '', -1)])
 @pytest.mark.filterwarnings('error::RuntimeWarning')
-def test_places_are_judged(points, code, text, via_point):
+def test_degenerate_positions_are_planned_or_refused(points, code, text, via_point):
     response = answered(plan_request(points))
     assert (response.error_code, response.failed_via_point) == (code, via_point), response.message
     assert text in response.message

@@ -41,7 +41,7 @@ INVALID, BAD_START = CODES.INVALID_GOAL_CONSTRAINTS, CODES.START_STATE_INVALID
     (TABLE_6_3, 'via point 2: joint_2 needs 218.9 N m to hold, limit 200 N m', 2),
     ((TABLE_6_1[0], (1.0, -0.5, 0.9)), 'via point 1: joint_1 would be at -0.463648 rad (elbow '
      'up), limits 0 to 1.5708 rad', 1)])
-def test_via_point_that_breaks_a_limit_is_blamed(ask, points, text, via_point):
+def test_refusal_names_the_via_point_beyond_a_limit(ask, points, text, via_point):
     assert_refused(ask, plan_request(points), CODES.GOAL_CONSTRAINTS_VIOLATED, text, via_point)
 
 
@@ -49,7 +49,7 @@ def test_via_point_that_breaks_a_limit_is_blamed(ask, points, text, via_point):
     ((3.0, 0.0, 0.5), "via point 1: (3, 0, 0.5) m is 3 m from the shoulder, beyond the arm's "
      'reach of 1.6 m: it misses by 1.4 m'),
     ((0.05, 0.0, 0.5), 'nearer than the arm can fold, 0.2 m: it misses by 0.15 m')])
-def test_point_out_of_reach_is_blamed_with_its_distance(ask, point, text):
+def test_refusal_names_the_via_point_out_of_reach_and_its_distance(ask, point, text):
     assert_refused(ask, plan_request((TABLE_6_1[0], point)), CODES.NO_IK_SOLUTION, text, 1)
 
 
@@ -103,14 +103,14 @@ def test_malformed_request_is_refused(ask, fields, text):
 
 
 @pytest.mark.parametrize('value', [nan, inf, -inf])
-def test_point_that_is_not_finite_is_blamed(ask, value):
+def test_refusal_names_the_via_point_that_is_not_finite(ask, value):
     request = plan_request()
     request.via_points.poses[1].position.y = value
     assert_refused(ask, request, INVALID, f'via point 1: position is (0.46, {value}, 1.44) m, '
                    'must be finite', 1)
 
 
-def test_orientation_that_is_not_finite_is_blamed(ask):
+def test_refusal_names_the_via_point_with_an_orientation_that_is_not_finite(ask):
     request = plan_request()
     request.via_points.poses[2].orientation.x = nan
     assert_refused(ask, request, INVALID, 'via point 2: orientation is (nan, 0.0, 0.0, 1.0), '

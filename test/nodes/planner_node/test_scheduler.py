@@ -168,7 +168,7 @@ def test_job_that_is_expected_to_be_long_lets_short_ones_go_first_from_the_begin
     assert order == ['short', 'long']
 
 
-def test_no_job_waits_once_the_scheduler_has_ended():
+def test_no_job_waits_after_the_scheduler_has_ended():
     scheduler = Scheduler()
     with scheduler.job():
         waiting = [Worker(scheduler, 0.0) for _ in range(3)]

@@ -83,7 +83,7 @@ def test_node_answers_all_else_while_it_plans(ros, gate):
     assert stamps(future.result().trajectory)[1] == 10_000_000
 
 
-def test_requests_that_wait_for_one_that_gives_no_turn_are_all_answered(ros, gate):
+def test_requests_behind_one_that_never_yields_are_all_answered(ros, gate):
     start_planner(ros)
     order = []
     client = ros.node.create_client(PlanTrajectory, 'plan_trajectory')

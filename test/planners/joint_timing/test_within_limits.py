@@ -81,7 +81,7 @@ def test_time_scale_is_the_root_of_the_excess(seed, limit, values, power):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_motions_that_keep_their_limits_are_returned_as_they_are(seed):
+def test_motions_within_their_limits_are_returned_unchanged(seed):
     case = Case(seed)
     more = 1.0 + BETWEEN
     task = case.task(max_velocity=more * case.largest('qd'), max_jerk=more * case.largest('jerk'),
@@ -146,7 +146,7 @@ def hurried():
     raise AssertionError('no such motion')
 
 
-def test_a_motion_may_hurry_past_a_pose_that_cannot_be_held_but_not_be_slowed_there():
+def test_a_motion_past_a_pose_that_cannot_be_held_is_accepted_but_not_slowed():
     case, task = hurried()
     assert fitted(task, case.trajectory, may_scale=True) is case.trajectory
     slower = replace(task, limits=replace(task.limits, max_velocity=0.5 * case.largest('qd')))

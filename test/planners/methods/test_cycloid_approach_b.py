@@ -31,7 +31,7 @@ table, through = (partial(f, planner_id='cycloid_approach_b') for f in (table, t
 @pytest.mark.parametrize('steps', [
     [0.2, 0.2, 0.3], [0.1, 0.1, 0.1, 0.2, 0.2, 0.05], [0.3, 0.3, -0.2], [1e-3, 1e-3, 0.4, 0.4],
     [0.15, 0.15, 0.15, 0.15]])
-def test_equal_steps_take_no_more_time_than_steps_that_differ_by_next_to_nothing(joint, steps):
+def test_equal_steps_take_no_more_time_than_nearly_equal_ones(joint, steps):
     # At equal steps velocity need not change at all: what is left of the change is rounding, and
     # so would be the jerk of a transition that is as short as that allows.
     q = np.tile([0.3, 1.3, 0.1], (len(steps) + 1, 1))

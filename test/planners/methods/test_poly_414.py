@@ -109,7 +109,7 @@ def test_t_acc_is_kept_where_reducing_it_would_make_the_motion_slower():
 
 
 @pytest.mark.parametrize('t_acc', [0.25, 1.0])
-def test_another_t_acc_is_kept(t_acc):
+def test_another_t_acc_is_used(t_acc):
     task = JointTask(ARM, FREE, Q_6_1, None, 0.01)
     motion = planned(task, t_acc)
     assert (transitions(motion) <= 2.0 * t_acc * (1.0 + LONGER)).all()

@@ -112,7 +112,7 @@ def test_excess_is_reported_at_the_nearest_points(seed):
 
 @pytest.mark.parametrize('kind', [VELOCITY, ACCELERATION, JERK, TORQUE, SPEED])
 @pytest.mark.parametrize('seed', SEEDS[:4])
-def test_a_motion_time_scaleed_as_it_says_just_keeps_its_limits(seed, kind):
+def test_a_motion_scaled_by_the_reported_factor_is_just_within_its_limits(seed, kind):
     table, grid, m = random_check(seed)
     bounds = np.full(QUANTITIES, np.inf)
     bounds[kind] = 0.8 * np.abs(dense(table, grid, m)).max(axis=(0, 1))[kind]
@@ -132,7 +132,7 @@ def test_a_torque_that_gravity_takes_can_be_met_by_no_slowing():
     assert checked(table, grid, m, bounds).time_scale == np.inf
 
 
-def test_a_tip_that_goes_back_is_seen():
+def test_a_tip_that_moves_backwards_is_detected():
     table, grid, m = random_check(1)
     bounds = np.full(QUANTITIES, np.inf)
     assert checked(table, grid, m, bounds).is_forward

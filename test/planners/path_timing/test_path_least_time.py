@@ -83,7 +83,7 @@ def test_limits_of_k_k_squared_and_k_cubed_take_a_kth_of_the_time(seed):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_tip_speed_is_kept_and_used(seed):
+def test_tip_speed_limit_holds_and_is_reached(seed):
     case, T = free_time(seed)
     speed = 0.5 * case.arm_path.path.length / T  # half of the average
     motion = case.timed(speed, max_effort=NONE, max_jerk=NONE)
@@ -106,7 +106,7 @@ def test_joins_are_passed_at_knots_exactly(seed):
 
 @pytest.mark.parametrize('seed', range(4))
 @pytest.mark.parametrize('iterations', [0, 12, 24])
-def test_a_motion_that_is_cut_short_keeps_its_limits_and_goes_on(seed, iterations):
+def test_planning_stopped_early_gives_a_motion_within_limits_that_never_stops(seed, iterations):
     case, left = random_case(seed), [iterations]
 
     def should_stop():

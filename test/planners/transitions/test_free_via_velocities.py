@@ -62,7 +62,7 @@ def test_one_joint_alone_takes_the_time_of_two_transitions(planner_id):
 
 
 @pytest.mark.parametrize('planner_id', PLANNERS)
-def test_jerk_limits_are_kept_and_used_up(planner_id):
+def test_jerk_limits_hold_and_are_reached(planner_id):
     tight = replace(FREE, max_jerk=[2.0, 2.0, 2.0])
     peaks = plan(ARM, tight, table('6.1', planner_id=planner_id)).peaks
     assert (peaks.jerk <= 2.0 * (1.0 + 1e-6)).all()
