@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""By how much via points are missed, and what is said of it."""
+"""By how much via points are missed, and what the note says."""
 
 from dataclasses import replace
 import re
@@ -65,7 +65,7 @@ def test_two_points_alone_are_passed_exactly_without_a_note(planner_id):
 
 
 def test_slower_motions_of_approach_b_miss_by_less():
-    # Transitions are as short as full acceleration allows: at half the speed half as long.
+    # Transitions are as short as full acceleration allows: at half the velocity half as long.
     missed = []
     for factor in (1.0, 4.0):
         request = through(Q, planner_id='cycloid_approach_b',

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The data behind figures, their files, and what is said of them."""
+"""The data behind figures, their files, and their captions."""
 
 from __future__ import annotations
 
@@ -89,12 +89,12 @@ def test_transitions_last_what_the_thesis_says():
         assert curve.qd[[0, -1]] == pytest.approx([0.0, 1.0]), curve.name
 
 
-@pytest.mark.parametrize(('displacement', 'speed', 'pieces'), [(1.8, 0.6, 3), (2.0, 1.0, 2)])
-def test_subtrajectory_covers_its_displacement_from_rest_to_rest(displacement, speed, pieces):
-    profile = subtrajectory(displacement, speed)
+@pytest.mark.parametrize(('displacement', 'velocity', 'pieces'), [(1.8, 0.6, 3), (2.0, 1.0, 2)])
+def test_subtrajectory_covers_its_displacement_from_rest_to_rest(displacement, velocity, pieces):
+    profile = subtrajectory(displacement, velocity)
     q, qd, qdd, _ = profile(np.array([0.0, profile.duration]))
     assert (q[1], *qd, *qdd) == pytest.approx((displacement, 0.0, 0.0, 0.0, 0.0), abs=1e-12)
-    assert profile.duration == pytest.approx(displacement / speed + 2.0 * speed)
+    assert profile.duration == pytest.approx(displacement / velocity + 2.0 * velocity)
     assert len(profile.knots) == pieces + 1
 
 

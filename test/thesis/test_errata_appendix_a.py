@@ -128,7 +128,7 @@ def test_a_9_takes_the_start_s_acceleration():
     assert differ(sums + change + DURATION * END_ACCELERATION, 0.0)
 
 
-def test_without_an_amplitude_a_transition_only_accelerates_by_less_than_1_over_t_j():
+def test_without_an_amplitude_a_transition_only_speeds_up_and_by_less_than_1_over_t_j():
     # No acceleration at either end: mu = 1/2, and only sigma is left to choose.
     def gained(sigma, amplitude=1.0):
         peak = amplitude / (sigma * np.sqrt(2.0 * np.pi))

@@ -184,12 +184,12 @@ def test_joint_outside_its_range_stops_and_goes_back():
 
 @pytest.mark.parametrize('joint', [0, 1, 2])
 @pytest.mark.parametrize('side', [-1.0, 1.0])
-@pytest.mark.parametrize(('beyond', 'speed'), [
+@pytest.mark.parametrize(('beyond', 'velocity'), [
     (1e-6, 3.0), (1e-6, 0.05), (5e-4, 0.2), (0.0156, 0.9), (0.3, 0.05), (0.3, 3.0)])
-def test_joint_that_leaves_its_range_turns_back_as_soon_as_it_can(joint, side, beyond, speed):
+def test_joint_that_leaves_its_range_turns_back_as_soon_as_it_can(joint, side, beyond, velocity):
     end = (LIMITS.max_position if side > 0.0 else LIMITS.min_position)[joint]
     q, qd = np.array([0.5, 1.0, 0.2]), np.zeros(3)
-    q[joint], qd[joint] = end + side * beyond, side * speed
+    q[joint], qd[joint] = end + side * beyond, side * velocity
     motion, warnings = stopped((*q, *qd, 0.0, 0.0, 0.0))
     further = (side * (sampled(motion)[1][:, joint] - q[joint])).max()
     assert further <= ROUNDING

@@ -140,9 +140,9 @@ def test_peaks_of_a_swing_there_and_back_are_what_a_hand_calculation_gives():
 @pytest.mark.parametrize('seed', CASES)
 def test_times_of_positions_are_when_the_profile_passes_them(seed):
     rng = np.random.default_rng(seed)
-    speeds = np.concatenate(([0.0], 10.0 ** rng.uniform(-4.0, 1.0, 5), [0.0]))
+    velocities = np.concatenate(([0.0], 10.0 ** rng.uniform(-4.0, 1.0, 5), [0.0]))
     pieces, position = [], rng.normal()
-    for begin, end in zip(speeds, speeds[1:]):
+    for begin, end in zip(velocities, velocities[1:]):
         pieces.append(transition(10.0 ** rng.uniform(-3.0, 1.0), position, begin, end))
         position = float(pieces[-1].at(1.0)[0])
     profile = JointProfile(joined(pieces))
@@ -150,7 +150,7 @@ def test_times_of_positions_are_when_the_profile_passes_them(seed):
     positions = profile(times)[0]
     found = profile.passed(positions)
     assert (found >= 0.0).all() and (found <= profile.duration).all()
-    size = np.abs(positions).max() + profile.duration * speeds.max()
+    size = np.abs(positions).max() + profile.duration * velocities.max()
     assert profile(found)[0] == pytest.approx(positions, abs=1e-14 * size)
 
 

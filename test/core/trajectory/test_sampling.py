@@ -63,7 +63,7 @@ def test_times_are_whole_nanoseconds_strictly_increasing_from_zero_to_the_end(tr
 def test_one_point_stands_exactly_at_every_via_point(trajectory, period):
     points = sample(trajectory, period)
     stamps = nanoseconds(points)
-    # Via points less than 1.5 ns apart share one; speeds are of a few rad/s.
+    # Via points less than 1.5 ns apart share one; velocities are of a few rad/s.
     apart = np.diff(trajectory.via_times)
     tolerance = 1e-8 if ((apart > 0.0) & (apart < 1.5e-9)).any() else 1e-14
     for via_time, position in zip(trajectory.via_times, trajectory(trajectory.via_times)[0]):
