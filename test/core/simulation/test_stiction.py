@@ -27,7 +27,7 @@ from rrr_traj_planner.core.simulation.stiction import NO_REACTION, resting_accel
 
 MODEL = RobotModel()
 
-# Torques of some 100 N m, by way of an inverse.
+# Torques of some 100 N m, through an inverse.
 ROUNDING = 1e-9
 
 

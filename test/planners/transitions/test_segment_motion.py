@@ -27,7 +27,7 @@ from rrr_traj_planner.planners.transitions.segment_motion import (
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
 ROUNDING = 1e-9
-SEEDS = range(40)
+SEEDS = range(12)
 
 
 def segments(seed, n=6):

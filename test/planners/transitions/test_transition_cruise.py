@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Segments of approach (a): the cruise that arrives, and the last one's way to rest."""
+"""Segments of approach (a): the cruise that arrives, and how the last one comes to rest."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ from rrr_traj_planner.planners.transitions.transition_cruise import (
 )
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
-SEEDS = range(25)
+SEEDS = range(10)
 BRUTE_FORCE = 5e-3  # steps of duration are 0.3 %; steps of cruise cost 0.1 %
 LIMIT = np.array([1.0, 2.0, 0.7])
 
