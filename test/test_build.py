@@ -24,7 +24,7 @@ import pytest
 from rrr_traj_planner.planners.solver.library import load
 
 NATIVE = 'rrr_traj_planner/planners/native'
-NEEDED = f'rrr_traj_planner needs a C compiler that can build its kernels, {NATIVE}: '
+NEEDED = f'rrr_traj_planner needs a C compiler that builds its kernels, {NATIVE}: '
 
 
 @pytest.fixture
