@@ -72,13 +72,3 @@ def test_a_file_that_does_not_compile_is_named_above_that_line(sources):
     assert errors[0].startswith(f'{NATIVE}/torque.c:1:')
     assert errors[-1].startswith(NEEDED)
     assert not libraries(sources)
-
-
-def test_kernels_that_do_not_link_are_no_build(sources):
-    for name in ('torque.c', 'search.c'):
-        (sources / NATIVE / name).write_text('int twice = 2;\n')
-    code, errors = build(sources)
-    assert code == 1
-    assert any('twice' in line for line in errors)
-    assert errors[-1].startswith(NEEDED)
-    assert not libraries(sources)
