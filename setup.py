@@ -43,7 +43,7 @@ class BuildKernels(build_ext):
             super().build_extension(extension)
         except (BaseError, CCompilerError) as error:
             raise SystemExit(
-                f'{NAME} needs a C compiler for its kernels, {NATIVE}: {error}') from None
+                f'{NAME} needs a C compiler that builds its kernels, {NATIVE}: {error}') from None
 
 
 # SIGINT and SIGTERM wait until a script can answer them (nodes/process/signals.py): Python's

@@ -18,6 +18,7 @@ from itertools import count
 
 import numpy as np
 import pytest
+from rrr_traj_planner.planners.solver import barrier_method
 from rrr_traj_planner.planners.solver.barrier_method import RELATIVE_GAP
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
@@ -104,6 +105,32 @@ def test_the_least_stretch_of_the_least_durations_is_one_and_halves_for_twice_as
     assert slacks(problem, found.velocities, found.durations).min() > 0.0
     assert found.durations == pytest.approx(factor * T, rel=1e-12)
     assert least_time_scale(problem, 2.0 * T)[0] == pytest.approx(0.5 * factor, rel=1e-5)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_every_accepted_step_decreases_objective_and_barrier(seed, monkeypatch):
+    accepted, tried = [], []
+
+    class Watched:
+
+        def __getattr__(self, name):
+            return getattr(KERNELS, name)
+
+        def via_attempt(self, at, weight):
+            tried.append(KERNELS.via_attempt(at, weight))
+            return tried[-1]
+
+        def via_accept(self, at, less):
+            accepted.append(tried[-1])
+            KERNELS.via_accept(at, less)
+
+    problem = random_problem(seed)
+    start = least_time(problem, should_stop=lambda: True)
+    barrier = ViaBarrier(problem, start.velocities, start.durations)
+    monkeypatch.setattr(barrier_method, 'KERNELS', Watched())
+    barrier_method.minimise(barrier, lambda: False)
+    assert len(accepted) > 10
+    assert max(accepted) < 0.0
 
 
 def test_one_segment_takes_its_closed_form():

@@ -137,6 +137,19 @@ def test_limits_that_come_closer_are_kept_from_the_first_centre_on(seed, limits,
         assert found.motion.T.sum() == pytest.approx(anew, rel=GAP)
 
 
+@pytest.mark.parametrize('side', ['min_position', 'max_position', 'max_velocity', 'max_effort'])
+def test_constraints_are_shifted_to_the_wider_of_two_limits_on_each_side(side):
+    grid, points, m = random_motion(3)
+    other = replace(LIMITS, **{side: 0.8 * getattr(LIMITS, side)})
+    for limits, previous in ((LIMITS, other), (other, LIMITS)):
+        now, before = (bounds(given, grid, points).problem for given in (limits, previous))
+        alone, wider = now.slacks(m), before.slacks(m)
+        now.begin(m, all_free(len(m.T)))
+        now.shift(before.limits)
+        assert now.slacks(m) == pytest.approx(np.maximum(alone, wider), rel=1e-12, abs=1e-12)
+        assert (alone != wider).any()
+
+
 def test_limits_that_cannot_be_kept_are_not_said_to_be():
     grid, points, _ = random_motion(1)
     wide, _, _, passed = solve(LIMITS, grid, points)

@@ -332,3 +332,13 @@ def test_slacks_are_of_the_motion_given_and_leave_the_iterate_alone():
     assert (case.problem.slacks(other) != case.problem.slacks(case.motion)).any()
     assert (case.arrays['variables'] == before).all()
     assert flat(case.motion) == pytest.approx(before)
+
+
+def test_the_objective_is_the_weighted_sum_of_durations_for_python_and_the_kernels_alike():
+    grid, points, m = random_motion(3, segments=3)
+    m = m._replace(T=np.array([1.0, 7.0, 4.0]))
+    durations = DurationConstraints.all_free(3, 3)._replace(weights=np.array([2.0, 0.0, 0.5]))
+    problem = bounds(FREE, grid, points).problem
+    problem.begin(m, durations)
+    kernels_own = KERNELS.timing_cost(problem.at, problem.arrays.addresses['variables'])
+    assert durations.cost(m.T) == kernels_own == 4.0
