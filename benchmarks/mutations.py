@@ -54,8 +54,7 @@ FAULTS = {
     'test/core/motion_laws': (
         ('self.velocity + T * (self.c * s - self.b / w * sine)',
          'self.velocity + T * (self.c * s + self.b / w * sine)'),
-        ('PEAK_ACCELERATION = 15.0 / 8.0    # (C.11)',
-         'PEAK_ACCELERATION = 15.0 / 9.0    # (C.11)'),
+        ('peak_acceleration=15.0 / 8.0', 'peak_acceleration=15.0 / 9.0'),
         ('mean = np.abs(self.change) / self.duration',
          'mean = np.abs(self.change) * self.duration'),
         ('self.peak_jerk = 1.0 / (constant_jerk_fraction + 4.0 * self._rise / pi)',
@@ -103,8 +102,7 @@ FAULTS = {
         ('- (barrier + dual[1] * shift[1]) * inverse[1];',
          '+ (barrier + dual[1] * shift[1]) * inverse[1];'),
         ('return 2.0 * p->N * (constraints_of(p)', 'return 1.0 * p->N * (constraints_of(p)'),
-        ('at[3 * J] = p->ramp.peak_jerk * rise / h;',
-         'at[3 * J] = p->ramp.peak_jerk * rise;'),
+        ('to[3 * J] = unit[3] * rise / h;', 'to[3 * J] = unit[3] * rise;'),
         # Newton steps
         ('*common_gradient += p->proportions[k] * right[B];', '*common_gradient += right[B];'),
         ('decrease -= (r_T[k] + p->weights[k]) * dT;', 'decrease -= r_T[k] * dT;'),
