@@ -41,7 +41,7 @@ from rrr_traj_planner.planners.solver.interior_point import (
     RELATIVE_GAP,
 )
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, restored, Variables
+from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, Variables
 from scipy.optimize import minimize, nnls
 
 SEEDS = range(8)
@@ -95,7 +95,7 @@ class Unknowns:
     def motion(self, x):
         """Return the motion of given values, which meets the ends of all pieces exactly."""
         parts = np.split(x * self.scale, self._sizes)
-        return restored(self.grid, self.ends[:, np.newaxis], Variables(
+        return self.grid.restored(self.ends[:, np.newaxis], Variables(
             *(f.reshape(shape) for f, shape in zip(parts, self._shapes))))
 
     def time(self, x):
@@ -173,10 +173,9 @@ def test_motions_that_are_slower_do_not_keep_them(seed):
 def at_points(case, unknowns, x):
     """Return the slacks of all limits at nodes and middles, and the tip's speed between rests."""
     m, n, ends = unknowns.motion(x), unknowns.grid.n, unknowns.ends
-    at = unknowns.grid.states(ends[:, np.newaxis], m)
-    s, sd, sdd = (f[..., 0] for f in (at.q, at.qd, at.qdd))
-    sddd, left = np.zeros_like(s), np.zeros(s.shape, bool)
-    sddd[:, n + 1:], left[:, n] = at.jerk[..., 0], True
+    s, sd, sdd, sddd = (f[..., 0] for f in unknowns.grid.states(ends[:, np.newaxis], m))
+    left = np.zeros(s.shape, bool)
+    left[:, n] = True
     within = np.clip(s, ends[:-1, np.newaxis], ends[1:, np.newaxis])
     found = use(case, (within, sd, sdd, sddd), left).ravel()
     return np.concatenate((1.0 - found, 1.0 + found, sd[:, 1:n].ravel()))
