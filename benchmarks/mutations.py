@@ -37,7 +37,7 @@ FAULTS = (
      'l3 = (m3 * model.l3 + mass * model.l3) / (m3 + mass)'),
     ('self.velocity + T * (self.c * s - self.b / w * sine)',
      'self.velocity + T * (self.c * s + self.b / w * sine)'),
-    ('PEAK_ACCELERATION = 15.0 / 8.0    # (C.11)', 'PEAK_ACCELERATION = 15.0 / 9.0    # (C.11)'),
+    ('peak_acceleration=15.0 / 8.0', 'peak_acceleration=15.0 / 9.0'),
     ('mean = np.abs(self.change) / self.duration', 'mean = np.abs(self.change) * self.duration'),
     ('self.peak_jerk = 1.0 / (constant_jerk_fraction + 4.0 * self._rise / pi)',
      'self.peak_jerk = 1.0 / (constant_jerk_fraction + 2.0 * self._rise / pi)'),

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 
-FAR = 1e6  # stands for no bound, in SI units and rad: never active
+FAR = 1e6  # stands for no bound, in SI units and rad: never active; chosen
 
 BOUNDS_ALONE, TORQUE, PATH = range(3)  # kinds of general constraints; as in timing_problem.h
 
