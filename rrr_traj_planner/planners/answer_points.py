@@ -45,7 +45,7 @@ from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.planners.planning_problem import PlanningProblem
 
 # Chosen values.
-LARGEST_SCALING = 1.5  # of time, in one of them: excesses of coarse points overstate it
+LARGEST_SCALING = 1.5  # of time, in a round: 1.1 or 3 change none of 28 random plans
 CLOSEST = 1e-4         # s, least spacing for a motion that cannot be slowed, or leaves a range: a
 #                        tenth of a controller's period of 1 ms
 

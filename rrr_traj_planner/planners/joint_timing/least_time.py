@@ -29,7 +29,7 @@ from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled
 from rrr_traj_planner.planners.tasks import JointTask
 
 # Restarts from the best motion so far. On 28 random tasks half and twice of each value change no
-# duration: restarts are for rare tasks, with via points close together or at the ends of ranges.
+# duration: they matter on rarer tasks (see `_solved_from`).
 POOR = 1e-2            # gap, as a part of the time, above which it is solved again
 SLOWER = (1e-6, 0.02)  # part by which a restart is slower: first just strictly feasible; chosen
 

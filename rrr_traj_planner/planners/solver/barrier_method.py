@@ -33,7 +33,8 @@ from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 
 # Chosen values, without unit. RELATIVE_GAP and POLISHED decide accuracy, the others the number of
-# steps: half and twice of each change at most one of 28 random plans, by 0.4 %.
+# steps: half and twice of each (TOLERATED_RISE: 0.6 and 1) change at most one of 28 random plans,
+# by 0.4 %.
 RELATIVE_GAP = 2e-7        # of the objective, at which the method ends
 CENTRED = 0.5              # Newton decrement squared at which the weight is raised,
 POLISHED = 1e-7            # and at the end: the answer then varies smoothly with the task

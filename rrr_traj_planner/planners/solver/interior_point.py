@@ -47,8 +47,8 @@ from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
 # Chosen values, without unit. RELATIVE_GAP decides accuracy, the others the number of iterations:
-# half and twice of each (a hundred times of DUAL_CORRIDOR) change durations of 28 random tasks by
-# less than 0.01 % in the mean, by 0.2 % at most.
+# half and twice of each (SMALL_SHIFT: 0.25 and 0.9; DUAL_CORRIDOR: 1e4 and 1e8) change durations
+# of 28 random tasks by less than 0.01 % in the mean, by 0.2 % at most.
 RELATIVE_GAP = 1e-3          # of the objective, at which the method ends
 BARRIER_REDUCTION = 0.1      # factor on the barrier parameter
 CENTRED = 0.1                # predicted decrease / (constraints * barrier) at which it is lowered

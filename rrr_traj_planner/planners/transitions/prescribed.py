@@ -38,8 +38,8 @@ from rrr_traj_planner.planners.transitions.motion import (
 )
 from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
 
-# Tried in turn on top of the least durations until they can be prescribed, as parts of them; steps
-# of ten are chosen: from the least that a float of microseconds shows to one that no user minds.
+# Tried in turn on top of the least durations until they can be prescribed, as parts of them;
+# chosen.
 MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3)
 
 
