@@ -55,6 +55,7 @@ from rrr_traj_planner.planners.tasks import CartesianTask, JointTask
 SAME_POSTURE = 1e-4  # rad
 
 # Displacements up to this are set to zero: ratios of 1e-310 rad to 1 rad would overflow.
+# Chosen: rounding of an angle of some tens of rad.
 ZERO_DISPLACEMENT = 1e-14  # rad
 
 # Motions are planned for sample periods up to this, so that a longer sample_period does not slow

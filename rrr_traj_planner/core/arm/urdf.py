@@ -26,7 +26,8 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
 
-# A URDF must have limits on velocity and effort: values that stand for none.
+# A URDF must have limits on velocity and effort: values that stand for none, chosen far above any
+# motor's.
 NO_VELOCITY_LIMIT = 1e3  # rad/s
 NO_EFFORT_LIMIT = 1e6    # N m
 

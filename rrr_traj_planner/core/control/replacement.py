@@ -59,7 +59,6 @@ from rrr_traj_planner.core.trajectory.trajectory_points import (
 # below any velocity that a joint is commanded.
 VELOCITY_TOLERANCE = 1e-6
 
-TORQUE_STEPS = 32  # of time, in the torque check of a joining polynomial; chosen
 BATCH = 256        # points that are tried at once; chosen: 2.5 s of points at 100 Hz
 
 # Factors on the time left until the last point, tried in order if it cannot be met on schedule;
@@ -210,7 +209,8 @@ def _within_limits(takeover: Takeover, T: Array, ends: tuple[Array, ...]) -> Boo
     for form, (low, high) in zip(bernstein_forms(c, T), _bounds(takeover, ends)):
         met &= ~leaves(form, low - TOLERANCE, high + TOLERANCE).any(axis=1)
     i = np.flatnonzero(met)
-    times = np.linspace(0.0, 1.0, TORQUE_STEPS + 1)[:, np.newaxis, np.newaxis] * T[i, np.newaxis]
+    # Torque is checked at 32 steps of time; chosen.
+    times = np.linspace(0.0, 1.0, 33)[:, np.newaxis, np.newaxis] * T[i, np.newaxis]
     q, qd, qdd = (polynomial(np.moveaxis(c[i], -1, 0), times, order) for order in range(3))
     torque = np.abs(inverse_dynamics(takeover.model, q, qd, qdd))
     allowed = np.maximum(torque[:1], torque[-1:])

@@ -35,10 +35,9 @@ from rrr_traj_planner.core.motion_laws.transition_shape import Curve, Transition
 from rrr_traj_planner.core.scalars import positive, whole_number
 from scipy.special import erf
 
-# k [sigma]. Up to 2 sigma the Maclaurin series needs order 9 for an error below a thousandth of
-# the peak, the accuracy required in appendix A.
+# k [sigma], of appendix A: up to it the Maclaurin series needs order 9 for an error below a
+# thousandth of the peak, the accuracy required there.
 HALF_WIDTH = 2.0
-NEEDED_ORDER = 9
 
 # Range of half widths [sigma] outside which rounding spoils the lowered function or its powers
 # overflow, and the highest order, whose last coefficient is 1e-188.

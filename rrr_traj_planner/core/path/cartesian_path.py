@@ -207,7 +207,7 @@ class CartesianPath(ReadOnlyArrays):
 
     def _on_path(self, s: Array) -> Array:
         """Return path coordinates, clipped to the path's ends where rounding put them beyond."""
-        # of a path coordinate at an end: rounding
+        # A path coordinate no further beyond an end was put there by rounding.
         tolerance = 1e-9 * self.length
         bad = ~((s >= -tolerance) & (s <= self.length + tolerance))
         if bad.any():

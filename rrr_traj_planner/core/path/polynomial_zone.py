@@ -45,7 +45,8 @@ ACROSS = np.array([[10.0, 5.0], [10.0, -15.0], [-20.0, 10.0]]) / 16.0
 # Terms of the series of the zone's length: exact to rounding up to turns of 179 degrees.
 LENGTH_TERMS = 30
 
-# Largest number of Halley steps from length to parameter; two are taken, up to 179.9 degrees.
+# Chosen: largest number of Halley steps from length to parameter; two are taken, up to 179.9
+# degrees.
 INVERSIONS = 30
 LAST_STEP = 1e-5  # of the parameter: the error after a step is of the order of its cube
 

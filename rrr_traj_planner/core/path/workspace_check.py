@@ -42,7 +42,8 @@ from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 
-# Intervals that may contain an excursion are halved: largest number of rounds, shortest interval.
+# Intervals that may contain an excursion are halved: largest number of rounds, shortest interval;
+# chosen: 1e-12 of the first, and less than the tip is told apart by.
 BISECTIONS = 40
 SHORTEST_STEP = 1e-9  # m
 

@@ -105,7 +105,7 @@ class FrictionDynamics:
 
         """
         hard, left = Bounds(*widened(state, self._low, self._high, self._bumper.width)), h
-        # in a step, chosen; then joints in contact or at rest stay so until its end
+        # Events of a step, chosen; then joints in contact or at rest stay so until its end.
         for _ in range(16):
             t = self._terms(state)
             state, load, slip = self._after_impacts(t, state, torque, hard, SHORTEST_REBOUND * h)

@@ -26,7 +26,8 @@ from typing import TypeVar
 
 Outcome = TypeVar('Outcome')
 
-# Tolerance of an event: largest distance past it [rad], [rad/s].
+# Tolerance of an event: largest distance past it [rad], [rad/s]; chosen: a thousandth of what
+# counts as rounding of a position.
 EVENT_TOLERANCE = 1e-12
 
 

@@ -40,11 +40,7 @@ Indices = NDArray[np.int_]
 # original motion are retained.
 SPACING, LEAST_SPACING = 0.005, 1e-4
 
-# Inversion of s(t), at the original knots: samples for linear interpolation, and a lower bound on
-# ds/dt in the two Newton steps after it, near the stop. Chosen.
-INVERSION, LEAST_RATE = 2001, 1e-3
-
-# Offset for one-sided limits at a knot [s].
+# Offset for one-sided limits at a knot [s]; chosen: above the rounding of times, below any piece.
 ONE_SIDED = 1e-7
 
 
@@ -223,15 +219,16 @@ class Slowdowns:
     def _knots(self, i: int) -> Array:
         """Return the knots' times: closely spaced, and where the original knots are passed."""
         T, motion, rates = float(self.durations[i]), self.task.motion, self._rates(np.array([i]))
-        t = np.linspace(0.0, T, INVERSION)
+        t = np.linspace(0.0, T, 2001)
         begin = self.task.now + self.delays[i] - motion.origin
         own = motion.knots - begin
         s = rates.at(t[np.newaxis])[0][0]
         own = own[(own > 0.0) & (own < s[-1])]
+        # s(t) inverted: linear interpolation, two Newton steps; near the stop ds/dt is small.
         passed = np.interp(own, s, t)
         for _ in range(2):
             s, sd = (x[0] for x in rates.at(passed[np.newaxis])[:2])
-            passed = passed - (s - own) / np.maximum(sd, LEAST_RATE)
+            passed = passed - (s - own) / np.maximum(sd, 1e-3)
         passed = passed[(passed > LEAST_SPACING) & (passed < T - LEAST_SPACING)]
         grid = np.linspace(0.0, T, 2 + int(T / SPACING))
         near = np.abs(grid[1:-1, np.newaxis] - passed).min(axis=1, initial=T) < LEAST_SPACING

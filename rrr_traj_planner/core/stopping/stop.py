@@ -48,10 +48,6 @@ from rrr_traj_planner.core.stopping.task import (
 )
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
-# Velocity below which a joint counts as at rest at the end of a motion [rad/s]; chosen: 1e-9
-# rad in a millisecond.
-REST = 1e-6
-
 # Candidate delays before braking: geometric sequence from FIRST_DELAY [s] with ratio DELAY_RATIO.
 # This and the next two sequences are chosen.
 FIRST_DELAY, DELAY_RATIO = 0.005, 1.5
@@ -238,7 +234,8 @@ def _end(motion: ReferenceTrajectory, now: float, qd: Array,
     """Return the state at a motion's end, from which a stop there starts."""
     if motion.ends_moving:
         return motion.final, motion.final_velocity, motion.final_acceleration
-    rests = now >= motion.end or bool(np.abs(qd).max() <= REST)
+    # At rest: 1e-6 rad/s, 1e-9 rad in a millisecond; chosen.
+    rests = now >= motion.end or bool(np.abs(qd).max() <= 1e-6)
     return (motion.final, np.zeros(3), np.zeros(3)) if rests else (motion.final, qd, qdd)
 
 

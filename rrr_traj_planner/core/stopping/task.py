@@ -36,9 +36,6 @@ TOUCH = 1e-6
 # warnings use both, so that a stop that was accepted gives none.
 LIMIT_TOLERANCE, FINE = 1e-4, 241
 
-# Samples of time in the search for when a motion leaves the ranges; chosen: 1 ms apart
-# in a motion of a second.
-RANGE_SAMPLES = 1001
 
 # Tracking error above which the measured state is braked instead of the command: command outside
 # the ranges, inside [rad]; chosen.
@@ -145,7 +142,8 @@ def time_inside(motion: ReferenceTrajectory, now: float, limits: JointLimits) ->
         Its end, if it never leaves them; -inf, if it is outside already [s].
 
     """
-    times = np.linspace(now, max(now, motion.end), RANGE_SAMPLES)
+    # 1 ms apart in a motion of a second; chosen.
+    times = np.linspace(now, max(now, motion.end), 1001)
     q = motion.at(times)[0]
     outside = ((q < limits.min_position - TOUCH) | (q > limits.max_position + TOUCH)).any(axis=1)
     if not outside.any():

@@ -120,7 +120,7 @@ def leaves(form: Array, low: Array, high: Array) -> BoolArray:
     low, high = (np.broadcast_to(x, form.shape[:-1]).reshape(-1, 1) for x in (low, high))
     out = np.zeros(len(low), dtype=bool)
     index, parts = np.arange(len(low)), form.reshape(len(low), -1)
-    # bisections; then a polynomial that touches a bound counts as within it; chosen
+    # Bisections, chosen; then a polynomial that touches a bound counts as within it.
     for _ in range(24):
         beyond = (parts < low[index]) | (parts > high[index])
         out[index[beyond[:, 0] | beyond[:, -1]]] = True

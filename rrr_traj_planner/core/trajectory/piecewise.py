@@ -37,7 +37,7 @@ from rrr_traj_planner.core.trajectory.trajectory import (
 # Safeguarded Newton iteration for zeros in [0, 1] (Press et al., Numerical Recipes, section 9.4):
 # a step that leaves the bracket is replaced by a bisection. At a zero of velocity an error e of
 # the normalised time changes the position by O(e^2).
-MOST_STEPS = 60
+MOST_STEPS = 60        # chosen: bisections alone would reach 1e-18
 ZERO_TOLERANCE = 1e-9  # of the normalised time
 
 # Difference of the joints' durations, and of a via time beyond the end, that is accepted [s, and

@@ -44,7 +44,6 @@ from scipy.optimize import linprog
 
 # Chosen values, without unit: half and twice of them (a tenth and ten
 # times of GAIN and LOWEST_RATE) change none of 20 random plans by more than 0.003 %.
-ROUNDS = 40             # of linear programming, at most
 GAIN = 1e-5             # part of the time, below which a round is the last
 FIRST_TANGENTS = np.geomspace(1.0, 30.0, 12)  # of 1 / r, at these multiples of the first rates
 LOWEST_RATE = 1e-3      # bound of a linear program, as a part of the present rate
@@ -77,7 +76,7 @@ def fastest(problem: ViaProblem, transitions: Array | None,
     best = _feasible(problem, problem.rest_to_rest_times(), transitions)
     program = _Program(problem, transitions, best)
     point = best
-    for _ in range(ROUNDS):
+    for _ in range(40):  # linear programs, at most
         solved = None if should_stop() else program.solved(point)
         if solved is None:
             break

@@ -32,7 +32,6 @@ from rrr_traj_planner.planners.via_points import torque_texts
 
 # Chosen: on 28 random tasks half and twice of LEAST_RAMPS and SLOW change a duration by 0.2 %.
 LEAST_RAMPS = 4        # of a motion from rest to rest: two up, two down
-LEAST_DURATION = 1e-4  # s, of a segment, so that its accelerations are finite
 SLOW = 3.0             # factor by which torque slows a straight path before another is sought
 
 
@@ -96,7 +95,8 @@ def _least_durations(task: JointTask, constraints: JointConstraints,
     T = np.max([(np.abs(at.qd) / limits.max_velocity).max(axis=(1, 2)),
                 np.sqrt((np.abs(at.qdd) / limits.max_acceleration).max(axis=(1, 2))),
                 np.cbrt((np.abs(at.jerk) / limits.max_jerk).max(axis=(1, 2)))], axis=0)
-    T = np.maximum(START_SCALING * T, LEAST_DURATION)
+    # Where nothing moves, accelerations are finite too.
+    T = np.maximum(START_SCALING * T, 1e-4)
     if constraints.least_T is not None:
         T = np.maximum(T, START_SCALING * constraints.least_T)
     if not constraints.with_torque:

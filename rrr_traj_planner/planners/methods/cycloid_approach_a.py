@@ -62,7 +62,6 @@ REFINED_SEGMENTS = 12      # at most: beyond, the beam search's result is not re
 PASSES = 0.08 * 0.5 ** np.arange(16.0)  # of coordinate descent: largest steps, parts of a duration
 REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])  # over the largest
 SHORTEST = 1e-6            # s, duration in place of a least one of 0
-SCALINGS = np.geomspace(1.0, 30.0, 40)  # of the durations, tried in turn until feasible
 
 
 @register('cycloid_approach_a')
@@ -105,7 +104,7 @@ def _fastest(task: JointTask, problem: ViaProblem) -> Array:
     durations = _beam_search(problem, task.should_stop)
     if len(durations) <= REFINED_SEGMENTS:
         durations = _refined(problem, durations, task.should_stop)
-    for factor in SCALINGS:
+    for factor in np.geomspace(1.0, 30.0, 40):  # slower until feasible; chosen
         task.should_stop()
         if _motion(task, problem, problem.law, factor * durations) is not None:
             return np.asarray(factor * durations)

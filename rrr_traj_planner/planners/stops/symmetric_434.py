@@ -57,7 +57,6 @@ LEAST_PART, MOST_PART = 1e-7, 0.49  # of lift-off: the cruise has a positive dur
 # equal time, that nearest to a third is preferred.
 PREFERENCE = 1e-8
 GRID = np.linspace(0.0, 1.0, 33)  # of the logarithm of p, in each round
-ROUNDS = 7              # each narrows the grid to a sixteenth
 
 
 class DisplacementRatios(NamedTuple):
@@ -136,7 +135,7 @@ def fastest_symmetric(ratios: DisplacementRatios) -> Lin434:
     ratios = DisplacementRatios(*(np.where(moving, ratio, 1.0)[:, np.newaxis] for ratio in ratios))
     rows = np.arange(len(moving))
     low, high = (np.full(len(moving), np.log(part)) for part in (LEAST_PART, MOST_PART))
-    for _ in range(ROUNDS):
+    for _ in range(7):  # each narrows the grid to a sixteenth
         grid = low[:, np.newaxis] + (high - low)[:, np.newaxis] * GRID
         laws = _with_best_b(np.exp(grid), ratios)
         best = (least_time(laws, ratios) * (

@@ -47,9 +47,8 @@ POINTS = np.linspace(0.0, 1.0, 9)  # samples of torque in lift-off, cruise and s
 LEAST_CRUISE = 0.02                # part of the duration
 PARTS = (np.log(1e-5), np.log(0.97))  # bounds on the logarithm of lift-off's and set-down's part
 MOST_ACCELERATION = 60.0   # bound, over displacement / duration^2; the symmetric law's peak is 6
-NEGATIVE_VELOCITY = 1e-10  # due to rounding, over displacement / duration
 
-DIFFERENCE = 1e-6          # step of the central differences in all five variables
+DIFFERENCE = 1e-6          # step of the central differences in all variables: near eps^(1/3)
 
 
 class Segment(NamedTuple):
@@ -110,7 +109,8 @@ def law_for_torque(segment: Segment, start: Lin434, duration: float,
     if not np.isfinite(x).all():
         return None
     law = Lin434(*np.exp(x[1:3]), *x[3:])
-    sound = law.cruise >= 0.5 * LEAST_CRUISE and law.velocities().min() >= -NEGATIVE_VELOCITY
+    # Less below zero, over displacement / duration, is rounding.
+    sound = law.cruise >= 0.5 * LEAST_CRUISE and law.velocities().min() >= -1e-10
     return law if sound else None
 
 

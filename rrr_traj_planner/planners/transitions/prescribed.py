@@ -38,9 +38,8 @@ from rrr_traj_planner.planners.transitions.motion import (
 )
 from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
 
-NOT_LONGER = 2e-6  # s, two of the microseconds to which feasible durations are rounded
-# Tried in turn on top of the least durations until they can be prescribed, as parts of them; steps
-# of ten are chosen: from the least that a float of microseconds shows to one that no user minds.
+# Tried in turn on top of the least durations until they can be prescribed, as parts of them;
+# chosen.
 MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3)
 
 
@@ -128,8 +127,9 @@ def _with_durations(task: JointTask, problem: ViaProblem, durations: Array,
 def _too_short(task: JointTask, problem: ViaProblem, durations: Array) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
     feasible = _least_feasible(task, problem, durations)
+    # Feasible durations are rounded to microseconds: two of these are no difference.
     short = np.flatnonzero(
-        durations * (1.0 + 2.0 * DURATION_MARGIN) < feasible - NOT_LONGER).tolist()
+        durations * (1.0 + 2.0 * DURATION_MARGIN) < feasible - 2e-6).tolist()
     return durations_too_short(durations, feasible, short)
 
 

@@ -30,7 +30,6 @@ from rrr_traj_planner.planners.torque_scaling import cannot_hold, torque_time_sc
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
 # Chosen values, without unit; the scaling is refined by bisection.
-ROUNDS = 12              # of lower accelerations, at most
 SCALING_STEP = 1.3       # factor between the scalings of durations that are tried in turn
 LARGEST_SCALING = 1e4    # of durations, up to which feasible ones are sought
 
@@ -62,7 +61,7 @@ def within_torque(task: JointTask, law: TransitionLaw,
 
     """
     scale, too_fast, too_slow = 1.0, None, None  # of the acceleration
-    for _ in range(ROUNDS):
+    for _ in range(12):  # of lower accelerations, at most; chosen
         task.should_stop()
         motion = motion_by(TransitionLaw(law.slope / scale, law.root / scale ** 0.75))
         if motion is None:

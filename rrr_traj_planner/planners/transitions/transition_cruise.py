@@ -21,8 +21,6 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.transitions.largest_displacement import largest_displacement
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
-ROUNDING = 1e-11   # part of a displacement
-
 
 def cruise_velocity(limits: SegmentLimits, v0: Array, T: Array, D: Array) -> Array:
     """
@@ -65,7 +63,8 @@ def _change(law: TransitionLaw, ahead: Array, T: Array) -> Array:
             for _ in range(12):  # convergence is quadratic
                 t = law.root * np.sqrt(x)
                 x = x + np.maximum(ahead - x * T + 0.5 * x * t, 0.0) / (T - 0.75 * t)
-            fits = np.abs(x * T - 0.5 * x * law.least_time(x) - ahead) <= ROUNDING * ahead
+            # Less, as a part of the displacement, is rounding.
+            fits = np.abs(x * T - 0.5 * x * law.least_time(x) - ahead) <= 1e-11 * ahead
             u = np.where(jerk_limited | np.isnan(u), np.where(fits, x, np.nan), u)
         u = np.where(ahead > 0.0, u, 0.0)
         return np.where(law.least_time(u) <= T, u, np.nan)

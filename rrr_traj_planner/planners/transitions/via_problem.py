@@ -28,7 +28,7 @@ from rrr_traj_planner.planners.sampling_jerk_limit import jerk_over_samples, SAM
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
-LEAST_VELOCITY = 1e-9      # rad/s, bound of a via velocity that must be zero
+LEAST_VELOCITY = 1e-9      # rad/s, bound of a via velocity that must be zero: rounding; chosen
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,7 +34,6 @@ from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 # Of the start's durations; chosen: 1.1 and 2 give the same motions on 27 of 28 random tasks.
 START_MARGIN = 1.3   # over the least ones from rest to rest: all limits are then inactive
-LEAST_FACTOR = 1e-6  # over prescribed ones, where nothing moves
 
 
 def least_time(problem: ViaProblem, least_T: Array | None = None,
@@ -86,7 +85,8 @@ def least_time_scale(problem: ViaProblem, durations: Array) -> tuple[float, Solu
     """
     n = len(problem.displacements)
     least = float((problem.rest_to_rest_times() / durations).max())
-    factor = START_MARGIN * max(least, LEAST_FACTOR)
+    # Durations are positive where nothing moves, too.
+    factor = START_MARGIN * max(least, 1e-6)
     solution = minimise(ViaBarrier(problem, np.zeros((n - 1, 3)), factor * durations,
                                    proportions=durations), never)
     return float(solution.durations[0] / durations[0]), solution
