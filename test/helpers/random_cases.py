@@ -92,6 +92,28 @@ def random_general_transition(rng, fraction=None):
     return general_transition(**ends), ends
 
 
+def _random_transition(rng):
+    return transition(rng.uniform(0.1, 5.0), *rng.normal(0.0, 2.0, 3))
+
+
+def _random_cruise(rng):
+    return cruise(rng.uniform(0.1, 5.0), *rng.normal(0.0, 2.0, 2))
+
+
+def _random_ramp(rng):
+    return ramp(rng.uniform(0.1, 5.0), *rng.normal(0.0, 2.0, 4))
+
+
+_KINDS = [_random_transition, _random_cruise, _random_ramp,
+          lambda rng: random_general_transition(rng)[0]]
+
+
+def pieces_of_every_kind(seed, n):
+    """Return n pieces, of all kinds in turn."""
+    rng = np.random.default_rng(seed)
+    return [_KINDS[i % len(_KINDS)](rng) for i in range(n)]
+
+
 def random_trajectory(rng, duration=None, via_times=None):
     """Return a smooth motion of three joints, each with three to nine pieces."""
     if duration is None:

@@ -23,7 +23,6 @@ from helpers.measured_motions import (
     CARTESIAN,
     exceeding,
     HIT,
-    JOINT_SPACE,
     LIMIT_MARGIN,
     LIMITED,
     outcomes,
@@ -49,7 +48,6 @@ CONTINUOUS_JERK = ['cycloid', 'cycloid_approach_a', 'cycloid_approach_b', 'cyclo
                    'septic', 'time_optimal']
 JERK_RATE = 20.0       # of jerk: peaks in the shortest piece; a septic's begins with 16
 PATH_EXTREMES = 2e-7   # rad: how far the extremes of a motion along a path are from its peaks
-MOST_REMARKS = {'poly_434': 5, 'time_optimal': 1}  # of some 40 motions, on what points do
 
 
 def shortest_piece(trajectory):
@@ -218,21 +216,6 @@ def test_via_times_rise_from_start_to_end(motions):
             assert m.plan.via_times[0] == 0.0
         if moves.any():
             assert m.plan.via_times[-1] == pytest.approx(m.t[-1], rel=1e-12)
-
-
-@pytest.mark.parametrize('planner_id', JOINT_SPACE, indirect=True)
-def test_notes_seldom_remark_on_more_than_missed_via_points(planner_id, motions):
-    assert {m.trajectory.note for m in motions.values()} == {''}
-    notes = [m.plan.note for m in motions.values() if m.plan.note]
-    remarks = [note for note in notes if not note.startswith('via point')]
-    assert all('reach a jerk of' in note or '0.1 % slower' in note for note in remarks)
-    assert len(remarks) <= MOST_REMARKS.get(planner_id, 0)
-
-
-@pytest.mark.parametrize('planner_id', JOINT_SPACE, indirect=True)
-def test_joints_end_at_the_same_time(motions):
-    for m in motions.values():
-        assert np.ptp([p.duration for p in m.trajectory.profiles]) <= 1e-9
 
 
 def test_same_request_gives_the_same_plan_bit_for_bit(planner_id, motions):

@@ -61,7 +61,7 @@ def test_line_that_begins_at_the_command_is_followed_as_a_line():
     np.testing.assert_allclose(motion(NOW + 0.5)[:3], Q + 0.1, atol=1e-12)
 
 
-def test_first_point_ahead_is_approached_by_the_order_of_what_it_specifies():
+def test_first_point_ahead_is_led_into_by_what_it_carries():
     ahead = Q + 0.1
     linear = replaced(takeover(MOVING, FAST), single(ahead, 1.0), NOW_NS, LEAD)
     np.testing.assert_allclose(linear(NOW + 0.5)[:3], Q + 0.05, atol=1e-12)
@@ -101,7 +101,7 @@ def test_join_is_the_earliest_within_limits():
     assert np.abs(states[:, 6:]).max() > 1.0
 
 
-def test_trajectory_that_has_begun_is_joined_where_it_is_now():
+def test_trajectory_under_way_is_joined_where_it_is_now():
     points = smooth_points(Q)
     motion = replaced(takeover(), points, nanoseconds(NOW - 0.5), LEAD)
     assert_smooth(REST, motion)

@@ -84,7 +84,7 @@ def test_refused_trajectory_is_logged_and_changes_nothing(ros):
     assert_no_jump(arm.desired.messages)
 
 
-def test_trajectory_replaced_during_motion_does_not_jump(ros):
+def test_trajectory_replaced_mid_way_does_not_jump(ros):
     arm = Arm(ros)
     arm.send(rest_to_rest(GOAL, 0.8))
     arm.desired.wait_for(moving)

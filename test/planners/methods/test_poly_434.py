@@ -37,7 +37,7 @@ LONGEST = {'6.1': (88.8437 - 54.0815, 50.0921 - 40.1792),
 
 
 @pytest.mark.parametrize('name', LONGEST)
-def test_tables_take_the_root_of_6_displacement_over_acceleration_in_each_segment(name):
+def test_tables_take_the_root_of_6_way_over_acceleration_in_each_segment(name):
     answer = plan(ARM, STRONG, table(name))
     assert np.diff(answer.via_times) == pytest.approx(
         np.sqrt(6.0 * np.deg2rad(LONGEST[name])), rel=5e-6)

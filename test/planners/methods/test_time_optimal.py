@@ -46,7 +46,7 @@ TIMES = [
 
 
 @pytest.mark.parametrize(('name', 'limits', 'least', 'most'), TIMES)
-def test_tables_take_little_more_than_the_least_time_of_any_motion(name, limits, least, most):
+def test_tables_are_near_the_limit_and_not_below(name, limits, least, most):
     answer = plan(ARM, limits, table(name))
     assert least - 5e-5 <= answer.trajectory.duration <= most
     assert answer.note == ''
