@@ -43,7 +43,7 @@ class BuildKernels(build_ext):
         try:
             super().build_extension(extension)
         except (BaseError, CCompilerError) as error:
-            raise SystemExit(f'{NAME} needs a C compiler for its kernels, '
+            raise SystemExit(f'{NAME} needs a C compiler that builds its kernels, '
                              f'{" and ".join(NATIVE)}: {error}') from None
 
 

@@ -17,81 +17,232 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
+import shutil
 import subprocess
 import sys
+import tempfile
 import time
 
-import rrr_traj_planner
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = 'rrr_traj_planner'
+INSTALLED = 'installed'  # a folder of the copy: the tests refuse to import from the sources' own
+LEFT_OUT = '.git', '.venv', 'build', 'install', 'log', '*.so'
+TESTS = 'test/core', 'test/planners'
+WIDTH = 68       # characters of a fault in the table
+LONGEST = 900.0  # s: a fault may make a loop endless
 
-# Lines of the package, each in one file alone, and what takes their place.
-FAULTS = (
-    ('base_inertia=I1[1] + I2[0] + I3[2],', 'base_inertia=I1[1] + I2[0] - I3[2],'),
-    ('shoulder_inertia=I2[2] + I3[1] + m2', 'shoulder_inertia=I2[2] + m2'),
-    ('upper_weight=(m2 * l2 + m3 * a2) * g,', 'upper_weight=(m2 * l2 + m3 * l2) * g,'),
-    ('s2 * c3 + c2 * s3, c2 * c3 - s2 * s3', 's2 * c3 + c2 * s3, c2 * c3 + s2 * s3'),
-    ('model.d4 * np.cos(q23), model.d4 * np.sin(q23)',
-     'model.d4 * np.cos(q23), -model.d4 * np.sin(q23)'),
-    ('r, h = hypot(x, y), z - model.d1', 'r, h = hypot(x, y), z + model.d1'),
-    ('l3 = (m3 * model.l3 + mass * model.d4) / (m3 + mass)',
-     'l3 = (m3 * model.l3 + mass * model.l3) / (m3 + mass)'),
-    ('self.velocity + T * (self.c * s - self.b / w * sine)',
-     'self.velocity + T * (self.c * s + self.b / w * sine)'),
-    ('PEAK_ACCELERATION = 15.0 / 8.0    # (C.11)', 'PEAK_ACCELERATION = 15.0 / 9.0    # (C.11)'),
-    ('mean = np.abs(self.change) / self.duration', 'mean = np.abs(self.change) * self.duration'),
-    ('self.peak_jerk = 1.0 / (constant_jerk_fraction + 4.0 * self._rise / pi)',
-     'self.peak_jerk = 1.0 / (constant_jerk_fraction + 2.0 * self._rise / pi)'),
-    ('slope ** 2 - 4.0 * half * self.acceleration', 'slope ** 2 + 4.0 * half * self.acceleration'),
-    ('radius = (x * x + y * y) / (2.0 * y)', 'radius = (x * x + y * y) / y'),
-    ('inward = 0.5 * (direction[..., 1:, :] - direction[..., :-1, :])',
-     'inward = 1.0 * (direction[..., 1:, :] - direction[..., :-1, :])'),
-    ('torque = spring * max(1.0 + self.damping * rate, 0.0)',
-     'torque = spring * max(1.0 - self.damping * rate, 0.0)'),
-    ('self._velocity_gain = (1.0 - pole) ** 2 / step',
-     'self._velocity_gain = (1.0 - pole) / step'),
-    ('q1 = points[:-1] + 0.5 * (v0 + parts.cruise) * parts.first',
-     'q1 = points[:-1] + 0.5 * (v0 - parts.cruise) * parts.first'),
-    ('np.minimum(limits.max_acceleration, (torque / inertia).max(axis=0))',
-     'np.maximum(limits.max_acceleration, (torque / inertia).max(axis=0))'),
-    ('ratio = np.abs(table.values.g) / task.limits.max_effort',
-     'ratio = np.abs(table.values.g) / task.limits.max_velocity'),
-    ('np.flatnonzero(~(value <= limit * (1.0 + TOLERANCE)))',
-     'np.flatnonzero(~(value <= limit * (2.0 + TOLERANCE)))'),
-    ('vertex = -0.2 * c[4] / c[5]', 'vertex = -0.4 * c[4] / c[5]'),
-)
+# The folder of tests nearest to some code; lines of that code, each in one file alone, and what
+# takes their place.
+FAULTS = {
+    'test/core/dynamics': (
+        ('base_inertia=I1[1] + I2[0] + I3[2],', 'base_inertia=I1[1] + I2[0] - I3[2],'),
+        ('shoulder_inertia=I2[2] + I3[1] + m2', 'shoulder_inertia=I2[2] + m2'),
+        ('upper_weight=(m2 * l2 + m3 * a2) * g,', 'upper_weight=(m2 * l2 + m3 * l2) * g,'),
+        ('s2 * c3 + c2 * s3, c2 * c3 - s2 * s3', 's2 * c3 + c2 * s3, c2 * c3 + s2 * s3'),
+    ),
+    'test/core/kinematics': (
+        ('model.d4 * np.cos(q23), model.d4 * np.sin(q23)',
+         'model.d4 * np.cos(q23), -model.d4 * np.sin(q23)'),
+        ('r, h = hypot(x, y), z - model.d1', 'r, h = hypot(x, y), z + model.d1'),
+    ),
+    'test/core/arm': (
+        ('l3 = (m3 * model.l3 + mass * model.d4) / (m3 + mass)',
+         'l3 = (m3 * model.l3 + mass * model.l3) / (m3 + mass)'),
+    ),
+    'test/core/motion_laws': (
+        ('self.velocity + T * (self.c * s - self.b / w * sine)',
+         'self.velocity + T * (self.c * s + self.b / w * sine)'),
+        ('peak_acceleration=15.0 / 8.0', 'peak_acceleration=15.0 / 9.0'),
+        ('mean = np.abs(self.change) / self.duration',
+         'mean = np.abs(self.change) * self.duration'),
+        ('self.peak_jerk = 1.0 / (constant_jerk_fraction + 4.0 * self._rise / pi)',
+         'self.peak_jerk = 1.0 / (constant_jerk_fraction + 2.0 * self._rise / pi)'),
+    ),
+    'test/core/simulation': (
+        ('slope ** 2 - 4.0 * half * self.acceleration',
+         'slope ** 2 + 4.0 * half * self.acceleration'),
+        ('torque = spring * max(1.0 + self.damping * rate, 0.0)',
+         'torque = spring * max(1.0 - self.damping * rate, 0.0)'),
+        ('self._velocity_gain = (1.0 - pole) ** 2 / step',
+         'self._velocity_gain = (1.0 - pole) / step'),
+    ),
+    'test/core/path': (
+        ('radius = (x * x + y * y) / (2.0 * y)', 'radius = (x * x + y * y) / y'),
+        ('inward = 0.5 * (direction[..., 1:, :] - direction[..., :-1, :])',
+         'inward = 1.0 * (direction[..., 1:, :] - direction[..., :-1, :])'),
+    ),
+    'test/core/trajectory': (
+        ('np.flatnonzero(~(value <= limit * (1.0 + TOLERANCE)))',
+         'np.flatnonzero(~(value <= limit * (2.0 + TOLERANCE)))'),
+        ('vertex = -0.2 * c[4] / c[5]', 'vertex = -0.4 * c[4] / c[5]'),
+    ),
+    'test/planners/transitions': (
+        ('q1 = points[:-1] + 0.5 * (v0 + parts.cruise) * parts.first',
+         'q1 = points[:-1] + 0.5 * (v0 - parts.cruise) * parts.first'),
+        ('return cruise * T - 0.5 * (u0 * least_time(law, u0)',
+         'return cruise * T - 1.0 * (u0 * least_time(law, u0)'),
+        ('by_cruise = capped ? 0.0 : T - a.m * a.t - b.m * b.t;',
+         'by_cruise = capped ? 0.0 : T - a.m * a.t + b.m * b.t;'),
+        ('return fmin(fmax(v0, v1) + rise(law', 'return fmin(fmin(v0, v1) + rise(law'),
+    ),
+    'test/planners/solver': (
+        # rounds of tightening
+        ('growth ** max(round_ - schedule.patience, 0)',
+         'growth ** max(round_ + schedule.patience, 0)'),
+        # torques and their derivatives
+        ('- t->M11_q2 * half + t->g2;', '+ t->M11_q2 * half + t->g2;'),
+        ('g[2][4] = -2.0 * t->M23_q3 * qd[1];', 'g[2][4] = -t->M23_q3 * qd[1];'),
+        ('hessian[4][4] = -2.0 * l3', 'hessian[4][4] = 2.0 * l3'),
+        # constraints, ramps
+        ('to[1] = xk[i] - lower[i];', 'to[1] = xk[i] + lower[i];'),
+        ('p->least_T ? T[k] - p->least_T[k] : 1.0;\n        duration_slack[0]',
+         'p->least_T ? T[k] : 1.0;\n        duration_slack[0]'),
+        ('- (barrier + dual[1] * shift[1]) * inverse[1];',
+         '+ (barrier + dual[1] * shift[1]) * inverse[1];'),
+        ('return 2.0 * p->N * (constraints_of(p)', 'return 1.0 * p->N * (constraints_of(p)'),
+        ('to[3 * J] = unit[3] * rise / h;', 'to[3 * J] = unit[3] * rise;'),
+        # Newton steps
+        ('*common_gradient += p->proportions[k] * right[B];', '*common_gradient += right[B];'),
+        ('decrease -= (r_T[k] + p->weights[k]) * dT;', 'decrease -= r_T[k] * dT;'),
+        ('row_v[c] = v[c] + h * q[c];', 'row_v[c] = v[c] - h * q[c];'),
+        ('own[s] -= column[i] * own[i * sides + s];',
+         'own[s] += column[i] * own[i * sides + s];'),
+        # trials, multipliers, shifts
+        ('if (!(s->slack[i] >= retained * p->slack[i])) {',
+         'if (!(s->slack[i] >= -retained * p->slack[i])) {'),
+        ('sum += p->weights[k] * T[k];', 'sum += T[k];'),
+        ('change[i] = (barrier - p->dual[i] * rate[i])',
+         'change[i] = (barrier + p->dual[i] * rate[i])'),
+        ('np.maximum(np.stack((above, below), axis=-1), 0.0)',
+         'np.maximum(np.stack((below, above), axis=-1), 0.0)'),
+        # the interior-point method and its line search
+        ('return float(self._cost - self._barrier * self._log)',
+         'return float(self._cost + self._barrier * self._log)'),
+        ('complementarity < relative_gap * self._cost', 'complementarity > relative_gap'),
+        ('+ self._count * self._barrier)', ')'),
+        ('(reducing_shifts or self._cost < self._best_cost)',
+         '(self._cost < self._best_cost)'),
+        ('self._centres,\n                       not self._problem.shifted)',
+         'self._centres,\n                       True)'),
+        ('found.cost - barrier * found.log\n', 'found.cost + barrier * found.log\n'),
+        # the barrier method
+        ('const double up = change - (v1 - v0), down = change + (v1 - v0);',
+         'const double up = change - (v1 - v0), down = change - (v1 - v0);'),
+        ('largest_displacement(&law, -v0, -v1, T[k]) + D;',
+         'largest_displacement(&law, -v0, -v1, T[k]) - D;'),
+        ('(*bound)[0] = high - low;', '(*bound)[0] = high + low;'),
+        ('*first = p->gradient[i][1] + p->gradient[i + JOINTS][0] + p->bound[i][0];',
+         '*first = p->gradient[i][1] + p->gradient[i + JOINTS][0];'),
+        ('g += first * in[k];', 'g += first;'),
+        ('sum += v[i][e] * fmax(fabs(a[e][e]), LEAST', 'sum += v[i][e] * fmax(a[e][e], LEAST'),
+        ('if change <= -SUFFICIENT_DECREASE * squared:',
+         'if change <= SUFFICIENT_DECREASE * squared:'),
+        ('squared < decrement or squared < rounding', 'squared > decrement or squared < rounding'),
+        ('barrier.durations, count / weight)', 'barrier.durations, 1.0 / weight)'),
+        ('return float(self.weights @ T)', 'return float(T.sum())'),
+    ),
+    'test/planners/joint_timing': (
+        ('self._margins = before.widened(problem.task, problem.grid, self._slow, self._check)',
+         'self._margins = before'),
+        ('fits.cost < best.cost)', 'fits.cost > best.cost)'),
+    ),
+    'test/planners/methods': (
+        ('np.minimum(limits.max_acceleration, (torque / inertia).max(axis=0))',
+         'np.maximum(limits.max_acceleration, (torque / inertia).max(axis=0))'),
+    ),
+    'test/planners/path_timing': (
+        ('ratio = np.abs(table.values.g) / task.limits.max_effort',
+         'ratio = np.abs(table.values.g) / task.limits.max_velocity'),
+        ('constraints.margins + self._check.excess)', 'constraints.margins - self._check.excess)'),
+        ('T, motion, _ = min(rounds.found', 'T, motion, _ = max(rounds.found'),
+        ('time_scaled(outcome.motion, factor), T - outcome.gap',
+         'time_scaled(outcome.motion, factor), T + outcome.gap'),
+    ),
+}
 
 
-def caught(file: Path, right: str, wrong: str, tests: list[str]) -> str:
-    """Return the first test that fails with a fault in the installed package, or an empty text."""
-    source = file.read_text()
+def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
+    """Run a Python command in a copy of the repository, with the package from there."""
+    path = os.pathsep.join((str(folder / INSTALLED), os.environ.get('PYTHONPATH', '')))
+    return subprocess.run([sys.executable, *command], cwd=folder, text=True, capture_output=True,
+                          check=False, timeout=LONGEST, env={**os.environ, 'PYTHONPATH': path})
+
+
+def build(folder: Path) -> None:
+    """Compile the kernels beside their sources."""
+    done = run(folder, 'setup.py', '-q', 'build_ext', '--inplace')
+    if done.returncode:
+        raise SystemExit(done.stderr)
+
+
+def copied(folder: Path) -> Path:
+    """Return the package, in a copy of the repository: links to it are installed, and built."""
+    shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*LEFT_OUT))
+    package = folder / PACKAGE
+    (folder / INSTALLED).mkdir()
+    (folder / INSTALLED / PACKAGE).symlink_to(package)
+    build(folder)
+    found = run(folder / INSTALLED, '-c', f'import {PACKAGE}; print({PACKAGE}.__file__)').stdout
+    assert Path(found.strip()).resolve().parent == package, found
+    return package
+
+
+def first_failure(folder: Path, tests: list[str]) -> str:
+    """Return the first test that fails, or an empty text."""
     try:
-        file.write_text(source.replace(right, wrong))
-        done = subprocess.run(
-            [sys.executable, '-m', 'pytest', '-x', '-q', '-p', 'no:cacheprovider', *tests],
-            text=True, capture_output=True, check=False)
-    finally:
-        file.write_text(source)
+        done = run(folder, '-m', 'pytest', '-x', '-q', '-p', 'no:cacheprovider', *tests)
+    except subprocess.TimeoutExpired:
+        return f'no end within {LONGEST:.0f} s'
     failed = [line for line in done.stdout.splitlines() if line.startswith(('FAILED', 'ERROR'))]
-    return failed[0].split(' - ')[0] if failed else ''
+    if done.returncode < 0:
+        return f'ended by signal {-done.returncode}'
+    if done.returncode and not failed:
+        raise SystemExit(done.stdout + done.stderr)
+    return failed[0].split(' - ')[0].split()[1] if failed else ''
+
+
+def caught(folder: Path, file: Path, fault: tuple[str, str], near: str, others: list[str]) -> str:
+    """Return the first test that fails with a fault in a file, or an empty text."""
+    source = file.read_text()
+    compiled = file.suffix != '.py'
+    file.write_text(source.replace(*fault))
+    if compiled:
+        build(folder)
+    found = (first_failure(folder, [near, *others])
+             or first_failure(folder, [*TESTS, *others]))
+    file.write_text(source)
+    if compiled:
+        build(folder)
+    return found
 
 
 def main() -> int:
-    """Put in one fault after another; exit with 1 if a test misses one."""
+    """Put in one fault after another; exit with 1 if the tests miss one."""
     parser = argparse.ArgumentParser(
-        description=__doc__, epilog='Other arguments are for pytest: test/core test/planners -n 2')
+        description=__doc__, epilog='Other arguments are for pytest: -n 2')
     parser.add_argument('--first', type=int, default=0)
-    parser.add_argument('--last', type=int, default=len(FAULTS))
-    options, tests = parser.parse_known_args()
+    parser.add_argument('--last', type=int)
+    options, others = parser.parse_known_args()
+    faults = list(enumerate((near, *fault) for near, group in FAULTS.items() for fault in group))
+    faults = faults[options.first:options.last]
     missed = 0
-    files = sorted(Path(rrr_traj_planner.__file__).parent.rglob('*.py'))
-    for number, (right, wrong) in list(enumerate(FAULTS))[options.first:options.last]:
-        file, = (f for f in files if right in f.read_text())
-        began = time.perf_counter()
-        test = caught(file, right, wrong, tests)
-        missed += not test
-        print(f'{number:2} {file.stem}: {wrong}\n   {test or "MISSED"}, '
-              f'{time.perf_counter() - began:.0f} s', flush=True)
-    print(f'{missed} missed')
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch, ROOT.name).resolve()
+        package = copied(folder)
+        files = [file for kind in ('*.py', '*.c', '*.inc') for file in package.rglob(kind)]
+        for near in dict.fromkeys(near for _, (near, *_) in faults):
+            if failure := first_failure(folder, [near, *others]):
+                raise SystemExit(f'without a fault: {failure}')
+        for number, (near, right, wrong) in faults:
+            began = time.perf_counter()
+            file, = (f for f in files if right in f.read_text())
+            test = caught(folder, file, (right, wrong), near, others)
+            missed += not test
+            print(f'{number:2} {time.perf_counter() - began:4.0f} s  {file.name:22} '
+                  f'{" ".join(wrong.split()):{WIDTH}.{WIDTH}}  {test or "MISSED"}', flush=True)
+    print(f'{missed} of {len(faults)} missed')
     return int(missed > 0)
 
 

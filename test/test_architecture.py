@@ -19,6 +19,7 @@ from collections import Counter
 from graphlib import CycleError, TopologicalSorter
 from importlib import import_module
 from importlib.util import find_spec
+import re
 import sys
 
 from helpers.package import FILES, imports_of, layer_of, LAYERS, MODULES, modules_of, PACKAGE
@@ -30,6 +31,7 @@ NUMERICS = {'numpy', 'scipy'}
 KNOWN = MODULES.keys() | {name.removesuffix('.__init__') for name in MODULES}
 LONGEST = 300       # lines of a file
 MOST_MODULES = 22   # in a folder
+COLUMN = 26         # of the picture, where the names of folders and modules begin
 
 
 def is_ros(name):
@@ -82,34 +84,94 @@ def test_folders_hold_few_modules():
     assert {folder: count for folder, count in counts.items() if count > MOST_MODULES} == {}
 
 
-def folder_of(module):
+def place_of(module):
     """Return a module's folder below its layer; the module itself where it lies in the layer."""
     return '.'.join(module.removesuffix('.__init__').split('.')[:3])
 
 
-def imports_of_folders():
+def imports_of_places():
     """Return for each folder, and each module beside folders, those that it imports."""
     found = {}
     for module in modules_of(*LAYERS):
         names = imports_of(module) | {name.rpartition('.')[0] for name in imports_of(module)}
-        found.setdefault(folder_of(module), set()).update(
-            folder_of(name) for name in names & KNOWN)
-    return {folder: names - {folder} for folder, names in found.items()}
+        found.setdefault(place_of(module), set()).update(
+            place_of(name) for name in names & KNOWN)
+    return {place: names - {place} for place, names in found.items()}
 
 
-def test_folders_import_one_another_without_circles():
-    list(TopologicalSorter(imports_of_folders()).static_order())
+TREE = imports_of_places()
+
+
+def is_single(place):
+    """Return whether a place is a module beside folders."""
+    return place in MODULES
+
+
+def by_folders(imports):
+    """Return imports with a layer's single modules as two places: above its folders, and below."""
+    above = {place for place in imports if is_single(place)
+             and any(layer_of(name) == layer_of(place) and not is_single(name)
+                     for name in imports[place])}
+    while more := {place for place in imports.keys() - above
+                   if is_single(place) and imports[place] & above}:
+        above |= more
+
+    def group(place):
+        if not is_single(place):
+            return place
+        return f'{layer_of(place)}, {"above" if place in above else "below"} its folders'
+
+    found = {}
+    for place, names in imports.items():
+        found.setdefault(group(place), set()).update(map(group, names))
+    return {place: names - {place} for place, names in found.items()}
+
+
+def in_order(imports):
+    return list(TopologicalSorter(imports).static_order())
+
+
+def test_folders_and_the_modules_beside_them_import_one_another_without_circles():
+    assert in_order(TREE)
+    assert in_order(by_folders(TREE))
 
 
 def test_an_import_of_a_whole_package_is_seen():
-    assert 'rrr_traj_planner.planners.methods' in imports_of_folders()[
-        'rrr_traj_planner.planners.registry']
+    assert f'{PACKAGE}.planners.methods' in TREE[f'{PACKAGE}.planners.registry']
 
 
 def test_a_circle_of_folders_would_be_found():
     with pytest.raises(CycleError):
-        list(TopologicalSorter({**imports_of_folders(), 'rrr_traj_planner.core.dynamics': {
-            'rrr_traj_planner.core.path'}}).static_order())
+        in_order({**TREE, f'{PACKAGE}.core.dynamics': {f'{PACKAGE}.core.path'}})
+
+
+def test_a_circle_through_the_modules_beside_a_folder_would_be_found(monkeypatch):
+    """A module that imports `transitions` and serves `methods` was once beside the folders."""
+    planners, single = f'{PACKAGE}.planners', f'{PACKAGE}.planners.prescribed_by_search'
+    monkeypatch.setitem(MODULES, single, None)
+    imports = {**TREE, single: {f'{planners}.transitions', f'{planners}.tasks'},
+               f'{planners}.methods': {*TREE[f'{planners}.methods'], single}}
+    assert in_order(imports)
+    with pytest.raises(CycleError):
+        in_order(by_folders(imports))
+
+
+def rows_of(layer):
+    """Return the rows of a layer in the picture of docs/architecture.md, by names."""
+    picture = (ROOT / 'docs/architecture.md').read_text().split('```')[1]
+    text = picture[picture.index(f'\n{layer} ') + 1:].split('\n   |\n')[0]
+    return [re.sub(r'\(.*?\)', '', line[COLUMN:]).split() for line in text.splitlines()]
+
+
+@pytest.mark.parametrize('layer', ['nodes', 'planners', 'core'])
+def test_the_picture_shows_every_folder_and_module_above_what_it_imports(layer):
+    row = {f'{PACKAGE}.{layer}.{name}': k for k, names in enumerate(rows_of(layer))
+           for name in names}
+    places = {place: names for place, names in TREE.items()
+              if layer_of(place) == layer and place.count('.') == 2}
+    assert row.keys() == places.keys()
+    assert [(place, name) for place, names in places.items() for name in names & row.keys()
+            if row[name] <= row[place]] == []
 
 
 def test_the_files_of_methods_are_the_planner_ids():

@@ -161,7 +161,7 @@ def called(call, **changes):
 
 
 @pytest.mark.parametrize(('call', 'name'), ARGUMENTS)
-def test_what_is_no_number_is_refused_by_the_argument_s_name(call, name):
+def test_anything_but_a_number_is_refused_by_the_argument_s_name(call, name):
     with warnings.catch_warnings():
         warnings.simplefilter('error')
         for value in wrong_values(name, CALLS[call][1][name]):
@@ -172,7 +172,7 @@ def test_what_is_no_number_is_refused_by_the_argument_s_name(call, name):
 
 
 @pytest.mark.parametrize(('call', 'name'), ARGUMENTS)
-def test_every_form_of_a_number_will_do(call, name):
+def test_every_form_of_a_number_is_accepted(call, name):
     sound = CALLS[call][1][name]
     if isinstance(sound, int):
         forms = [np.int32(sound), np.uint64(sound)]
@@ -208,7 +208,7 @@ def test_numpy_s_truth_values_are_taken(flag):
     assert called('PlanningRequest', steady_zones=flag).steady_zones is True
 
 
-def test_rows_of_different_lengths_are_told():
+def test_rows_of_different_lengths_are_reported():
     with pytest.raises(InvalidInputError, match='^via_points has rows of 3, 2, 3 .*one length$'):
         called('PlanningRequest', via_points=[POINTS[0], POINTS[1][:2], POINTS[2]])
 

@@ -47,7 +47,7 @@ from rrr_traj_planner.planners.tasks import CartesianTask, JointTask
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
 PROTOCOLS = range(2, pickle.HIGHEST_PROTOCOL + 1)
-WAYS = {
+COPIES = {
     **{f'protocol {p}': lambda value, p=p: pickle.loads(pickle.dumps(value, p))
        for p in PROTOCOLS},
     'copy': copy.copy, 'deepcopy': copy.deepcopy}
@@ -121,15 +121,15 @@ def differences(a, b, name='value'):
     return [] if a == b else [f'{name}: {a} became {b}']
 
 
-@pytest.mark.parametrize('way', WAYS)
+@pytest.mark.parametrize('method', COPIES)
 @pytest.mark.parametrize('kind', error_kinds(), ids=lambda kind: kind.__name__)
-def test_errors_keep_their_kind_message_and_every_field(kind, way):
+def test_errors_keep_their_kind_message_and_every_field(kind, method):
     parameters = inspect.signature(kind.__init__).parameters
     hints = get_type_hints(kind.__init__)
     fields = {name: SAMPLES[hints[name]] for name in parameters if name != 'self'}
     error = kind(**fields)
     error.further = (1, 2)
-    found = WAYS[way](error)
+    found = COPIES[method](error)
     assert type(found) is kind
     assert str(found) == fields.pop('message', str(error)) != ''
     assert found.args == error.args
@@ -138,18 +138,18 @@ def test_errors_keep_their_kind_message_and_every_field(kind, way):
         'further': (1, 2)}.items()
 
 
-@pytest.mark.parametrize('way', WAYS)
-def test_values_and_plans_keep_every_bit_and_stay_read_only(way):
+@pytest.mark.parametrize('method', COPIES)
+def test_values_and_plans_keep_every_bit_and_stay_read_only(method):
     for value in values():
-        assert differences(value, WAYS[way](value)) == []
+        assert differences(value, COPIES[method](value)) == []
 
 
 @pytest.mark.parametrize('planner_id', planner_ids())
 def test_trajectories_evaluate_to_the_same_bits(planner_id):
     motion = plan_with(planner_id).trajectory
     times = np.linspace(-0.1, motion.duration + 0.1, 301)
-    for way in WAYS.values():
-        assert differences(way(motion)(times), motion(times)) == []
+    for copied in COPIES.values():
+        assert differences(copied(motion)(times), motion(times)) == []
 
 
 def arrays_of(value):

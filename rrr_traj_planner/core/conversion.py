@@ -28,8 +28,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from rrr_traj_planner.core.errors import InvalidInputError, shown
 
-SHOWN_ROWS = 4  # rows whose lengths an error's text gives, if they differ
-
 
 def float_array(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """
@@ -78,7 +76,8 @@ def _converted(name: str, value: Any) -> NDArray[np.float64]:
     for at in np.ndindex(parts.shape):
         part, where = parts[at], f'{name}{indexed(at)}'
         if isinstance(part, (list, tuple, np.ndarray)):
-            lengths = ', '.join(str(np.size(row)) for row in parts[:SHOWN_ROWS])
+            # The lengths of four rows show what differs.
+            lengths = ', '.join(str(np.size(row)) for row in parts[:4])
             raise InvalidInputError(
                 f'{name} has rows of {lengths} ... values, must have rows of one length')
         array[at] = real_number(where, part)

@@ -21,3 +21,7 @@ TIP_ROUNDING = 1e-9  # m
 # Two positions of a joint no further apart than this are the same; a joint beyond the end of its
 # range by no more than this is at its end, so that a taught position is accepted despite rounding.
 JOINT_ROUNDING = 1e-9  # rad
+
+# Times no further apart than this are the same: rounding of sums of durations; relative where
+# they exceed a second. Chosen: thousands of times the rounding of a number of seconds.
+TIME_ROUNDING = 1e-12  # s

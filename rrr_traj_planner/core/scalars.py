@@ -17,15 +17,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf, isfinite
+from math import inf, isfinite, ulp
 from numbers import Integral
 from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.conversion import real_number
 from rrr_traj_planner.core.errors import InvalidInputError, shown
-
-SMALLEST = float(np.nextafter(0.0, 1.0))  # of the positive floats
 
 
 def finite(name: str, value: Any, unit: str = '') -> float:
@@ -83,8 +81,9 @@ def positive(name: str, value: Any, unit: str = '', may_be_infinite: bool = Fals
     number = real_number(name, value)
     if may_be_infinite and number == inf:
         return number
-    wanted = 'be positive' if least is None else f'be at least {least} {unit}'
-    return _within(name, number, unit, SMALLEST if least is None else least, wanted)
+    if least is None:
+        return _within(name, number, unit, ulp(0.0), 'be positive')
+    return _within(name, number, unit, least, f'be at least {least} {unit}')
 
 
 def not_negative(name: str, value: Any, unit: str = '') -> float:

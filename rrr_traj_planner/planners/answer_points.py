@@ -27,7 +27,6 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.trajectory.controller_spline import spline_excess, SplineExcess
@@ -43,13 +42,14 @@ from rrr_traj_planner.core.trajectory.sampling import (
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
-from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.planning_problem import PlanningProblem
 
-ROUNDS = 40            # of slowing, at most
-LARGEST_SCALING = 1.5  # of time, in one of them
-CLOSEST = 1e-4         # s, least spacing for a motion that cannot be slowed, or leaves a range
+# Chosen values.
+LARGEST_SCALING = 1.5  # of time, in a round: 1.1 or 3 change none of 28 random plans
+CLOSEST = 1e-4         # s, least spacing for a motion that cannot be slowed, or leaves a range: a
+#                        tenth of a controller's period of 1 ms
 
-# Ratios above which the plan's note tells of them:
+# Ratios above which the plan's note tells of them; chosen: what a user would notice.
 REPORTED_JERK = 1.1       # of the quintics' jerk to its limit
 REPORTED_SCALING = 1.001  # of the slowed motion's duration to the planned one's
 
@@ -64,19 +64,14 @@ class AnswerPoints(NamedTuple):
     note: str                 # on slowing and jerk; mostly empty
 
 
-def answer_points(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-                  trajectory: Trajectory) -> AnswerPoints:
+def answer_points(problem: PlanningProblem, trajectory: Trajectory) -> AnswerPoints:
     """
     Return the points of a motion, and the motion, slowed as its points require.
 
     Parameters
     ----------
-    model : RobotModel
-        The arm.
-    limits : JointLimits
-        Scaled as requested.
-    request : PlanningRequest
-        For the sample period, the durations and the largest number of points.
+    problem : PlanningProblem
+        The arm, its limits, the sample period, the durations and the largest number of points.
     trajectory : Trajectory
         Within the limits.
 
@@ -96,16 +91,17 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
         If no points are found, which is a bug.
 
     """
+    request = problem.request
     time_scale, min_spacing = 1.0, LEAST_GAP * request.sample_period
     closest = min(min_spacing, CLOSEST)
-    for _ in range(ROUNDS):
-        points, excess = _best_refined(model, limits, request, trajectory, min_spacing)
+    for _ in range(40):  # at most: 20 or 80 change none of 28 random plans
+        points, excess = _best_refined(problem, trajectory, min_spacing)
         factor = excess.slowing
         if factor <= 1.0:
             return AnswerPoints(trajectory, points, excess.effort, time_scale, _note(
-                model, limits, request.sample_period, excess.jerk.max(axis=0), time_scale))
+                problem, excess.jerk.max(axis=0), time_scale))
         cannot_be_slower = request.segment_durations is not None or np.isinf(
-            time_scale_for_torque(model, limits, trajectory).value).any()
+            time_scale_for_torque(problem.model, problem.limits, trajectory).value).any()
         if cannot_be_slower or np.isinf(factor):
             if min_spacing == closest:
                 break
@@ -122,8 +118,7 @@ def answer_points(model: RobotModel, limits: JointLimits, request: PlanningReque
         f'planner {request.planner_id}: the points do not follow the motion')
 
 
-def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-                  trajectory: Trajectory,
+def _best_refined(problem: PlanningProblem, trajectory: Trajectory,
                   min_spacing: float) -> tuple[TrajectoryPoints, SplineExcess]:
     """
     Return points as close as necessary, and by how much quintics through them exceed limits.
@@ -132,28 +127,28 @@ def _best_refined(model: RobotModel, limits: JointLimits, request: PlanningReque
     quintic overshoots on the other side. If that exceeds it too, all overshoot before the step:
     planners whose motions have steps leave a margin for that (`PathTable.overshoot`).
     """
-    found = _refined(model, limits, request, trajectory, min_spacing, False)
+    found = _refined(problem, trajectory, min_spacing, False)
     if len(trajectory.step_times) and found[1].slowing > 1.0:
-        other = _refined(model, limits, request, trajectory, min_spacing, True)
+        other = _refined(problem, trajectory, min_spacing, True)
         found = min(found, other, key=lambda f: f[1].slowing)
     return found
 
 
-def _refined(model: RobotModel, limits: JointLimits, request: PlanningRequest,
-             trajectory: Trajectory, min_spacing: float,
+def _refined(problem: PlanningProblem, trajectory: Trajectory, min_spacing: float,
              overshoot_before: bool) -> tuple[TrajectoryPoints, SplineExcess]:
     """
     Return points, divided until the quintics keep limits or no interval can be divided.
 
     At steps of acceleration the quintic overshoots on the side with a margin, or before all steps.
     """
+    request, limits = problem.request, problem.limits
     times = sample_times(trajectory, request.sample_period, request.max_points)
     while True:
         request.should_stop()
         points = points_at(trajectory, times)
         request.should_stop()
         excess = spline_excess(
-            model, limits, spline_through(points), request.should_stop)
+            problem.model, limits, spline_through(points), request.should_stop)
         further = _between(
             limits, times, excess, trajectory.step_times, min_spacing, overshoot_before)
         if not len(further) or len(times.stamps) + len(further) > request.max_points:
@@ -182,17 +177,17 @@ def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, step
     return cut[far & (exceeds_jerk | (excess.time_scale > 1.0) | outside)]
 
 
-def _note(model: RobotModel, limits: JointLimits, period: float, jerk: Array,
-          time_scale: float) -> str:
+def _note(problem: PlanningProblem, jerk: Array, time_scale: float) -> str:
     """Return the note on slowing and on jerk; mostly empty."""
-    texts = []
+    limit, texts = problem.limits.max_jerk, []
     if time_scale > REPORTED_SCALING:
-        slower = 100.0 * (time_scale - 1.0)
+        period, slower = problem.request.sample_period, 100.0 * (time_scale - 1.0)
         texts.append(f'sample_period {period:g} s makes the motion {slower:.2g} '
                      '% slower: a controller would else exceed limits between points')
-    joint = int((jerk / limits.max_jerk).argmax())
-    if jerk[joint] > REPORTED_JERK * limits.max_jerk[joint]:
+    joint = int((jerk / limit).argmax())
+    if jerk[joint] > REPORTED_JERK * limit[joint]:
+        name = problem.model.joint_names[joint]
         texts.append(
-            f'between points a controller makes {model.joint_names[joint]} reach a jerk of '
-            f'{jerk[joint]:.3g} rad/s^3, limit {limits.max_jerk[joint]:g} rad/s^3')
+            f'between points a controller makes {name} reach a jerk of '
+            f'{jerk[joint]:.3g} rad/s^3, limit {limit[joint]:g} rad/s^3')
     return '; '.join(texts)

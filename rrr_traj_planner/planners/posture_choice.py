@@ -20,9 +20,6 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 import numpy as np
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import (
     JointRangeError,
     LimitViolationError,
@@ -33,7 +30,6 @@ from rrr_traj_planner.core.errors import (
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import (
-    Elbow,
     ELBOWS,
     Posture,
     posture_of,
@@ -44,30 +40,24 @@ from rrr_traj_planner.core.kinematics.postures import (
 from rrr_traj_planner.core.kinematics.travel_time import travel_time, ViaPointBehaviour
 from rrr_traj_planner.core.path.axis_planes import passes_axis
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
+from rrr_traj_planner.planners.planning_problem import PlanningProblem
 
 # A start this close to where postures meet counts as in all of them: noise must not decide.
+# Chosen, a hundred times the 1e-4 rad of a coarse encoder.
 MEETING = 0.01  # rad
 
 Answer = TypeVar('Answer')
 
 
-def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start: Array | None,
-                   elbow: Elbow | None, passing: ViaPointBehaviour) -> list[Posture]:
+def joint_postures(problem: PlanningProblem, passing: ViaPointBehaviour) -> list[Posture]:
     """
     Return the postures for a motion in joint space through via points, in order.
 
     Parameters
     ----------
-    model : RobotModel
-        The arm.
-    limits : JointLimits
-        For the estimate of time, where the start has several postures.
-    points : ndarray, shape (n, 3)
-        Tip positions [m].
-    start : ndarray, shape (3,), optional
-        Where the motion begins [rad].
-    elbow : {'up', 'down'}, optional
-        The requested branch.
+    problem : PlanningProblem
+        Via points, the start and the requested branch; limits for the estimate of time, where the
+        start has several postures.
     passing : ViaPointBehaviour
         How the motion passes via points.
 
@@ -78,31 +68,26 @@ def joint_postures(model: RobotModel, limits: JointLimits, points: Array, start:
         shoulder's front, with the elbow up before down.
 
     """
-    if start is None:
+    elbow = problem.request.elbow
+    if problem.start is None:
         return [Posture(e) for e in ELBOWS if elbow in (None, e)]
-    own = postures_of(model, start, MEETING)
+    own = postures_of(problem.model, problem.start, MEETING)
     if len(own) > 1:
-        own.sort(key=lambda p: _time(model, limits, points, start, p, passing))
+        own.sort(key=lambda posture: _time(problem, posture, passing))
     shoulders: tuple[Shoulder, Shoulder] = own[0].shoulder, 'front'
     others = [Posture(e, s) for s in shoulders for e in ELBOWS]
     return [p for p in dict.fromkeys((*own, *others)) if elbow in (None, p.elbow)]
 
 
-def path_postures(model: RobotModel, points: Array, start: Array | None,
-                  elbow: Elbow | None) -> list[Posture]:
+def path_postures(problem: PlanningProblem) -> list[Posture]:
     """
     Return the postures for a path of the tip, in order.
 
     Parameters
     ----------
-    model : RobotModel
-        The arm.
-    points : ndarray, shape (n, 3)
-        Tip positions [m].
-    start : ndarray, shape (3,), optional
-        Where the motion begins [rad]: along a path of the tip its posture is kept.
-    elbow : {'up', 'down'}, optional
-        The requested branch.
+    problem : PlanningProblem
+        Via points, the requested branch, and the start: along a path of the tip its posture is
+        kept.
 
     Returns
     -------
@@ -116,8 +101,9 @@ def path_postures(model: RobotModel, points: Array, start: Array | None,
         If the start is on another elbow branch than requested.
 
     """
+    model, start, elbow = problem.model, problem.start, problem.request.elbow
     if start is None:
-        shoulders = SHOULDERS if passes_axis(points) else SHOULDERS[:1]
+        shoulders = SHOULDERS if passes_axis(problem.request.via_points) else SHOULDERS[:1]
         return [Posture(e, s) for s in shoulders for e in ELBOWS if elbow in (None, e)]
     own = [p for p in postures_of(model, start, JOINT_ROUNDING) if elbow in (None, p.elbow)]
     if not own:
@@ -159,10 +145,11 @@ def first_possible(postures: Sequence[Posture], attempt: Callable[[Posture], Ans
     raise next((e for e in failures if not isinstance(e, JointRangeError)), failures[0])
 
 
-def _time(model: RobotModel, limits: JointLimits, points: Array, start: Array,
-          posture: Posture, passing: ViaPointBehaviour) -> float:
+def _time(problem: PlanningProblem, posture: Posture, passing: ViaPointBehaviour) -> float:
     """Return the estimated time through via points, infinite where a joint leaves its range."""
-    q = joint_sequence(model, limits, points, posture, start, passing)
+    model, limits, start = problem.model, problem.limits, problem.start
+    assert start is not None
+    q = joint_sequence(model, limits, problem.request.via_points, posture, start, passing)
     if out_of_range(q, limits).any():
         return np.inf
     return travel_time(limits, np.vstack((start, q)), passing)

@@ -26,8 +26,8 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inertia_matrix
 from rrr_traj_planner.core.errors import InvalidInputError
 
-# Least number of samples in a reversal from full acceleration to full deceleration; more where the
-# acceleration that a controller interpolates between them must keep a limit.
+# Least number of samples in a reversal from full acceleration to full deceleration, chosen; more
+# where the acceleration that a controller interpolates between them must keep a limit.
 SAMPLES, SAMPLES_OF_LIMITED = 2.0, 4.0
 
 # Least number of samples in a transition at full acceleration, so that a controller's quintics

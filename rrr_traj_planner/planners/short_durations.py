@@ -22,8 +22,6 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import TimingError
 
-DECIMALS = 9  # of durations in the error [s]: nanoseconds, as in messages
-
 
 def whole_microseconds(durations: Array) -> Array:
     """
@@ -65,7 +63,8 @@ def durations_too_short(durations: Array, feasible: Array, segments: Sequence[in
         With the feasible durations.
 
     """
-    given, offered = ([round(float(d), DECIMALS) for d in v] for v in (durations, feasible))
+    # To nanoseconds, as in messages.
+    given, offered = ([round(float(d), 9) for d in v] for v in (durations, feasible))
     where = (f' for segment{"s" * (len(segments) > 1)} {", ".join(map(str, segments))}'
              if len(segments) else '')
     return TimingError(f'segment_durations {given} s are too short{where}: {which} {offered} s',

@@ -28,8 +28,7 @@ from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
-
-HOLDING_TOLERANCE = 1e-9  # part of an effort limit up to which exceeding it is rounding
+from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_TOLERANCE
 
 
 def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
@@ -144,7 +143,7 @@ def holding_failure(model: RobotModel, limits: JointLimits,
 
     """
     torque = np.abs(gravity_torque(model, q))
-    broken = np.argwhere(torque > limits.max_effort * (1.0 + HOLDING_TOLERANCE))
+    broken = np.argwhere(torque > limits.max_effort * (1.0 + TORQUE_TOLERANCE))
     if not len(broken):
         return None
     i, j = map(int, broken[0])

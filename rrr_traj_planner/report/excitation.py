@@ -24,7 +24,7 @@ from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
 POINTS = 4001   # of the quadrature over a motion: some hundred per period of the frequencies here
 BELOW = 400     # frequencies of the quadrature of a spectrum
-DAMPING = 0.01  # damping ratio of a lightly damped flexible mode
+DAMPING = 0.01  # damping ratio of a lightly damped flexible mode; chosen
 
 
 def amplitude_spectrum(t: Array, acceleration: Array, frequencies: Array) -> Array:

@@ -30,8 +30,10 @@ from rrr_traj_planner.report.motion_samples import arm_points, sampled
 from rrr_traj_planner.report.picture import Picture
 from rrr_traj_planner.report.theme import DASHES, LIGHT, SERIES
 
-POSES = 9          # poses of the arm in a figure, at equal time steps
-MAGNIFIED = 2.0    # length shown on either side of the via point, in half lengths of the zone
+# Chosen by eye:
+POSES = 9          # poses of the arm in a figure, at equal time steps: more overlap
+MAGNIFIED = 2.0    # length shown on either side of the via point, in half lengths of the zone: as
+#                    much of the lines as of the zone
 POINTS = 600       # of the curve of a magnified path
 MIN_EXTENT = 0.02  # m, half length that is assumed for shorter zones
 LABEL_DISTANCE = 10.0      # points (1/72 inch), from a via point to its number

@@ -58,7 +58,7 @@ def test_length_of_any_size_fits_minus_one():
     assert finite_array('x', np.zeros((0, 3)), (-1, 3)).shape == (0, 3)
 
 
-def test_any_shape_is_accepted_where_none_is_asked_for():
+def test_any_shape_is_accepted_where_none_is_required():
     assert finite_array('x', 2).shape == ()
     assert finite_array('x', [[1], [2]]).shape == (2, 1)
 
@@ -80,7 +80,7 @@ def test_bounds_may_be_infinite_but_not_nan():
 
 
 @pytest.mark.parametrize('shape', [(3,), (5, 3), (2, 5, 3), (0, 3)])
-def test_joint_values_keep_any_leading_axes(shape):
+def test_joint_values_have_any_leading_axes(shape):
     assert joint_values('q', np.ones(shape)).shape == shape
 
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A running arm node for tests, with its messages and ways to command it."""
+"""A running arm node for tests, with its messages and methods to command it."""
 
 from __future__ import annotations
 

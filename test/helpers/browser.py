@@ -40,8 +40,8 @@ OPTIONS = (
 
 def found():
     """Return the browser's path ($CHROMIUM, or the first one installed), None if there is none."""
-    asked = os.environ.get('CHROMIUM')
-    return next((path for path in map(shutil.which, [asked] if asked else NAMES) if path), None)
+    given = os.environ.get('CHROMIUM')
+    return next((path for path in map(shutil.which, [given] if given else NAMES) if path), None)
 
 
 class Browser:
@@ -136,7 +136,7 @@ class Browser:
                 or e.get('method') in methods and e['params']['type'] in ('error', 'warning')]
 
     def requests(self):
-        """Return every address that the page has requested."""
+        """Return every address that the page has given."""
         return [e['params']['request']['url'] for e in self.events
                 if e.get('method') == 'Network.requestWillBeSent']
 

@@ -160,10 +160,10 @@ CHANGES = (
 
 def answered(request, config=CONFIG, patience=PATIENCE):
     """Return the node's answer; raise unexpected exceptions."""
-    asked = count()
+    calls = count()
     try:
         return success(plan(config.model, config.limits, planning_request(
-            request, config, lambda: next(asked) >= patience)), config)
+            request, config, lambda: next(calls) >= patience)), config)
     except ConvergenceError:
         raise
     except RrrPlannerError as error:

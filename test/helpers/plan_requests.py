@@ -74,3 +74,9 @@ def is_refused(response, code, text, via_point=-1):
     assert not response.trajectory.joint_names
     for field in ('via_times', 'peak_velocity', 'peak_acceleration', 'peak_jerk', 'peak_effort'):
         assert len(getattr(response, field)) == 0
+
+
+def assert_refused(ask, request, code, text, via_point=-1):
+    """Assert that a request is refused, and the node continues as before."""
+    is_refused(ask(request), code, text, via_point)
+    assert ask(plan_request()).error_code == PlanTrajectory.Response.SUCCESS

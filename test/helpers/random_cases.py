@@ -18,7 +18,13 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.motion_laws.cycloid import cruise, CycloidPiece, ramp, transition
+from rrr_traj_planner.core.motion_laws.cycloid import (
+    cruise,
+    CycloidPiece,
+    general_transition,
+    ramp,
+    transition,
+)
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 
 
@@ -71,6 +77,41 @@ def random_pieces(rng, durations):
     position, velocity = pieces[-1].at(1.0)[:2]
     pieces.append(transition(durations[-1], position, velocity, 0.0))
     return joined(pieces)
+
+
+def random_general_transition(rng, fraction=None):
+    """Return a transition between random accelerations, of either sign, and its ends."""
+    peak = rng.uniform(0.5, 5.0)
+    start = rng.uniform(-0.3, 0.9) * peak
+    end = start + (rng.uniform() if fraction is None else fraction) * (peak - start)
+    position, velocity = rng.normal(0.0, 2.0, 2)
+    change, sign = rng.uniform(0.1, 3.0), rng.choice((-1.0, 1.0))
+    ends = {'position': position, 'velocity': velocity, 'end_velocity': velocity + sign * change,
+            'start_acceleration': sign * start, 'end_acceleration': sign * end,
+            'peak_acceleration': sign * peak}
+    return general_transition(**ends), ends
+
+
+def _random_transition(rng):
+    return transition(rng.uniform(0.1, 5.0), *rng.normal(0.0, 2.0, 3))
+
+
+def _random_cruise(rng):
+    return cruise(rng.uniform(0.1, 5.0), *rng.normal(0.0, 2.0, 2))
+
+
+def _random_ramp(rng):
+    return ramp(rng.uniform(0.1, 5.0), *rng.normal(0.0, 2.0, 4))
+
+
+_KINDS = [_random_transition, _random_cruise, _random_ramp,
+          lambda rng: random_general_transition(rng)[0]]
+
+
+def pieces_of_every_kind(seed, n):
+    """Return n pieces, of all kinds in turn."""
+    rng = np.random.default_rng(seed)
+    return [_KINDS[i % len(_KINDS)](rng) for i in range(n)]
 
 
 def random_trajectory(rng, duration=None, via_times=None):

@@ -12,20 +12,20 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Seeded random paths that an arm can follow, with limits that suit them, and their plans."""
+"""Seeded random paths that an arm can follow, with limits that suit them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cached_property
 
 from helpers.random_cases import random_model
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.cancellation import never
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.postures import ELBOWS, Posture
 from rrr_traj_planner.core.path import design as path_design
 from rrr_traj_planner.core.path.largest_radii import largest_radii
@@ -40,8 +40,6 @@ from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
 PLANNERS = ('line_arc', 'line_polynomial')
 NONE = np.full(3, np.inf)
 FREE = JointLimits(min_position=-NONE, max_position=NONE)
-PER_SAMPLE = 20     # evaluations between two samples
-BESIDE = 1e-9       # s before a knot, for left-hand limits
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +57,12 @@ class PathCase:
         path = largest_radii(getattr(path_design, r.planner_id), r.via_points, r.max_deviation)
         start = check_workspace(self.model, self.limits, path, Posture(r.elbow)).start
         return ArmPath(self.model, self.limits, path, Posture(r.elbow), start)
+
+    @cached_property
+    def q(self):
+        """Return the joint positions at the via points, whole turns aside."""
+        return np.array([inverse_kinematics(self.model, p, self.request.elbow)
+                         for p in self.request.via_points])
 
     @property
     def constant_jerk_fraction(self):
@@ -116,31 +120,3 @@ def _tips(rng, model, n):
 
 def _positions(case):
     return case.arm_path(np.linspace(0.0, case.arm_path.path.length, 400)).q
-
-
-class Measured:
-    """A motion at given times, or on a fine grid that contains every knot."""
-
-    def __init__(self, case, plan, motion=None, t=None):
-        self.case, self.plan, self.motion = case, plan, motion or plan.trajectory
-        T, knots = self.motion.duration, self.motion.knots
-        n = int(np.ceil(T * PER_SAMPLE / case.request.sample_period))
-        self.t = t if t is not None else np.unique(np.concatenate((
-            np.linspace(0.0, T, n + 1), knots, knots[1:-1] - BESIDE)))
-        self.q, self.qd, self.qdd, self.qddd = self.motion(self.t)
-        self.tip = forward_kinematics(case.model, self.q)
-        self.torque = inverse_dynamics(case.model, self.q, self.qd, self.qdd)
-
-    def use(self):
-        """Return the largest ratio of a quantity to its limit at each time, over all joints."""
-        limits = self.case.limits
-        return np.max([np.abs(x) / bound for x, bound in (
-            (self.qd, limits.max_velocity), (self.qdd, limits.max_acceleration),
-            (self.qddd, limits.max_jerk), (self.torque, limits.max_effort))], axis=(0, 2))
-
-
-@cache
-def measured(seed):
-    """Return the sampled plan of a random path."""
-    case = random_case(seed)
-    return Measured(case, case.planned())

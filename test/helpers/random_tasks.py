@@ -12,20 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Seeded random planning tasks that are feasible by construction, and samples of plans."""
+"""Seeded random planning tasks that are feasible by construction."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 from helpers.random_cases import random_model
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
 HOLDABLE = 0.999    # of an effort limit, largest holding torque at a via point
@@ -47,7 +45,7 @@ class Task:
     q: np.ndarray
     request: PlanningRequest
 
-    def asked_of(self, planner_id, **changes):
+    def request_to(self, planner_id, **changes):
         """Return the request with some fields changed, such as the planner."""
         return replace(self.request, planner_id=planner_id, **changes)
 
@@ -127,24 +125,3 @@ def _make_special(rng, kind, q, limits):
         q[2] = q[0]
     elif kind == 'at a limit':
         q[min(k, len(q) - 2), j] = (limits.min_position, limits.max_position)[k % 2][j]
-
-
-class Measured:
-    """A plan's motion, evaluated on a fine grid."""
-
-    def __init__(self, task: Task, plan: Plan) -> None:
-        self.task, self.plan = task, plan
-        trajectory = plan.trajectory
-        step = task.request.sample_period / 20.0
-        n = int(np.ceil(trajectory.duration / step))
-        self.t = np.union1d(np.linspace(0.0, trajectory.duration, n + 1), trajectory.knots)
-        self.q, self.qd, self.qdd, self.qddd = trajectory(self.t)
-
-    @cached_property
-    def torque(self):
-        """Torques on the grid [N m]."""
-        return inverse_dynamics(self.task.model, self.q, self.qd, self.qdd)
-
-    def largest(self, name):
-        """Return the largest magnitude of each joint."""
-        return np.abs(getattr(self, name)).max(axis=0)

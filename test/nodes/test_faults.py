@@ -77,7 +77,7 @@ def plan(ros, client=None):
     raise AssertionError('no answer')
 
 
-def long_way():
+def long_motion():
     """Return a trajectory that takes long."""
     return trajectory([(15.0, START + (0.5, 0.3, 0.3))])
 
@@ -135,7 +135,7 @@ def test_planner_continues_when_the_arm_is_killed_while_moving_and_restarted(ros
     with Script(script('planner'), *QUIET) as planner:
         with Script(script('simulated_arm'), *QUIET) as arm:
             states.wait_for()
-            ros.publisher(JointTrajectory, 'joint_trajectory').publish(long_way())
+            ros.publisher(JointTrajectory, 'joint_trajectory').publish(long_motion())
             states.wait_for_next(moving)
             killed(arm)
         assert plan(ros) == CODES.SUCCESS
@@ -152,7 +152,7 @@ def test_arm_continues_when_the_planner_is_killed(ros):
     with Script(script('simulated_arm'), *QUIET) as arm:
         with Script(script('planner'), *QUIET) as planner:
             assert plan(ros) == CODES.SUCCESS
-            ros.publisher(JointTrajectory, 'joint_trajectory').publish(long_way())
+            ros.publisher(JointTrajectory, 'joint_trajectory').publish(long_motion())
             states.wait_for_next(moving)
             killed(planner)
         states.wait_for_next(moving)
@@ -160,7 +160,7 @@ def test_arm_continues_when_the_planner_is_killed(ros):
         assert arm.process.poll() is None
 
 
-def test_what_killed_nodes_leave_in_shared_memory_keeps_none_from_starting(ros):
+def test_nodes_start_despite_what_killed_nodes_leave_in_shared_memory(ros):
     left = set()
     for _ in range(3):
         with Script(script('planner'), *QUIET) as planner:
@@ -190,10 +190,10 @@ def test_arm_answers_and_moves_under_a_thousand_trajectories_a_second(ros):
             while sent < (now - began) * FLOOD_RATE:
                 publisher.publish(message)
                 sent += 1
-            asked = monotonic()
+            called = monotonic()
             answer = ros.call(GetParameters, 'simulated_arm/get_parameters',
                               GetParameters.Request(names=['publish_rate']))
-            slowest = max(slowest, monotonic() - asked)
+            slowest = max(slowest, monotonic() - called)
             assert answer.values[0].double_value == 200.0
         assert sent >= 0.9 * FLOOD_RATE * FLOOD_SECONDS
         assert slowest < TIMEOUT + SLACK

@@ -36,7 +36,7 @@ CORNER = [(1.2308, 0.0, 1.3749), (0.2161, 1.1514, 0.8252), (1.1438, 0.0, 0.9368)
 COARSE = [0.1, 0.5, 1.0]
 TOUCHING = [5, 9, 12, 14, 37]
 WITHOUT_ACCELERATION_LIMITS = ['line_arc', 'line_polynomial', 'time_optimal']
-ROOM = 1.0 + 1e-3  # what the quintics may be beyond a limit
+TOLERANCE = 1.0 + 1e-3  # of limits, for quintics between points
 OVERSHOOT = 1e-6   # rad, beyond the end of a range
 STRONG = np.full(3, 400.0)  # N m, enough to hold the arm anywhere
 NANOSECOND = 1e-9
@@ -67,33 +67,30 @@ def torques(points):
     return np.array([arm.inverse_dynamics(*state) for state in zip(*controller_motion(points))])
 
 
-def asked(points, **request):
-    return PlanningRequest(points, **request)
-
-
 @cache
 def planned_finely(planner_id):
-    return plan(ARM, LIMITS, asked(TABLE_6_1, planner_id=planner_id))
+    return plan(ARM, LIMITS, PlanningRequest(TABLE_6_1, planner_id=planner_id))
 
 
 @pytest.mark.parametrize('period', COARSE)
 @pytest.mark.parametrize('planner_id', planner_ids())
 def test_a_long_sample_period_costs_no_time_or_the_note_says_how_much(planner_id, period):
     fine = planned_finely(planner_id)
-    coarse = plan(ARM, LIMITS, asked(TABLE_6_1, planner_id=planner_id, sample_period=period))
+    coarse = plan(ARM, LIMITS, PlanningRequest(
+        TABLE_6_1, planner_id=planner_id, sample_period=period))
     slower = coarse.trajectory.duration / fine.trajectory.duration
     assert slower >= 1.0 - 1e-9
     assert (slower > 1.001) == (' % slower' in coarse.note)
     if period <= 0.1 or planner_id in ('cycloid', 'gauss', 'septic'):
         assert slower <= 1.001
     _, qd, qdd = controller_motion(coarse.points)
-    assert (np.abs(qd) <= LIMITS.max_velocity * ROOM).all()
-    assert (np.abs(qdd) <= LIMITS.max_acceleration * ROOM).all()
+    assert (np.abs(qd) <= LIMITS.max_velocity * TOLERANCE).all()
+    assert (np.abs(qdd) <= LIMITS.max_acceleration * TOLERANCE).all()
 
 
 @pytest.mark.parametrize('period', [0.25, 0.5, 1.0])
 def test_points_are_put_between_the_regular_ones(period):
-    answer = plan(ARM, LIMITS, asked(TABLE_6_1, sample_period=period))
+    answer = plan(ARM, LIMITS, PlanningRequest(TABLE_6_1, sample_period=period))
     assert answer.trajectory.duration == pytest.approx(2.850, abs=2e-3)  # as with any period
     stamps = np.round(answer.points.times / NANOSECOND).astype(np.int64)
     assert (np.diff(stamps) >= 0.1 * period / NANOSECOND - 2).all()
@@ -107,16 +104,16 @@ def test_points_are_put_between_the_regular_ones(period):
 
 def test_prescribed_durations_are_kept_with_any_sample_period():
     for period in (0.01, 1.4, 7.0):
-        answer = plan(ARM, LIMITS, asked(
+        answer = plan(ARM, LIMITS, PlanningRequest(
             TABLE_6_1, segment_durations=[1.9, 1.3], sample_period=period))
         assert answer.via_times == pytest.approx([0.0, 1.9, 3.2], abs=1e-9)
         _, qd, qdd = controller_motion(answer.points)
-        assert (np.abs(qdd) <= LIMITS.max_acceleration * ROOM).all()
+        assert (np.abs(qdd) <= LIMITS.max_acceleration * TOLERANCE).all()
 
 
 def test_further_points_count_as_points():
     # Every 0.5 s of 2.85 s, the via time and the end: 8. One more does not do: it must be slower.
-    request = asked(TABLE_6_1, sample_period=0.5)
+    request = PlanningRequest(TABLE_6_1, sample_period=0.5)
     assert len(plan(ARM, LIMITS, request).points.times) > 9
     fewer = plan(ARM, LIMITS, replace(request, max_points=9))
     assert len(fewer.points.times) <= 9
@@ -128,20 +125,20 @@ def test_further_points_count_as_points():
 @pytest.mark.parametrize(('points', 'max_deviation'), [(CORNER, 0.01), (TABLE_6_1, 0.05)])
 @pytest.mark.parametrize('period', [0.01, 0.05, 0.5])
 @pytest.mark.parametrize('planner_id', WITHOUT_ACCELERATION_LIMITS)
-def test_torque_that_a_controller_makes_is_within_its_limits_and_told(
+def test_torque_that_a_controller_makes_is_within_its_limits_and_reported(
         points, max_deviation, planner_id, period):
-    answer = plan(ARM, TORQUE, asked(
+    answer = plan(ARM, TORQUE, PlanningRequest(
         points, planner_id=planner_id, sample_period=period, max_deviation=max_deviation))
     made = np.abs(torques(answer.points)).max(axis=0)
-    assert (made <= TORQUE.max_effort * ROOM).all()
-    assert (made <= answer.effort * ROOM).all()
+    assert (made <= TORQUE.max_effort * TOLERANCE).all()
+    assert (made <= answer.effort * TOLERANCE).all()
     assert (answer.effort <= TORQUE.max_effort * (1.0 + 1e-6)).all()
 
 
 @pytest.mark.parametrize('planner_id', ['time_optimal', 'line_arc', 'cycloid'])
-def test_jerk_that_a_controller_makes_is_told_where_it_is_a_tenth_above_its_limit(planner_id):
+def test_jerk_that_a_controller_makes_is_reported_where_it_is_a_tenth_above_its_limit(planner_id):
     for period in (0.002, 0.01, 0.05):
-        answer = plan(ARM, LIMITS, asked(
+        answer = plan(ARM, LIMITS, PlanningRequest(
             TABLE_6_1, planner_id=planner_id, sample_period=period))
         _, _, qdd = controller_motion(answer.points)
         x = np.linspace(0.0, 1.0, PER_INTERVAL)
@@ -156,9 +153,9 @@ def test_jerk_that_a_controller_makes_is_told_where_it_is_a_tenth_above_its_limi
             assert f'joint_{j + 1} reach a jerk of {jerk[:, j].max():.3g} rad/s^3' in answer.note
 
 
-def test_jerk_without_a_limit_is_no_matter():
+def test_jerk_without_a_limit_is_not_reported():
     free = replace(LIMITS, max_jerk=np.full(3, np.inf))
-    assert plan(ARM, free, asked(TABLE_6_1, planner_id='time_optimal')).note == ''
+    assert plan(ARM, free, PlanningRequest(TABLE_6_1, planner_id='time_optimal')).note == ''
 
 
 def test_no_interval_begins_or_ends_at_a_step_of_acceleration():
@@ -166,7 +163,8 @@ def test_no_interval_begins_or_ends_at_a_step_of_acceleration():
     # the step where it is at an end, and its jerk is 9 steps per interval; inside by 13 % at most.
     rng = np.random.default_rng(3)
     for period in rng.uniform(0.004, 0.03, 12):
-        answer = plan(ARM, LIMITS, asked(TABLE_6_1, planner_id='line_arc', sample_period=period))
+        answer = plan(ARM, LIMITS, PlanningRequest(
+            TABLE_6_1, planner_id='line_arc', sample_period=period))
         steps, times = answer.trajectory.step_times, answer.points.times
         assert len(steps) >= 1
         index = np.searchsorted(times, steps) - 1
@@ -190,8 +188,8 @@ def in_ranges_that_the_motion_touches(seed, planner_id, period):
         min_position=[-3.0, -1.0, -3.0], max_position=[3.0, 4.0, 3.0], max_effort=STRONG,
         max_velocity=rng.choice([0.3, 1.0, 3.0], 3), max_jerk=rng.choice([2.0, 10.0, 100.0], 3),
         max_acceleration=rng.choice([0.3, 1.0, 5.0], 3))
-    request = asked(forward_kinematics(ARM, q), planner_id=planner_id, elbow='up',
-                    sample_period=period, max_deviation=0.02)
+    request = PlanningRequest(forward_kinematics(ARM, q), planner_id=planner_id, elbow='up',
+                              sample_period=period, max_deviation=0.02)
     free = plan(ARM, wide, request)
     exact = 1e-8  # to which the peaks of motions along paths are known [rad]
     limits = replace(wide, min_position=free.peaks.min_position - exact,
@@ -216,9 +214,9 @@ def test_a_controller_stays_in_ranges_at_whose_ends_joints_come_to_rest(planner_
     limits = JointLimits(min_position=[0.2, 0.7, -0.4], max_position=[1.5, 1.7, 0.8],
                          max_effort=STRONG, max_velocity=np.full(3, 0.3))
     at, sign = getattr(limits, end), 1.0 if end == 'min_position' else -1.0
-    ways = np.array([[0.5, 0.4, 0.3], [0.0, 0.2, 0.0], [0.0, 0.0, 0.4], [0.3, 0.0, 0.2]])
-    tips = forward_kinematics(ARM, at + sign * ways)
+    displacements = np.array([[0.5, 0.4, 0.3], [0.0, 0.2, 0.0], [0.0, 0.0, 0.4], [0.3, 0.0, 0.2]])
+    tips = forward_kinematics(ARM, at + sign * displacements)
     for period in (0.3, 1.0, 2.0):
-        answer = plan(ARM, limits, asked(
+        answer = plan(ARM, limits, PlanningRequest(
             tips, planner_id=planner_id, elbow='up', sample_period=period))
         assert outside(answer.points, limits) <= OVERSHOOT

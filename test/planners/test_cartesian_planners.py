@@ -54,7 +54,7 @@ def test_table_6_3_is_refused_with_the_thesis_s_own_torque(planner_id):
 
 
 @each_planner
-def test_gravity_too_large_between_points_is_refused_with_the_place(planner_id):
+def test_gravity_too_large_between_points_is_refused_with_the_path_coordinate(planner_id):
     # Gravity's torque on joint 2 is 102.6 and 175.7 N m at the ends, and 184.4 N m between them.
     limits = replace(FREE, max_effort=(150.0, 180.0, 200.0))
     with pytest.raises(LimitViolationError,
@@ -72,7 +72,7 @@ def test_reversal_is_refused_by_number(planner_id):
 
 
 @each_planner
-def test_line_through_the_hole_is_refused_with_place_and_nearest_point(planner_id):
+def test_line_through_the_inner_workspace_limit_is_refused_with_the_path_coordinate(planner_id):
     with pytest.raises(UnreachableError,
                        match=r'^at 0\.3 m along the path, between via points 0 and 1 \(nearest: '
                              r'[01]\): the tip would be 0\.19 m from the shoulder'):
@@ -80,7 +80,7 @@ def test_line_through_the_hole_is_refused_with_place_and_nearest_point(planner_i
 
 
 @each_planner
-def test_line_across_joint_axis_1_is_refused_with_place_and_nearest_point(planner_id):
+def test_line_across_joint_axis_1_is_refused_with_path_coordinate_and_nearest_point(planner_id):
     with pytest.raises(LimitViolationError,
                        match=r'^at 1\.\d* m along the path, .*\(nearest: [01]\): the tip would '
                              r'pass joint axis 1'):
@@ -112,7 +112,7 @@ def test_joint_1_stands_still_on_lines_in_a_plane_with_its_axis(planner_id, tips
 
 
 @each_planner
-def test_joint_limit_between_points_is_refused_with_the_place(planner_id):
+def test_joint_limit_between_points_is_refused_with_the_path_coordinate(planner_id):
     tips = [(1.2, -0.5, 0.6), (1.2, 0.7, 0.6)]
     nearest = inverse_kinematics(MODEL, (1.2, 0.0, 0.6), 'up')[2]  # least, at y = 0
     limits = replace(FREE, min_position=(-4.0, -4.0, nearest + 1e-3))
@@ -125,7 +125,7 @@ def test_joint_limit_between_points_is_refused_with_the_place(planner_id):
 
 @each_planner
 @pytest.mark.parametrize('y', [-0.52, -0.54, -0.56, -0.58, -0.6, -0.62])
-def test_a_range_that_is_left_between_points_by_a_hair_is_refused_too(planner_id, y):
+def test_a_range_that_is_left_by_nanoradians_between_points_is_refused_too(planner_id, y):
     # 2e-9 rad are more than rounding. The extreme is no sample of any grid.
     nearest = inverse_kinematics(MODEL, (1.2, 0.0, 0.6), 'up')[2]
     limits = replace(FREE, min_position=(-4.0, -4.0, nearest + 2e-9))
@@ -141,7 +141,7 @@ def test_segment_durations_are_refused(planner_id):
 
 @each_planner
 @pytest.mark.parametrize('elbow', ['up', 'down'])
-def test_a_start_leads_in_along_the_path_from_its_tip(planner_id, elbow):
+def test_path_begins_at_the_start_s_tip(planner_id, elbow):
     tips = np.array([(1.0, 0.0, 0.6), (1.0, 0.3, 0.7), (0.8, 0.4, 0.9)])
     start = inverse_kinematics(MODEL, tips[0], elbow)
     whole = planned(planner_id, tips, elbow=elbow)
@@ -169,14 +169,14 @@ def test_without_an_elbow_a_start_on_branch_down_stays_on_it(planner_id):
 
 
 @each_planner
-def test_what_is_left_is_told_where_planning_is_stopped_before_it_begins(planner_id):
+def test_note_bounds_the_time_to_save_where_planning_is_stopped_at_once(planner_id):
     found = planned(planner_id, [(1.0, 0.0, 0.6), (1.0, 0.3, 0.7), (0.8, 0.4, 0.9)],
                     should_stop=lambda: True)
     assert 'planning ended before it converged: ' in found.note
 
 
 @each_planner
-def test_without_an_elbow_the_branch_that_keeps_the_limits_is_taken(planner_id):
+def test_without_an_elbow_the_branch_within_the_limits_is_taken(planner_id):
     tips = [(1.0, 0.0, 0.6), (1.0, 0.3, 0.6)]
     down = np.array([inverse_kinematics(MODEL, p, 'down') for p in tips])
     limits = replace(FREE, min_position=down.min(axis=0) - 0.2,
@@ -216,6 +216,6 @@ def test_points_are_counted_as_the_request_does(planner_id, tips, start, blamed,
 
 
 @each_planner
-def test_a_last_leg_that_its_zone_all_but_fills_does_not_hold_the_motion_up(planner_id):
+def test_a_last_leg_that_its_blend_zone_nearly_fills_does_not_slow_the_motion(planner_id):
     tips = [(1.0, 0.0, 0.6), (1.0, 0.117, 0.6), (1.0004, 0.1179, 0.6005)]
     assert planned(planner_id, tips).trajectory.duration < 2.0

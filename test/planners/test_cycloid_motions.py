@@ -16,17 +16,11 @@
 
 from dataclasses import replace
 
-from helpers.measured_plans import outcomes
-from helpers.random_tasks import random_task
+from helpers.measured_motions import outcomes, planned_motions, task_for
 import numpy as np
 import pytest
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.planners.planning import plan
-
-
-@pytest.mark.parametrize('planner_id', ['cycloid', 'cycloid_approach_a'])
-def test_it_was_asked_for_200_motions(planner_id):
-    assert sum(map(len, outcomes(planner_id))) >= 200
 
 
 def test_refused_segments_of_cycloid_hold_a_pose_that_gravity_makes_too_heavy():
@@ -43,7 +37,7 @@ def test_refused_segments_of_cycloid_hold_a_pose_that_gravity_makes_too_heavy():
 
 @pytest.mark.parametrize('planner_id', ['cycloid', 'cycloid_approach_a'])
 def test_every_piece_is_a_full_period_cycloid_or_a_cruise(planner_id):
-    for m in outcomes(planner_id)[0].values():
+    for m in planned_motions(planner_id).values():
         for profile in m.plan.trajectory.profiles:
             assert (profile.pieces.w == 2.0 * np.pi).all()
             assert (profile.pieces.c == profile.pieces.b).all()
@@ -60,7 +54,7 @@ def pieces_in_segments(m):
 
 
 def test_cycloid_has_at_most_transition_cruise_transition_in_a_segment():
-    for m in outcomes('cycloid')[0].values():
+    for m in planned_motions('cycloid').values():
         for joint in pieces_in_segments(m):
             for pieces in joint:
                 assert 1 <= len(pieces) <= 3
@@ -68,7 +62,7 @@ def test_cycloid_has_at_most_transition_cruise_transition_in_a_segment():
 
 
 def test_approach_a_has_one_transition_then_a_cruise_and_in_the_last_segment_one_more():
-    for m in outcomes('cycloid_approach_a')[0].values():
+    for m in planned_motions('cycloid_approach_a').values():
         for joint in pieces_in_segments(m):
             for pieces in joint[:-1]:
                 assert sum(pieces) <= 1
@@ -77,10 +71,10 @@ def test_approach_a_has_one_transition_then_a_cruise_and_in_the_last_segment_one
             assert len(joint[-1]) <= 3
 
 
-def test_slowed_motion_uses_some_limit_up():
+def test_slowed_motion_reaches_some_limit():
     # A motion that is at no limit of its own, nor bound to its samples, could be faster.
     idle = {}
-    for seed, m in outcomes('cycloid')[0].items():
+    for seed, m in planned_motions('cycloid').items():
         limits, peaks = m.task.limits, m.plan.peaks
         use = max((value / limit).max() for value, limit in (
             (peaks.velocity, limits.max_velocity), (peaks.acceleration, limits.max_acceleration),
@@ -90,9 +84,9 @@ def test_slowed_motion_uses_some_limit_up():
     assert idle == {}
 
 
-def test_torque_slows_a_motion_no_more_than_running_the_same_path_slower_would():
+def test_torque_slows_a_motion_no_more_than_time_scaling_would():
     slower = {}
-    for seed, m in list(outcomes('cycloid')[0].items())[::4]:
+    for seed, m in list(planned_motions('cycloid').items())[::3]:
         task = m.task
         free = replace(task.limits, max_effort=np.full(3, np.inf))
         quick = plan(task.model, free, task.request).trajectory
@@ -108,23 +102,33 @@ def test_torque_slows_a_motion_no_more_than_running_the_same_path_slower_would()
     assert slower == {}
 
 
-@pytest.mark.xfail(strict=True, reason='torque slows the fastest motion more than another: 1.12')
+def durations(seed, *planner_ids):
+    """Return how long planners take for a random task."""
+    tasks = [task_for(planner_id, seed) for planner_id in planner_ids]
+    return [plan(t.model, t.limits, t.request).trajectory.duration for t in tasks]
+
+
 def test_cycloid_is_hardly_ever_slower_than_approach_a_whose_structure_it_contains():
-    a, free = outcomes('cycloid_approach_a')[0], outcomes('cycloid')[0]
+    a, free = planned_motions('cycloid_approach_a'), planned_motions('cycloid')
     ratios = {seed: float(free[seed].t[-1] / a[seed].t[-1]) for seed in set(a) & set(free)}
     assert {seed: ratio for seed, ratio in ratios.items() if ratio > 1.1} == {}
 
 
+@pytest.mark.xfail(strict=True, reason='torque slows the fastest motion more than another: 1.12')
+def test_cycloid_is_not_slower_than_approach_a_where_torque_slows_the_motion():
+    cycloid, approach_a = durations(195, 'cycloid', 'cycloid_approach_a')
+    assert cycloid <= 1.1 * approach_a
+
+
 @pytest.mark.parametrize('seed', range(12))
-def test_stopped_at_once_it_is_no_slower_than_with_stops_and_says_what_could_be_saved(seed):
-    task = random_task(seed)
-    request, limits = task.asked_of('cycloid'), replace(
-        task.limits, max_effort=np.full(3, np.inf))
+def test_stopped_at_once_it_is_no_slower_than_with_stops_and_reports_what_could_be_saved(seed):
+    task = task_for('cycloid', seed)
+    request, limits = task.request, replace(task.limits, max_effort=np.full(3, np.inf))
     stopped = plan(task.model, limits, replace(request, should_stop=lambda: True))
     stops = plan(task.model, limits, replace(request, planner_id='cycloid_approach_c'))
     best = plan(task.model, limits, request)
     duration = stopped.trajectory.duration
     assert best.trajectory.duration <= duration * (1.0 + 1e-9)
     assert duration == pytest.approx(stops.trajectory.duration, rel=1e-5)
-    one_way = np.diff(task.q, axis=0).any(axis=1).sum() == 1  # its time is known in closed form
-    assert stopped.note.startswith('planning ended before it converged: ') == (not one_way)
+    one_segment = np.diff(task.q, axis=0).any(axis=1).sum() == 1  # its time has a closed form
+    assert stopped.note.startswith('planning ended before it converged: ') == (not one_segment)

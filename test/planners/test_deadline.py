@@ -47,7 +47,7 @@ class Clock:
 
 
 class CountingClock:
-    """A clock on which a millisecond passes whenever it is asked."""
+    """A clock on which a millisecond passes whenever it is read."""
 
     now = 0.0
 
@@ -66,7 +66,7 @@ def lissajous(n):
     return np.sin(np.stack((3.0 * t, 2.0 * t, 5.0 * t + 0.3), axis=1))
 
 
-def test_it_asks_for_the_best_so_far_and_then_gives_up():
+def test_deadline_requests_the_best_so_far_and_then_gives_up():
     clock = Clock()
     deadline = Deadline(1.0, clock)
     for now, answer in ((100.0, False), (100.79, False), (100.81, True), (100.99 + GRACE, True)):
@@ -99,7 +99,7 @@ def test_the_inner_step_is_named():
     assert pickle.loads(pickle.dumps(caught.value)).step == 'the first part'
 
 
-def questions_asked(planner_id, answer):
+def calls_of_should_stop(planner_id, answer):
     """Return how often a planner asks a question that is answered by its number."""
     questions = count()
     request = PlanningRequest(
@@ -123,10 +123,10 @@ def given_up(last):
 
 @pytest.mark.parametrize('planner_id', sorted(planner_ids()))
 def test_every_planner_ends_at_once_whenever_the_question_raises(planner_id):
-    total = questions_asked(planner_id, lambda _: False)
+    total = calls_of_should_stop(planner_id, lambda _: False)
     assert total > 2
     for last in {0, 1, total // 2, total - 1}:
-        assert questions_asked(planner_id, given_up(last)) == last + 1
+        assert calls_of_should_stop(planner_id, given_up(last)) == last + 1
 
 
 def test_a_path_through_many_points_is_given_up_in_time_and_says_in_which_step():
@@ -138,7 +138,7 @@ def test_a_path_through_many_points_is_given_up_in_time_and_says_in_which_step()
 
 
 @pytest.mark.parametrize('planner_id', ['time_optimal', 'line_arc', 'line_polynomial'])
-def test_time_is_to_blame_where_a_motion_is_too_slow_for_its_points(planner_id):
+def test_refusal_names_the_time_limit_where_a_motion_is_too_slow_for_its_points(planner_id):
     request = PlanningRequest([0.6, 0.0, 1.0] + [0.1, 0.15, 0.1] * lissajous(12),
                               planner_id=planner_id, sample_period=0.01)
     fast, slow = (len(plan(RobotModel(), LIMITS, replace(
@@ -165,7 +165,7 @@ def saving(note):
 @pytest.mark.parametrize(('planner_id', 'unit', 'limits'), [
     ('line_arc', lissajous(24), (0.05, 0.2, 0.8)),
     ('line_polynomial', np.random.default_rng(10).uniform(-1.0, 1.0, (10, 3)), (0.1, 0.2, 0.4))])
-def test_more_time_never_makes_a_motion_slower_nor_faster_than_was_told(planner_id, unit, limits):
+def test_more_time_never_makes_a_motion_slower_nor_faster_than_reported(planner_id, unit, limits):
     plans = [plan(RobotModel(), LIMITS, PlanningRequest(
         [0.6, 0.0, 1.0] + [0.1, 0.15, 0.1] * unit, planner_id=planner_id,
         should_stop=Deadline(limit, CountingClock()))) for limit in limits]

@@ -12,28 +12,21 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""By how much via points are missed, and what is said of it."""
+"""By how much via points are missed, and what the note says."""
 
 from dataclasses import replace
 import re
 
+from helpers.planning_cases import ARM, LIMITS, through
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.missed_via_points import miss_note, Misses
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import PlanningRequest
 
-ARM, LIMITS = RobotModel(), JointLimits()
 PLANNERS = ['cycloid_approach_b', 'poly_414']
 Q = np.array([[0.3, 1.4, 0.0], [1.0, 1.8, 0.3], [0.2, 1.3, -0.5], [0.6, 1.6, 0.0]])
 SAID = re.compile(r'(\d+) by ([\d.e-]+) m \(([\d.e-]+) rad\)')
-
-
-def through(q, **request):
-    return PlanningRequest(forward_kinematics(ARM, q), **request)
 
 
 def said(note):
@@ -65,14 +58,14 @@ def test_via_points_are_counted_as_the_caller_counts_them(planner_id):
 
 
 @pytest.mark.parametrize('planner_id', PLANNERS)
-def test_two_points_alone_are_hit_and_nothing_is_said(planner_id):
+def test_two_points_alone_are_passed_exactly_without_a_note(planner_id):
     answer = plan(ARM, LIMITS, through(Q[:2], planner_id=planner_id))
     assert answer.note == ''
     assert answer.trajectory(answer.via_times)[0] == pytest.approx(Q[:2], abs=1e-9)
 
 
 def test_slower_motions_of_approach_b_miss_by_less():
-    # Transitions are as short as full acceleration allows: at half the speed half as long.
+    # Transitions are as short as full acceleration allows: at half the velocity half as long.
     missed = []
     for factor in (1.0, 4.0):
         request = through(Q, planner_id='cycloid_approach_b',

@@ -65,7 +65,7 @@ def test_a_zone_leaves_a_part_of_the_line_that_ends_on_the_axis(planner_id, tips
 
 @each_planner
 @pytest.mark.parametrize('reverse', [False, True])
-def test_lines_to_the_axis_keep_within_the_range_that_holds_their_via_points(planner_id, reverse):
+def test_lines_to_the_axis_stay_in_the_range_of_their_via_points(planner_id, reverse):
     # The larger a zone, the further the radial line beside it is turned away from its leg.
     tips = np.array([(0.9, -0.1, 0.7), (0.5, 0.8, 1.0), (0.0, 0.0, 1.6)])
     azimuth = np.arctan2(tips[:2, 1], tips[:2, 0])
@@ -97,7 +97,7 @@ def test_lines_along_the_axis_are_reached_in_one_plane(planner_id, max_deviation
 @each_planner
 @pytest.mark.parametrize('back', [False, True])
 @pytest.mark.parametrize('tips', [(Q, P), (Q, P, (1.0, 0.3, 0.8)), (HIGH, Q, P)])
-def test_a_start_on_the_axis_leads_on_along_a_leg_to_which_joint_1_points(planner_id, back, tips):
+def test_a_start_on_the_axis_begins_a_leg_in_the_direction_of_joint_1(planner_id, back, tips):
     # The arm stands with joint 1 in the leg's plane: to its azimuth, or half a turn from it.
     azimuth = np.arctan2(Q[1], Q[0])
     turn = np.pi if back else 0.0

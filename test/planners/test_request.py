@@ -106,7 +106,7 @@ def test_law_is_the_cycloid_s_peaks_over_the_limits():
     assert law.root == pytest.approx([0.5] * 3)
 
 
-def test_via_velocity_is_bounded_by_the_room_to_the_range():
+def test_via_velocity_is_bounded_by_the_distance_to_the_range():
     # Joint 1, 0.02 rad from its end at 1 rad/s^2: it stops in v^2 / 1 (a cycloid's mean is half
     # its peak): v^2 = 0.02.
     problem = via_problem_of(task_of(points=((0.3, 1.4, 0.0), (0.02, 1.8, 0.3), (0.2, 1.3, -0.5))))

@@ -38,7 +38,7 @@ def random_poses(seed):
     return random_model(rng), rng.uniform(-1.0, 1.0, (5, 3))
 
 
-def test_a_limit_that_is_low_enough_is_kept():
+def test_a_jerk_limit_that_is_low_enough_stays():
     model, q = random_poses(0)
     limits = JointLimits(max_jerk=[10.0, 20.0, 30.0])
     jerk = limits_for_sampling(model, limits, q, PERIOD).limits.max_jerk
@@ -84,7 +84,7 @@ def test_jerk_cruises_where_every_joint_s_limit_lets_a_swing_last_thirty_samples
         assert limits_for_sampling(model, fast, q, 0.5 * PERIOD).constant_jerk_fraction == 0.0
 
 
-def test_everything_but_jerk_is_kept():
+def test_all_limits_but_jerk_stay():
     model, q = random_poses(2)
     limits = JointLimits(max_jerk=NONE)
     found = limits_for_sampling(model, limits, q, PERIOD).limits

@@ -89,7 +89,7 @@ def test_motions_from_random_starts_begin_there_or_are_refused(planner_id):
 
 
 @pytest.mark.parametrize('planner_id', CARTESIAN)
-def test_a_path_that_only_another_turn_of_joint_1_keeps_in_range_is_refused(planner_id):
+def test_a_path_in_range_only_on_another_turn_of_joint_1_is_refused(planner_id):
     # From 2.9 rad on to 3.7: in range from -3.4 rad on, but that is not where the arm is.
     limits = turning(-1.2 * np.pi, 1.1 * np.pi, replace(LIMITS, max_effort=STRONG))
     points = around(2.9, 3.3, 3.7)
@@ -101,7 +101,7 @@ def test_a_path_that_only_another_turn_of_joint_1_keeps_in_range_is_refused(plan
 
 
 @pytest.mark.parametrize('planner_id', CARTESIAN)
-def test_a_start_on_the_axis_goes_only_where_joint_1_points(planner_id):
+def test_a_start_on_the_axis_leaves_it_only_in_the_direction_of_joint_1(planner_id):
     start = np.array([0.4, 2.2, 0.5])
     start[2] = np.arcsin(-0.9 * np.cos(2.2) / 0.7) - 2.2 + 2.0 * np.pi  # the tip on joint axis 1
     assert np.hypot(*tip(*start)[:2]) < 1e-12
@@ -116,15 +116,15 @@ def test_a_start_on_the_axis_goes_only_where_joint_1_points(planner_id):
         planned(limits, around(1.0), start=start, planner_id=planner_id)
 
 
-def test_the_start_s_elbow_is_kept_where_it_can_be():
-    # With the elbow down, 0.7 mm away. The joint with the longest way L speeds up to v and slows
-    # down in T each, L = v T, full-period cycloids of jerk 2 pi v / T^2 = 10 rad/s^3.
+def test_the_start_s_elbow_branch_stays_where_it_is_feasible():
+    # With the elbow down, 0.7 mm away. The joint with the largest displacement L accelerates to v
+    # and decelerates in T each, L = v T, full-period cycloids of jerk 2 pi v / T^2 = 10 rad/s^3.
     start, goal = [1.255, 0.234, 3.294], [0.1893, 0.5814, 1.3568]
     answer = planned(LIMITS, [goal], start=start)
-    way = answer.points.positions[-1] - start
-    assert np.abs(way).max() < 2e-3
+    displacement = answer.points.positions[-1] - start
+    assert np.abs(displacement).max() < 2e-3
     assert answer.trajectory.duration == pytest.approx(
-        2.0 * (2.0 * np.pi * np.abs(way).max() / 10.0) ** (1.0 / 3.0), rel=1e-5)
+        2.0 * (2.0 * np.pi * np.abs(displacement).max() / 10.0) ** (1.0 / 3.0), rel=1e-5)
     assert answer.trajectory.duration == pytest.approx(0.173, abs=5e-4)
     assert planned(LIMITS, [goal], start=start, elbow='up').trajectory.duration > 4.0
 
@@ -160,9 +160,9 @@ def test_an_arm_upright_on_its_axis_needs_no_half_turn_however_its_noise_falls(n
         assert np.ptp(answer.points.positions[:, 0]) < 1e-3
 
 
-def test_a_range_of_more_than_a_turn_is_no_longer_way():
-    # 2 pi - 6.2 = 0.083 rad: transitions to v and back in T each, way = v T, of acceleration
-    # 2 v / T = 1 rad/s^2. A revolution at 1 rad/s has two transitions of 2 s, at half the speed.
+def test_a_range_of_more_than_a_turn_makes_no_motion_longer():
+    # 2 pi - 6.2 = 0.083 rad: transitions to v and back in T each, displacement v T, acceleration
+    # 2 v / T = 1 rad/s^2. A revolution at 1 rad/s has two transitions of 2 s, at 0.5 rad/s.
     short = planned(turning(-np.pi, 2.0 * np.pi), around(-3.1, 3.1))
     assert short.trajectory.duration == pytest.approx(
         4.0 * ((2.0 * np.pi - 6.2) / 2.0) ** 0.5, rel=1e-4)
@@ -186,7 +186,7 @@ def test_a_start_outside_its_range_by_no_more_than_the_tolerance_is_on_its_end()
         planned(LIMITS, goal, start=[np.pi / 2 + 1e-6, 1.5, 0.0])
 
 
-@pytest.mark.parametrize(('start', 'told'), [
+@pytest.mark.parametrize(('start', 'reason'), [
     ((34.0, 57.0, 17.0), 'joint_1 is at 34 rad, limits 0 to 1.5708 rad (in degrees?)'),
     ((1.0, 90.0, 0.0), 'joint_2 is at 90 rad, limits 0 to 3.14159 rad (in degrees?)'),
     ((0.5, 1.0, -170.0), 'joint_3 is at -170 rad, limits -3.14159 to 6.28319 rad (in degrees?)'),
@@ -194,9 +194,9 @@ def test_a_start_outside_its_range_by_no_more_than_the_tolerance_is_on_its_end()
     ((-34.0, 1.0, 0.2), 'joint_1 is at -34 rad, limits 0 to 1.5708 rad'),   # nor as degrees
     ((1.0, 6.0, 0.2), 'joint_2 is at 6 rad, limits 0 to 3.14159 rad'),      # a turn too far
     ((1.0, 1.0, 400.0), 'joint_3 is at 400 rad, limits -3.14159 to 6.28319 rad')])
-def test_a_start_that_degrees_explain_is_asked_about(start, told):
+def test_refusal_of_a_start_asks_for_degrees_where_they_explain_it(start, reason):
     for planner_id in ('cycloid', 'line_arc'):
-        with pytest.raises(StartStateError, match=f'^start state: {re.escape(told)}$'):
+        with pytest.raises(StartStateError, match=f'^start state: {re.escape(reason)}$'):
             planned(LIMITS, [tip(0.5, 1.4, 0.1)], planner_id=planner_id, start=start)
 
 

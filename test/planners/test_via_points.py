@@ -54,13 +54,13 @@ def test_random_points_come_back_from_their_tips(seed):
 
 
 @pytest.mark.parametrize('elbow', ['up', 'down'])
-def test_a_branch_that_is_asked_for_is_taken_for_every_point(elbow):
+def test_requested_elbow_branch_holds_for_every_point(elbow):
     q = joint_via_points(ARM, WIDE, tips('6.1 point 1', '6.3 point 1'), None, Posture(elbow))
     assert forward_kinematics(ARM, q) == pytest.approx(tips('6.1 point 1', '6.3 point 1'))
     assert ((q[:, 2] < np.pi / 2) == (elbow == 'up')).all()
 
 
-def test_elbow_goes_down_where_up_breaks_a_range():
+def test_elbow_is_down_where_up_is_out_of_range():
     only_down = replace(WIDE, min_position=[-np.pi, -np.pi, 1.7])
     answer = plan(ARM, only_down, PlanningRequest(tips('6.1 point 1', '6.1 point 2')))
     assert (answer.points.positions[:, 2] > np.pi / 2).all()
@@ -75,7 +75,7 @@ def test_point_out_of_range_is_refused_by_joint_value_and_range():
     assert (no.value.via_point, no.value.joint, no.value.limit) == (1, 'joint_1', 0.6)
 
 
-def test_unreachable_point_keeps_its_distance_and_index():
+def test_unreachable_point_is_refused_with_its_distance_and_index():
     with pytest.raises(UnreachableError, match='^via point 1: .*misses by 0.4 m$') as no:
         joint_via_points(
             ARM, WIDE, np.array([[1.0, 0.0, 0.5], [2.0, 0.0, 0.5]]), None, Posture())

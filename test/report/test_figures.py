@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The data behind figures, their files, and what is said of them."""
+"""The data behind figures, their files, and their captions."""
 
 from __future__ import annotations
 
@@ -89,12 +89,12 @@ def test_transitions_last_what_the_thesis_says():
         assert curve.qd[[0, -1]] == pytest.approx([0.0, 1.0]), curve.name
 
 
-@pytest.mark.parametrize(('displacement', 'speed', 'pieces'), [(1.8, 0.6, 3), (2.0, 1.0, 2)])
-def test_subtrajectory_covers_its_displacement_from_rest_to_rest(displacement, speed, pieces):
-    profile = subtrajectory(displacement, speed)
+@pytest.mark.parametrize(('displacement', 'velocity', 'pieces'), [(1.8, 0.6, 3), (2.0, 1.0, 2)])
+def test_subtrajectory_covers_its_displacement_from_rest_to_rest(displacement, velocity, pieces):
+    profile = subtrajectory(displacement, velocity)
     q, qd, qdd, _ = profile(np.array([0.0, profile.duration]))
     assert (q[1], *qd, *qdd) == pytest.approx((displacement, 0.0, 0.0, 0.0, 0.0), abs=1e-12)
-    assert profile.duration == pytest.approx(displacement / speed + 2.0 * speed)
+    assert profile.duration == pytest.approx(displacement / velocity + 2.0 * velocity)
     assert len(profile.knots) == pieces + 1
 
 
@@ -151,7 +151,7 @@ def test_path_lengths_rise_to_the_whole_path(plans):
     assert s[[0, -1]] == pytest.approx([0.0, trajectory.arm_path.path.length], abs=1e-9)
 
 
-def test_arm_points_keep_the_links_lengths():
+def test_arm_points_are_the_links_lengths_apart():
     model, q = RobotModel(), np.random.default_rng(3).uniform(-3.0, 3.0, (50, 3))
     base, shoulder, elbow, tip = np.moveaxis(arm_points(model, q), 1, 0)
     for one, other, length in ((base, shoulder, model.d1), (shoulder, elbow, model.a2),
@@ -240,7 +240,7 @@ def test_page_that_is_no_report_is_not_overwritten(tmp_path):
     assert page.read_text() == '<h1>My own</h1>'
 
 
-def test_list_of_files_that_leads_elsewhere_removes_nothing(tmp_path):
+def test_list_of_files_outside_the_folder_removes_nothing(tmp_path):
     outside = tmp_path / 'outside.csv'
     outside.write_text('x')
     folder = tmp_path / 'report'

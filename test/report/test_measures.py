@@ -38,7 +38,7 @@ MISSING = {'poly_414', 'cycloid_approach_b'}
 # "two transitions + cruise", as optimised from many starts; torque slows table 6.3 a little.
 REFERENCES = {'cycloid_approach_c': (3.380, 4.446), 'cycloid_approach_a': (3.552, 4.045),
               'cycloid': (2.850, 3.490),
-              # sqrt(6 way / acceleration) in each segment, by hand from the joint angles
+              # sqrt(6 displacement / acceleration) in each segment, by hand from the joint angles
               'poly_434': (2.927, 3.851)}
 
 

@@ -152,7 +152,7 @@ def test_arm_of_ones_own_is_used(tmp_path):
     assert '0.3 of 0.3 (100 %)' in text
 
 
-def test_missing_matplotlib_is_said_in_one_line(tmp_path):
+def test_missing_matplotlib_is_reported_in_one_line(tmp_path):
     code, _, errors = ended(report('--thesis', 'out', cwd=tmp_path, code=without('matplotlib')))
     assert code == 1
     assert errors.startswith('report: no figures, matplotlib is missing')

@@ -21,10 +21,6 @@ from numpy.typing import ArrayLike
 
 HINT = ' (in degrees?)'  # appended to an error or a warning
 
-# Values beyond their bounds by less than this many times the distance between the bounds are not
-# suspected to be degrees; chosen.
-SUSPICION_DISTANCE = 1.0
-
 
 def explained_by_degrees(sent: ArrayLike, low: float, high: float) -> bool:
     """
@@ -43,7 +39,8 @@ def explained_by_degrees(sent: ArrayLike, low: float, high: float) -> bool:
         True if one of them is far out of bounds, and all are within them once converted.
 
     """
-    numbers, far = np.asarray(sent, dtype=float), SUSPICION_DISTANCE * (high - low)
+    # Nearer than this to their bounds, values are not suspected to be degrees; chosen.
+    numbers, far = np.asarray(sent, dtype=float), high - low
     as_degrees = np.radians(numbers)
     return bool(((numbers < low - far) | (numbers > high + far)).any()
                 and ((as_degrees >= low) & (as_degrees <= high)).all())

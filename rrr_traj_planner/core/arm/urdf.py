@@ -26,9 +26,8 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
 
-ROBOT = 'rrr_arm'
-
-# A URDF must have limits on velocity and effort: values that stand for none.
+# A URDF must have limits on velocity and effort: values that stand for none, chosen far above any
+# motor's.
 NO_VELOCITY_LIMIT = 1e3  # rad/s
 NO_EFFORT_LIMIT = 1e6    # N m
 
@@ -38,7 +37,6 @@ COLOURS = {'light': (0.75, 0.75, 0.78, 1.0), 'dark': (0.35, 0.37, 0.42, 1.0)}
 
 Numbers = tuple[float, float, float]
 QUARTER_TURN = (0.5 * pi, 0.0, 0.0)  # Rx(90 deg), Denavit-Hartenberg's alpha
-ALONG_X = (0.0, 0.5 * pi, 0.0)       # turns a cylinder's axis from z to x
 NO_TRANSFORM = (0.0, 0.0, 0.0)       # no rotation, or no offset
 
 
@@ -116,7 +114,7 @@ def urdf(model: RobotModel, limits: JointLimits, frames: FrameNames | None = Non
     """
     frames = frames or FrameNames()
     check_frames(frames)
-    robot = ET.Element('robot', name=ROBOT)
+    robot = ET.Element('robot', name='rrr_arm')
     for name, rgba in COLOURS.items():
         ET.SubElement(ET.SubElement(robot, 'material', name=name), 'color', rgba=_text(rgba))
     ET.SubElement(robot, 'link', name=frames.base)
@@ -137,8 +135,9 @@ def urdf(model: RobotModel, limits: JointLimits, frames: FrameNames | None = Non
 def _links(model: RobotModel) -> tuple[_Link, _Link, _Link]:
     """Return the links; z of frames 1 and 3 is -y of their joints' frames."""
     shoulder = (0.0, 0.0, model.d1)
+    axis_to_x = (0.0, 0.5 * pi, 0.0)  # turns a cylinder's axis from z
     return (_Link(shoulder, QUARTER_TURN, shoulder, NO_TRANSFORM, shoulder),
-            _Link((model.l2, 0.0, 0.0), NO_TRANSFORM, (model.a2, 0.0, 0.0), ALONG_X,
+            _Link((model.l2, 0.0, 0.0), NO_TRANSFORM, (model.a2, 0.0, 0.0), axis_to_x,
                   (model.a2, 0.0, 0.0)),
             _Link((0.0, -model.l3, 0.0), QUARTER_TURN, (0.0, -model.d4, 0.0), QUARTER_TURN,
                   (0.0, -model.d4, 0.0)))

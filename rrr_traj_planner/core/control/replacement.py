@@ -36,12 +36,14 @@ from rrr_traj_planner.core.control.trajectory_limits import outside_ranges
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.nanoseconds import nanoseconds
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.states import Desired
 from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
 from rrr_traj_planner.core.stopping.point_to_point import extended_by_move
 from rrr_traj_planner.core.stopping.stop import Stop, stop
 from rrr_traj_planner.core.stopping.task import from_state
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, leaves
+from rrr_traj_planner.core.trajectory.limit_check import TOLERANCE
 from rrr_traj_planner.core.trajectory.quintic_spline import hermite, polynomial
 from rrr_traj_planner.core.trajectory.reference_trajectory import (
     reference_through,
@@ -53,15 +55,11 @@ from rrr_traj_planner.core.trajectory.trajectory_points import (
     with_start_state,
 )
 
-# Distance up to which a command counts as on a trajectory [rad], [rad/s]; chosen.
-POSITION_TOLERANCE, VELOCITY_TOLERANCE = 1e-9, 1e-6
+# Velocity [rad/s] up to which a command counts as on a trajectory; chosen: far above rounding, and
+# below any velocity that a joint is commanded.
+VELOCITY_TOLERANCE = 1e-6
 
-# Time steps in the torque check of a joining polynomial; tolerance of limits, relative and [rad].
-# Chosen.
-TORQUE_STEPS, LIMIT_TOLERANCE = 32, 1e-6
-
-# Points that are tried at once; chosen.
-BATCH = 256
+BATCH = 256        # points that are tried at once; chosen: 2.5 s of points at 100 Hz
 
 # Factors on the time left until the last point, tried in order if it cannot be met on schedule;
 # chosen.
@@ -175,7 +173,7 @@ def _is_on(takeover: Takeover, motion: ReferenceTrajectory, points: TrajectoryPo
     """Return whether the command is on the motion now; on a line its velocity may differ."""
     state = motion.end_state if motion.end <= takeover.now else motion(takeover.now)
     gap = np.abs(np.subtract(state, takeover.command))
-    if gap[:3].max() > POSITION_TOLERANCE:
+    if gap[:3].max() > JOINT_ROUNDING:
         return False
     i = int(np.searchsorted(points.times, takeover.now - motion.origin, side='right')) - 1
     orders = segment_orders(points)
@@ -209,14 +207,15 @@ def _within_limits(takeover: Takeover, T: Array, ends: tuple[Array, ...]) -> Boo
     c = np.pad(c, ((0, 0), (0, 0), (0, 6 - c.shape[-1])))
     met = np.ones(len(T), dtype=bool)
     for form, (low, high) in zip(bernstein_forms(c, T), _bounds(takeover, ends)):
-        met &= ~leaves(form, low - LIMIT_TOLERANCE, high + LIMIT_TOLERANCE).any(axis=1)
+        met &= ~leaves(form, low - TOLERANCE, high + TOLERANCE).any(axis=1)
     i = np.flatnonzero(met)
-    times = np.linspace(0.0, 1.0, TORQUE_STEPS + 1)[:, np.newaxis, np.newaxis] * T[i, np.newaxis]
+    # Torque is checked at 32 steps of time; chosen.
+    times = np.linspace(0.0, 1.0, 33)[:, np.newaxis, np.newaxis] * T[i, np.newaxis]
     q, qd, qdd = (polynomial(np.moveaxis(c[i], -1, 0), times, order) for order in range(3))
     torque = np.abs(inverse_dynamics(takeover.model, q, qd, qdd))
     allowed = np.maximum(torque[:1], torque[-1:])
     met[i] = (torque <= np.maximum(takeover.limits.max_effort, allowed)
-              * (1.0 + LIMIT_TOLERANCE)).all(axis=(0, 2))
+              * (1.0 + TOLERANCE)).all(axis=(0, 2))
     return met
 
 
@@ -227,7 +226,7 @@ def _bounds(takeover: Takeover, ends: tuple[Array, ...]) -> list[tuple[Array, Ar
                np.maximum(limits.max_position, np.maximum(starts[0], ends[0])))]
     for n, limit in enumerate((limits.max_velocity, limits.max_acceleration), start=1):
         end = np.abs(ends[n]) if n < len(ends) else np.zeros_like(ends[0])
-        most = np.maximum(limit, np.maximum(np.abs(starts[n]), end)) * (1.0 + LIMIT_TOLERANCE)
+        most = np.maximum(limit, np.maximum(np.abs(starts[n]), end)) * (1.0 + TOLERANCE)
         bounds.append((-most, most))
     return bounds
 
@@ -272,7 +271,7 @@ def _gone_to(takeover: Takeover, motion: ReferenceTrajectory) -> Replacement:
         f'moving to the last point requires {torque[i]:.1f} N m at {name}, limit '
         f'{takeover.limits.max_effort[i]:.1f} N m: holding position'
         for i, name in enumerate(takeover.model.joint_names)
-        if torque[i] > takeover.limits.max_effort[i] * (1.0 + LIMIT_TOLERANCE))
+        if torque[i] > takeover.limits.max_effort[i] * (1.0 + TOLERANCE))
     return Replacement(stopped if unmet else moved, warnings + unmet, bool(unmet))
 
 

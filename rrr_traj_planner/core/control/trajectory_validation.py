@@ -32,7 +32,8 @@ from rrr_traj_planner.core.errors import format_distinct, InvalidInputError
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.trajectory.trajectory_points import FLOAT_EPSILON, TrajectoryPoints
 
-# Largest value accepted [rad], [rad/s], [rad/s^2]: excludes overflow in later computations.
+# Largest value accepted [rad], [rad/s], [rad/s^2]: excludes overflow in later
+# computations; chosen far above any arm's.
 LARGEST = 1e6
 
 FIELDS = ('positions', 'velocities', 'accelerations')

@@ -35,7 +35,7 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 MOST_TURNS = 5  # candidates at each point, the nearest: bounds the work in wide ranges; chosen
 
 # Tie-breakers among turns of equal time: least travel, then a beginning near 0. So small that they
-# hardly change the order of different times.
+# hardly change the order of different times; chosen.
 TRAVEL, BEGINNING = 1e-6, 1e-9  # s/rad
 
 

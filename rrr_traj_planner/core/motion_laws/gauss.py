@@ -35,17 +35,13 @@ from rrr_traj_planner.core.motion_laws.transition_shape import Curve, Transition
 from rrr_traj_planner.core.scalars import positive, whole_number
 from scipy.special import erf
 
-# k [sigma]. Up to 2 sigma the Maclaurin series needs order 9 for an error below a thousandth of
-# the peak, the accuracy required in appendix A.
+# k [sigma], of appendix A: up to it the Maclaurin series needs order 9 for an error below a
+# thousandth of the peak, the accuracy required there.
 HALF_WIDTH = 2.0
-NEEDED_ORDER = 9
 
 # Range of half widths [sigma] outside which rounding spoils the lowered function or its powers
 # overflow, and the highest order, whose last coefficient is 1e-188.
 LEAST_WIDTH, MOST_WIDTH, MOST_ORDER = 0.1, 100.0, 100
-
-# Rounding of a polynomial's zeros: imaginary part of a real one, distance of another zero from 0.
-REAL_ZERO, POSITIVE_ZERO = 1e-9, 1e-6
 
 
 def maclaurin(u: Any, order: int) -> Array:
@@ -226,8 +222,9 @@ def _width(half_width: Any) -> float:
 def _inner_zeros(polynomial: Polynomial, end: float) -> Array:
     """Return the zeros of a polynomial strictly between 0 and an end."""
     zeros = polynomial.roots()
-    real = zeros.real[np.abs(zeros.imag) < REAL_ZERO]
-    return np.asarray(real[(real > POSITIVE_ZERO) & (real < end)])
+    # Rounding of zeros: imaginary part of a real one, distance of another from 0.
+    real = zeros.real[np.abs(zeros.imag) < 1e-9]
+    return np.asarray(real[(real > 1e-6) & (real < end)])
 
 
 GAUSS = gauss()

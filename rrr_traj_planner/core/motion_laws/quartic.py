@@ -24,10 +24,6 @@ from __future__ import annotations
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.transition_shape import TransitionShape
 
-# Of a transition of 1 rad/s in 1 s: velocity 3 s^2 - 2 s^3, at s = 1/2 and at the ends.
-PEAK_ACCELERATION = 1.5  # rad/s^2
-PEAK_JERK = 6.0          # rad/s^3
-
 
 def _acceleration(s: Array) -> Array:
     return 6.0 * s * (1.0 - s)
@@ -46,4 +42,5 @@ def _jerk(s: Array) -> Array:
 
 
 QUARTIC = TransitionShape('quartic', _acceleration, _velocity, _position, _jerk,
-                          PEAK_ACCELERATION, PEAK_JERK)
+                          peak_acceleration=1.5,  # at s = 1/2
+                          peak_jerk=6.0)          # at the ends

@@ -27,9 +27,6 @@ from math import sqrt
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.transition_shape import TransitionShape
 
-PEAK_ACCELERATION = 15.0 / 8.0    # (C.11): the transition lasts 2 T = 1.875 |change| / peak
-PEAK_JERK = 10.0 / sqrt(3.0)      # at t = T / sqrt(3), where (1 - x^2) x is largest
-
 
 def _acceleration(s: Array) -> Array:
     product = s * (1.0 - s)
@@ -50,4 +47,7 @@ def _jerk(s: Array) -> Array:
 
 
 SEPTIC = TransitionShape('septic', _acceleration, _velocity, _position, _jerk,
-                         PEAK_ACCELERATION, PEAK_JERK)
+                         # (C.11): the transition lasts 2 T = 1.875 |change| / peak
+                         peak_acceleration=15.0 / 8.0,
+                         # at t = T / sqrt(3), where (1 - x^2) x is largest
+                         peak_jerk=10.0 / sqrt(3.0))

@@ -25,8 +25,6 @@ from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
-IN_PLANE = 1e-12  # of the path's extent: distance from a plane that counts as rounding
-
 
 class AxisPlanes(NamedTuple):
     """
@@ -168,7 +166,8 @@ def common_plane(points: Array) -> Array | None:
         return np.zeros(2)
     outward = np.asarray(points[r.argmax(), :2] / r.max())
     across = points[off_axis, :2] @ (outward[1], -outward[0])
-    if (np.abs(across) > IN_PLANE * np.ptp(points, axis=0).max()).any():
+    # A smaller distance from the plane, as a part of the path's extent, is rounding.
+    if (np.abs(across) > 1e-12 * np.ptp(points, axis=0).max()).any():
         return None
     return outward if points[off_axis.argmax(), :2] @ outward > 0.0 else -outward
 

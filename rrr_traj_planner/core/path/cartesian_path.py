@@ -31,7 +31,6 @@ from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 # Zones of which both length and turn are no larger than these are omitted: rounding.
 SHORTEST_ZONE = 1e-13  # m
 SMALLEST_TURN = 5e-13  # rad, to either side of the via point
-ENDS_ROUNDING = 1e-9   # of the path's length, by which a path coordinate may be beyond its ends
 STEPS_PER_PIECE = 24   # of the path, in `grid`; chosen
 
 
@@ -208,7 +207,8 @@ class CartesianPath(ReadOnlyArrays):
 
     def _on_path(self, s: Array) -> Array:
         """Return path coordinates, clipped to the path's ends where rounding put them beyond."""
-        tolerance = ENDS_ROUNDING * self.length
+        # A path coordinate no further beyond an end was put there by rounding.
+        tolerance = 1e-9 * self.length
         bad = ~((s >= -tolerance) & (s <= self.length + tolerance))
         if bad.any():
             wrong, first, last = format_distinct(s[bad][0], 0.0, self.length)

@@ -38,11 +38,10 @@ from rrr_traj_planner.core.path.zone_kind import ZoneKind
 # Growth of radii; all values are chosen.
 MAX_GROWTH = 1.5    # largest factor from one step to the next
 MIN_GROWTH = 1.005  # a zone that cannot grow by this factor touches a neighbour
-REGROWTH = 1.05     # first factor of a later pass
+REGROWTH = 1.05     # first factor of a second pass: blocked zones may grow where neighbours grew
 NEIGHBOURHOOD = 12  # zones to either side of an infeasible line whose growth it slows
 OFFENDER_FRACTION = 0.5  # of the largest error, from which a line counts as infeasible
 TIE_TOLERANCE = 1e-4     # of a leg, by which the slack of zones that stop together may differ
-PASSES = 2               # of growth: blocked zones grow again where neighbours grew later
 LEAST_FRACTION = 0.5 ** 60  # of the requested radius, the smallest that is tried
 GROWTH_STEPS, MOST_ZONE_STEPS = 1000, 60_000  # at most; the second over the number of zones
 COARSE = Accuracy(1e-8, 1e-8, 10, 3)  # of lines while radii grow
@@ -114,7 +113,7 @@ def _grown(points: Array, radii: Array, kind: ZoneKind, least: Fitted,
     """Return radii grown from smaller ones until zones touch."""
     fraction, lines = least.radii / radii, least.lines
     steps = min(GROWTH_STEPS, MOST_ZONE_STEPS // len(fraction))
-    for first_growth in (MAX_GROWTH,) + (PASSES - 1) * (REGROWTH,):
+    for first_growth in (MAX_GROWTH, REGROWTH):
         growing, factor = fraction < 1.0, np.full(len(fraction), first_growth)
         while growing.any() and steps and not should_stop():
             steps -= 1

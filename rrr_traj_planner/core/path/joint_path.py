@@ -29,7 +29,6 @@ from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 # Distance from joint axis 1 or from an edge of the workspace below which a tip position counts as
 # a singularity: would need unbounded velocity.
-LEAST_CLEARANCE = TIP_ROUNDING  # m
 
 
 def joint_path(model: RobotModel, limits: JointLimits,
@@ -100,15 +99,15 @@ def refuse_singular(model: RobotModel, p: Array) -> None:
     """
     W = np.linalg.norm(p - (0.0, 0.0, model.d1), axis=1)
     least, most = model.reach
-    miss = np.maximum(W - most, least - W) + LEAST_CLEARANCE
+    miss = np.maximum(W - most, least - W) + TIP_ROUNDING
     for i in np.flatnonzero(miss > 0.0):
         distance, lowest, highest = format_distinct(W[i], least, most)
         raise UnreachableError(
             f'sample {i} is {distance} m from the shoulder, must be within {lowest} to '
-            f'{highest} m', distance=max(float(miss[i]) - LEAST_CLEARANCE, 0.0))
+            f'{highest} m', distance=max(float(miss[i]) - TIP_ROUNDING, 0.0))
     r = np.hypot(p[:, 0], p[:, 1])
-    for i in np.flatnonzero(r < LEAST_CLEARANCE):
+    for i in np.flatnonzero(r < TIP_ROUNDING):
         raise LimitViolationError(
             f'sample {i} is on joint axis 1 (singularity): {model.joint_names[0]} would need '
             'unbounded velocity',
-            model.joint_names[0], float(r[i]), LEAST_CLEARANCE)
+            model.joint_names[0], float(r[i]), TIP_ROUNDING)

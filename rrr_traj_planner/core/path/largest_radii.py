@@ -36,7 +36,6 @@ Family = Callable[[Array, ArrayLike], CartesianPath]
 
 MOST_LENGTHS = 10.0  # largest radius over the polyline's length, for slight turns; chosen
 GROWTH_ROUNDS = 30   # in which radii may grow; then as many in which they only shrink. Chosen
-MOST_POWER = 4.0     # largest exponent p in the model deviation ~ radius^p
 TOLERANCE = 1e-4     # relative, by which the deviation may stay below its bound; chosen
 
 
@@ -154,4 +153,5 @@ def _power(before: CartesianPath, path: CartesianPath, known: Array) -> Array:
         larger = np.log(path.radii / before.radii)
         found = np.log(path.deviation / before.deviation) / larger
     usable = np.isfinite(found) & (np.abs(larger) > TOLERANCE)
-    return np.where(usable, np.clip(found, 1.0, MOST_POWER), known)
+    # Exponents p of the model deviation ~ radius^p are 1 to 4; chosen.
+    return np.where(usable, np.clip(found, 1.0, 4.0), known)

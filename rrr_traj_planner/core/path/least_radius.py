@@ -34,6 +34,7 @@ from rrr_traj_planner.core.scalars import not_negative, positive
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
 
+# Chosen values.
 UNIT_TOLERANCE = 1e-9     # of the directions' lengths and of their right angle
 SINGULAR = 1e-9           # relative volume of the Jacobian below which a pose is singular
 LIMIT_ROUNDING = 1e-12    # relative, for a limit that is just met

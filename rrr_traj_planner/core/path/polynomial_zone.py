@@ -45,10 +45,8 @@ ACROSS = np.array([[10.0, 5.0], [10.0, -15.0], [-20.0, 10.0]]) / 16.0
 # Terms of the series of the zone's length: exact to rounding up to turns of 179 degrees.
 LENGTH_TERMS = 30
 
-# Smallest half turn [rad], which replaces smaller ones: a straight zone has no length.
-LEAST_ANGLE = 1e-60
-
-# Largest number of Halley steps from length to parameter; two are taken, up to 179.9 degrees.
+# Chosen: largest number of Halley steps from length to parameter; two are taken, up to 179.9
+# degrees.
 INVERSIONS = 30
 LAST_STEP = 1e-5  # of the parameter: the error after a step is of the order of its cube
 
@@ -161,7 +159,7 @@ class PolynomialZones(ReadOnlyArrays):
 
 def _quintic(angle: Array) -> _Quintic:
     """Return the zone of least radius 1 for each half turn."""
-    angle = np.maximum(angle, LEAST_ANGLE)
+    angle = np.maximum(angle, 1e-60)  # a straight zone has no length
     c, s = np.cos(angle), np.sin(angle)
     alpha = 1.0 - c * np.polynomial.polynomial.polyval(c, ALPHA)
     beta = 1.0 - c * np.polynomial.polynomial.polyval(c, BETA)

@@ -30,12 +30,10 @@ from scipy.linalg import solve_banded
 
 DIFFERENCE = 1e-7   # rad, step of the numerical derivative: root of the rounding, some 1e-15
 LARGEST_STEP = 0.3  # rad, largest turn of a line in an iteration; chosen
-LEAST_ANGLE = 1e-300  # rad, avoids a division by zero
 
 # Each line's error depends on its own direction and its two neighbours' alone: in the numerical
 # derivative, every third line is turned together.
 COLOURS = 3
-NEXT, AFTER = np.array([1, 2, 0]), np.array([2, 0, 1])  # cyclic permutations of x, y, z
 BAND = 3  # half bandwidth of the matrix: 2 components of 3 lines
 
 
@@ -217,7 +215,7 @@ def frames(first: Array, second: Array) -> tuple[Array, Array]:
 def _damped(points: Array, radii: Array, kind: ZoneKind, lines: Tangents, basis: Array,
             step: Array, miss: float, halvings: int) -> Tangents | None:
     """Return the lines after the largest halving of a step that reduces their error, or None."""
-    fraction = min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), LEAST_ANGLE))
+    fraction = min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
     for _ in range(halvings):
         tried = tangents(points, radii, kind, _turned(lines.direction, basis, fraction * step))
         if _largest(_misses(tried, _basis(tried.direction))) < miss:
@@ -282,7 +280,8 @@ def _basis(direction: Array) -> Array:
 
 def _cross(a: Array, b: Array) -> Array:
     """Return products of vectors, many times faster than `numpy.cross`."""
-    return np.asarray(a[..., NEXT] * b[..., AFTER] - a[..., AFTER] * b[..., NEXT])
+    y, z = [1, 2, 0], [2, 0, 1]  # cyclic permutations: what is y and z for x, y, z
+    return np.asarray(a[..., y] * b[..., z] - a[..., z] * b[..., y])
 
 
 def _unit(vectors: Array) -> Array:

@@ -40,10 +40,10 @@ from rrr_traj_planner.core.kinematics.joint_ranges import (
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
-from rrr_traj_planner.core.path.joint_path import LEAST_CLEARANCE
-from rrr_traj_planner.core.rounding import JOINT_ROUNDING
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 
-# Intervals that may contain an excursion are halved: largest number of rounds, shortest interval.
+# Intervals that may contain an excursion are halved: largest number of rounds, shortest interval;
+# chosen: 1e-12 of the first, and less than the tip is told apart by.
 BISECTIONS = 40
 SHORTEST_STEP = 1e-9  # m
 
@@ -219,11 +219,11 @@ def _check_reach(model: RobotModel, path: CartesianPath) -> None:
 
     def beyond(s: Array) -> tuple[Array, Array]:
         squared, second_derivative = _two_sided(path, s, shoulder, slice(3))
-        return squared - (most - LEAST_CLEARANCE) ** 2, second_derivative
+        return squared - (most - TIP_ROUNDING) ** 2, second_derivative
 
     def inside(s: Array) -> tuple[Array, Array]:
         squared, second_derivative = _two_sided(path, s, shoulder, slice(3))
-        return (least + LEAST_CLEARANCE) ** 2 - squared, second_derivative
+        return (least + TIP_ROUNDING) ** 2 - squared, second_derivative
 
     for quantity, bound, what in ((beyond, most, "beyond the arm's reach of"),
                                   (inside, least, 'nearer than the arm can fold,')):

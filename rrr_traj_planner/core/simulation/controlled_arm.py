@@ -28,8 +28,6 @@ from rrr_traj_planner.core.stopping.task import MeasuredState, motion_to_brake, 
 from rrr_traj_planner.core.trajectory.reference_trajectory import holding, ReferenceTrajectory
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
-OUTSIDE_NEW_RANGES = 'The motion leaves the new joint ranges: stopping'
-
 
 class ControlledArm(ControlLoop):
     """
@@ -190,7 +188,8 @@ class ControlledArm(ControlLoop):
         """Stop a motion that leaves ranges made smaller."""
         if time_inside(self.motion, self.time, self.settings.limits) < self.motion.end:
             self._stop(self._motion_to_brake())
-            self.stop_warnings = (OUTSIDE_NEW_RANGES, *self.stop_warnings)
+            self.stop_warnings = (
+                'The motion leaves the new joint ranges: stopping', *self.stop_warnings)
 
     def _motion_to_brake(self) -> ReferenceTrajectory:
         """Return the motion that would be braked now."""

@@ -49,10 +49,6 @@ from rrr_traj_planner.core.simulation.root_finding import EVENT_TOLERANCE, locat
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.states import State, Triple
 
-# Largest number of events in a step, chosen; joints in contact or at rest then stay so until its
-# end.
-MOST_EVENTS = 16
-
 
 class Bounds(NamedTuple):
     """Ends of the joints' ranges [rad]."""
@@ -108,7 +104,8 @@ class FrictionDynamics:
 
         """
         hard, left = Bounds(*widened(state, self._low, self._high, self._bumper.width)), h
-        for _ in range(MOST_EVENTS):
+        # Events of a step, chosen; then joints in contact or at rest stay so until its end.
+        for _ in range(16):
             state, load, slip = self._after_impacts(state, torque, hard, SHORTEST_REBOUND * h)
             taken, state = self._until_event(state, load, slip, left, hard)
             left -= taken

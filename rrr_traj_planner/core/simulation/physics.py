@@ -48,12 +48,6 @@ from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from rrr_traj_planner.core.simulation.time_step import free_step, held_step
 from rrr_traj_planner.core.states import State, Triple
 
-# Largest number of impacts in a step, chosen; joints at a stop are then held there until its end.
-MOST_IMPACTS = 8
-
-# Bisections of a step at an impact: 1 ms / 2^40 is 1e-15 s.
-BISECTIONS = 40
-
 
 class ArmPhysics:
     """
@@ -167,7 +161,7 @@ class ArmPhysics:
     def _step_with_stops(self, state: State, torque: Triple, h: float) -> State:
         """Return the state after a step with impacts on stops."""
         (low, high), left = widened(state, self.low, self.high), h
-        for _ in range(MOST_IMPACTS):
+        for _ in range(8):  # in a step, chosen; then joints at a stop are held there until its end
             t, at = self.terms(state), contact(state, low, high)
             qd = state[3:]
             state, lock = self._after_impact(t, state, torque, at, SHORTEST_REBOUND * h)
@@ -226,7 +220,7 @@ class ArmPhysics:
         if _overshoot(after, low, high) <= 0.0:
             return h, after
         before, taken = 0.0, h
-        for _ in range(BISECTIONS):
+        for _ in range(40):  # 1 ms / 2^40 is 1e-15 s
             middle = 0.5 * (before + taken)
             trial = held_step(arm, t, state, torque, middle, lock)
             if _overshoot(trial, low, high) > 0.0:

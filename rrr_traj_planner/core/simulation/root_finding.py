@@ -26,11 +26,10 @@ from typing import TypeVar
 
 Outcome = TypeVar('Outcome')
 
-# Tolerance of an event: largest distance past it [rad], [rad/s].
+# Tolerance of an event: largest distance past it [rad], [rad/s]; chosen: a thousandth of what
+# counts as rounding of a position.
 EVENT_TOLERANCE = 1e-12
 
-# About ten trials are needed; since every fourth is a bisection, this number always suffices.
-MOST_TRIALS = 200
 
 CLEARANCE = 0.02  # of the interval, least distance of a trial from either end; chosen
 
@@ -60,7 +59,7 @@ def locate_event(trial: Callable[[float], Outcome], margin: Callable[[Outcome], 
 
     """
     low, high, at_low, at_high, now, outcome = 0.0, h, first, last, last, trial(h)
-    for n in range(MOST_TRIALS):
+    for n in range(200):  # some ten are needed; every fourth is a bisection: so many suffice
         if now >= -EVENT_TOLERANCE:
             break
         fraction = min(max(at_low / (at_low - at_high), CLEARANCE), 1.0 - CLEARANCE)

@@ -29,8 +29,8 @@ from rrr_traj_planner.core.states import Triple
 SATURATED = 1.01
 
 # Impact speed that is reported [rad/s]; fraction of the motor's torque limit (of its torque if
-# unlimited) from which pressing against a stop is reported. A motion that ends at a stop remains
-# below both, also with an encoder noise of 1e-5 rad.
+# unlimited) from which pressing against a stop is reported; chosen. A motion that ends at a stop
+# remains below both, also with an encoder noise of 1e-5 rad.
 HIT, PRESSED = 0.05, 0.05
 
 # Least torque against a stop that is reported, for any motor [N m]; chosen.

@@ -32,8 +32,6 @@ from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 # the classical Runge-Kutta method) and accurate up to 1.
 LARGEST = 1.0
 
-POSES = 24  # positions of joints 2 and 3 each, over a full turn; chosen
-
 
 def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
                step: float) -> None:
@@ -79,6 +77,7 @@ def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
 
 def _poses() -> Array:
     """Return a grid of the joints on which inertia depends, shape (n, 3)."""
-    angles = np.linspace(-np.pi, np.pi, POSES, endpoint=False)
+    # Positions of joints 2 and 3 each, over a full turn; chosen
+    angles = np.linspace(-np.pi, np.pi, 24, endpoint=False)
     q2, q3 = (x.ravel() for x in np.meshgrid(angles, angles))
     return np.column_stack((np.zeros_like(q2), q2, q3))

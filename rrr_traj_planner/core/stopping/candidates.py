@@ -28,8 +28,9 @@ import numpy as np
 from numpy.typing import NDArray
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.stopping.joint_brake import joint_brake, JointBrake
-from rrr_traj_planner.core.stopping.task import POSITION_TOLERANCE, StopTask
+from rrr_traj_planner.core.stopping.task import StopTask
 from rrr_traj_planner.core.trajectory.quintic_spline import hermite
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
@@ -39,15 +40,8 @@ Indices = NDArray[np.int_]
 # original motion are retained.
 SPACING, LEAST_SPACING = 0.005, 1e-4
 
-# Inversion of s(t), at the original knots: samples for linear interpolation, Newton steps, lower
-# bound on ds/dt.
-INVERSION, NEWTON_STEPS, LEAST_RATE = 2001, 2, 1e-3
-
-# Offset for one-sided limits at a knot [s].
+# Offset for one-sided limits at a knot [s]; chosen: above the rounding of times, below any piece.
 ONE_SIDED = 1e-7
-
-# Fraction of the slow-down spent in each of its two constant-jerk phases; chosen.
-JERK_FRACTION = 1.0 / 3.0
 
 
 class JointBrakes:
@@ -108,8 +102,8 @@ class JointBrakes:
             np.abs(qd) / np.maximum(task.limits.max_velocity, np.abs(qd[:, :1])))
         low, high = task.ranges(q)
         least, greatest = brakes.extremes()
-        outside = ((q + least < low - POSITION_TOLERANCE)
-                   | (q + greatest > high + POSITION_TOLERANCE)).any(axis=(1, 2))
+        outside = ((q + least < low - JOINT_ROUNDING)
+                   | (q + greatest > high + JOINT_ROUNDING)).any(axis=(1, 2))
         worst = np.maximum(ratio.max(axis=(1, 2)), task.holding_torque_ratio(moved[:, -1]))
         return np.where(outside, inf, worst)
 
@@ -162,7 +156,8 @@ class Slowdowns:
 
     def __init__(self, task: StopTask, delays: Array, durations: Array) -> None:
         self.task, self.delays, self.durations = task, delays, durations
-        fraction = JERK_FRACTION if np.isfinite(task.limits.max_jerk).any() else 0.0
+        # Part of the slow-down that each of its two phases of constant jerk takes; chosen.
+        fraction = 1.0 / 3.0 if np.isfinite(task.limits.max_jerk).any() else 0.0
         peak = 1.0 / ((1.0 - fraction) * durations)
         jerk = peak / (fraction * durations) if fraction else np.full(len(durations), inf)
         self.clock = joint_brake(np.ones(len(durations)), np.zeros(len(durations)), peak, jerk)
@@ -224,15 +219,16 @@ class Slowdowns:
     def _knots(self, i: int) -> Array:
         """Return the knots' times: closely spaced, and where the original knots are passed."""
         T, motion, rates = float(self.durations[i]), self.task.motion, self._rates(np.array([i]))
-        t = np.linspace(0.0, T, INVERSION)
+        t = np.linspace(0.0, T, 2001)
         begin = self.task.now + self.delays[i] - motion.origin
         own = motion.knots - begin
         s = rates.at(t[np.newaxis])[0][0]
         own = own[(own > 0.0) & (own < s[-1])]
+        # s(t) inverted: linear interpolation, two Newton steps; near the stop ds/dt is small.
         passed = np.interp(own, s, t)
-        for _ in range(NEWTON_STEPS):
+        for _ in range(2):
             s, sd = (x[0] for x in rates.at(passed[np.newaxis])[:2])
-            passed = passed - (s - own) / np.maximum(sd, LEAST_RATE)
+            passed = passed - (s - own) / np.maximum(sd, 1e-3)
         passed = passed[(passed > LEAST_SPACING) & (passed < T - LEAST_SPACING)]
         grid = np.linspace(0.0, T, 2 + int(T / SPACING))
         near = np.abs(grid[1:-1, np.newaxis] - passed).min(axis=1, initial=T) < LEAST_SPACING

@@ -27,12 +27,10 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.rounding import TIME_ROUNDING
 
 # Least time in which a joint without limits on acceleration and jerk stops [s]; chosen.
 LEAST_TIME = 0.01
-
-# Times no later than this after the end count as the end [s].
-END_ROUNDING = 1e-12
 
 
 class JointBrake(NamedTuple):
@@ -87,7 +85,7 @@ class JointBrake(NamedTuple):
             acceleration = np.where(started, a + x * j, acceleration)
             jerk = np.where(started, j, jerk)
             t = t - T
-        over = t > END_ROUNDING
+        over = t > TIME_ROUNDING
         return displacement, velocity, np.where(over, 0.0, acceleration), np.where(over, 0.0, jerk)
 
     def extremes(self) -> tuple[Array, Array]:

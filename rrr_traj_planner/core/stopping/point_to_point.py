@@ -31,14 +31,10 @@ from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
 from rrr_traj_planner.core.trajectory.quintic_spline import hermite
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
-# Peaks of the quintic over distance d and time T: 1.875 d/T, 5.7735 d/T^2, 60 d/T^3.
-PEAK_VELOCITY, PEAK_ACCELERATION, PEAK_JERK = 15.0 / 8.0, 10.0 / 3.0 ** 0.5, 60.0
-
-# Slow-down factor, number of trials; if none satisfies the torque limits, the fastest whose torque
-# ratio is within HARDLY_MORE of the lowest is used. Chosen.
-SLOWING, SLOWINGS, HARDLY_MORE = 1.2, 40, 1.1
-
-TORQUE_SAMPLES = 41  # of a move, at which torques are compared; chosen
+# Factors on the least time that are tried; if none satisfies the torque limits, the fastest whose
+# torque ratio is within HARDLY_MORE of the lowest is used. Chosen.
+SLOWINGS = 1.2 ** np.arange(40.0)
+HARDLY_MORE = 1.1
 
 
 class Move(NamedTuple):
@@ -115,11 +111,12 @@ def _duration(start: Array, target: Array, limits: JointLimits,
     """Return how long a move takes [s], and its largest torques [N m]."""
     distance = np.abs(target - start)
     least = max(LEAST_TIME, float(np.max((
-        PEAK_VELOCITY * distance / limits.max_velocity,
-        np.sqrt(PEAK_ACCELERATION * distance / limits.max_acceleration),
-        np.cbrt(PEAK_JERK * distance / limits.max_jerk)))))
-    T = least * SLOWING ** np.arange(SLOWINGS)
-    s = np.linspace(0.0, 1.0, TORQUE_SAMPLES)[:, np.newaxis]
+        15.0 / 8.0 * distance / limits.max_velocity,
+        np.sqrt(10.0 / 3.0 ** 0.5 * distance / limits.max_acceleration),
+        np.cbrt(60.0 * distance / limits.max_jerk)))))
+    T = least * SLOWINGS
+    # where torques are compared; chosen
+    s = np.linspace(0.0, 1.0, 41)[:, np.newaxis]
     q = start + (10.0 - 15.0 * s + 6.0 * s ** 2) * s ** 3 * (target - start)
     qd = 30.0 * (s * (1.0 - s)) ** 2 * (target - start) / T[:, np.newaxis, np.newaxis]
     qdd = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) * (target - start) / (

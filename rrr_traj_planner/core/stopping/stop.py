@@ -31,6 +31,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.stopping.candidates import Indices, JointBrakes, Slowdowns
 from rrr_traj_planner.core.stopping.joint_brake import greatest_deceleration
 from rrr_traj_planner.core.stopping.point_to_point import extended_by_move, quickest
@@ -39,11 +40,13 @@ from rrr_traj_planner.core.stopping.stop_warnings import (
     range_warnings,
     torque_warnings,
 )
-from rrr_traj_planner.core.stopping.task import POSITION_TOLERANCE, StopTask, time_inside
+from rrr_traj_planner.core.stopping.task import (
+    FINE,
+    LIMIT_TOLERANCE,
+    StopTask,
+    time_inside,
+)
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
-
-# Velocity below which a joint counts as at rest at the end of a motion [rad/s].
-REST = 1e-6
 
 # Candidate delays before braking: geometric sequence from FIRST_DELAY [s] with ratio DELAY_RATIO.
 # This and the next two sequences are chosen.
@@ -60,12 +63,12 @@ SLOWDOWNS = 0.01 * 1.3 ** np.arange(30.0)
 PATIENCE = 2.5
 JERK_FACTORS = ((4.0, 1.5), (inf, 2.5))
 
-# Batch size of candidates; time samples of the coarse and of the fine check.
-GROUP, COARSE, FINE = 48, 25, 241
-LIMIT_TOLERANCE = 1e-4  # relative, up to which a limit counts as satisfied
+# Candidates that are checked at once, and time samples of the coarse check, which rules out most
+# of them before the fine one; chosen.
+GROUP, COARSE = 48, 25
 
 # A joint that would have to stop in less time than this is stopped instantaneously (velocity
-# step) [s].
+# step) [s]; chosen: one period of a controller at 1 kHz, which could not follow a ramp within it.
 INSTANT = 1e-3
 
 
@@ -161,7 +164,7 @@ def stop(motion: ReferenceTrajectory, now: float, limits: JointLimits, model: Ro
         found, more = _within_ranges(task)
         warnings += more
     target = np.clip(found.final, limits.min_position, limits.max_position)
-    if np.abs(target - found.final).max() > POSITION_TOLERANCE:
+    if np.abs(target - found.final).max() > JOINT_ROUNDING:
         found = extended_by_move(found, target, limits, model).motion
     found = ReferenceTrajectory(found.knots, found.coefficients, target, found.origin_ns)
     return Stop(found, tuple(warnings))
@@ -231,7 +234,8 @@ def _end(motion: ReferenceTrajectory, now: float, qd: Array,
     """Return the state at a motion's end, from which a stop there starts."""
     if motion.ends_moving:
         return motion.final, motion.final_velocity, motion.final_acceleration
-    rests = now >= motion.end or bool(np.abs(qd).max() <= REST)
+    # At rest: 1e-6 rad/s, 1e-9 rad in a millisecond; chosen.
+    rests = now >= motion.end or bool(np.abs(qd).max() <= 1e-6)
     return (motion.final, np.zeros(3), np.zeros(3)) if rests else (motion.final, qd, qdd)
 
 

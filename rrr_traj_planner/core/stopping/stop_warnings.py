@@ -22,14 +22,16 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.stopping.task import MeasuredState, StopTask
+from rrr_traj_planner.core.stopping.task import (
+    FINE,
+    LIMIT_TOLERANCE,
+    MeasuredState,
+    StopTask,
+)
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
 # Velocities [rad/s] and range violations [rad] below these are not reported; chosen.
 SLOW, NEAR = 0.01, 1e-4
-
-# Relative excess of a limit from which it is reported; time samples of torques. As in `stop`.
-TOLERANCE, TORQUE_SAMPLES = 1e-4, 241
 
 
 def deceleration_warnings(task: StopTask, q: Array, qd: Array, needed: Array) -> list[str]:
@@ -53,7 +55,7 @@ def deceleration_warnings(task: StopTask, q: Array, qd: Array, needed: Array) ->
     limits, warnings = task.limits, []
     source = 'measured' if isinstance(task.motion, MeasuredState) else 'commanded'
     for i, name in enumerate(task.model.joint_names):
-        if needed[i] > limits.max_acceleration[i] * (1.0 + TOLERANCE) and (
+        if needed[i] > limits.max_acceleration[i] * (1.0 + LIMIT_TOLERANCE) and (
                 abs(qd[i]) > SLOW):
             how = (f'brakes with {needed[i]:.4g} rad/s^2, limit '
                    f'{limits.max_acceleration[i]:.4g} rad/s^2, to rest inside it'
@@ -80,13 +82,13 @@ def torque_warnings(task: StopTask, motion: ReferenceTrajectory) -> list[str]:
         A sentence for each of them.
 
     """
-    q, qd, qdd, _ = motion.at(np.linspace(task.now, motion.end, TORQUE_SAMPLES))
+    q, qd, qdd, _ = motion.at(np.linspace(task.now, motion.end, FINE))
     peak = np.maximum(np.abs(inverse_dynamics(task.model, q, qd, qdd)).max(axis=0),
                       np.abs(gravity_torque(task.model, motion.final)))
     return [f'stopping requires {peak[i]:.1f} N m at {name}, limit '
             f'{task.limits.max_effort[i]:.1f} N m'
             for i, name in enumerate(task.model.joint_names)
-            if peak[i] > task.limits.max_effort[i] * (1.0 + TOLERANCE)]
+            if peak[i] > task.limits.max_effort[i] * (1.0 + LIMIT_TOLERANCE)]
 
 
 def range_warnings(task: StopTask, q: Array) -> list[str]:

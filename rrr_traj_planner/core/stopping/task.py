@@ -24,14 +24,18 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.states import Desired, State
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
-# Range violation treated as rounding, and the same for a motion touching a range's end [rad].
-POSITION_TOLERANCE, TOUCH = 1e-9, 1e-6
+# A motion that exceeds a range's end by no more than this touches it [rad]; chosen: as much as the
+# points of a planned motion may exceed it by.
+TOUCH = 1e-6
 
-# Time samples of the range check.
-RANGE_SAMPLES = 1001
+# What candidates must keep: limits to a relative tolerance, at so many samples of time. Chosen:
+# warnings use both, so that a stop that was accepted gives none.
+LIMIT_TOLERANCE, FINE = 1e-4, 241
+
 
 # Tracking error above which the measured state is braked instead of the command: command outside
 # the ranges, inside [rad]; chosen.
@@ -115,8 +119,8 @@ class StopTask:
 
         """
         low, high = self.limits.min_position, self.limits.max_position
-        return (np.where(q < low - POSITION_TOLERANCE, q - TOUCH, low),
-                np.where(q > high + POSITION_TOLERANCE, q + TOUCH, high))
+        return (np.where(q < low - JOINT_ROUNDING, q - TOUCH, low),
+                np.where(q > high + JOINT_ROUNDING, q + TOUCH, high))
 
 
 def time_inside(motion: ReferenceTrajectory, now: float, limits: JointLimits) -> float:
@@ -138,7 +142,8 @@ def time_inside(motion: ReferenceTrajectory, now: float, limits: JointLimits) ->
         Its end, if it never leaves them; -inf, if it is outside already [s].
 
     """
-    times = np.linspace(now, max(now, motion.end), RANGE_SAMPLES)
+    # 1 ms apart in a motion of a second; chosen.
+    times = np.linspace(now, max(now, motion.end), 1001)
     q = motion.at(times)[0]
     outside = ((q < limits.min_position - TOUCH) | (q > limits.max_position + TOUCH)).any(axis=1)
     if not outside.any():

@@ -25,9 +25,6 @@ from math import comb
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 
-# Bisections after which a polynomial that touches a bound counts as within it; chosen.
-MOST_BISECTIONS = 24
-
 # From coefficients of 1, s, ..., s^5 to Bernstein's on [0, 1]: C(i, k) / C(5, k).
 QUINTIC = np.array([[comb(i, k) / comb(5, k) for i in range(6)] for k in range(6)])
 
@@ -123,7 +120,8 @@ def leaves(form: Array, low: Array, high: Array) -> BoolArray:
     low, high = (np.broadcast_to(x, form.shape[:-1]).reshape(-1, 1) for x in (low, high))
     out = np.zeros(len(low), dtype=bool)
     index, parts = np.arange(len(low)), form.reshape(len(low), -1)
-    for _ in range(MOST_BISECTIONS):
+    # Bisections, chosen; then a polynomial that touches a bound counts as within it.
+    for _ in range(24):
         beyond = (parts < low[index]) | (parts > high[index])
         out[index[beyond[:, 0] | beyond[:, -1]]] = True
         doubtful = beyond.any(axis=1) & ~out[index]

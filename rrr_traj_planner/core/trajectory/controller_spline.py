@@ -35,7 +35,7 @@ from rrr_traj_planner.core.trajectory.quintic_spline import QuinticSpline
 from rrr_traj_planner.core.trajectory.time_scaling import squared_time_scale
 
 # Tolerances promised are 0.1 % of a limit and 1e-6 rad of a range; the dense check may miss the
-# difference to these.
+# difference to these: a fifth of it, chosen.
 SPLINE_TOLERANCE = 8e-4  # relative
 RANGE_TOLERANCE = 8e-7   # rad
 

@@ -26,7 +26,8 @@ from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.trajectory import Peaks
 
-# Relative; every motion that the package returns satisfies its limits to this tolerance.
+# Relative; every motion that the package returns satisfies its limits to this tolerance. Chosen:
+# more than planners allow themselves.
 TOLERANCE = 1e-6
 
 

@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, parameter_values
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
+from rrr_traj_planner.core.rounding import TIME_ROUNDING
 from rrr_traj_planner.core.trajectory.pieces import Pieces
 from rrr_traj_planner.core.trajectory.trajectory import (
     ending_at_duration,
@@ -36,13 +37,12 @@ from rrr_traj_planner.core.trajectory.trajectory import (
 # Safeguarded Newton iteration for zeros in [0, 1] (Press et al., Numerical Recipes, section 9.4):
 # a step that leaves the bracket is replaced by a bisection. At a zero of velocity an error e of
 # the normalised time changes the position by O(e^2).
-MOST_STEPS = 60
+MOST_STEPS = 60        # chosen: bisections alone would reach 1e-18
 ZERO_TOLERANCE = 1e-9  # of the normalised time
 
-# Rounding of sums of durations: joints' durations and via times beyond the end [s, and relative
-# to longer durations]; knots of different joints that are the same.
+# Difference of the joints' durations, and of a via time beyond the end, that is accepted [s, and
+# relative to longer durations]; chosen: a nanosecond, the resolution of messages.
 DURATION_ROUNDING = 1e-9
-KNOT_ROUNDING = 1e-12
 
 
 class JointProfile(ReadOnlyArrays):
@@ -249,7 +249,7 @@ class PiecewiseTrajectory(Trajectory):
         """Return the ends of all joints' pieces; see `Trajectory`."""
         joined = np.sort(np.concatenate([p.knots for p in self.profiles]))
         joined = np.minimum(joined, self.duration)
-        apart = np.diff(joined) > KNOT_ROUNDING * max(1.0, self.duration)
+        apart = np.diff(joined) > TIME_ROUNDING * max(1.0, self.duration)
         knots = np.concatenate((joined[:1], joined[1:][apart]))
         knots[-1] = self.duration
         return knots

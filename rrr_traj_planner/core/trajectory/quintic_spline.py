@@ -25,8 +25,6 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, bound_array, IntArray
 from rrr_traj_planner.core.trajectory.trajectory_points import segment_orders, TrajectoryPoints
 
-ORDERS = (1, 3, 5)  # degrees of the polynomials
-
 
 class QuinticSpline:
     """
@@ -183,7 +181,7 @@ def segment_coefficients(points: TrajectoryPoints, orders: IntArray) -> Array:
     states = (points.positions, points.velocities, points.accelerations)
     coefficients = np.zeros((6, len(orders), 3))
     T = np.diff(points.times)[:, np.newaxis]
-    for known, order in enumerate(ORDERS, start=1):
+    for known, order in enumerate((1, 3, 5), start=1):  # degrees of the polynomials
         i = np.flatnonzero(orders == order)
         coefficients[:order + 1, i] = hermite(
             T[i], tuple(s[i] for s in states[:known]), tuple(s[i + 1] for s in states[:known]))

@@ -35,7 +35,9 @@ LEAST_GAP = 0.1  # of the period, between a regular sample and a via point's; ch
 # interval; with the step at a sixth of the interval (STEP_FRACTION) the overshoot is least, 5 % of
 # the step.
 STEP_FRACTION, STEP_OVERSHOOT = 1.0 / 6.0, 0.0501
-STEP_GAP = 0.3  # of the period, between a step and a regular point: bounds the quintic's jerk
+# Least time between a step and a regular point, over the period: bounds the quintic's jerk.
+# Chosen.
+STEP_GAP = 0.3
 
 # Default limit on the number of points, which bounds the memory used; chosen.
 MOST_POINTS = 200_000

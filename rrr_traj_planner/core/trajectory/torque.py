@@ -32,7 +32,9 @@ from rrr_traj_planner.core.trajectory.time_scaling import (
 from rrr_traj_planner.core.trajectory.trajectory import times_within, Trajectory
 
 # Torque is analytic between knots. With this many steps there, none longer than LONGEST_STEP
-# unless MOST_STEPS are reached (slow motions), every high peak has a bracket of its own.
+# unless MOST_STEPS are reached (slow motions), high peaks have brackets of their own. Chosen: of
+# 32 random motions 2 then have a peak that is too low by over 1e-6 (relative; the worst 4e-5), 5
+# with steps four times as long, half as many.
 STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s

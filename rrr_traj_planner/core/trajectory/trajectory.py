@@ -26,11 +26,11 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
+from rrr_traj_planner.core.rounding import TIME_ROUNDING
 from rrr_traj_planner.core.scalars import positive
 
 Same = TypeVar('Same', bound='Trajectory')
 
-DURATION_ROUNDING = 1e-12  # relative, of a sum of durations
 
 # Range of time-scaling factors, chosen so that the factor's fourth power is a normal float.
 LEAST_FACTOR, MOST_FACTOR = 1e-30, 1e30
@@ -228,7 +228,7 @@ def ending_at_duration(times: Array, duration: float) -> Array:
         Read-only. In a motion of a week rounding exceeds a nanosecond.
 
     """
-    found = np.where(np.abs(times - duration) <= DURATION_ROUNDING * duration, duration, times)
+    found = np.where(np.abs(times - duration) <= TIME_ROUNDING * duration, duration, times)
     found.setflags(write=False)
     return found
 

@@ -34,7 +34,7 @@ from rrr_traj_planner.planners.transitions.segment_motion import joint_profiles
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
-ROUNDING = 1e-9  # part of a limit up to which exceeding it is rounding
+ROUNDING = 1e-9  # part of a limit, or of a line, up to which exceeding it is rounding; chosen
 
 # Uncertainty of a change of velocity, as a part of the slower line's velocity (much more than
 # 2^-52). The difference of two nearly equal velocities is rounding only: a transition that is just

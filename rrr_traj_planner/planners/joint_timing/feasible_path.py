@@ -34,12 +34,10 @@ from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN
 from scipy import sparse
 from scipy.sparse import csgraph
 
+RANGE_MARGIN = 4e-10  # rad, for the rounding of points at the end of a range: less than EDGE
 # Chosen values.
-RANGE_MARGIN = 4e-10    # rad, for the rounding of points at the end of a range
-CELLS = (48, 400)       # of each of the two joints; the finer grid where the coarser has no path
-SAMPLES = 40            # of a leg, at which gravity's torque is checked
-RETAINED_MARGINS = (0.7, 0.3, 0.0)  # part of the torque margin that a shortcut must retain
-NEIGHBOURS = ((1, 0), (0, 1), (1, 1), (1, -1))  # of a cell, by rows and columns: half of all eight
+CELLS = (48, 400)     # of each of the two joints; the finer grid where the coarser has no path
+SAMPLES = 40          # of a leg, at which gravity's torque is checked
 
 
 def gravity_ratio(model: RobotModel, limits: JointLimits, q: Array) -> Array:
@@ -91,7 +89,7 @@ def statically_feasible_path(task: JointTask, start: Array, end: Array,
         path = _grid_path(task, start, end, cells)
         if path is None:
             continue
-        for retained in RETAINED_MARGINS:
+        for retained in (0.7, 0.3, 0.0):  # part of the torque margin that a shortcut must retain
             corners = _shortcut(task, path, retained)
             if corners is not None and len(corners) <= most_legs + 1:
                 return path[corners]
@@ -134,7 +132,8 @@ def _graph(q: Array, ratio: Array) -> sparse.csr_array:
     weight = 1.0 / np.sqrt(np.maximum(1.0 - ratio, HOLDING_MARGIN))
     open_ = ratio < 1.0 - HOLDING_MARGIN
     ends, lengths = [], []
-    for rows, columns in NEIGHBOURS:
+    # Half of a cell's eight neighbours, by rows and columns: the others have it as theirs.
+    for rows, columns in ((1, 0), (0, 1), (1, 1), (1, -1)):
         here, there = _pairs(ratio.shape, rows, columns)
         both = open_[here] & open_[there]
         step = np.hypot(*np.moveaxis((q[there] - q[here])[..., 1:], -1, 0))

@@ -22,14 +22,12 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.rounding import JOINT_ROUNDING
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIME_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import peak_torque
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 from rrr_traj_planner.planners.torque_scaling import torque_time_scale
-
-TIME_ROUNDING = 1e-12  # s, between a via time and the same knot of a profile
 
 
 def fitted(task: JointTask, trajectory: PiecewiseTrajectory,

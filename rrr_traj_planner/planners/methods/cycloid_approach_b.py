@@ -37,19 +37,16 @@ from rrr_traj_planner.planners.blends.blend_motion import (
     trajectory,
 )
 from rrr_traj_planner.planners.blends.blend_timing import fastest
-from rrr_traj_planner.planners.prescribed_by_search import (
+from rrr_traj_planner.planners.registration import register
+from rrr_traj_planner.planners.tasks import JointTask
+from rrr_traj_planner.planners.torque_scaling import slowed_for_torque
+from rrr_traj_planner.planners.transitions.prescribed_by_search import (
     feasible_motion,
     least_durations_except_dwells,
     within_torque,
 )
-from rrr_traj_planner.planners.registration import register
-from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.torque_scaling import slowed_for_torque
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of, ViaProblem
-
-NEWTON_STEPS = 60  # at most: convergence is quadratic, slower near a double root
-LAST_DIGIT = 1e-15  # part of a duration, step at which Newton's method has converged
 
 
 @register('cycloid_approach_b', misses_via_points=True, passing=ViaPointBehaviour('blend'))
@@ -116,7 +113,7 @@ def _lines(law: TransitionLaw, D: Array, durations: Array) -> Array | None:
     share[-1] += 0.5
     T, held = durations.copy(), (share * np.abs(D).max(axis=1)) > 0.0
     for k in np.flatnonzero(held):
-        for _ in range(NEWTON_STEPS):
+        for _ in range(60):  # convergence is quadratic, slower near a double root
             each = law.least_time(D[k] / T[k])
             j = int(each.argmax())
             rate = law.slope[j] * abs(D[k, j]) / T[k]  # t by the acceleration limit
@@ -129,6 +126,6 @@ def _lines(law: TransitionLaw, D: Array, durations: Array) -> Array | None:
             T[k] -= step
             if T[k] <= 0.0:
                 return None
-            if step <= LAST_DIGIT * T[k]:
+            if step <= 1e-15 * T[k]:  # converged to the last digit
                 break
     return T

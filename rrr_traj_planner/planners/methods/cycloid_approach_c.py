@@ -34,7 +34,12 @@ from rrr_traj_planner.planners.stops.stops_at_via_points import (
     stopping_motion,
 )
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.segment_motion import Parts, quick_parts, trajectory
+from rrr_traj_planner.planners.transitions.segment_motion import (
+    Parts,
+    quick_parts,
+    Segments,
+    trajectory,
+)
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
 
@@ -66,7 +71,8 @@ def plan(task: JointTask) -> Trajectory:
     problem = via_problem_of(task, CYCLOID)
     quick = kinematic_durations(task, problem.rest_to_rest_times())
     rest = np.zeros_like(problem.displacements)
-    parts = quick_parts(problem.law, rest, rest, quick[:, np.newaxis], problem.displacements)
+    parts = quick_parts(
+        problem.law, Segments(rest, rest, quick[:, np.newaxis], problem.displacements))
 
     def motion(own: slice, durations: Array) -> PiecewiseTrajectory:
         T = durations[:, np.newaxis]

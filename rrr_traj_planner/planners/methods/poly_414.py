@@ -32,10 +32,6 @@ from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.blends.blend_motion import BlendTimes, is_within_limits, trajectory
 from rrr_traj_planner.planners.blends.blend_timing import fastest, total_time
-from rrr_traj_planner.planners.prescribed_by_search import (
-    feasible_motion,
-    least_durations_except_dwells,
-)
 from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import TORQUE_TOLERANCE
@@ -43,6 +39,10 @@ from rrr_traj_planner.planners.torque_scaling import (
     cannot_hold,
     slowed_for_torque,
     torque_time_scale,
+)
+from rrr_traj_planner.planners.transitions.prescribed_by_search import (
+    feasible_motion,
+    least_durations_except_dwells,
 )
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of, ViaProblem
 

@@ -38,12 +38,12 @@ from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.solver.ramps import grid_of
 from rrr_traj_planner.planners.tasks import JointTask
 
-# Chosen values; numbers of ramps, and parts without unit.
-RAMPS = 20              # in a segment
-RAMPS_ALONE = 32        # in a motion's only segment, with both acceleration and deceleration
-MOST_RAMPS = 40         # in a segment where the jerk limit allows short ramps
-SHAPED = 0.1            # acceleration reversal / segment, by duration: RAMPS suffice above it
-SAMPLES_PER_RAMP = 1.0  # at least
+# Numbers of ramps, chosen; on 28 random tasks half as many make motions 1.7, 0.3 and 0.1 % slower
+# in the mean, twice as many 0.3, 0.1 and 0.01 % faster.
+RAMPS = 20        # in a segment
+RAMPS_ALONE = 32  # in a motion's only segment, with both acceleration and deceleration
+MOST_RAMPS = 40   # in a segment where the jerk limit allows short ramps
+SHAPED = 0.1      # acceleration reversal / segment, by duration: RAMPS suffice above it; chosen
 MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps are about a tenth of it
 
 
@@ -94,4 +94,4 @@ def _ramps(task: JointTask) -> int:
     ramps = RAMPS_ALONE if len(D) == 1 else RAMPS
     if swing >= SHAPED * T:
         return ramps
-    return int(np.clip(T / (SAMPLES_PER_RAMP * task.sample_period), ramps, MOST_RAMPS))
+    return int(np.clip(T / task.sample_period, ramps, MOST_RAMPS))  # none below a sample period

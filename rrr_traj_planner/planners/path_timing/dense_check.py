@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.path_timing.constraints import least_time_scale, limited_quantities
-from rrr_traj_planner.planners.solver.dense_check import excess_near_points
+from rrr_traj_planner.planners.solver.excess import excess_near_points
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 

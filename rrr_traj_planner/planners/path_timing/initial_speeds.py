@@ -33,8 +33,7 @@ from rrr_traj_planner.planners.path_timing.constraints import (
 )
 from rrr_traj_planner.planners.path_timing.table import PathTable
 
-PART = 0.25    # of each limit, used by the constant speed and by its changes alike
-HALVINGS = 40  # of a speed's bracket: to 1e-12 of it
+PART = 0.25  # of each limit, used by the constant speed and by its changes alike; chosen
 
 
 def initial_speeds_of(table: PathTable, bounds: Array) -> Array:
@@ -83,7 +82,7 @@ def _reachable(limit: Array, lengths: Array, max_sdd: Array, max_sddd: Array) ->
         low, high = speeds[k], limit[k + 1]
         if high <= low or _is_feasible(low, high, length, max_sdd[k], max_sddd[k]):
             continue
-        for _ in range(HALVINGS):
+        for _ in range(40):  # of a speed's bracket: to 1e-12 of it
             middle = 0.5 * (low + high)
             if _is_feasible(speeds[k], middle, length, max_sdd[k], max_sddd[k]):
                 low = middle

@@ -36,7 +36,9 @@ from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, Variables
 from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN
 from rrr_traj_planner.planners.via_points import holding_error
 
-# Without unit.
+# Chosen values, without unit. On 7 random paths half of MOST_RAMPS makes motions 0.4 % slower in
+# the mean, twice as many 0.4 % faster; more ramps for many pieces (half the exponent, twice
+# FEWEST_RAMPS or PIECES) 0.1 to 0.2 % faster.
 MOST_RAMPS, FEWEST_RAMPS = 16, 8  # in a piece of the path: the most for up to
 PIECES, RAMP_EXPONENT = 11, 2.0   # so many pieces, beyond fewer by this power of their number
 

@@ -28,10 +28,12 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
+# Chosen: on 7 random paths half of PARTS makes motions 0.2 % slower in the mean, twice 0.05 %
+# faster; half and twice of NEAR change none.
 PARTS = 8        # least number of pieces of equal length
 NEAR = 1.5       # largest ratio of a piece's length to the distance of its middle to a singularity
-SHORTEST = 1e-9  # m, length of pieces that are not halved again
 
 
 def piece_ends(arm_path: ArmPath) -> Array:
@@ -53,7 +55,7 @@ def piece_ends(arm_path: ArmPath) -> Array:
     ends = _parted(np.concatenate(([0.0], path.joins, [path.length])))
     while True:
         middle, width = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends)
-        long = (width > NEAR * singular_distance(arm_path, middle)) & (width > SHORTEST)
+        long = (width > NEAR * singular_distance(arm_path, middle)) & (width > TIP_ROUNDING)
         if not long.any():
             return ends
         ends = np.sort(np.append(ends, middle[long]))

@@ -48,7 +48,8 @@ from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 from rrr_traj_planner.planners.tolerances import START_SCALING
 
-# Chosen values, without unit.
+# Chosen values, without unit: half and twice of ROUGH_GAP and CENTRES_BACK of 1 or 5 change
+# durations of 7 random paths by less than 0.1 % in the mean, by 0.3 % at most.
 SCHEDULE = Schedule(rounds=8, tolerance=2e-3, patience=1, growth=1.7)
 ROUGH_GAP = 0.3         # part of the total time: the gap to which the first round converges
 CENTRES_BACK = 3        # which of the last centres a round with larger margins starts from

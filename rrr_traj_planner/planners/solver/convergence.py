@@ -16,8 +16,9 @@
 
 from __future__ import annotations
 
-CONVERGED = 5e-3   # gap to the optimum, as a part of the time
-INFORMATIVE = 0.25  # gap, as a part of the time, up to which the bound is of use to a reader
+# Gaps to the optimum, as parts of the time; chosen:
+CONVERGED = 5e-3    # up to which a motion counts as converged: five times the solver's own gap
+INFORMATIVE = 0.25  # up to which a note gives the bound: above, it tells a reader nothing
 
 
 def unconverged_note(gap: float, duration: float) -> str:

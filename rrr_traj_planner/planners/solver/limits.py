@@ -22,7 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.compiled_arm import CompiledArm
 from rrr_traj_planner.core.arrays import Array, BoolArray
 
-FAR = 1e6  # stands for no bound, in SI units and rad: never active
+FAR = 1e6  # stands for no bound, in SI units and rad: never active; chosen
 
 
 class Limits(NamedTuple):

@@ -30,16 +30,16 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.short_durations import durations_too_short, whole_microseconds
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.tolerances import DURATION_MARGIN
+from rrr_traj_planner.planners.tolerances import DURATION_MARGIN, DURATION_TOLERANCE
 from rrr_traj_planner.planners.torque_scaling import (
     cannot_hold,
     squared_time_scale_by_segment,
     torque_time_scale,
 )
 
-# Without unit.
-SPEED_CHECKED = 0.8        # time scaling above which a segment's torque peaks are located exactly
-DURATION_TOLERANCE = 1e-7  # part by which prescribed durations may fall short
+# Time scaling by sampled torques above which a segment's torque peaks are located exactly; chosen:
+# 0.4 and 0.95 change none of 10 random plans.
+SPEED_CHECKED = 0.8
 
 # Returns the motion of consecutive segments in given durations.
 SegmentMotion = Callable[[slice, Array], PiecewiseTrajectory]

@@ -50,13 +50,13 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
-# Chosen values, without unit; parts are of the duration.
+# Chosen values, without unit; parts are of the duration. Half and twice as fine a GRID change none
+# of 10 random plans.
 LEAST_PART, MOST_PART = 1e-7, 0.49  # of lift-off: the cruise has a positive duration
-USUAL_PART = 1.0 / 3.0  # preferred among parts of equal time, by
-PREFERENCE = 1e-8       # penalty on the squared logarithm of their ratio, as a part of the time
+# Penalty, as a part of the time, on the squared logarithm of three times the part: of parts of
+# equal time, that nearest to a third is preferred.
+PREFERENCE = 1e-8
 GRID = np.linspace(0.0, 1.0, 33)  # of the logarithm of p, in each round
-ROUNDS = 7              # each narrows the grid to a sixteenth
-BISECTIONS = 40         # of b: to 1e-12 of its range
 
 
 class DisplacementRatios(NamedTuple):
@@ -135,11 +135,11 @@ def fastest_symmetric(ratios: DisplacementRatios) -> Lin434:
     ratios = DisplacementRatios(*(np.where(moving, ratio, 1.0)[:, np.newaxis] for ratio in ratios))
     rows = np.arange(len(moving))
     low, high = (np.full(len(moving), np.log(part)) for part in (LEAST_PART, MOST_PART))
-    for _ in range(ROUNDS):
+    for _ in range(7):  # each narrows the grid to a sixteenth
         grid = low[:, np.newaxis] + (high - low)[:, np.newaxis] * GRID
         laws = _with_best_b(np.exp(grid), ratios)
         best = (least_time(laws, ratios) * (
-            1.0 + PREFERENCE * (grid - np.log(USUAL_PART)) ** 2)).argmin(axis=1)
+            1.0 + PREFERENCE * (grid - np.log(1.0 / 3.0)) ** 2)).argmin(axis=1)
         low = grid[rows, np.maximum(best - 1, 0)]
         high = grid[rows, np.minimum(best + 1, len(GRID) - 1)]
     return Lin434(*(field[rows, best] for field in laws))
@@ -150,7 +150,7 @@ def _with_best_b(part: Array, ratios: DisplacementRatios) -> Lin434:
     most = 6.0 / (1.0 - part)
     least_acceleration = most * part / (1.0 - part)
     low, high = np.zeros_like(most), most
-    for _ in range(BISECTIONS):
+    for _ in range(40):  # of b: to 1e-12 of its range
         b = 0.5 * (low + high)
         acceleration = np.sqrt(ratios.acceleration * np.where(
             b * (1.0 + part) < most * part, most - b,

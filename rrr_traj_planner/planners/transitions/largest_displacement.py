@@ -27,7 +27,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kernels import contiguous
 from rrr_traj_planner.planners.solver.library import KERNELS
-from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits
 
 
 class Derivatives(NamedTuple):
@@ -38,17 +38,14 @@ class Derivatives(NamedTuple):
     hessian: Array   # (..., 3, 3, 3)
 
 
-def largest_cruise(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
-                   T: Array) -> Array:
+def largest_cruise(limits: SegmentLimits, v0: Array, v1: Array, T: Array) -> Array:
     """
     Return the cruise velocity of largest displacement in a given time between given velocities.
 
     Parameters
     ----------
-    law : TransitionLaw
-        Transitions' least durations.
-    max_velocity : ndarray, shape (3,)
-        [rad/s].
+    limits : SegmentLimits
+        Transitions' least durations and the largest velocity.
     v0, v1 : ndarray, shape (..., 3)
         Velocities at the ends [rad/s], not above the maximum.
     T : ndarray
@@ -60,11 +57,10 @@ def largest_cruise(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array
         [rad/s]; shapes broadcast.
 
     """
-    return _evaluated(law, max_velocity, v0, v1, T, derivatives=False)[0]
+    return _evaluated(limits, v0, v1, T, derivatives=False)[0]
 
 
-def largest_displacement(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
-                         T: Array) -> Array:
+def largest_displacement(limits: SegmentLimits, v0: Array, v1: Array, T: Array) -> Array:
     """
     Return the largest displacement in a given time between given velocities.
 
@@ -72,7 +68,7 @@ def largest_displacement(law: TransitionLaw, max_velocity: Array, v0: Array, v1:
 
     Parameters
     ----------
-    law, max_velocity, v0, v1, T
+    limits, v0, v1, T
         As in `largest_cruise`.
 
     Returns
@@ -81,11 +77,10 @@ def largest_displacement(law: TransitionLaw, max_velocity: Array, v0: Array, v1:
         [rad]; shapes broadcast.
 
     """
-    return _evaluated(law, max_velocity, v0, v1, T, derivatives=False)[1]
+    return _evaluated(limits, v0, v1, T, derivatives=False)[1]
 
 
-def derivatives(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
-                T: Array) -> Derivatives:
+def derivatives(limits: SegmentLimits, v0: Array, v1: Array, T: Array) -> Derivatives:
     """
     Return the largest displacement and its derivatives.
 
@@ -95,7 +90,7 @@ def derivatives(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
 
     Parameters
     ----------
-    law, max_velocity, v0, v1, T
+    limits, v0, v1, T
         As in `largest_cruise`; velocities below the maximum.
 
     Returns
@@ -104,15 +99,15 @@ def derivatives(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
         One-sided where the active limit changes.
 
     """
-    return Derivatives(*_evaluated(law, max_velocity, v0, v1, T, derivatives=True)[1:])
+    return Derivatives(*_evaluated(limits, v0, v1, T, derivatives=True)[1:])
 
 
-def _evaluated(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array, T: Array,
+def _evaluated(limits: SegmentLimits, v0: Array, v1: Array, T: Array,
                derivatives: bool) -> tuple[Array, Array, Array, Array]:
     """Return cruise velocity and distance, and the distance's derivatives if requested."""
     three = np.zeros(3)
     shape = np.broadcast_shapes(np.shape(v0), np.shape(v1), np.shape(T), three.shape)
-    law_and_limit = [contiguous(x + three) for x in (*law, max_velocity)]
+    law_and_limit = [contiguous(x + three) for x in (*limits.law, limits.max_velocity)]
     at = [contiguous(np.broadcast_to(x, shape)) for x in (v0, v1, T)]
     cruise, distance = np.empty(shape), np.empty(shape)
     gradient, hessian = (np.empty((*(shape if derivatives else (0,)), *(3,) * k)) for k in (1, 2))

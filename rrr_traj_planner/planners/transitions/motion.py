@@ -198,8 +198,8 @@ def _motion_of(task: JointTask, problem: ViaProblem, v: Array, T: Array,
     """Return the motion of given velocities and durations; none where it overshoots a range."""
     rest = np.zeros((1, 3))
     v0, v1 = np.concatenate((rest, v)), np.concatenate((v, rest))
-    parts = segment_motion.low_acceleration_parts(
-        problem.law, problem.max_velocity, v0, v1, T[:, np.newaxis], problem.displacements)
+    parts = segment_motion.low_acceleration_parts(problem.segment_limits, segment_motion.Segments(
+        v0, v1, T[:, np.newaxis], problem.displacements))
     overshoot = _overshoot(task, problem, v0, v1, parts)
     if overshoot.any():
         return None, overshoot

@@ -19,6 +19,7 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
+from rrr_traj_planner.core.trajectory.sampling import NANOSECOND
 from rrr_traj_planner.planners.short_durations import durations_too_short, whole_microseconds
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import DURATION_MARGIN, TORQUE_TOLERANCE
@@ -37,9 +38,9 @@ from rrr_traj_planner.planners.transitions.motion import (
 )
 from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
 
-DURATION_TOLERANCE = 1e-9  # s, between prescribed durations and those of the motion
-NOT_LONGER = 2e-6          # s, two of the microseconds to which feasible durations are rounded
-MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3)  # tried in turn on top of the least durations; chosen
+# Tried in turn on top of the least durations until they can be prescribed, as parts of them;
+# chosen.
+MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3)
 
 
 def prescribed(task: JointTask, problem: ViaProblem, durations: Array) -> TimedMotion:
@@ -104,7 +105,7 @@ def _slowed_fastest(task: JointTask, problem: ViaProblem, durations: Array) -> T
     quickest = fastest(task, problem, None)
     slower = float(np.mean(durations / quickest.durations))
     if slower < 1.0 - SCALING_TOLERANCE or (
-            np.abs(durations - slower * quickest.durations).max() > DURATION_TOLERANCE):
+            np.abs(durations - slower * quickest.durations).max() > NANOSECOND):
         return None
     return TimedMotion(quickest.trajectory.time_scaled(slower), durations)
 
@@ -126,8 +127,9 @@ def _with_durations(task: JointTask, problem: ViaProblem, durations: Array,
 def _too_short(task: JointTask, problem: ViaProblem, durations: Array) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
     feasible = _least_feasible(task, problem, durations)
+    # Feasible durations are rounded to microseconds: two of these are no difference.
     short = np.flatnonzero(
-        durations * (1.0 + 2.0 * DURATION_MARGIN) < feasible - NOT_LONGER).tolist()
+        durations * (1.0 + 2.0 * DURATION_MARGIN) < feasible - 2e-6).tolist()
     return durations_too_short(durations, feasible, short)
 
 

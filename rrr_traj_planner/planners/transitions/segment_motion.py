@@ -31,9 +31,16 @@ from rrr_traj_planner.core.trajectory.pieces import Pieces, TransitionFunction
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.transitions.largest_displacement import largest_cruise
-from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
-BISECTIONS = 60  # of a cruise velocity: to the last digit
+
+class Segments(NamedTuple):
+    """What the motions of consecutive segments are to meet."""
+
+    v0: Array  # velocities at the beginning [rad/s], (n, 3)
+    v1: Array  # and at the end
+    T: Array   # durations [s], (n, 1)
+    D: Array   # displacements [rad], (n, 3), within reach
 
 
 class Parts(NamedTuple):
@@ -44,8 +51,7 @@ class Parts(NamedTuple):
     last: Array    # [s]
 
 
-def low_acceleration_parts(law: TransitionLaw, max_velocity: Array, v0: Array, v1: Array,
-                           T: Array, D: Array) -> Parts:
+def low_acceleration_parts(limits: SegmentLimits, segments: Segments) -> Parts:
     """
     Return parts that cover a displacement in a given time, with long transitions where possible.
 
@@ -54,16 +60,10 @@ def low_acceleration_parts(law: TransitionLaw, max_velocity: Array, v0: Array, v
 
     Parameters
     ----------
-    law : TransitionLaw
-        Transitions' least durations.
-    max_velocity : ndarray, shape (3,)
-        [rad/s].
-    v0, v1 : ndarray, shape (n, 3)
-        Velocities at the ends [rad/s].
-    T : ndarray, shape (n, 1)
-        Durations [s].
-    D : ndarray, shape (n, 3)
-        Displacements [rad], within reach.
+    limits : SegmentLimits
+        Transitions' least durations and the largest velocity.
+    segments : Segments
+        End velocities, durations and displacements.
 
     Returns
     -------
@@ -71,23 +71,25 @@ def low_acceleration_parts(law: TransitionLaw, max_velocity: Array, v0: Array, v
         Within the limits.
 
     """
-    def parts(a: Array, b: Array, D: Array) -> Parts:
-        found = _limited(law, max_velocity, a, b, T, D)
-        for share in (_share_left(law, a, b, T, D), np.full_like(D, 0.5)):
-            found = _where_allowed(law, max_velocity, _split(share, a, b, T, D), found, a, b)
+    def parts(given: Segments) -> Parts:
+        found = _limited(limits, given)
+        for share in (_share_left(limits.law, given), np.full_like(given.D, 0.5)):
+            found = _where_allowed(limits, _split(share, given), found, given)
         return found
 
-    return _mirrored(parts, v0, v1, T, D)
+    return _mirrored(parts, segments)
 
 
-def quick_parts(law: TransitionLaw, v0: Array, v1: Array, T: Array, D: Array) -> Parts:
+def quick_parts(law: TransitionLaw, segments: Segments) -> Parts:
     """
     Return parts with both transitions as short as the limits allow (section 4.2.3).
 
     Parameters
     ----------
-    law, v0, v1, T, D
-        As in `low_acceleration_parts`.
+    law : TransitionLaw
+        Transitions' least durations.
+    segments : Segments
+        End velocities, durations and displacements.
 
     Returns
     -------
@@ -95,8 +97,8 @@ def quick_parts(law: TransitionLaw, v0: Array, v1: Array, T: Array, D: Array) ->
         As in the thesis a joint is slowed: at full acceleration, with a lower cruise velocity.
 
     """
-    unlimited = np.full(3, np.inf)
-    return _mirrored(lambda a, b, D: _limited(law, unlimited, a, b, T, D), v0, v1, T, D)
+    unlimited = SegmentLimits(law, np.full(3, np.inf))
+    return _mirrored(lambda given: _limited(unlimited, given), segments)
 
 
 def trajectory(points: Array, v0: Array, v1: Array, T: Array, parts: Parts,
@@ -155,73 +157,70 @@ def joint_profiles(pieces: Sequence[Pieces]) -> list[JointProfile]:
     return [JointProfile(pieces[0].with_parameters(f[:, j] for f in fields)) for j in range(3)]
 
 
-def _mirrored(parts: Callable[[Array, Array, Array], Parts], v0: Array, v1: Array, T: Array,
-              D: Array) -> Parts:
+def _mirrored(parts: Callable[[Segments], Parts], segments: Segments) -> Parts:
     """
     Return parts for every case from a function for v0 <= v1 and D at least the mean velocity's.
 
     Cases of smaller displacement are mirrored in position, those with v0 > v1 reversed in time.
     """
+    v0, v1, T, D = segments
     sign = np.where(D >= 0.5 * (v0 + v1) * T, 1.0, -1.0)
     a, b = sign * v0, sign * v1
     backwards = a > b
-    found = parts(np.minimum(a, b), np.maximum(a, b), sign * D)
+    found = parts(Segments(np.minimum(a, b), np.maximum(a, b), T, sign * D))
     return Parts(np.where(backwards, found.last, found.first), sign * found.cruise,
                  np.where(backwards, found.first, found.last))
 
 
-def _split(share: Array, a: Array, b: Array, T: Array, D: Array) -> Parts:
+def _split(share: Array, segments: Segments) -> Parts:
     """Return two transitions without a cruise, the last taking a share of the segment."""
-    cruise = 2.0 * D / T - (1.0 - share) * a - share * b
+    v0, v1, T, D = segments
+    cruise = 2.0 * D / T - (1.0 - share) * v0 - share * v1
     return Parts((1.0 - share) * T, cruise, share * T)
 
 
-def _share_left(law: TransitionLaw, a: Array, b: Array, T: Array, D: Array) -> Array:
+def _share_left(law: TransitionLaw, segments: Segments) -> Array:
     """Return the largest share of the last transition, the first at its acceleration limit."""
-    excess = 2.0 * (D / T - 0.5 * (a + b))
+    v0, v1, T, D = segments
+    excess = 2.0 * (D / T - 0.5 * (v0 + v1))
     with np.errstate(divide='ignore', invalid='ignore'):
-        share = 1.0 - excess / (T / law.slope - (b - a))
+        share = 1.0 - excess / (T / law.slope - (v1 - v0))
     return np.where(np.isfinite(share), np.clip(share, 0.0, 0.5), 0.5)
 
 
-def _where_allowed(law: TransitionLaw, max_velocity: Array, preferred: Parts, otherwise: Parts,
-                   a: Array, b: Array) -> Parts:
+def _where_allowed(limits: SegmentLimits, preferred: Parts, otherwise: Parts,
+                   segments: Segments) -> Parts:
     """Return the preferred parts where they keep the limits, else the others."""
-    allowed = ((law.least_time(preferred.cruise - a) <= preferred.first)
-               & (law.least_time(preferred.cruise - b) <= preferred.last)
-               & (np.abs(preferred.cruise) <= max_velocity) & (preferred.last > 0.0))
+    law = limits.law
+    allowed = ((law.least_time(preferred.cruise - segments.v0) <= preferred.first)
+               & (law.least_time(preferred.cruise - segments.v1) <= preferred.last)
+               & (np.abs(preferred.cruise) <= limits.max_velocity) & (preferred.last > 0.0))
     return Parts(*(np.where(allowed, p, o) for p, o in zip(preferred, otherwise)))
 
 
-def _limited(law: TransitionLaw, max_velocity: Array, a: Array, b: Array, T: Array,
-             D: Array) -> Parts:
+def _limited(limits: SegmentLimits, segments: Segments) -> Parts:
     """
-    Return parts at the limits, for a <= b and D at least the mean velocity's displacement.
+    Return parts at the limits, for v0 <= v1 and D at least the mean velocity's displacement.
 
     A cruise above both end velocities, with shortest transitions; or, where D is less than that of
-    a cruise at b, a single transition that lasts longer than the shortest one.
+    a cruise at v1, a single transition that lasts longer than the shortest one.
     """
-    low = b
-    high = np.maximum(largest_cruise(law, max_velocity, a, b, T), b)
-    high = _cruise_covering(law, low, high, a, b, T, D)
-    first, last = law.least_time(high - a), law.least_time(high - b)
+    law, (v0, v1, T, D) = limits.law, segments
+    high = np.maximum(largest_cruise(limits, v0, v1, T), v1)
+    high = _cruise_covering(law, v1, high, segments)
+    first, last = law.least_time(high - v0), law.least_time(high - v1)
     with np.errstate(divide='ignore', invalid='ignore'):
-        longer = np.clip(2.0 * (b * T - D) / (b - a), 0.0, T)
-    single = _displacement(law, b, a, b, T) >= D
-    return Parts(np.where(single, np.where(b > a, longer, 0.0), first),
-                 np.where(single, b, high), np.where(single, 0.0, last))
+        longer = np.clip(2.0 * (v1 * T - D) / (v1 - v0), 0.0, T)
+    single = v1 * T - 0.5 * (v1 - v0) * law.least_time(v1 - v0) >= D
+    return Parts(np.where(single, np.where(v1 > v0, longer, 0.0), first),
+                 np.where(single, v1, high), np.where(single, 0.0, last))
 
 
-def _cruise_covering(law: TransitionLaw, low: Array, high: Array, a: Array, b: Array, T: Array,
-                     D: Array) -> Array:
+def _cruise_covering(law: TransitionLaw, low: Array, high: Array, segments: Segments) -> Array:
     """Return the least cruise velocity, shortest transitions given, that covers a displacement."""
-    given = [contiguous(x) for x in (*law, low, a, b, T, D)]
+    given = [contiguous(x) for x in (*law, low, *segments)]
     found = high.copy()
-    KERNELS.cruise_covering(len(T), BISECTIONS, *(x.ctypes.data for x in (*given, found)))
+    bisections = 60  # to the last digit
+    KERNELS.cruise_covering(
+        len(segments.T), bisections, *(x.ctypes.data for x in (*given, found)))
     return found
-
-
-def _displacement(law: TransitionLaw, cruise: Array, a: Array, b: Array, T: Array) -> Array:
-    """Return the displacement with shortest transitions to and from a cruise."""
-    return cruise * T - 0.5 * ((cruise - a) * law.least_time(cruise - a)
-                               + (cruise - b) * law.least_time(cruise - b))

@@ -19,15 +19,10 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.transitions.largest_displacement import largest_displacement
-from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
-
-NEWTON_STEPS = 12  # at most: convergence is quadratic
-ROUNDING = 1e-11   # part of a displacement
-BISECTIONS = 26    # of a duration: to 1.5e-8 of the bracket
+from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
 
-def cruise_velocity(law: TransitionLaw, max_velocity: Array, v0: Array, T: Array,
-                    D: Array) -> Array:
+def cruise_velocity(limits: SegmentLimits, v0: Array, T: Array, D: Array) -> Array:
     """
     Return the cruise velocity that covers a displacement after a shortest transition.
 
@@ -36,10 +31,8 @@ def cruise_velocity(law: TransitionLaw, max_velocity: Array, v0: Array, T: Array
 
     Parameters
     ----------
-    law : TransitionLaw
-        Transitions' least durations.
-    max_velocity : ndarray, shape (3,)
-        [rad/s].
+    limits : SegmentLimits
+        Transitions' least durations and the largest velocity.
     v0 : ndarray, shape (..., 3)
         Velocities at the start [rad/s].
     T : ndarray, shape (..., 1)
@@ -54,10 +47,10 @@ def cruise_velocity(law: TransitionLaw, max_velocity: Array, v0: Array, T: Array
 
     """
     ahead = D - v0 * T  # displacement beyond that at the start's velocity
-    change = _change(law, np.abs(ahead), T)
+    change = _change(limits.law, np.abs(ahead), T)
     v = v0 + np.sign(ahead) * change
     with np.errstate(invalid='ignore'):
-        return np.where(np.abs(v) <= max_velocity, v, np.nan)
+        return np.where(np.abs(v) <= limits.max_velocity, v, np.nan)
 
 
 def _change(law: TransitionLaw, ahead: Array, T: Array) -> Array:
@@ -67,22 +60,23 @@ def _change(law: TransitionLaw, ahead: Array, T: Array) -> Array:
         jerk_limited = law.root * np.sqrt(u) > law.slope * u
         if jerk_limited.any():  # concave and increasing: Newton from below stays below the root
             x = ahead / T
-            for _ in range(NEWTON_STEPS):
+            for _ in range(12):  # convergence is quadratic
                 t = law.root * np.sqrt(x)
                 x = x + np.maximum(ahead - x * T + 0.5 * x * t, 0.0) / (T - 0.75 * t)
-            fits = np.abs(x * T - 0.5 * x * law.least_time(x) - ahead) <= ROUNDING * ahead
+            # Less, as a part of the displacement, is rounding.
+            fits = np.abs(x * T - 0.5 * x * law.least_time(x) - ahead) <= 1e-11 * ahead
             u = np.where(jerk_limited | np.isnan(u), np.where(fits, x, np.nan), u)
         u = np.where(ahead > 0.0, u, 0.0)
         return np.where(law.least_time(u) <= T, u, np.nan)
 
 
-def can_stop(law: TransitionLaw, max_velocity: Array, v0: Array, T: Array, D: Array) -> Array:
+def can_stop(limits: SegmentLimits, v0: Array, T: Array, D: Array) -> Array:
     """
     Return whether transition, cruise, transition to rest can cover a displacement.
 
     Parameters
     ----------
-    law, max_velocity, v0, T, D
+    limits, v0, T, D
         As in `cruise_velocity`.
 
     Returns
@@ -92,20 +86,19 @@ def can_stop(law: TransitionLaw, max_velocity: Array, v0: Array, T: Array, D: Ar
 
     """
     rest = np.zeros_like(v0)
-    forth = largest_displacement(law, max_velocity, v0, rest, T)
-    back = -largest_displacement(law, max_velocity, -v0, rest, T)
-    fits = (law.least_time(v0) <= T) & (back <= D) & (D <= forth)
+    forth = largest_displacement(limits, v0, rest, T)
+    back = -largest_displacement(limits, -v0, rest, T)
+    fits = (limits.law.least_time(v0) <= T) & (back <= D) & (D <= forth)
     return np.asarray(fits.all(axis=-1))
 
 
-def stopping_time(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array,
-                  grid: Array) -> Array:
+def stopping_time(limits: SegmentLimits, v0: Array, D: Array, grid: Array) -> Array:
     """
     Return the least duration of a last segment, to rest.
 
     Parameters
     ----------
-    law, max_velocity : TransitionLaw and ndarray
+    limits : SegmentLimits
         As in `cruise_velocity`.
     v0 : ndarray, shape (n, 3)
         Velocities at the start [rad/s].
@@ -120,17 +113,17 @@ def stopping_time(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array,
         [s], infinite where no duration of the grid is feasible.
 
     """
-    return bisected(law, max_velocity, v0, D, *stopping_bracket(law, max_velocity, v0, D, grid))
+    return bisected(limits, v0, D, *stopping_bracket(limits, v0, D, grid))
 
 
-def stopping_bracket(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array,
+def stopping_bracket(limits: SegmentLimits, v0: Array, D: Array,
                      grid: Array) -> tuple[Array, Array]:
     """
     Return durations of a last segment, to rest: one that is too short, and a feasible one.
 
     Parameters
     ----------
-    law, max_velocity, v0, D, grid
+    limits, v0, D, grid
         As in `stopping_time`.
 
     Returns
@@ -139,21 +132,20 @@ def stopping_bracket(law: TransitionLaw, max_velocity: Array, v0: Array, D: Arra
         [s], infinite where no duration of the grid is feasible.
 
     """
-    fits = can_stop(law, max_velocity, v0[:, np.newaxis], grid[:, np.newaxis], D)
+    fits = can_stop(limits, v0[:, np.newaxis], grid[:, np.newaxis], D)
     first = fits.argmax(axis=1)
     low = np.where(first > 0, grid[np.maximum(first - 1, 0)], 0.5 * grid[0])
     found = fits[np.arange(len(v0)), first]
     return np.where(found, low, np.inf), np.where(found, grid[first], np.inf)
 
 
-def bisected(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array, low: Array,
-             high: Array) -> Array:
+def bisected(limits: SegmentLimits, v0: Array, D: Array, low: Array, high: Array) -> Array:
     """
     Return the least durations of a last segment within brackets, by bisection.
 
     Parameters
     ----------
-    law, max_velocity, v0, D
+    limits, v0, D
         As in `stopping_time`.
     low, high : ndarray, shape (n,)
         As of `stopping_bracket` [s].
@@ -166,8 +158,8 @@ def bisected(law: TransitionLaw, max_velocity: Array, v0: Array, D: Array, low: 
     """
     found = np.isfinite(high)
     v0, low, least = v0[found], low[found], high.copy()
-    for _ in range(BISECTIONS):
+    for _ in range(26):  # to 1.5e-8 of the bracket
         middle = 0.5 * (low + least[found])
-        fits = can_stop(law, max_velocity, v0, middle[:, np.newaxis], D)
+        fits = can_stop(limits, v0, middle[:, np.newaxis], D)
         low, least[found] = np.where(fits, low, middle), np.where(fits, middle, least[found])
     return least

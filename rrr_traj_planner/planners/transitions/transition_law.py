@@ -85,3 +85,10 @@ class TransitionLaw(NamedTuple):
         found = np.empty(shape)
         kernel(found.size // 3, *(x.ctypes.data for x in (slope, root, values, found)))
         return found
+
+
+class SegmentLimits(NamedTuple):
+    """The limits of a segment's motion between given velocities."""
+
+    law: TransitionLaw
+    max_velocity: Array  # [rad/s], (3,)

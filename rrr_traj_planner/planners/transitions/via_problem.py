@@ -26,10 +26,9 @@ from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
 from rrr_traj_planner.planners.sampling_jerk_limit import jerk_over_samples, SAMPLES_PER_TRANSITION
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
-LEAST_VELOCITY = 1e-9      # rad/s, bound of a via velocity that must be zero
-OVERSHOOT_REDUCTION = 0.5  # factor on the bounds of via velocities in each round
+LEAST_VELOCITY = 1e-9      # rad/s, bound of a via velocity that must be zero: rounding; chosen
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +57,11 @@ class ViaProblem(ReadOnlyArrays):
     lowest: Array
     highest: Array
     function: TransitionFunction = CYCLOID
+
+    @property
+    def segment_limits(self) -> SegmentLimits:
+        """Return the limits of each segment's motion."""
+        return SegmentLimits(self.law, self.max_velocity)
 
     def rest_to_rest_times(self) -> Array:
         """Return the least durations with a stop at every via point, shape (n,) [s]."""
@@ -89,7 +93,7 @@ def slower_at(problem: ViaProblem, segments: BoolArray) -> ViaProblem:
 
     """
     at_ends = segments[:-1] | segments[1:]
-    factor = np.where(at_ends, OVERSHOOT_REDUCTION, 1.0)
+    factor = np.where(at_ends, 0.5, 1.0)
     return replace(problem, lowest=np.minimum(problem.lowest * factor, -LEAST_VELOCITY),
                    highest=np.maximum(problem.highest * factor, LEAST_VELOCITY))
 

@@ -93,7 +93,7 @@ def test_scaling_factor_outside_0_to_1_is_refused(name, factor):
         JointLimits().scaled(**{name: factor})
 
 
-def test_a_motion_scaled_in_time_just_keeps_its_limits():
+def test_a_motion_scaled_in_time_is_just_within_its_limits():
     rng = np.random.default_rng(3)
     for _ in range(50):
         limits = JointLimits(max_velocity=rng.uniform(0.5, 3.0, 3), max_jerk=rng.uniform(5, 50, 3),

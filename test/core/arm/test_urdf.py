@@ -34,7 +34,7 @@ from urdf_parser_py.urdf import URDF
 
 STATES = 50
 GEOMETRY = 1e-12  # m, of arms of a few metres: rounding
-RELATIVE = 1e-12  # of the largest torque or inertia: two ways to add the same numbers
+RELATIVE = 1e-12  # of the largest torque or inertia: two orders to add the same numbers
 NAMES = FrameNames('floor', ('column', 'upper arm', 'fore<arm'), 'tool')
 
 

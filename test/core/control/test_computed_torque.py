@@ -37,7 +37,7 @@ from rrr_traj_planner.core.errors import InvalidInputError
 MODEL = RobotModel()
 GAINS = ControllerGains(natural_frequency=20.0, damping_ratio=0.7)
 
-# Torques of some 1e4 N m computed along two ways.
+# Torques of some 1e4 N m computed by two methods.
 TORQUE_TOLERANCE = 1e-9
 
 

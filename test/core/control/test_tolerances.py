@@ -42,7 +42,7 @@ LEFT = (0.0, 0.0, 0.25)
     (Tolerances(trajectory=LEFT), -1.0, False, PATH),
     (Tolerances(trajectory=(0.1, 0.1, 0.31)), -1.0, False, ()),
     (Tolerances(trajectory=LEFT), 0.5, False, ()),           # the end is the goal's
-    (Tolerances(trajectory=LEFT), 0.5, True, PATH),          # but for the first look
+    (Tolerances(trajectory=LEFT), 0.5, True, PATH),          # but for the first check
     (Tolerances(goal=LEFT), 1e9, False, ()),                 # any time for the goal
     (Tolerances(goal=LEFT, goal_time=2.0), 2.0, False, ()),
     (Tolerances(goal=LEFT, goal_time=2.0), 2.001, False, GOAL),

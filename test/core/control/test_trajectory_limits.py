@@ -46,7 +46,7 @@ def texts(*arguments):
     return [x.text(NAMES) for x in excesses(*arguments)]
 
 
-def test_point_outside_ranges_is_told_with_joint_value_range_and_unit():
+def test_point_outside_ranges_is_reported_with_joint_value_range_and_unit():
     assert texts(single((34.0, 57.0, 17.0)), LIMITS) == [
         'joint_1 goes to 34 rad, range [0, 1.5708] rad (in degrees?)',
         'joint_2 goes to 57 rad, range [0, 3.14159] rad (in degrees?)',
@@ -63,7 +63,7 @@ def test_point_outside_ranges_is_told_with_joint_value_range_and_unit():
     ((0.5, 3.5, 0.2), [False]),
     ((0.5, 1.0, 12.0), [False]),
     ((5.0, 1.0, 0.2), [True])])
-def test_degrees_are_asked_about_where_they_explain_the_numbers(q, hints):
+def test_warning_asks_for_degrees_where_they_explain_the_numbers(q, hints):
     assert [x.in_degrees for x in excesses(single(q), LIMITS)] == hints
 
 
@@ -73,7 +73,7 @@ def test_all_numbers_of_a_joint_have_to_be_explained():
     assert not any(x.in_degrees for x in excesses(points, WIDE))
 
 
-def test_velocities_in_degrees_are_asked_about():
+def test_warning_asks_for_velocities_in_degrees():
     found = excesses(two(0.5, 0.5, 0.01, v=30.0), LIMITS)
     assert [x.in_degrees for x in found if x.quantity == 'velocity'] == [True]
     found = excesses(two(0.5, 0.5, 0.01, v=90.0), LIMITS)  # 1.57 rad/s is too fast as well
@@ -110,7 +110,7 @@ def test_line_has_a_velocity_and_no_acceleration():
         'joint_1 reaches 1.25 rad/s, limit 1 rad/s']
 
 
-def test_segment_that_leads_in_is_looked_at_and_told_from_what_was_sent():
+def test_approach_segment_is_checked_and_reported_apart_from_the_message():
     command = (*Q, *(0.0,) * 6)
     points = single(Q + (0.0, 0.0, 0.5), 0.25)
     assert texts(points, LIMITS, 0.0, command) == ['joint_3 reaches 2 rad/s, limit 1 rad/s']

@@ -39,7 +39,7 @@ def random_directions(rng, n):
 
 
 def distance_of_pose(model, position, elbow, **kwargs):
-    """Return how far the tip is from where it was asked to be."""
+    """Return how far the tip is from where it should be."""
     q = inverse_kinematics(model, position, elbow, **kwargs)
     return np.linalg.norm(forward_kinematics(model, q) - position)
 

@@ -72,7 +72,7 @@ def test_ranges_open_on_one_side_are_entered_at_the_nearest_turn():
     assert whole_turns(q, FREE).tolist() == [0.0, 0.0, -TURN]
 
 
-def test_rounding_at_an_end_is_no_matter_and_more_is():
+def test_only_rounding_is_tolerated_at_the_end_of_a_range():
     limits = JointLimits(min_position=(0.0, 0.0, 0.0), max_position=(1.0, 1.0, 1.0))
     q = np.array([[-0.9e-9, 1.0 + 0.9e-9, TURN - 0.9e-9], [-1e-6, 1.000001, 0.5]])
     assert whole_turns(q[:1], limits).tolist() == [0.0, 0.0, -TURN]

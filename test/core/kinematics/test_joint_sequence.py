@@ -41,47 +41,47 @@ def around(*azimuths, radius=0.8, height=1.0):
     return np.array([(radius * np.cos(a), radius * np.sin(a), height) for a in azimuths])
 
 
-def by_hand(way, velocity, acceleration, rests):
-    """Return a way's time: half the acceleration on average, from and to rest or full speed."""
+def by_hand(D, velocity, acceleration, rests):
+    """Return a displacement's time at half the acceleration, between rest and cruise."""
     ramp = velocity / (0.5 * acceleration)
-    if way >= rests * 0.5 * velocity * ramp:
-        return way / velocity + rests * 0.5 * ramp
-    return rests * (2.0 * way / rests / (0.5 * acceleration)) ** 0.5
+    if D >= rests * 0.5 * velocity * ramp:
+        return D / velocity + rests * 0.5 * ramp
+    return rests * (2.0 * D / rests / (0.5 * acceleration)) ** 0.5
 
 
-def blended_by_hand(way, velocity, acceleration, ends, turns):
+def blended_by_hand(D, velocity, acceleration, ends, turns):
     """
-    Return a way's time in a blend, its mean acceleration given, by halving brackets.
+    Return a displacement's time in a blend, its mean acceleration given, by halving brackets.
 
     The line is as short as it can be for its speed to be within the limit and for half of the
-    transition at each end to have room: a change of velocity from or to 0, or from v to -v.
+    transition at each end to fit: a change of velocity from or to 0, or from v to -v.
     """
     def too_short(line):
-        v = way / line
+        v = D / line
         return v > velocity or line < ends * 0.5 * v / acceleration + turns * v / acceleration
 
     low, high = 1e-9, 1e6
     for _ in range(200):
         middle = (low * high) ** 0.5
         low, high = (middle, high) if too_short(middle) else (low, middle)
-    return high + ends * 0.5 * way / high / acceleration
+    return high + ends * 0.5 * D / high / acceleration
 
 
 def time_of(limits, q, passing=THROUGH):
     """Return the estimate of time, segment by segment and joint by joint."""
-    total, ways = 0.0, np.diff(q, axis=0)
-    for k, way in enumerate(ways):
+    total, steps = 0.0, np.diff(q, axis=0)
+    for k, D in enumerate(steps):
         times = []
         for j in range(3):
-            ends = (k == 0) + (k == len(ways) - 1)
-            turns = sum((k > 0 and bool(ways[k - 1, j] * way[j] <= 0.0),
-                         k < len(ways) - 1 and bool(ways[k + 1, j] * way[j] <= 0.0)))
+            ends = (k == 0) + (k == len(steps) - 1)
+            turns = sum((k > 0 and bool(steps[k - 1, j] * D[j] <= 0.0),
+                         k < len(steps) - 1 and bool(steps[k + 1, j] * D[j] <= 0.0)))
             mean = passing.mean_acceleration * limits.max_acceleration[j]
             if passing.via == 'blend':
                 times.append(blended_by_hand(
-                    abs(way[j]), limits.max_velocity[j], mean, ends, turns))
+                    abs(D[j]), limits.max_velocity[j], mean, ends, turns))
             else:
-                times.append(by_hand(abs(way[j]), limits.max_velocity[j], 2.0 * mean,
+                times.append(by_hand(abs(D[j]), limits.max_velocity[j], 2.0 * mean,
                                      2 if passing.via == 'stop' else ends + turns))
         total += max(times)
     return total
@@ -97,7 +97,7 @@ def best_by_trial(limits, points, start, passing):
     return min(time_of(limits, [*before, *q], passing) for q in product(*options))
 
 
-def test_a_range_of_more_than_a_turn_is_used_for_the_short_way_round():
+def test_a_range_of_more_than_a_turn_is_used_for_the_shorter_direction():
     # 3.1 and -3.1 rad are 2 pi - 6.2 = 0.083 rad apart.
     q = joint_sequence(ARM, ranges(-np.pi, TURN), around(-3.1, 3.1), UP)
     assert q[:, 0] == pytest.approx([TURN - 3.1, 3.1], abs=1e-12)
@@ -141,7 +141,7 @@ def test_turns_are_those_of_least_time_by_trial_of_all(started, passing):
     assert unwound > 1
 
 
-def test_the_way_back_is_put_where_another_joint_takes_long_anyway():
+def test_joint_turns_back_where_another_joint_takes_long_anyway():
     # Quarters of a revolution from 0 to 3 pi, in a range of 0 to 2.4 pi: joint 1 must unwind
     # before the sixth point, and can after the fourth. Joint 2 needs 8 s in one of the segments.
     limits = ranges(0.0, 1.2 * TURN, max_velocity=(10.0, 0.1, 1.0), max_acceleration=[50.0] * 3)
@@ -167,7 +167,7 @@ def test_ends_of_ranges_are_met_exactly():
 
 
 @pytest.mark.parametrize('offset', [0.0, 1e-12, 7e-10])
-def test_on_joint_axis_1_joint_1_is_on_its_way_between_its_neighbours(offset):
+def test_on_joint_axis_1_joint_1_is_between_its_neighbours(offset):
     limits = ranges(-np.pi, np.pi)
     a, b = around(0.6, 2.0)
     above, higher = (offset, -offset, 1.6), (-offset, 0.0, 1.8)
@@ -202,7 +202,7 @@ def test_free_angles_do_not_break_the_choice_of_turns():
     assert -2.5 < q[1, 0] < 2.5
 
 
-def test_a_point_on_the_axis_is_not_to_blame_for_a_neighbour_out_of_range():
+def test_a_neighbour_out_of_range_is_not_reported_as_the_point_on_the_axis():
     points = np.vstack(([(0.0, 0.0, 1.6)], around(1.0), [(0.0, 0.0, 1.7)], around(0.2)))
     q = joint_sequence(ARM, ranges(0.0, 0.5), points, UP)
     assert q[:, 0] == pytest.approx([0.5, 1.0, 0.5, 0.2])

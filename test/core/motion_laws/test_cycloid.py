@@ -12,19 +12,17 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Cycloid pieces: end states, closed-form peaks, derivatives, and the corrected 4.6."""
+"""Cycloid pieces: end states, peaks, derivatives, and the corrected 4.6."""
 
-from helpers.random_cases import central_difference, joined
+from helpers.random_cases import (
+    central_difference,
+    pieces_of_every_kind,
+    random_general_transition,
+)
 import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.motion_laws.cycloid import (
-    cruise,
-    CycloidPiece,
-    general_transition,
-    ramp,
-    transition,
-)
+from rrr_traj_planner.core.motion_laws.cycloid import cruise, general_transition, ramp, transition
 from scipy.integrate import quad
 
 # Values are of the order of 1 to 100.
@@ -32,40 +30,6 @@ ROUNDING = 1e-12
 # A peak between two of 20,001 samples differs from theirs by (pi / 20,000)^2 / 2 at most.
 DENSE = np.linspace(0.0, 1.0, 20001)
 BETWEEN_SAMPLES = 2e-8
-
-
-def random_transition(rng):
-    return transition(rng.uniform(0.1, 5.0), *rng.normal(0.0, 2.0, 3))
-
-
-def random_cruise(rng):
-    return cruise(rng.uniform(0.1, 5.0), *rng.normal(0.0, 2.0, 2))
-
-
-def random_ramp(rng):
-    return ramp(rng.uniform(0.1, 5.0), *rng.normal(0.0, 2.0, 4))
-
-
-def random_general(rng, fraction=None):
-    """Return a transition between random accelerations, of either sign, and its ends."""
-    peak = rng.uniform(0.5, 5.0)
-    start = rng.uniform(-0.3, 0.9) * peak
-    end = start + (rng.uniform() if fraction is None else fraction) * (peak - start)
-    position, velocity = rng.normal(0.0, 2.0, 2)
-    change, sign = rng.uniform(0.1, 3.0), rng.choice((-1.0, 1.0))
-    ends = {'position': position, 'velocity': velocity, 'end_velocity': velocity + sign * change,
-            'start_acceleration': sign * start, 'end_acceleration': sign * end,
-            'peak_acceleration': sign * peak}
-    return general_transition(**ends), ends
-
-
-KINDS = [random_transition, random_cruise, random_ramp, lambda rng: random_general(rng)[0]]
-
-
-def random_pieces(seed, n):
-    """Return n pieces, of all kinds in turn."""
-    rng = np.random.default_rng(seed)
-    return [KINDS[i % len(KINDS)](rng) for i in range(n)]
 
 
 def test_transition_goes_from_one_velocity_to_the_other_with_acceleration_and_jerk_zero():
@@ -132,10 +96,40 @@ def test_ramp_follows_its_formulae():
         assert jerk == pytest.approx(0.5 * np.pi * abs(a1 - a0) / T, rel=1e-12)
 
 
+def test_velocity_acceleration_and_jerk_are_derivatives_of_position():
+    rng = np.random.default_rng(67)
+    for piece in pieces_of_every_kind(68, 100):
+        s = rng.uniform(0.01, 0.99, 10)
+        for order in range(3):
+            by_differences = central_difference(
+                lambda x, p=piece, n=order: p.at(x)[n], s, 1e-3) / piece.duration
+            # Jerk and its derivatives grow with the inverse of a short duration.
+            scale = np.abs(piece.at(DENSE)[order + 1]).max() + 1.0
+            assert piece.at(s)[order + 1] == pytest.approx(by_differences, abs=1e-8 * scale)
+
+
+def test_velocity_and_position_are_integrals_of_acceleration():
+    for piece in pieces_of_every_kind(69, 20):
+        T, (position, velocity) = piece.duration, piece.at(0.0)[:2]
+        gained = quad(lambda s, p=piece: p.at(s)[2], 0.0, 1.0, epsabs=1e-12)[0] * T
+        # Position by Cauchy's formula for repeated integration.
+        moved = quad(lambda s, p=piece: (1.0 - s) * p.at(s)[2], 0.0, 1.0, epsabs=1e-12)[0] * T ** 2
+        assert piece.at(1.0)[1] == pytest.approx(velocity + gained, abs=1e-10)
+        assert piece.at(1.0)[0] == pytest.approx(position + velocity * T + moved, abs=1e-10)
+
+
+def test_motion_just_after_the_start_is_exact_to_all_digits():
+    # 1 - cos(x) = x^2 / 2 for small x: written as a difference it would be 0 here.
+    s, T, change = 1e-9, 2.0, 3.0
+    q, _, acceleration, _ = transition(T, 0.0, 0.0, change).at(s)
+    assert acceleration == pytest.approx(change / T * 0.5 * (2.0 * np.pi * s) ** 2, rel=1e-12)
+    assert abs(q) < 1e-25  # true value 4e-35 rad
+
+
 def test_general_transition_meets_its_accelerations_velocities_and_peak():
     rng = np.random.default_rng(64)
     for _ in range(300):
-        piece, ends = random_general(rng)
+        piece, ends = random_general_transition(rng)
         start, end = piece.at(0.0), piece.at(1.0)
         assert start[:3] == pytest.approx(
             (ends['position'], ends['velocity'], ends['start_acceleration']), abs=ROUNDING)
@@ -151,7 +145,7 @@ def test_general_transition_s_phase_is_4_6_corrected():
     # cos(1/a) = 1 - 2 (end - start) / (peak - start), past the peak: 1/a in [pi, 2 pi].
     rng = np.random.default_rng(65)
     for _ in range(100):
-        piece, ends = random_general(rng)
+        piece, ends = random_general_transition(rng)
         start = ends['start_acceleration']
         fraction = (ends['end_acceleration'] - start) / (ends['peak_acceleration'] - start)
         assert np.cos(piece.w) == pytest.approx(1.0 - 2.0 * fraction, abs=ROUNDING)
@@ -161,7 +155,7 @@ def test_general_transition_s_phase_is_4_6_corrected():
 def test_general_transition_between_equal_accelerations_is_a_full_period():
     rng = np.random.default_rng(66)
     for _ in range(50):
-        piece, ends = random_general(rng, fraction=0.0)
+        piece, ends = random_general_transition(rng, fraction=0.0)
         mean = 0.5 * (ends['start_acceleration'] + ends['peak_acceleration'])
         assert piece.w == 2.0 * np.pi
         assert piece.duration == pytest.approx(
@@ -203,104 +197,3 @@ def test_change_of_velocity_against_the_accelerations_is_refused(end_velocity):
             r'^a change of velocity of -?[\d.]+ rad/s has no transition of mean acceleration '
             r'0\.75 rad/s\^2$')):
         general_transition(0.0, 0.5, end_velocity, 0.0, 0.0, 1.5)
-
-
-def test_velocity_acceleration_and_jerk_are_derivatives_of_position():
-    rng = np.random.default_rng(67)
-    for piece in random_pieces(68, 100):
-        s = rng.uniform(0.01, 0.99, 10)
-        for order in range(3):
-            by_differences = central_difference(
-                lambda x, p=piece, n=order: p.at(x)[n], s, 1e-3) / piece.duration
-            # Jerk and its derivatives grow with the inverse of a short duration.
-            scale = np.abs(piece.at(DENSE)[order + 1]).max() + 1.0
-            assert piece.at(s)[order + 1] == pytest.approx(by_differences, abs=1e-8 * scale)
-
-
-def test_velocity_and_position_are_integrals_of_acceleration():
-    for piece in random_pieces(69, 20):
-        T, (position, velocity) = piece.duration, piece.at(0.0)[:2]
-        gained = quad(lambda s, p=piece: p.at(s)[2], 0.0, 1.0, epsabs=1e-12)[0] * T
-        # Position by Cauchy's formula for repeated integration.
-        moved = quad(lambda s, p=piece: (1.0 - s) * p.at(s)[2], 0.0, 1.0, epsabs=1e-12)[0] * T ** 2
-        assert piece.at(1.0)[1] == pytest.approx(velocity + gained, abs=1e-10)
-        assert piece.at(1.0)[0] == pytest.approx(position + velocity * T + moved, abs=1e-10)
-
-
-def test_motion_just_after_the_start_keeps_its_digits():
-    # 1 - cos(x) = x^2 / 2 for small x: written as a difference it would be 0 here.
-    s, T, change = 1e-9, 2.0, 3.0
-    q, _, acceleration, _ = transition(T, 0.0, 0.0, change).at(s)
-    assert acceleration == pytest.approx(change / T * 0.5 * (2.0 * np.pi * s) ** 2, rel=1e-12)
-    assert abs(q) < 1e-25  # true value 4e-35 rad
-
-
-def test_consecutive_pieces_join_without_a_step():
-    rng = np.random.default_rng(70)
-    for _ in range(50):
-        v0, cruising, v1 = rng.normal(0.0, 2.0, 3)
-        first = transition(rng.uniform(0.1, 2.0), 0.5, v0, cruising)
-        second = cruise(rng.uniform(0.1, 2.0), first.at(1.0)[0], cruising)
-        third = transition(rng.uniform(0.1, 2.0), second.at(1.0)[0], cruising, v1)
-        peak = rng.uniform(0.1, 3.0)
-        fourth = ramp(rng.uniform(0.1, 2.0), third.at(1.0)[0], v1, 0.0, peak)
-        fifth = general_transition(*fourth.at(1.0)[:2], fourth.at(1.0)[1] + 2.0, peak,
-                                   1.2 * peak, 1.5 * peak)
-        chain = (first, second, third, fourth, fifth)
-        for before, after in zip(chain[:-1], chain[1:]):
-            assert before.at(1.0)[:3] == pytest.approx(after.at(0.0)[:3], abs=ROUNDING)
-        for before, after in zip(chain[:3], chain[1:4]):  # full periods and ramps: jerk too
-            assert before.at(1.0)[3] == pytest.approx(after.at(0.0)[3], abs=1e-10)
-
-
-def test_closed_form_peaks_are_those_of_dense_sampling():
-    pieces = random_pieces(71, 200)
-    acceleration, jerk = joined(pieces).peaks()
-    for i, piece in enumerate(pieces):
-        sampled = piece.at(DENSE)
-        for exact, dense in ((acceleration[i], np.abs(sampled[2]).max()),
-                             (jerk[i], np.abs(sampled[3]).max())):
-            assert dense <= exact + ROUNDING * (1.0 + exact)
-            assert dense == pytest.approx(exact, rel=1e-6, abs=ROUNDING)
-
-
-@pytest.mark.parametrize('w', [0.3, 1.2, 2.5, 4.0, 5.5])
-def test_closed_form_peaks_hold_for_any_part_of_a_period(w):
-    piece = CycloidPiece(*(np.array([x]) for x in (1.3, 0.2, 0.4, -0.7, 1.9, w)))
-    sampled = piece.at(DENSE)
-    assert piece.peaks()[0][0] == pytest.approx(np.abs(sampled[2]).max(), rel=1e-6)
-    assert piece.peaks()[1][0] == pytest.approx(np.abs(sampled[3]).max(), rel=1e-6)
-
-
-def test_velocity_is_monotone_between_its_turning_points():
-    pieces = random_pieces(72, 200)
-    turning = joined(pieces).turning_points()
-    assert turning.shape == (200, 4)
-    assert (turning[:, 0] == 0.0).all()
-    assert (turning[:, -1] == 1.0).all()
-    assert (np.diff(turning, axis=1) >= 0.0).all()
-    for piece, points in zip(pieces, turning):
-        for low, high in zip(points[:-1], points[1:]):
-            steps = np.diff(piece.at(np.linspace(low, high, 201))[1])
-            assert (steps >= -ROUNDING).all() or (steps <= ROUNDING).all()
-
-
-def test_pieces_at_once_equal_one_by_one():
-    pieces = random_pieces(73, 12)
-    s = np.linspace(0.0, 1.0, 7)
-    columns = CycloidPiece(*(field[:, np.newaxis] for field in joined(pieces)))
-    at_once = columns.at(s)
-    for i, piece in enumerate(pieces):
-        for several, single in zip(at_once, piece.at(s)):
-            assert several[i] == pytest.approx(single, abs=ROUNDING)
-
-
-def test_pieces_are_made_of_arrays_as_of_floats():
-    rng = np.random.default_rng(74)
-    T, position, v0, v1, a0 = rng.uniform(0.1, 2.0, (5, 6))
-    for make, fields in ((transition, (T, position, v0, v1)), (cruise, (T, position, v0)),
-                         (ramp, (T, position, v0, v1, a0))):
-        several = make(*fields)
-        singles = joined([make(*values) for values in zip(*fields)])
-        for field, single in zip(several, singles):
-            assert np.broadcast_to(field, 6) == pytest.approx(single, abs=ROUNDING)

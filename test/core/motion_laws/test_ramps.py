@@ -104,7 +104,7 @@ def test_peaks_and_ranges_are_those_of_a_dense_grid(seed, cruise):
 
 
 @each_cruise
-def test_a_ramp_of_no_rise_keeps_its_acceleration(cruise):
+def test_a_ramp_between_equal_accelerations_is_constant(cruise):
     one = Ramps(*(np.array([x]) for x in (2.0, 1.0, -1.0, 0.5, 0.0)), RampShape(cruise))
     q, qd, qdd, qddd = one.at(0.5)
     assert [float(x[0]) for x in (q, qd, qdd, qddd)] == pytest.approx([0.25, -0.5, 0.5, 0.0])

@@ -94,7 +94,7 @@ def test_derivatives_of_a_transition_are_by_time(function):
             assert slope == pytest.approx(piece.at(s)[order + 1], abs=1e-7)
 
 
-def test_cruise_keeps_its_velocity(function):
+def test_cruise_has_constant_velocity(function):
     piece = function.cruise(2.0, 0.3, -0.4)
     assert np.array(piece.at(0.75)) == pytest.approx([0.3 - 0.4 * 1.5, -0.4, 0.0, 0.0])
 
@@ -107,7 +107,7 @@ def test_peaks_of_a_piece_are_its_function_s_times_change_over_duration(function
     assert jerk == pytest.approx(function.peak_jerk * np.array([2.4, 0.2, 0.0]), abs=ROUNDING)
 
 
-def chain(function, rng):
+def random_profile(function, rng):
     """Return a profile of transitions, some of which turn back, and a cruise, between rests."""
     durations, velocities = rng.uniform(0.2, 1.5, 9), rng.uniform(-1.0, 1.0, 10)
     velocities[[0, -1]] = 0.0
@@ -124,7 +124,7 @@ def chain(function, rng):
 @pytest.mark.parametrize('seed', range(8))
 def test_exact_peaks_of_a_trajectory_bound_dense_samples_and_are_reached(function, seed):
     rng = np.random.default_rng(520 + seed)
-    profile = chain(function, rng)
+    profile = random_profile(function, rng)
     trajectory = PiecewiseTrajectory([profile] * 3, [0.0, profile.duration])
     peaks = trajectory.peaks()
     q, qd, qdd, qddd = trajectory(dense_times(trajectory, 2000))
@@ -145,7 +145,7 @@ def test_position_turns_where_a_transition_changes_the_velocity_s_sign(function)
 
 
 def test_stretched_motion_passes_the_same_positions_more_slowly(function):
-    profile = chain(function, np.random.default_rng(540))
+    profile = random_profile(function, np.random.default_rng(540))
     slow = profile.time_scaled(2.5)
     t = np.linspace(0.0, profile.duration, 101)
     for order, (ours, theirs) in enumerate(zip(slow(2.5 * t), profile(t))):

@@ -222,7 +222,7 @@ def test_nearly_full_reversal_is_passed_on_the_point_and_within_the_radius(
 
 
 @pytest.mark.parametrize('family', FAMILIES)
-def test_zone_beside_a_corner_of_next_to_half_a_revolution_still_grows_to_what_was_asked(family):
+def test_zone_beside_a_corner_of_almost_half_a_turn_grows_to_the_requested_radius(family):
     points = [[0.7794743641589122, 0.8632306487515912, 0.8213042287894232],
               [0.7321822735716236, 0.8659692339829653, 0.8863694952876264],
               [0.7880689650609531, 0.8630932249962123, 0.8097325180481959],
@@ -230,7 +230,7 @@ def test_zone_beside_a_corner_of_next_to_half_a_revolution_still_grows_to_what_w
     path = family(points, [0.0069452136692425386, 0.03205771333828819])
     assert path.shrunk.tolist() == [1]
     assert path.radii[1] == 0.03205771333828819
-    assert path.lines.angle[0] == pytest.approx(0.5 * np.pi, abs=1e-3)  # there it has no room
+    assert path.lines.angle[0] == pytest.approx(0.5 * np.pi, abs=1e-3)  # there it cannot grow
     assert (path.lines.length > 0.0).all()
 
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Radii that fit: as large as neighbours leave room for, in steps that do not grow with n."""
+"""Radii that fit: as large as neighbours allow, in steps that do not grow with n."""
 
 import numpy as np
 import pytest
@@ -67,15 +67,15 @@ def test_arcs_through_points_on_a_circle_are_nearly_all_of_it():
 @pytest.mark.parametrize('ends', ENDS)
 @pytest.mark.parametrize('n', [5, 12])
 def test_zones_do_not_overlap_and_none_can_grow_alone(ends, n):
-    points, asked = walk(n, n), np.full(n - 2, 2.0)
-    fitted = fit_radii(points, asked, ends)
+    points, requested = walk(n, n), np.full(n - 2, 2.0)
+    fitted = fit_radii(points, requested, ends)
     shortest = fitting_radii.SHORTEST_LINE * np.linalg.norm(np.diff(points, axis=0), axis=1)
     assert (fitted.lines.length >= shortest).all()
-    assert (fitted.radii <= asked).all()
+    assert (fitted.radii <= requested).all()
     free = 0
-    for j in np.flatnonzero(fitted.radii < asked):
+    for j in np.flatnonzero(fitted.radii < requested):
         radii = fitted.radii.copy()
-        radii[j] = min(GROWN * radii[j], asked[j])
+        radii[j] = min(GROWN * radii[j], requested[j])
         try:
             lines = tangent_lines(points, radii, ends, fitted.lines.direction)
             free += (lines.length >= shortest).all()
@@ -84,7 +84,7 @@ def test_zones_do_not_overlap_and_none_can_grow_alone(ends, n):
     assert free == 0
 
 
-def test_told_to_stop_it_returns_radii_that_fit():
+def test_stopped_early_it_returns_radii_that_fit():
     points = walk(30, 1)
     fitted = fit_radii(points, np.full(28, 5.0), ZoneKind(ArcZones.ends), lambda: True)
     whole = fit_radii(points, np.full(28, 5.0), ZoneKind(ArcZones.ends))

@@ -44,7 +44,7 @@ def random_path(model, rng):
 
 @pytest.mark.parametrize('arm', ARMS)
 @pytest.mark.parametrize('elbow', ELBOWS)
-def test_joint_positions_lead_to_the_path_and_equal_the_inverse_of_each_point(arm, elbow):
+def test_forward_kinematics_of_joint_positions_is_the_path_and_they_equal_the_inverse(arm, elbow):
     rng = np.random.default_rng(81)
     for _ in range(10):
         path = random_path(arm, rng)

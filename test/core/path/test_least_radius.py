@@ -129,7 +129,7 @@ def test_speed_beyond_a_joint_s_velocity_is_refused_with_joint_value_and_limit()
     assert caught.value.joint == 'joint_1'
 
 
-def test_pose_that_cannot_be_held_has_no_speed():
+def test_pose_that_cannot_be_held_has_no_largest_speed():
     # Faster than the joints may turn, the centrifugal torque would hold it.
     weak = JointLimits(max_effort=(150.0, 10.0, 200.0), max_acceleration=INF)
     q = np.array([0.0, 0.0, 1.0])

@@ -79,7 +79,7 @@ def test_line_past_joint_axis_1_at_a_millimetre_is_followed_half_a_turn():
         2.0 * np.arctan(800.0), abs=1e-9)
 
 
-def test_joint_range_left_between_points_by_a_hair_is_refused_and_kept_by_a_hair_is_not():
+def test_joint_range_that_is_left_by_a_nanoradian_between_points_is_refused():
     path = line_arc([[1.2, -0.5, 0.6], [1.2, 0.7, 0.6]], [])
     # Joint 3 is least where the line is nearest to the shoulder: between its ends, at y = 0.
     nearest = inverse_kinematics(MODEL, (1.2, 0.0, 0.6), 'up')[2]
@@ -108,17 +108,17 @@ def test_verdict_is_that_of_a_dense_scan():
         p = path(np.linspace(0.0, path.length, 1001))[0]
         try:
             q = np.array([inverse_kinematics(MODEL, x, 'up') for x in p])
-            room = min((q - limits.min_position).min(), (limits.max_position - q).min())
+            margin = min((q - limits.min_position).min(), (limits.max_position - q).min())
         except RrrPlannerError:
-            room = -1.0
+            margin = -1.0
         try:
             found = check_workspace(MODEL, limits, path, Posture())
         except RrrPlannerError:
             verdicts.append(False)
-            assert room < 1e-3
+            assert margin < 1e-3
         else:
             verdicts.append(True)
-            assert room >= -1e-9
+            assert margin >= -1e-9
             assert (found.least <= q.min(axis=0) + 2e-8).all()
             assert (found.most >= q.max(axis=0) - 2e-8).all()
     assert 10 < sum(verdicts) < 50

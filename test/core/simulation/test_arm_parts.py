@@ -85,15 +85,15 @@ def test_bumpers_that_would_pull_are_refused(name):
 # Events
 
 
-@pytest.mark.parametrize(('room', 'first', 'when'), [
+@pytest.mark.parametrize(('margin', 'first', 'when'), [
     (lambda x: 0.3 - x, 0.3, 0.3), (lambda x: sin(3.0 * x), 0.0, np.pi / 3.0),
     (lambda x: 1e-3 - x ** 5, 1e-3, 1e-3 ** 0.2), (lambda x: x * (0.9 - x), 0.0, 0.9),
     (lambda x: 1.0 if x < 0.123 else 0.123 - x, 1.0, 0.123)])
-def test_event_is_found_just_past(room, first, when):
+def test_event_is_found_just_past(margin, first, when):
     h = 1.3
-    time, outcome = locate_event(lambda x: x, room, first, h, room(h))
+    time, outcome = locate_event(lambda x: x, margin, first, h, margin(h))
     assert time == outcome == pytest.approx(when, abs=1e-9)
-    assert -EVENT_TOLERANCE <= room(time) < 0.0
+    assert -EVENT_TOLERANCE <= margin(time) < 0.0
 
 
 # SimulatedClock
@@ -122,7 +122,7 @@ def test_pause_is_not_made_up_for():
 
 
 @pytest.mark.parametrize('rate', [1.0, 5.0, 29.97, 200.0, 333.3, 1000.0])
-def test_instants_come_at_the_rate_that_is_asked_for(rate):
+def test_instants_come_at_the_requested_rate(rate):
     schedule, came = Schedule(rate, 7 * SECOND), []
     for now in range(7 * SECOND, 17 * SECOND, SECOND // 1000):  # steps of 1 ms
         if schedule.passed(now):
@@ -133,7 +133,7 @@ def test_instants_come_at_the_rate_that_is_asked_for(rate):
     assert ((late > -1.0) & (late <= SECOND // 1000)).all()
 
 
-def test_instants_between_two_looks_come_as_one():
+def test_instants_between_two_calls_come_as_one():
     schedule = Schedule(100.0, 0)
     assert schedule.passed(SECOND) and schedule.next == SECOND + SECOND // 100
     assert not schedule.passed(SECOND)

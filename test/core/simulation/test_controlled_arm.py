@@ -223,7 +223,7 @@ def test_reset_puts_the_arm_back_at_rest():
     np.testing.assert_allclose(arm.state[:3], Q, atol=1e-12)
 
 
-def test_replacement_mid_way_does_not_jump():
+def test_replacement_during_motion_does_not_jump():
     arm = ControlledArm(SETTINGS, Q)
     arm.follow(quintic(Q, Q + (0.3, -0.3, 0.4), 2.0), 0)
     arm.advance(900)
@@ -275,10 +275,10 @@ def refused_join(arm):
 @pytest.mark.parametrize(('joint', 'end', 'beyond'), [
     (0, 0.0, 0.0156), (0, np.pi / 2, 0.3), (1, np.pi, 0.002), (2, -np.pi, 0.0156)])
 def test_arm_at_a_stop_does_not_push_while_its_command_is_brought_back(means, joint, end, beyond):
-    speed, T = np.sign(end - Q[joint]) * 0.4, 0.8
+    velocity, T = np.sign(end - Q[joint]) * 0.4, 0.8
     q, qd = np.tile(Q, (2, 1)), np.zeros((2, 3))
-    qd[:, joint] = speed
-    q[:, joint] = end + np.sign(speed) * beyond - speed * np.array([T, 0.0])
+    qd[:, joint] = velocity
+    q[:, joint] = end + np.sign(velocity) * beyond - velocity * np.array([T, 0.0])
     arm = ControlledArm(SETTINGS, q[0])
     arm.state = (*q[0], *qd[0])
     arm.motion = reference_through(TrajectoryPoints(

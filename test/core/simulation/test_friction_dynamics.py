@@ -71,7 +71,7 @@ def random_friction(rng):
 # Closed forms
 
 
-def test_coulomb_friction_stops_a_joint_after_the_way_that_takes_its_energy():
+def test_coulomb_friction_stops_a_joint_after_the_displacement_that_takes_its_energy():
     physics, state = one_body(coulomb=20.0, w=1.3)
     after = advanced(physics, state, (0.0, 0.0, 0.0), 2000)
     assert after[0] == pytest.approx(0.5 * INERTIA * 1.3 ** 2 / 20.0, rel=1e-12)

@@ -190,7 +190,7 @@ def test_goal_that_is_missed_is_given_up_after_its_time():
     assert arm.violation[-1] == GOAL_TIME_EXCEEDED
 
 
-def test_goal_that_is_met_is_kept():
+def test_goal_that_is_reached_stays_reached():
     arm = arm_with(tolerances=Tolerances((0.01,) * 3, (1e-3,) * 3, goal_time=0.2))
     arm.follow(line(Q + (0.3, 0.0, 0.0), 1.0), 0)
     arm.advance(3000)
@@ -208,7 +208,7 @@ def test_features_that_are_off_change_no_bit():
         encoder=EncoderSettings(seed=3, bandwidth=50.0), soft_stops=SoftStops(0.0, 1.0, 1.0))]
     for arm in arms:
         arm.follow(points, 0)
-        arm.advance(1500)  # the second one's every step is watched: it takes the long way
+        arm.advance(1500)  # the second one's every step is watched: it runs the slower code
     assert arms[0].state == arms[1].state
     assert arms[0].torque == arms[1].torque
     assert arms[0].ledger.motors == pytest.approx(arms[1].ledger.motors, rel=1e-12)

@@ -31,7 +31,7 @@ def random_brakes(seed):
     return v, a, A, J, joint_brake(v, a, greatest_deceleration(v, a, A, J), J)
 
 
-def test_brake_ends_at_rest_and_keeps_its_bounds():
+def test_brake_ends_at_rest_within_its_bounds():
     v, a, A, J, brake = random_brakes(1)
     t = np.linspace(0.0, 1.0, 101)[:, np.newaxis] * brake.duration
     _, velocity, acceleration, jerk = brake.at(t)
@@ -42,12 +42,12 @@ def test_brake_ends_at_rest_and_keeps_its_bounds():
     assert np.abs(acceleration[-1, limited]).max() <= 1e-9
 
 
-def test_way_and_velocity_are_integrals():
+def test_displacement_and_velocity_are_integrals():
     _, _, _, _, brake = random_brakes(2)
     t = np.linspace(0.0, 1.0, 2001)[:, np.newaxis] * brake.duration
-    way, velocity, acceleration, _ = brake.at(t)
+    moved, velocity, acceleration, _ = brake.at(t)
     scale = np.abs(velocity).max(axis=0) * brake.duration
-    assert (np.abs(np.trapezoid(velocity, t, axis=0) - way[-1]) <= 1e-6 * scale).all()
+    assert (np.abs(np.trapezoid(velocity, t, axis=0) - moved[-1]) <= 1e-6 * scale).all()
     change = np.trapezoid(acceleration, t, axis=0)
     size = np.abs(acceleration).max(axis=0) * brake.duration
     assert (np.abs(velocity[0] + change - velocity[-1]) <= 2e-3 * size + 1e-12).all()
@@ -56,10 +56,11 @@ def test_way_and_velocity_are_integrals():
 def test_extremes_are_those_of_a_fine_grid():
     *_, brake = random_brakes(3)
     least, greatest = brake.extremes()
-    way, velocity, *_ = brake.at(np.linspace(0.0, 1.0, 2001)[:, np.newaxis] * brake.duration)
-    room = 1e-6 * np.abs(velocity).max(axis=0) * brake.duration
-    assert (way.min(axis=0) >= least).all() and (way.max(axis=0) <= greatest).all()
-    assert (way.min(axis=0) <= least + room).all() and (way.max(axis=0) >= greatest - room).all()
+    moved, velocity, *_ = brake.at(np.linspace(0.0, 1.0, 2001)[:, np.newaxis] * brake.duration)
+    margin = 1e-6 * np.abs(velocity).max(axis=0) * brake.duration
+    assert (moved.min(axis=0) >= least).all() and (moved.max(axis=0) <= greatest).all()
+    assert (moved.min(axis=0) <= least + margin).all()
+    assert (moved.max(axis=0) >= greatest - margin).all()
 
 
 def test_no_other_deceleration_is_quicker_or_shorter():
@@ -68,9 +69,9 @@ def test_no_other_deceleration_is_quicker_or_shorter():
     for part in (0.99, 0.7, 0.3):
         other = joint_brake(v, a, part * greatest, J)
         assert (other.duration >= brake.duration * (1.0 - 1e-12)).all()
-        same_way = v * a >= 0.0  # nothing to turn back from
+        same_direction = v * a >= 0.0  # nothing to turn back from
         assert (np.abs(other.at(other.duration)[0]) >= np.abs(
-            brake.at(brake.duration)[0]) * (1.0 - 1e-9))[same_way].all()
+            brake.at(brake.duration)[0]) * (1.0 - 1e-9))[same_direction].all()
 
 
 def test_joint_at_rest_takes_no_time():

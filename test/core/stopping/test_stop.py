@@ -71,7 +71,7 @@ def test_stop_starts_from_the_command_and_ends_at_rest():
         np.testing.assert_allclose(motion(motion.end - 1e-9), motion(motion.end + 1e-9), atol=1e-7)
 
 
-def test_stop_keeps_acceleration_and_jerk_limits_and_ranges():
+def test_stop_is_within_acceleration_and_jerk_limits_and_ranges():
     for command in random_commands(20):
         motion, warnings = stopped(command)
         times, states = sampled(motion)
@@ -89,20 +89,20 @@ def test_velocity_is_the_derivative_of_position():
         for n in (0, 3):
             rate = np.diff(states[:, n:n + 3], axis=0) / np.diff(times)[:, np.newaxis]
             middle = 0.5 * (states[1:, n + 3:n + 6] + states[:-1, n + 3:n + 6])
-            room = 10.0 * np.diff(times).max()  # the trapezium's error where jerk steps
-            np.testing.assert_allclose(rate, middle, atol=room)
+            error = 10.0 * np.diff(times).max()  # the trapezium's error where jerk steps
+            np.testing.assert_allclose(rate, middle, atol=error)
 
 
-@pytest.mark.parametrize(('max_acceleration', 'max_jerk', 'time', 'way'), [
+@pytest.mark.parametrize(('max_acceleration', 'max_jerk', 'time', 'moved'), [
     (1.0, inf, 0.4, 0.08),            # v / A, v^2 / 2 A
     (inf, 10.0, 0.4, 0.08),           # 2 sqrt(v / J), half of it at v
     (1.0, 10.0, 0.5, 0.1)])           # v / A + A / J
-def test_stop_from_a_velocity_alone_takes_its_closed_form(max_acceleration, max_jerk, time, way):
+def test_stop_from_a_velocity_alone_takes_its_closed_form(max_acceleration, max_jerk, time, moved):
     limits = replace(LIMITS, max_acceleration=np.full(3, max_acceleration),
                      max_jerk=np.full(3, max_jerk))
     motion = stopped((0.5, 1.0, 0.2, 0.4, 0.0, 0.0, 0.0, 0.0, 0.0), limits).motion
     assert motion.end - NOW == pytest.approx(time, abs=1e-9)
-    np.testing.assert_allclose(motion.final, (0.5 + way, 1.0, 0.2), atol=1e-9)
+    np.testing.assert_allclose(motion.final, (0.5 + moved, 1.0, 0.2), atol=1e-9)
 
 
 def test_arm_at_rest_stays():
@@ -134,7 +134,7 @@ def test_arm_that_cannot_be_held_stops_all_the_same_and_says_so():
 @pytest.mark.parametrize('max_jerk', [inf, 10.0])
 @pytest.mark.parametrize('t', [0.5, 0.9, 0.999, 1.0, 1.001, 1.2])
 def test_joint_that_turns_at_the_end_of_its_range_is_not_carried_beyond_it(t, max_jerk):
-    # Any jerk towards rest before the turn would carry it beyond: v^2 / 2 A of way is left.
+    # Any jerk towards rest before the turn would carry it beyond: v^2 / 2 A is left.
     limits = replace(LIMITS, max_jerk=np.full(3, max_jerk))
     motion, warnings = stop(parabola(np.pi / 2, 1.0), NOW + t, limits, MODEL)
     states = np.array([motion(x) for x in np.linspace(NOW + t, motion.end, 2001)])
@@ -184,12 +184,12 @@ def test_joint_outside_its_range_stops_and_goes_back():
 
 @pytest.mark.parametrize('joint', [0, 1, 2])
 @pytest.mark.parametrize('side', [-1.0, 1.0])
-@pytest.mark.parametrize(('beyond', 'speed'), [
+@pytest.mark.parametrize(('beyond', 'velocity'), [
     (1e-6, 3.0), (1e-6, 0.05), (5e-4, 0.2), (0.0156, 0.9), (0.3, 0.05), (0.3, 3.0)])
-def test_joint_that_leaves_its_range_turns_back_as_soon_as_it_can(joint, side, beyond, speed):
+def test_joint_that_leaves_its_range_turns_back_as_soon_as_it_can(joint, side, beyond, velocity):
     end = (LIMITS.max_position if side > 0.0 else LIMITS.min_position)[joint]
     q, qd = np.array([0.5, 1.0, 0.2]), np.zeros(3)
-    q[joint], qd[joint] = end + side * beyond, side * speed
+    q[joint], qd[joint] = end + side * beyond, side * velocity
     motion, warnings = stopped((*q, *qd, 0.0, 0.0, 0.0))
     further = (side * (sampled(motion)[1][:, joint] - q[joint])).max()
     assert further <= ROUNDING
@@ -198,10 +198,10 @@ def test_joint_that_leaves_its_range_turns_back_as_soon_as_it_can(joint, side, b
     back = max(0.01, 1.875 * s, (10.0 / 3.0 ** 0.5 * s / A) ** 0.5, (60.0 * s / J) ** (1 / 3))
     assert motion.end - NOW <= back + ROUNDING
     assert motion.final[joint] == end
-    told = ' '.join(warnings)
+    reported = ' '.join(warnings)
     assert (f'{MODEL.joint_names[joint]} is commanded to {q[joint]:.6g} rad, outside its range'
-            in told) == (beyond > 1e-4)
-    assert 'it stops at once' in told
+            in reported) == (beyond > 1e-4)
+    assert 'it stops at once' in reported
 
 
 @pytest.mark.parametrize('velocity', [1e-12, 1e3, 1e6])
@@ -257,7 +257,7 @@ def test_steps_of_the_followed_motion_are_its_own_and_no_more(order):
             limits.max_acceleration, own)).all()
 
 
-def test_stop_that_is_asked_for_again_and_again_ends_no_later():
+def test_repeated_stop_requests_end_the_motion_no_later():
     motion = parabola(1.2, 1.0)
     first = stop(motion, NOW + 0.3, LIMITS, MODEL).motion
     again = first

@@ -45,10 +45,10 @@ def test_a_polynomial_leaves_bounds_that_its_extremes_are_beyond():
     derivatives = c
     for form in forms(c, widths):
         low, high = np.array([extremes(*pair) for pair in zip(derivatives, widths)]).T
-        for room in 1e-7 * (high - low), 0.1 * (high - low):
-            assert not leaves(form, low - room, high + room).any()
-            assert leaves(form, low + room, high + room).all()
-            assert leaves(form, low - room, high - room).all()
+        for margin in 1e-7 * (high - low), 0.1 * (high - low):
+            assert not leaves(form, low - margin, high + margin).any()
+            assert leaves(form, low + margin, high + margin).all()
+            assert leaves(form, low - margin, high - margin).all()
         derivatives = derivatives[:, 1:] * np.arange(1, derivatives.shape[1])
 
 

@@ -102,7 +102,7 @@ def test_largest_torque_is_pinocchio_s():
 
 
 @pytest.mark.parametrize('seed', range(10))
-def test_largest_torque_between_dense_samples_is_told_and_slowed(seed):
+def test_largest_torque_between_dense_samples_is_reported_and_slowed(seed):
     # A short step of joint 1 from rest to rest: its torque is I D/T^2 (60 x - 180 x^2 + 120 x^3)
     # but for the rise of I, largest at x = 0.2113 and 0.7887, between 64ths of the interval.
     step, duration = np.random.default_rng(seed).uniform([1e-4, 0.1], [1e-3, 1.0])
@@ -120,8 +120,8 @@ def test_largest_torque_between_dense_samples_is_told_and_slowed(seed):
         assert found.time_scale[0] == pytest.approx(expected, abs=3e-5)
 
 
-@pytest.mark.parametrize('joint', [0, 1])  # of joint 3 gravity asks most on this way
-def test_what_exceeds_a_torque_fits_once_it_is_slowed_as_asked(joint):
+@pytest.mark.parametrize('joint', [0, 1])  # joint 3's gravity torque is largest here
+def test_motion_beyond_a_torque_limit_is_within_it_after_the_reported_time_scaling(joint):
     arm = PinocchioArm(ARM)
     states = [from_rest_to_rest(x)[:3] for x in np.linspace(0.0, 1.0, 201)]
     largest = np.abs([arm.inverse_dynamics(*s) for s in states]).max(axis=0)
@@ -140,7 +140,7 @@ def test_gravity_beyond_a_torque_asks_for_infinite_time():
     assert np.isinf(found.time_scale).all()
 
 
-def test_what_leaves_a_range_is_told():
+def test_leaving_a_range_is_reported():
     # The same position and 1 rad/s at both points, 0.5 s apart: the quintic's basis functions of
     # the two velocities, x - 6 x^3 + 8 x^4 - 3 x^5 and -4 x^3 + 7 x^4 - 3 x^5, times 0.5 rad.
     zero = np.zeros((2, 3))
@@ -154,7 +154,7 @@ def test_what_leaves_a_range_is_told():
 
 
 @pytest.mark.parametrize('side', [1.0, -1.0])
-def test_how_far_a_joint_turns_back_outside_its_range_is_told_to_a_nanorad(side):
+def test_how_far_a_joint_turns_back_outside_its_range_is_reported_to_a_nanoradian(side):
     # A parabola of 5 rad/s^2 is its own quintic; its top may be between all samples.
     a, T = -5.0 * side, 2.0
     for top in np.random.default_rng(5).uniform(0.3, 1.7, 20):
@@ -169,7 +169,7 @@ def test_how_far_a_joint_turns_back_outside_its_range_is_told_to_a_nanorad(side)
 
 
 def test_a_range_is_left_by_the_cube_of_the_time_between_points():
-    # From rest at 0 a jerk j, then -j: at half the way the quintic through both ends differs.
+    # From rest at 0 a jerk j, then -j: half-way the quintic through both ends differs.
     def excess(T):
         j, h = 10.0, 0.5 * T
         end = [j * h ** 3, j * h ** 2, 0.0]

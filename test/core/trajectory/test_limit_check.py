@@ -37,7 +37,7 @@ def check(limits=LIMITS, **changes):
     return violations(limits, Peaks(**extremes), effort)
 
 
-def test_motion_exactly_at_every_limit_keeps_them():
+def test_motion_exactly_at_every_limit_is_within_them():
     assert check() == []
 
 
@@ -53,7 +53,7 @@ def test_violation_tells_joint_quantity_value_limit_and_unit(name, values, text)
     assert [violation.text(NAMES) for violation in found] == [text]
 
 
-def test_violation_keeps_its_values():
+def test_violation_holds_value_and_limit():
     violation, = check(jerk=(0.0, 8.5, 0.0))
     assert violation == (1, 'jerk', 8.5, 8.0, 'rad/s^3')
 
@@ -67,14 +67,14 @@ def test_all_violations_are_reported():
 
 
 @pytest.mark.parametrize('name', ['velocity', 'acceleration', 'jerk', 'effort'])
-def test_room_for_rounding_is_a_millionth_of_the_limit(name):
+def test_tolerance_for_rounding_is_a_millionth_of_the_limit(name):
     at_limit = np.array(AT_THE_LIMITS[name])
     assert check(**{name: at_limit * (1.0 + 0.9e-6)}) == []
     assert [v.joint for v in check(**{name: at_limit * (1.0 + 1.1e-6)})] == [0, 1, 2]
 
 
 @pytest.mark.parametrize(('name', 'outward'), [('min_position', -1.0), ('max_position', 1.0)])
-def test_room_for_rounding_of_a_position_is_a_nanoradian(name, outward):
+def test_tolerance_for_rounding_of_a_position_is_a_nanoradian(name, outward):
     at_limit = np.array(AT_THE_LIMITS[name])
     assert check(**{name: at_limit + outward * 0.9e-9}) == []
     assert [v.joint for v in check(**{name: at_limit + outward * 1.1e-9})] == [0, 1, 2]

@@ -25,7 +25,7 @@ ROUNDING = 1e-12
 # A parabola between samples of a two-thousandth of a piece: (pi / 2,000)^2 / 2.
 SAMPLES_PER_PIECE = 2000
 BETWEEN_SAMPLES = 1.3e-6
-CASES = range(40)
+CASES = range(12)
 
 
 def trajectory_of(seed):
@@ -84,7 +84,7 @@ def test_at_a_knot_the_piece_that_begins_there_counts():
 
 
 @pytest.mark.parametrize('seed', CASES)
-def test_motion_is_smooth_over_its_joins(seed):
+def test_position_velocity_and_acceleration_are_continuous_at_joins(seed):
     trajectory = trajectory_of(seed)
     knots = trajectory.knots[1:-1]
     before, after = trajectory(knots - 1e-12), trajectory(knots + 1e-12)
@@ -138,30 +138,30 @@ def test_peaks_of_a_swing_there_and_back_are_what_a_hand_calculation_gives():
 
 
 @pytest.mark.parametrize('seed', CASES)
-def test_positions_are_passed_when_the_profile_is_there(seed):
+def test_times_of_positions_are_when_the_profile_passes_them(seed):
     rng = np.random.default_rng(seed)
-    speeds = np.concatenate(([0.0], 10.0 ** rng.uniform(-4.0, 1.0, 5), [0.0]))
-    pieces, way = [], rng.normal()
-    for begin, end in zip(speeds, speeds[1:]):
-        pieces.append(transition(10.0 ** rng.uniform(-3.0, 1.0), way, begin, end))
-        way = float(pieces[-1].at(1.0)[0])
+    velocities = np.concatenate(([0.0], 10.0 ** rng.uniform(-4.0, 1.0, 5), [0.0]))
+    pieces, position = [], rng.normal()
+    for begin, end in zip(velocities, velocities[1:]):
+        pieces.append(transition(10.0 ** rng.uniform(-3.0, 1.0), position, begin, end))
+        position = float(pieces[-1].at(1.0)[0])
     profile = JointProfile(joined(pieces))
     times = np.sort(np.append(rng.uniform(0.0, profile.duration, 20), profile.knots[1:-1]))
     positions = profile(times)[0]
     found = profile.passed(positions)
     assert (found >= 0.0).all() and (found <= profile.duration).all()
-    size = np.abs(positions).max() + profile.duration * speeds.max()
+    size = np.abs(positions).max() + profile.duration * velocities.max()
     assert profile(found)[0] == pytest.approx(positions, abs=1e-14 * size)
 
 
 def test_rest_is_passed_at_the_start_and_the_same_position_twice():
-    profile = JointProfile(joined([transition(2.0, 1.0, 0.0, 3.0)]))  # 3 rad on the way
+    profile = JointProfile(joined([transition(2.0, 1.0, 0.0, 3.0)]))  # 3 rad in between
     assert profile.passed(np.array([1.0, 2.5, 2.5])) == pytest.approx(
         [0.0, *[profile.passed(np.array([2.5]))[0]] * 2], abs=ROUNDING)
     assert profile.passed(np.array([])).shape == (0,)
 
 
-def test_a_joint_that_stands_still_has_no_peaks():
+def test_peaks_of_a_joint_at_rest_are_zero():
     peaks = single(cruise(1.5, 0.7, 0.0)).peaks()
     for peak in (peaks.velocity, peaks.acceleration, peaks.jerk):
         assert peak.tolist() == [0.0, 0.0, 0.0]
@@ -169,7 +169,7 @@ def test_a_joint_that_stands_still_has_no_peaks():
 
 
 @pytest.mark.parametrize('factor', [0.25, 1.0, 1.7, 40.0])
-def test_stretching_keeps_the_path_and_scales_its_derivatives(factor):
+def test_time_scaling_has_the_same_path_and_scales_its_derivatives(factor):
     for seed in range(10):
         trajectory = trajectory_of(seed)
         stretched = trajectory.time_scaled(factor)
@@ -205,7 +205,7 @@ def test_knots_are_all_joints_knots_with_start_and_end():
             assert nearest.max() <= 1e-11
 
 
-def test_a_piece_too_short_to_matter_moves_neither_start_nor_end():
+def test_a_very_short_piece_moves_neither_start_nor_end():
     short = joined([cruise(1e-13, 0.0, 0.0), transition(1.0, 0.0, 0.0, 1.0),
                     transition(1.0, 0.5, 1.0, 0.0), cruise(1e-13, 1.0, 0.0)])
     long = joined([transition(1.0, 0.0, 0.0, 1.0), transition(1.0, 0.5, 1.0, 0.0)])

@@ -82,7 +82,7 @@ def test_any_order_of_times_gives_the_same_states():
         assert motion(t) == expected[t]
 
 
-def test_origin_moves_the_motion_and_keeps_its_precision():
+def test_origin_shifts_the_motion_without_loss_of_precision():
     # Points a nanosecond apart, 1e9 s ahead: absolute times would coincide.
     points = TrajectoryPoints([0.0, 1e-9, 2e-9], np.eye(3), *np.zeros((2, 3, 3)),
                               *([[False] * 3] * 2))

@@ -40,7 +40,7 @@ def random_case(seed):
     return random_trajectory(rng, duration, via_times), period
 
 
-CASES = [random_case(seed) for seed in range(60)]
+CASES = [random_case(seed) for seed in range(20)]
 
 
 def nanoseconds(points):
@@ -63,7 +63,7 @@ def test_times_are_whole_nanoseconds_strictly_increasing_from_zero_to_the_end(tr
 def test_one_point_stands_exactly_at_every_via_point(trajectory, period):
     points = sample(trajectory, period)
     stamps = nanoseconds(points)
-    # Via points less than 1.5 ns apart share one; speeds are of a few rad/s.
+    # Via points less than 1.5 ns apart share one; velocities are of a few rad/s.
     apart = np.diff(trajectory.via_times)
     tolerance = 1e-8 if ((apart > 0.0) & (apart < 1.5e-9)).any() else 1e-14
     for via_time, position in zip(trajectory.via_times, trajectory(trajectory.via_times)[0]):
@@ -93,7 +93,7 @@ def test_a_point_stands_at_every_period_that_is_not_near_a_via_point(trajectory,
 
 
 @pytest.mark.parametrize(('trajectory', 'period'), CASES)
-def test_motion_starts_and_ends_exactly_at_rest_in_its_places(trajectory, period):
+def test_motion_starts_and_ends_exactly_at_rest_at_its_positions(trajectory, period):
     points = sample(trajectory, period)
     for derivative in (points.velocities, points.accelerations):
         assert derivative[[0, -1]].tolist() == [[0.0] * 3] * 2
@@ -112,7 +112,7 @@ def test_points_are_states_of_the_motion_at_their_times(trajectory, period):
         assert (np.abs(values - expected) <= 1e-9 * rate + 1e-12).all()
 
 
-def test_rounding_at_the_start_is_not_handed_on():
+def test_rounding_at_the_start_is_removed():
     profile = JointProfile(joined([transition(1.0, 0.0, 1e-17, 1.0),
                                    transition(1.0, 0.5, 1.0, 0.0)]))
     points = sample(PiecewiseTrajectory([profile] * 3, [0.0, 2.0]), 0.5)
@@ -129,7 +129,7 @@ def test_exact_times_are_the_motion_s_own_and_stamps_their_nanoseconds():
 
 
 def cruising(via_time, duration=3.0):
-    """Return a motion at 1 rad/s between its transitions, with a via point on the way."""
+    """Return a motion at 1 rad/s between its transitions, with a via point between them."""
     profile = JointProfile(joined([
         transition(1.0, 0.0, 0.0, 1.0), cruise(duration - 2.0, 0.5, 1.0),
         transition(1.0, duration - 1.5, 1.0, 0.0)]))
@@ -147,7 +147,7 @@ def test_rounding_of_times_puts_no_acceleration_into_a_controller_s_quintic(peri
     assert np.abs(quintic.at(t)[2]).max() <= 1e-4
 
 
-@pytest.mark.parametrize('seed', range(40))
+@pytest.mark.parametrize('seed', range(10))
 def test_quintic_through_the_points_stays_within_the_motion_s_peaks(seed):
     # The promise of 0.1 %, for motions whose pieces last some ten periods or more.
     rng = np.random.default_rng(4000 + seed)
@@ -174,14 +174,14 @@ def test_via_points_at_the_ends_add_no_points():
     assert sample(cruising(0.0), 1.0).times == pytest.approx([0.0, 1.0, 2.0, 3.0], abs=1e-12)
 
 
-def test_regular_point_gives_way_to_a_via_point_within_a_tenth_of_the_period():
+def test_regular_point_is_left_out_within_a_tenth_of_the_period_of_a_via_point():
     assert sample(cruising(1.04), 0.5).times == pytest.approx(
         [0.0, 0.5, 1.04, 1.5, 2.0, 2.5, 3.0], abs=1e-12)
     assert sample(cruising(1.06), 0.5).times == pytest.approx(
         [0.0, 0.5, 1.0, 1.06, 1.5, 2.0, 2.5, 3.0], abs=1e-12)
 
 
-def test_regular_point_gives_way_to_the_end_too():
+def test_regular_point_is_left_out_beside_the_end_too():
     assert sample(cruising(1.5, duration=3.04), 0.5).times[-2:] == pytest.approx(
         [2.5, 3.04], abs=1e-12)
 

@@ -158,7 +158,7 @@ def test_of_two_peaks_the_one_counts_that_a_slight_time_scaling_makes_the_larges
     assert len(set(largest)) == 2
 
 
-def test_factor_below_one_tells_what_speed_is_left():
+def test_time_scale_below_one_reports_how_much_faster_is_feasible():
     trajectory = trajectory_of(3)
     effort = 4.0 * peak_torque(RobotModel(), trajectory).value
     factors = time_scale_for_torque(RobotModel(), limits_of(effort), trajectory).value

@@ -93,7 +93,7 @@ def test_trajectory_replaced_mid_way_does_not_jump(ros):
     assert_no_jump(arm.desired.messages)
 
 
-def test_distant_point_due_now_is_gone_to_within_limits(ros):
+def test_distant_point_due_now_is_reached_within_limits(ros):
     arm = Arm(ros)
     arm.send((0.0, START + 0.1))
     arm.actual.wait_for(at(START + 0.1))

@@ -61,7 +61,7 @@ def broken(run):
     return [value.name for value in checked_values(run) if not value.within_bound]
 
 
-def test_perfect_run_keeps_every_bound(task):
+def test_perfect_run_is_within_every_bound(task):
     assert broken(executed(task)) == []
 
 

@@ -86,7 +86,7 @@ def test_bag_contains_what_was_planned_sent_and_executed(ros, tmp_path):
 
 
 def test_reader_s_one_call_reads_the_bag_of_a_refusal(tmp_path):
-    with warnings.catch_warnings():  # it recommends the longer way, which the others take
+    with warnings.catch_warnings():  # it recommends the longer form, which the others use
         warnings.simplefilter('ignore', DeprecationWarning)
         from mcap_ros2.reader import read_ros2_messages
     (tmp_path / 'far.yaml').write_text('via_points: [[1.02, 0.59, 0.97], [3.0, 0.0, 0.5]]\n')

@@ -47,7 +47,7 @@ def test_payload_changes_at_run_time_and_the_controller_may_know_it(ros):
     arm.actual.wait_for_next(lambda m: np.abs(np.subtract(m.position, START)).max() < 1e-9)
 
 
-def test_friction_keeps_a_disturbed_arm_exactly_where_it_is(ros):
+def test_friction_holds_a_disturbed_arm_exactly_where_it_is(ros):
     arm = Arm(ros, **{'friction.coulomb': [10.0, 10.0, 10.0]})
     log = ros.listen(Log, '/rosout', 100)
     before = arm.actual.wait_for()

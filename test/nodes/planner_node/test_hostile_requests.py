@@ -43,7 +43,7 @@ A, B, C = TABLE_6_1
 # Nothing refused takes so long [s], on a busy machine too.
 AT_ONCE = 5.0
 
-# Through the service, a few: the rest of the way is the same.
+# Through the service, a few: the rest is the same.
 THROUGH_ROS = 40
 
 # The node stops these by the clock, and their answers may differ.
@@ -76,7 +76,7 @@ def test_same_request_has_the_same_answer(request):
     ((A, A, A), CODES.SUCCESS, '', -1),
     ((A, B) * 3, CODES.SUCCESS, '', -1)])
 @pytest.mark.filterwarnings('error::RuntimeWarning')
-def test_places_are_judged(points, code, text, via_point):
+def test_degenerate_positions_are_planned_or_refused(points, code, text, via_point):
     response = answered(plan_request(points))
     assert (response.error_code, response.failed_via_point) == (code, via_point), response.message
     assert text in response.message
@@ -115,7 +115,7 @@ def test_prescribed_durations_too_long_for_an_answer_are_refused_at_once(duratio
                f'more than {MAX_POINTS} points')
 
 
-def test_via_points_too_many_to_look_at_are_refused_at_once():
+def test_too_many_via_points_are_refused_at_once():
     request = plan_request()
     request.via_points.poses = [Pose(position=Point(x=nan))] * 100_000
     began = monotonic()

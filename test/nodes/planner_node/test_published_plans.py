@@ -116,8 +116,8 @@ class Client:
         self._node.destroy_client(self._client)
 
 
-def answered(asked):
-    future, done = asked
+def answered(pending):
+    future, done = pending
     assert done.wait(DEADLINE)
     return future.result()
 
@@ -146,8 +146,8 @@ def test_answer_comes_before_the_path_is_even_made(ros, planner, drawing):
 
 def test_every_plan_of_many_is_published_in_order(ros, planner):
     topics, clients = Topics(ros), [Client(ros) for _ in range(2)]
-    asked = [clients[i % 2].ask(to(1.0 + 0.01 * i)) for i in range(REQUESTS)]
-    responses = [answered(a) for a in asked]
+    pending = [clients[i % 2].ask(to(1.0 + 0.01 * i)) for i in range(REQUESTS)]
+    responses = [answered(a) for a in pending]
     assert {r.error_code for r in responses} == {CODES.SUCCESS}
     topics.trajectory.wait_for(since=REQUESTS - 1)
     # Which client's turn it is is not promised; the order of each one's short requests is.

@@ -38,7 +38,7 @@ class Worker:
         self._scheduler, self._seconds = scheduler, seconds
         self.begun, self.ended = Event(), 0.0
         self._thread = Thread(target=self._run, daemon=True)
-        self.asked = perf_counter()
+        self.submitted = perf_counter()
         self._thread.start()
 
     def _run(self):
@@ -106,7 +106,7 @@ def test_run_time_leaves_out_the_time_of_others():
     for worker in (first, second):
         worker.join()
         assert worker.run_time >= 0.3
-    assert first.run_time + second.run_time <= max(first.ended, second.ended) - first.asked
+    assert first.run_time + second.run_time <= max(first.ended, second.ended) - first.submitted
 
 
 def test_one_works_at_a_time_and_equals_in_the_order_of_their_coming():
@@ -168,7 +168,7 @@ def test_job_that_is_expected_to_be_long_lets_short_ones_go_first_from_the_begin
     assert order == ['short', 'long']
 
 
-def test_no_job_waits_once_the_scheduler_has_ended():
+def test_no_job_waits_after_the_scheduler_has_ended():
     scheduler = Scheduler()
     with scheduler.job():
         waiting = [Worker(scheduler, 0.0) for _ in range(3)]

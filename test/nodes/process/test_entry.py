@@ -39,14 +39,14 @@ def test_unknown_option_is_refused():
     assert 'unrecognized arguments: --fast' in errors
 
 
-def test_missing_ros_is_said_in_one_line():
+def test_missing_ros_is_reported_in_one_line():
     code, _, errors = ended(arm_process(code=without('rclpy')))
     assert code == 1
     assert errors.startswith('simulated_arm: ROS 2 is not in this environment')
     assert errors.count('\n') == 1
 
 
-def test_missing_interfaces_are_said_in_one_line():
+def test_missing_interfaces_are_reported_in_one_line():
     code, _, errors = ended(arm_process(code=(
         'import sys; from rrr_traj_planner.nodes.process.node_runner import run_node\n'
         'def load():\n    sys.modules["rrr_traj_planner_interfaces"] = None\n'

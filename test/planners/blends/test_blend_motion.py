@@ -105,7 +105,7 @@ def test_shortest_transitions_are_those_of_the_joint_that_needs_most():
         [2.0, 3.0, 1.0], abs=1e-8)  # lasting for rounding too
 
 
-def test_excess_is_that_of_velocity_change_and_room():
+def test_excess_is_that_of_velocity_change_and_range():
     law = TransitionLaw(np.full(3, 2.0), np.zeros(3))
     problem = via_problem_of(law, limit=0.5)
     v = np.diff(POINTS, axis=0) / TIMING.lines[:, np.newaxis]

@@ -23,7 +23,7 @@ from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 
 SEEDS = range(12)
 ROUNDING = 1.0 + 1e-9
-GRID = 400            # times of each line that the search looks at, at steps of 1 %
+GRID = 400            # times of each line that the search evaluates, at steps of 1 %
 
 
 def never():
@@ -98,7 +98,7 @@ def test_never_slower_than_stops_at_every_via_point():
         assert total_time(fastest(problem, None, never)) < problem.rest_to_rest_times().sum()
 
 
-def test_a_search_that_is_stopped_at_once_keeps_the_limits_all_the_same():
+def test_a_search_that_is_stopped_at_once_is_within_the_limits():
     problem = random_problem(5, 4)
     stopped, free = fastest(problem, None, lambda: True), fastest(problem, None, never)
     assert (excess(problem, stopped) <= ROUNDING).all()

@@ -46,7 +46,7 @@ from rrr_traj_planner.planners.tasks import JointTask
 
 SEEDS = range(12)
 START_SCALING = 1.02
-BETWEEN_POINTS = 1.1  # of an effort limit, on a way with few points to a leg
+BETWEEN_POINTS = 1.1  # of an effort limit, on a path with few points to a leg
 
 
 @pytest.mark.parametrize('limits', [LIMITS, replace(LIMITS, max_effort=NONE), replace(
@@ -88,7 +88,7 @@ def started(task):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_a_blocked_way_is_gone_around_within_ranges_and_torques(seed):
+def test_a_path_around_infeasible_poses_is_within_ranges_and_torques(seed):
     task, constraints, m = started(blocked_task(seed))
     if m is None:
         return
@@ -98,14 +98,14 @@ def test_a_blocked_way_is_gone_around_within_ranges_and_torques(seed):
     assert q[[0, -1]] == pytest.approx(task.points, abs=1e-9)
     assert (q >= task.limits.min_position - 1e-9).all()
     assert (q <= task.limits.max_position + 1e-9).all()
-    # held at any speed on the way, and as fast as it is but for what happens between points
+    # Holdable at any speed on the path, and within limits at this one but for between points.
     assert share_of(task, q).max() < 1.0
     torque = np.abs(inverse_dynamics(task.model, q, qd, qdd)) / task.limits.max_effort
     assert torque.max() < BETWEEN_POINTS
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_there_is_a_start_where_cells_with_room_connect_the_poses_and_nowhere_else(seed):
+def test_there_is_a_start_just_where_cells_within_the_limits_connect_the_poses(seed):
     task, _, m = started(blocked_task(seed))
     if is_connected(task, margin=2.0):
         assert m is not None
@@ -121,15 +121,15 @@ def hardly_open(seed):
         task.limits, max_jerk=NONE, max_effort=task.limits.max_effort * share / 0.999))
 
 
-def test_the_faster_of_the_straight_way_and_another_is_taken():
+def test_the_faster_of_the_straight_path_and_another_is_taken():
     gained = []
     for seed in range(40):
         task, constraints, m = started(hardly_open(seed))
         grid, rest = constraints.grid, np.zeros((0, 3))
-        way = rest_to_rest_shapes(grid, task.points)[:, 1:-1]
+        path = rest_to_rest_shapes(grid, task.points)[:, 1:-1]
 
-        def straight_in(part, grid=grid, way=way, rest=rest, T=m.T, constraints=constraints):
-            m = with_durations(Variables(way, rest, rest, np.ones(1)), part * T)
+        def straight_in(part, grid=grid, path=path, rest=rest, T=m.T, constraints=constraints):
+            m = with_durations(Variables(path, rest, rest, np.ones(1)), part * T)
             return constraints.problem.is_within(m)
 
         assert not straight_in(1.0 / (1.001 * START_SCALING))
@@ -152,13 +152,13 @@ def test_joint_1_alone_is_moved_however_weak_its_motor(effort):
 
 
 def blocked(limit):
-    """Return a task whose straight way needs more of joint 2; the limit [N m] is given."""
+    """Return a task whose straight path needs more of joint 2; the limit [N m] is given."""
     points = np.array([[0.88, 1.29, -1.47], [0.51, 1.56, 0.91]])
     limits = replace(LIMITS, max_effort=[150.0, limit, 200.0])
     return JointTask(ARM, limits, points, None, 0.01), bounds(limits, Grid(20), points)
 
 
-def test_where_no_way_is_found_there_is_none_and_the_error_names_segment_joint_and_torque():
+def test_error_without_a_path_names_segment_joint_and_torque():
     task, constraints = blocked(45.0)
     task = replace(task, limits=replace(
         task.limits, min_position=[-2.9, 1.2, -2.9], max_position=[3.1, 1.6, 3.1]))

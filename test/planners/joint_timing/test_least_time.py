@@ -36,12 +36,12 @@ def test_slow_joint_s_velocity_counts_segment_by_segment():
     assert least_time(limits, q) == pytest.approx(10.0 + 50.0, rel=1e-12)
 
 
-def test_short_way_from_rest_to_rest_is_a_triangle_of_velocity():
+def test_short_displacement_from_rest_to_rest_is_a_triangle_of_velocity():
     q = np.array([(0.0, 0.0, 0.0), (0.25, 0.0, 0.0)])  # 0.5 s up to 0.5 rad/s, 0.5 s down
     assert least_time(LIMITS, q) == pytest.approx(1.0, rel=1e-12)
 
 
-def test_what_does_not_bind_or_move_takes_no_time():
+def test_no_limits_or_no_displacement_take_no_time():
     q = np.array([(0.0, 0.0, 0.0), (1.0, 1.0, 1.0)])
     free = JointLimits(max_velocity=np.full(3, np.inf), max_acceleration=np.full(3, np.inf))
     assert least_time(free, q) == 0.0
@@ -73,7 +73,7 @@ def test_prescribed_durations_are_known_beforehand():
         PlanningRequest(np.eye(3), segment_durations=[1e3, np.nan], sample_period=1e-3)
 
 
-def test_way_too_short_for_numbers_is_none():
+def test_displacement_too_short_for_numbers_is_none():
     a = (1.02, 0.59, 0.97)
     tips = np.array([a, (1.0, 0.6, 1.0)])
     tips[:, 1] = (1e-309, 1.1e-309)  # joint 1 would move by 1e-310 rad

@@ -232,7 +232,7 @@ def test_a_part_of_margins_is_a_part_of_every_margin(seed):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_what_is_kept_leaves_a_slow_motion_half_of_what_gravity_does(seed):
+def test_margins_leave_a_slow_motion_half_of_what_gravity_leaves(seed):
     c = case('torque', seed)
     large = c.margins._replace(efforts=c.margins.efforts + 1e3).of_slow_motion()
     bound = constraints_with(large, c.task, c.grid).effort

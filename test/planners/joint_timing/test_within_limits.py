@@ -31,13 +31,13 @@ from rrr_traj_planner.planners.tasks import JointTask
 
 SEEDS = range(12)
 WIDE = JointLimits([-40.0] * 3, [40.0] * 3, NONE, NONE, NONE, NONE)
-LOOKS = 4001           # in a motion
-BETWEEN = 5e-4         # relative, of peaks between two looks
+SAMPLES = 4001           # in a motion
+BETWEEN = 5e-4         # relative, of peaks between two samples
 RANGE = 1e-4           # rad, likewise
 
 
 class Case:
-    """A random chain of ramps, and what it asks for on a dense grid."""
+    """Random ramps in a row, and what they require on a dense grid."""
 
     def __init__(self, seed):
         self.grid, self.points, self.motion = random_motion(seed)
@@ -53,17 +53,17 @@ class Case:
 
 def dense(trajectory):
     """Return position, velocity, acceleration, jerk and torque on a dense grid."""
-    t = np.union1d(np.linspace(0.0, trajectory.duration, LOOKS), trajectory.knots)
+    t = np.union1d(np.linspace(0.0, trajectory.duration, SAMPLES), trajectory.knots)
     q, qd, qdd, jerk = trajectory(t)
     return q, qd, qdd, jerk, inverse_dynamics(ARM, q, qd, qdd)
 
 
-def within(task, trajectory, room=1.0):
+def within(task, trajectory, factor=1.0):
     """Return whether a motion keeps all limits but the ranges on a dense grid."""
     _, *values = dense(trajectory)
     limits = task.limits
     bounds = (limits.max_velocity, limits.max_acceleration, limits.max_jerk, limits.max_effort)
-    return all((np.abs(x).max(axis=0) <= room * bound).all() for x, bound in zip(values, bounds))
+    return all((np.abs(x).max(axis=0) <= factor * bound).all() for x, bound in zip(values, bounds))
 
 
 BOUNDED = [('max_velocity', 'qd', 1), ('max_acceleration', 'qdd', 2), ('max_jerk', 'jerk', 3)]
@@ -71,7 +71,7 @@ BOUNDED = [('max_velocity', 'qd', 1), ('max_acceleration', 'qdd', 2), ('max_jerk
 
 @pytest.mark.parametrize('seed', SEEDS)
 @pytest.mark.parametrize(('limit', 'values', 'power'), BOUNDED)
-def test_stretch_is_the_root_of_what_is_exceeded(seed, limit, values, power):
+def test_time_scale_is_the_root_of_the_excess(seed, limit, values, power):
     case = Case(seed)
     for part in (0.5, 0.9, 1.3):
         limits = np.append(part, [2.0, 2.0]) * case.largest(values)
@@ -81,7 +81,7 @@ def test_stretch_is_the_root_of_what_is_exceeded(seed, limit, values, power):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_motions_that_keep_their_limits_are_returned_as_they_are(seed):
+def test_motions_within_their_limits_are_returned_unchanged(seed):
     case = Case(seed)
     more = 1.0 + BETWEEN
     task = case.task(max_velocity=more * case.largest('qd'), max_jerk=more * case.largest('jerk'),
@@ -93,7 +93,7 @@ def test_motions_that_keep_their_limits_are_returned_as_they_are(seed):
 
 @pytest.mark.parametrize('seed', SEEDS)
 @pytest.mark.parametrize('part', [0.98, 0.7])
-def test_others_are_slowed_as_a_whole_until_they_do_and_no_further(seed, part):
+def test_motions_beyond_a_limit_are_slowed_as_a_whole_just_enough(seed, part):
     case = Case(seed)
     strong = np.maximum(case.largest('torque'),
                         1.05 * share_of(case.task(max_effort=[1.0] * 3), case.q).max())
@@ -111,7 +111,7 @@ def test_others_are_slowed_as_a_whole_until_they_do_and_no_further(seed, part):
 
 @pytest.mark.parametrize('seed', SEEDS)
 @pytest.mark.parametrize('part', [0.99, 0.8])
-def test_torque_that_is_exceeded_is_slowed_where_gravity_leaves_room_else_refused(seed, part):
+def test_torque_that_is_exceeded_is_slowed_where_gravity_leaves_a_margin_else_refused(seed, part):
     case = Case(seed)
     task = case.task(max_effort=part * case.largest('torque'))
     assert not torque_fits(task, case.trajectory)
@@ -146,7 +146,7 @@ def hurried():
     raise AssertionError('no such motion')
 
 
-def test_a_motion_may_hurry_past_a_pose_that_cannot_be_held_but_not_be_slowed_there():
+def test_a_motion_past_a_pose_that_cannot_be_held_is_accepted_but_not_slowed():
     case, task = hurried()
     assert fitted(task, case.trajectory, may_scale=True) is case.trajectory
     slower = replace(task, limits=replace(task.limits, max_velocity=0.5 * case.largest('qd')))
@@ -163,7 +163,7 @@ def test_beyond_range_is_what_each_joint_leaves_it_by_in_each_segment(seed):
     task = case.task(min_position=low, max_position=high)
     found, starts = beyond_range(task, case.trajectory), case.trajectory.via_times
     for k, (start, end) in enumerate(zip(starts[:-1], starts[1:])):
-        q = case.trajectory(np.linspace(start, end, LOOKS))[0]
+        q = case.trajectory(np.linspace(start, end, SAMPLES))[0]
         expected = np.maximum([q.max(axis=0) - high, low - q.min(axis=0)], 0.0)
         assert found[:, k] == pytest.approx(expected, abs=RANGE)
     assert found.max() > 1e-2

@@ -28,15 +28,15 @@ ARM = RobotModel()
 LIMITS = JointLimits(min_position=[-3.1, -1.5, -1.57], max_position=[3.1, 3.1, 1.57],
                      max_jerk=[np.inf] * 3, max_effort=[np.inf] * 3)
 SLOPE = 2.0  # of the least duration of a transition at 1 rad/s^2 [s^2/rad]
-SPEED = 1.0  # rad/s
+VELOCITY = 1.0  # rad/s
 
 
 def cruise(v0, D, T):
-    """Return the cruise that a transition at full acceleration leads to; NaN where none does."""
+    """Return the cruise velocity after a transition at full acceleration; NaN without one."""
     ahead = D - v0 * T
     with np.errstate(invalid='ignore'):
         change = np.sign(ahead) * (T - np.sqrt(T ** 2 - 2.0 * SLOPE * np.abs(ahead))) / SLOPE
-    return np.where(np.abs(v0 + change) <= SPEED, v0 + change, np.nan)
+    return np.where(np.abs(v0 + change) <= VELOCITY, v0 + change, np.nan)
 
 
 def covered(u, v, T):
@@ -47,10 +47,10 @@ def covered(u, v, T):
 def stop(v, D):
     """Return the least time to come to rest after D [s]; v of shape (n, 3)."""
     T = np.arange(0.02, 8.0, 0.01)[:, np.newaxis, np.newaxis]
-    room = 0.5 * (T / SLOPE - np.abs(v))
-    low = np.maximum(np.minimum(v, 0.0) - room, -SPEED)
-    high = np.minimum(np.maximum(v, 0.0) + room, SPEED)
-    fits = (room >= 0.0) & (covered(low, v, T) <= D) & (D <= covered(high, v, T))
+    left = 0.5 * (T / SLOPE - np.abs(v))
+    low = np.maximum(np.minimum(v, 0.0) - left, -VELOCITY)
+    high = np.minimum(np.maximum(v, 0.0) + left, VELOCITY)
+    fits = (left >= 0.0) & (covered(low, v, T) <= D) & (D <= covered(high, v, T))
     every = fits.all(axis=-1) & np.isfinite(v).all(axis=-1)
     return np.where(every.any(axis=0), T[every.argmax(axis=0), 0, 0], np.inf)
 

@@ -15,36 +15,23 @@
 """Approach (b): via points with blends, which are cycloid transitions."""
 
 from dataclasses import replace
+from functools import partial
 
-from helpers.thesis_cases import POINTS
+from helpers.planning_cases import ARM, FREE, LIMITS, table, through
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, TimingError
-from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
-ARM, LIMITS = RobotModel(), JointLimits()
-FREE = replace(LIMITS, max_effort=np.full(3, np.inf))
-
-
-def table(name, **request):
-    return PlanningRequest([POINTS[f'{name} point {k}'][0] for k in (1, 2, 3)],
-                           planner_id='cycloid_approach_b', **request)
-
-
-def through(q, **request):
-    return PlanningRequest(forward_kinematics(ARM, np.asarray(q, dtype=float)),
-                           planner_id='cycloid_approach_b', **request)
+table, through = (partial(f, planner_id='cycloid_approach_b') for f in (table, through))
 
 
 @pytest.mark.parametrize('joint', range(3))
 @pytest.mark.parametrize('steps', [
     [0.2, 0.2, 0.3], [0.1, 0.1, 0.1, 0.2, 0.2, 0.05], [0.3, 0.3, -0.2], [1e-3, 1e-3, 0.4, 0.4],
     [0.15, 0.15, 0.15, 0.15]])
-def test_equal_steps_take_no_more_time_than_steps_that_differ_by_next_to_nothing(joint, steps):
+def test_equal_steps_take_no_more_time_than_nearly_equal_ones(joint, steps):
     # At equal steps velocity need not change at all: what is left of the change is rounding, and
     # so would be the jerk of a transition that is as short as that allows.
     q = np.tile([0.3, 1.3, 0.1], (len(steps) + 1, 1))
@@ -84,20 +71,12 @@ def test_tables_take_less_than_stops_at_the_via_points(name, with_stops):
     assert plan(ARM, FREE, table(name)).trajectory.duration < with_stops
 
 
-def test_one_joint_on_a_straight_way_takes_the_time_of_one_segment():
+def test_one_joint_in_one_direction_takes_the_time_of_one_segment():
     # 1.2 rad in two equal halves, 1 rad/s^2: as without the point between, 2 sqrt(2 * 1.2) s.
     limits = replace(FREE, max_velocity=np.full(3, np.inf), max_jerk=np.full(3, np.inf))
     q = [[0.1, 1.5, 0.0], [0.7, 1.5, 0.0], [1.3, 1.5, 0.0]]
     answer = plan(ARM, limits, through(q))
     assert answer.trajectory.duration == pytest.approx(2.0 * np.sqrt(2.0 * 1.2), rel=1e-4)
-
-
-@pytest.mark.parametrize('durations', [[4.0, 4.0], [10.0, 3.5], [3.0, 30.0]])
-def test_prescribed_durations_are_kept(durations):
-    answer = plan(ARM, LIMITS, table('6.1', segment_durations=durations))
-    assert answer.via_times == pytest.approx([0.0, durations[0], sum(durations)], abs=1e-9)
-    assert (answer.effort <= LIMITS.max_effort * (1.0 + 1e-6)).all()
-    assert 'missed by construction: 1 by' in answer.note
 
 
 def test_one_prescribed_segment_holds_both_transitions_and_its_line():
@@ -120,23 +99,17 @@ def test_where_torque_is_short_transitions_are_gentler():
     assert gentle.peaks.velocity[0] > free.peaks.velocity[0]
 
 
-@pytest.mark.parametrize('durations', [[1.0, 1.0], [0.3, 2.0], [0.001, 5.0]])
-def test_durations_too_short_are_refused_with_feasible_ones_that_are_then_accepted(durations):
-    request = table('6.1', segment_durations=durations)
-    with pytest.raises(TimingError, match=(
-            r'^segment_durations \[.*\] s are too short: feasible are \[.*\] s$')) as no:
+def test_next_to_no_duration_is_refused_with_feasible_ones_that_are_then_accepted():
+    request = table('6.1', segment_durations=[0.001, 5.0])
+    with pytest.raises(TimingError) as refusal:
         plan(ARM, LIMITS, request)
-    least = no.value.least_durations
-    answer = plan(ARM, LIMITS, replace(request, segment_durations=least))
-    assert np.diff(answer.via_times) == pytest.approx(least, abs=1e-9)
-    assert (np.array(least) >= durations).all()
-    assert sum(least) < 10.0
-    if durations == [1.0, 1.0]:
-        with pytest.raises(TimingError):
-            plan(ARM, LIMITS, replace(request, segment_durations=0.99 * np.array(least)))
+    offered = refusal.value.least_durations
+    assert sum(offered) < 10.0
+    answer = plan(ARM, LIMITS, replace(request, segment_durations=offered))
+    assert np.diff(answer.via_times) == pytest.approx(offered, abs=1e-9)
 
 
-def test_a_way_that_cannot_be_held_and_a_missing_limit_are_refused():
+def test_a_path_that_cannot_be_held_and_a_missing_limit_are_refused():
     weak = replace(LIMITS, max_effort=[150.0, 200.0, 50.0])
     q = [[0.3, 1.5, -1.5], [0.3, np.pi / 2, 1.5]]
     for durations in (None, [9.0]):

@@ -15,29 +15,16 @@
 """Approach (c): lift-off from rest, cruise, set-down to rest, in every segment."""
 
 from dataclasses import replace
+from functools import partial
 
-from helpers.thesis_cases import POINTS
+from helpers.planning_cases import ARM, FREE, LIMITS, table, through
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import PlanningRequest
 
-ARM, LIMITS = RobotModel(), JointLimits()
-FREE = replace(LIMITS, max_effort=np.full(3, np.inf))
+table, through = (partial(f, planner_id='cycloid_approach_c') for f in (table, through))
 LIGHT = replace(FREE, max_jerk=np.full(3, np.inf))
-
-
-def table(name, **request):
-    return PlanningRequest([POINTS[f'{name} point {k}'][0] for k in (1, 2, 3)],
-                           planner_id='cycloid_approach_c', **request)
-
-
-def through(q, **request):
-    return PlanningRequest(forward_kinematics(ARM, np.asarray(q, dtype=float)),
-                           planner_id='cycloid_approach_c', **request)
 
 
 @pytest.mark.parametrize(('name', 'seconds'), [('6.1', 3.380), ('6.3', 4.446)])

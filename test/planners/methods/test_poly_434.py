@@ -15,40 +15,25 @@
 """Lin's 4-3-4: quartic lift-off, cubic cruise, quartic set-down, in every segment."""
 
 from dataclasses import replace
+from functools import partial
 
+from helpers.planning_cases import ARM, FREE, LIMITS, STRONG, table, through
 from helpers.random_tasks import random_task
-from helpers.thesis_cases import POINTS
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError, TimingError
-from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import times_within
 from rrr_traj_planner.planners.methods import poly_434
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import PlanningRequest
 
-ARM, LIMITS = RobotModel(), JointLimits()
-FREE = replace(LIMITS, max_effort=np.full(3, np.inf))
+table, through = (partial(f, planner_id='poly_434') for f in (table, through))
 LIGHT = replace(FREE, max_jerk=np.full(3, np.inf))
-STRONG = replace(LIMITS, max_effort=[150.0, 250.0, 200.0])
 
-# Degrees, from the verified joint angles of both tables: the longest way of each segment, joint
-# 2's and then joint 1's of table 6.1, joint 3's and then joint 2's of table 6.3.
+# Degrees, from the verified joint angles of both tables: the largest displacement of each segment,
+# joint 2's and then joint 1's of table 6.1, joint 3's and then joint 2's of table 6.3.
 LONGEST = {'6.1': (88.8437 - 54.0815, 50.0921 - 40.1792),
            '6.3': (9.1332 + 29.4763, 58.4486 - 26.1272)}
-
-
-def table(name, **request):
-    return PlanningRequest([POINTS[f'{name} point {k}'][0] for k in (1, 2, 3)],
-                           planner_id='poly_434', **request)
-
-
-def through(q, **request):
-    return PlanningRequest(forward_kinematics(ARM, np.asarray(q, dtype=float)),
-                           planner_id='poly_434', **request)
 
 
 @pytest.mark.parametrize('name', LONGEST)
@@ -88,7 +73,7 @@ def test_every_segment_is_a_quartic_a_cubic_and_a_quartic_of_equal_length_on_tab
             assert T == pytest.approx([T.mean()] * 3, rel=1e-3)
 
 
-def test_jerk_steps_but_keeps_its_limit():
+def test_jerk_steps_within_its_limit():
     limits = replace(FREE, max_jerk=[2.0, 3.0, 4.0])
     answer = plan(ARM, limits, table('6.1'))
     t = times_within(answer.trajectory, 50)
@@ -97,7 +82,7 @@ def test_jerk_steps_but_keeps_its_limit():
     assert (start / limits.max_jerk).max() == pytest.approx(1.0, rel=1e-4)
 
 
-def test_the_way_back_is_the_same_motion_backwards():
+def test_the_reverse_task_has_the_same_motion_backwards():
     q = [[0.3, 1.4, 0.0], [0.9, 1.7, -0.4]]
     forth, back = (plan(ARM, FREE, through(points)).trajectory for points in (q, q[::-1]))
     assert forth.duration == pytest.approx(back.duration, rel=1e-12)
@@ -141,7 +126,7 @@ def test_several_starts_find_faster_laws_than_one(monkeypatch):
     tasks = [random_task(seed) for seed in (4, 8, 13, 21)]  # of those that lack torque
 
     def durations():
-        return np.array([plan(task.model, task.limits, task.asked_of(
+        return np.array([plan(task.model, task.limits, task.request_to(
             'poly_434')).trajectory.duration for task in tasks])
 
     by_all = durations()

@@ -51,7 +51,7 @@ def test_speeds_are_zero_at_both_ends_only(seed):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_a_motion_of_these_speeds_keeps_every_limit(seed):
+def test_a_motion_of_these_speeds_is_within_every_limit(seed):
     case, grid = random_case(seed), Grid(12)
     limits = limits_of(case)
     table, bounds = PathTable(case.arm_path), all_bounds(limits, np.inf)
@@ -65,7 +65,7 @@ def test_a_motion_of_these_speeds_keeps_every_limit(seed):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_every_speed_is_held_down_by_a_neighbour_or_by_a_limit_of_its_own(seed):
+def test_every_speed_is_bounded_by_a_neighbour_or_by_a_limit(seed):
     case = random_case(seed)
     table, bounds = PathTable(case.arm_path), all_bounds(limits_of(case), np.inf)
     speeds = initial_speeds_of(table, bounds)

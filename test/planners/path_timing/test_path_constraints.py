@@ -36,7 +36,7 @@ KINDS = ('velocity', 'acceleration', 'jerk', 'torque')
 
 
 def random_problem(seed, limits=LIMITS, max_tip_speed=TIP_SPEED, margin=0.0, steady=False):
-    """Return constraints on a random path and a motion along it that moves on all the way."""
+    """Return constraints on a random path and a motion along it that never stops."""
     rng = np.random.default_rng(4400 + seed)
     table, grid = PathTable(random_case(seed, points=3).arm_path), Grid(8)
     N = len(table.ends) - 1

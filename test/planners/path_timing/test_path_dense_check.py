@@ -35,12 +35,12 @@ from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled
 
 SEEDS = range(8)
 DENSE = 300          # evaluations a ramp
-# What is allowed for between two looks, an eighth of the bend, is a bound: of the largest value,
-# it exceeds what is there by no more than this.
+# The allowance between two samples, an eighth of the second difference, is a bound: it
+# exceeds the true excess by no more than this part of the largest value.
 ALLOWED = 0.1
 
 
-def random_look(seed, ramps=6):
+def random_check(seed, ramps=6):
     """Return a table, a grid and a motion that no limits have shaped."""
     rng = np.random.default_rng(seed)
     table, grid = PathTable(random_case(seed).arm_path), Grid(ramps, (0.0, 0.6)[seed % 2])
@@ -52,7 +52,7 @@ def random_look(seed, ramps=6):
     return table, grid, grid.restored(table.ends[:, np.newaxis], m)
 
 
-def look(table, grid, m, bounds):
+def checked(table, grid, m, bounds):
     """Return what a dense check finds."""
     N, steady = len(m.T), np.zeros(len(m.T), bool)
     constraints = PathConstraints(table, JointLimits(), np.inf, grid,
@@ -79,10 +79,10 @@ def exceeded_bounds(x, part=0.8):
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_excess_is_that_of_a_dense_evaluation_of_each_piece(seed):
-    table, grid, m = random_look(seed)
+    table, grid, m = random_check(seed)
     x = np.abs(dense(table, grid, m))
     bounds = exceeded_bounds(x)
-    found = look(table, grid, m, bounds).excess
+    found = checked(table, grid, m, bounds).excess
     assert found.shape == (len(m.T), 2 * grid.n + 1, QUANTITIES)
     peaks, largest = x.max(axis=1), x.max(axis=(0, 1))
     wanted = np.where(peaks > bounds, peaks - bounds, 0.0)
@@ -92,11 +92,11 @@ def test_excess_is_that_of_a_dense_evaluation_of_each_piece(seed):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_excess_is_told_of_the_points_it_is_near_to(seed):
-    table, grid, m = random_look(seed)
+def test_excess_is_reported_at_the_nearest_points(seed):
+    table, grid, m = random_check(seed)
     x = np.abs(dense(table, grid, m))
     bounds = exceeded_bounds(x)
-    found = look(table, grid, m, bounds).excess
+    found = checked(table, grid, m, bounds).excess
     # in the order of time: nodes and the middles between them
     order = np.argsort(np.concatenate((np.arange(grid.n + 1.0), np.arange(grid.n) + 0.5)))
     near = DENSE // 4
@@ -111,31 +111,31 @@ def test_excess_is_told_of_the_points_it_is_near_to(seed):
 
 @pytest.mark.parametrize('kind', [VELOCITY, ACCELERATION, JERK, TORQUE, SPEED])
 @pytest.mark.parametrize('seed', SEEDS[:4])
-def test_a_motion_stretched_as_it_says_just_keeps_its_limits(seed, kind):
-    table, grid, m = random_look(seed)
+def test_a_motion_scaled_by_the_reported_factor_is_just_within_its_limits(seed, kind):
+    table, grid, m = random_check(seed)
     bounds = np.full(QUANTITIES, np.inf)
     bounds[kind] = 0.8 * np.abs(dense(table, grid, m)).max(axis=(0, 1))[kind]
     if kind == TORQUE:  # no less than gravity takes, 0 of joint 1
         bounds[kind] = 1.01 * np.abs(table.values.g).max(axis=(0, 1)) + 0.01
-    stretch = look(table, grid, m, bounds).time_scale
-    assert stretch > 1.0
-    scaled = time_scaled(m, stretch)
-    assert look(table, grid, scaled, bounds).time_scale == pytest.approx(1.0, rel=1e-9)
+    time_scale = checked(table, grid, m, bounds).time_scale
+    assert time_scale > 1.0
+    scaled = time_scaled(m, time_scale)
+    assert checked(table, grid, scaled, bounds).time_scale == pytest.approx(1.0, rel=1e-9)
 
 
 def test_a_torque_that_gravity_takes_can_be_met_by_no_slowing():
-    table, grid, m = random_look(0)
+    table, grid, m = random_check(0)
     bounds = np.full(QUANTITIES, np.inf)
-    assert look(table, grid, m, bounds).time_scale == 0.0
+    assert checked(table, grid, m, bounds).time_scale == 0.0
     bounds[10] = 0.5 * np.abs(table.values.g[..., 1]).min()
-    assert look(table, grid, m, bounds).time_scale == np.inf
+    assert checked(table, grid, m, bounds).time_scale == np.inf
 
 
-def test_a_tip_that_goes_back_is_seen():
-    table, grid, m = random_look(1)
+def test_a_tip_that_moves_backwards_is_detected():
+    table, grid, m = random_check(1)
     bounds = np.full(QUANTITIES, np.inf)
-    assert look(table, grid, m, bounds).is_forward
+    assert checked(table, grid, m, bounds).is_forward
     back = m._replace(v=m.v * np.where(np.arange(len(m.v)) == 1, -1.0, 1.0)[:, np.newaxis])
-    seen = look(table, grid, grid.restored(table.ends[:, np.newaxis], back), bounds)
+    seen = checked(table, grid, grid.restored(table.ends[:, np.newaxis], back), bounds)
     assert seen.slowest <= -0.2
     assert not seen.is_forward

@@ -16,8 +16,9 @@
 
 from functools import cache
 
+from helpers.measured_motions import Measured
 from helpers.phase_plane import least_time
-from helpers.random_paths import Measured, NONE, PathCase, random_case
+from helpers.random_paths import NONE, PathCase, random_case
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -82,7 +83,7 @@ def test_limits_of_k_k_squared_and_k_cubed_take_a_kth_of_the_time(seed):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_tip_speed_is_kept_and_used(seed):
+def test_tip_speed_limit_holds_and_is_reached(seed):
     case, T = free_time(seed)
     speed = 0.5 * case.arm_path.path.length / T  # half of the average
     motion = case.timed(speed, max_effort=NONE, max_jerk=NONE)
@@ -105,7 +106,7 @@ def test_joins_are_passed_at_knots_exactly(seed):
 
 @pytest.mark.parametrize('seed', range(4))
 @pytest.mark.parametrize('iterations', [0, 12, 24])
-def test_a_motion_that_is_cut_short_keeps_its_limits_and_goes_on(seed, iterations):
+def test_planning_stopped_early_gives_a_motion_within_limits_that_never_stops(seed, iterations):
     case, left = random_case(seed), [iterations]
 
     def should_stop():
@@ -114,7 +115,7 @@ def test_a_motion_that_is_cut_short_keeps_its_limits_and_goes_on(seed, iteration
 
     found = fastest_along(PathTask(
         case.arm_path, case.limits, case.constant_jerk_fraction, np.inf, False, should_stop))
-    m = Measured(case, None, found.trajectory)
-    assert m.use().max() <= 1.0 + 1e-6
-    assert m.motion.progress(m.t)[1].min() >= -1e-12
+    m = Measured(case, trajectory=found.trajectory)
+    assert m.utilisation().max() <= 1.0 + 1e-6
+    assert m.trajectory.progress(m.t)[1].min() >= -1e-12
     assert found.gap > 0.0

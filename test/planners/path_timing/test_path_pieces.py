@@ -62,7 +62,7 @@ def duration(tips, planner_id):
 @pytest.mark.parametrize('distance', DISTANCES)
 @pytest.mark.parametrize('planner_id', PLANNERS)
 def test_passing_joint_axis_1_takes_no_longer_than_to_stop_there_and_turn(planner_id, distance):
-    # In a plane with the axis joint 1 stands still: the way there, half a turn, the way on.
+    # In a plane with the axis joint 1 stands still: to the axis, half a turn, and away from it.
     there = duration([(0.5, 0.0, 1.2), (0.0, 0.0, 1.2)], planner_id)
     onward = duration([(0.0, 0.0, 1.2), (-0.3, 0.0, 1.2)], planner_id)
     passing = duration(past_the_axis(distance), planner_id)
@@ -72,9 +72,9 @@ def test_passing_joint_axis_1_takes_no_longer_than_to_stop_there_and_turn(planne
 
 @pytest.mark.parametrize('planner_id', PLANNERS)
 def test_time_to_the_edge_of_the_workspace_has_a_limit(planner_id):
-    # joint_3 turns by sqrt(distance) on the last of the way, whatever the scale.
+    # joint_3 turns by sqrt(distance) on the last of the path, whatever the scale.
     times = [duration(to_the_edge(distance), planner_id) for distance in EDGES]
-    assert (np.diff(times) > 0.0).all()  # the way of each is part of the next one's, but its end
+    assert (np.diff(times) > 0.0).all()  # each path is part of the next one, but for its end
     assert times[-1] <= 1.25 * times[0]
     joints = plan(ARM, LIMITS, PlanningRequest(
         to_the_edge(EDGES[-1]), planner_id='time_optimal')).trajectory.duration

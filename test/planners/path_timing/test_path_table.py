@@ -64,7 +64,7 @@ def test_table_is_the_exact_demand_to_its_accuracy(seed):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_table_is_exact_at_its_own_places(seed):
+def test_table_is_exact_at_its_nodes(seed):
     arm_path, table = random_table(seed)
     s = table.places[:, 1:-1]
     for ours, wanted in zip(terms_at(table, s), exact(arm_path, s)):

@@ -18,11 +18,12 @@ from itertools import count
 
 import numpy as np
 import pytest
+from rrr_traj_planner.planners.solver import barrier_method
 from rrr_traj_planner.planners.solver.barrier_method import RELATIVE_GAP
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 from rrr_traj_planner.planners.transitions.largest_displacement import largest_displacement
-from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 from rrr_traj_planner.planners.transitions.via_problem import ViaProblem
 from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scale
 from scipy.optimize import minimize
@@ -49,8 +50,8 @@ def slacks(problem, v, T):
     change = problem.law.largest_change(t)
     law, most, D = problem.law, problem.max_velocity, problem.displacements
     return np.concatenate([x.ravel() for x in (
-        largest_displacement(law, most, v0, v1, t) - D,
-        largest_displacement(law, most, -v0, -v1, t) + D,
+        largest_displacement(SegmentLimits(law, most), v0, v1, t) - D,
+        largest_displacement(SegmentLimits(law, most), -v0, -v1, t) + D,
         change - (v1 - v0), change + (v1 - v0), problem.highest - v, v - problem.lowest)])
 
 
@@ -104,6 +105,32 @@ def test_the_least_stretch_of_the_least_durations_is_one_and_halves_for_twice_as
     assert slacks(problem, found.velocities, found.durations).min() > 0.0
     assert found.durations == pytest.approx(factor * T, rel=1e-12)
     assert least_time_scale(problem, 2.0 * T)[0] == pytest.approx(0.5 * factor, rel=1e-5)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_every_accepted_step_decreases_objective_and_barrier(seed, monkeypatch):
+    accepted, tried = [], []
+
+    class Watched:
+
+        def __getattr__(self, name):
+            return getattr(KERNELS, name)
+
+        def via_attempt(self, at, weight):
+            tried.append(KERNELS.via_attempt(at, weight))
+            return tried[-1]
+
+        def via_accept(self, at, less):
+            accepted.append(tried[-1])
+            KERNELS.via_accept(at, less)
+
+    problem = random_problem(seed)
+    start = least_time(problem, should_stop=lambda: True)
+    barrier = ViaBarrier(problem, start.velocities, start.durations)
+    monkeypatch.setattr(barrier_method, 'KERNELS', Watched())
+    barrier_method.minimise(barrier, lambda: False)
+    assert len(accepted) > 10
+    assert max(accepted) < 0.0
 
 
 def test_one_segment_takes_its_closed_form():

@@ -16,7 +16,7 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.solver.dense_check import excess_near_points, rise_between_samples
+from rrr_traj_planner.planners.solver.excess import excess_near_points, rise_between_samples
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 SEEDS = range(6)

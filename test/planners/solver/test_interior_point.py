@@ -28,7 +28,7 @@ from helpers.ramp_cases import (
     random_motion,
     slow_start,
 )
-from helpers.random_cases import central_difference
+from helpers.solving import never, solve
 import numpy as np
 import pytest
 from rrr_traj_planner.planners.solver import line_search
@@ -36,26 +36,10 @@ from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, mi
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
-from scipy.optimize import minimize, nnls
+from scipy.optimize import minimize
 
 GAP = 6e-3  # relative: what counts as converged
 SEEDS = range(5)
-
-
-def never():
-    return False
-
-
-def solve(limits, grid, points, should_stop=never, durations=None):
-    constraints, m = slow_start(limits, grid, points)
-    problem, seen = constraints.problem, []
-
-    def stop():  # at every iterate
-        seen.append(problem.motion(problem.arrays['variables'].copy()))
-        return should_stop()
-
-    outcome = minimise(problem, CentralPathPoint(m, None), durations or all_free(len(m.T)), stop)
-    return problem, m, seen, outcome
 
 
 def reference(limits, grid, points, start):
@@ -137,6 +121,19 @@ def test_limits_that_come_closer_are_kept_from_the_first_centre_on(seed, limits,
         assert found.motion.T.sum() == pytest.approx(anew, rel=GAP)
 
 
+@pytest.mark.parametrize('side', ['min_position', 'max_position', 'max_velocity', 'max_effort'])
+def test_constraints_are_shifted_to_the_wider_of_two_limits_on_each_side(side):
+    grid, points, m = random_motion(3)
+    other = replace(LIMITS, **{side: 0.8 * getattr(LIMITS, side)})
+    for limits, previous in ((LIMITS, other), (other, LIMITS)):
+        now, before = (bounds(given, grid, points).problem for given in (limits, previous))
+        alone, wider = now.slacks(m), before.slacks(m)
+        now.begin(m, all_free(len(m.T)))
+        now.shift(before.limits)
+        assert now.slacks(m) == pytest.approx(np.maximum(alone, wider), rel=1e-12, abs=1e-12)
+        assert (alone != wider).any()
+
+
 def test_limits_that_cannot_be_kept_are_not_said_to_be():
     grid, points, _ = random_motion(1)
     wide, _, _, passed = solve(LIMITS, grid, points)
@@ -198,97 +195,6 @@ def test_velocities_at_rest_stay_zero():
     found = solve(FREE, grid, points, durations=durations)[3].motion
     assert np.abs(found.v[at_rest]).max() <= 1e-12
     assert np.abs(found.v[~at_rest]).min() > 1e-3
-
-
-# --- Centres of the central path --------------------------------------------------------------
-
-ALL = [FREE, LIMITS, replace(LIMITS, max_acceleration=NONE, max_jerk=[50.0] * 3)]
-NAMES = ['free', 'all', 'torque']
-
-
-def count_of(problem):
-    """Return the number of constraints: no least durations."""
-    return problem.arrays['slack'].size - 2 * (len(problem.points) - 1)
-
-
-@pytest.mark.parametrize('limits', ALL, ids=NAMES)
-@pytest.mark.parametrize('seed', SEEDS)
-def test_centres_are_strictly_within_limits_slowest_first_and_as_near_as_their_barriers(
-        seed, limits):
-    grid, points, _ = random_motion(seed)
-    problem, start, _, outcome = solve(limits, grid, points)
-    assert len(outcome.centres) >= 2
-    best = outcome.motion.T.sum()
-    for motion, barrier in outcome.centres:
-        assert problem.is_within(motion)
-        at = grid.states(points, motion)
-        assert at.q[:, grid.n] == pytest.approx(points[1:], abs=1e-10)
-        # the optimum is a constraint's barrier away for every constraint
-        assert motion.T.sum() - best <= count_of(problem) * barrier
-    barriers = np.array([c.barrier for c in outcome.centres])
-    assert barriers[1:] == pytest.approx(0.1 * barriers[:-1])
-    assert (np.diff([c.motion.T.sum() for c in outcome.centres]) < 0.0).all()
-
-
-@pytest.mark.parametrize('seed', SEEDS)
-def test_centres_leave_more_slack_the_higher_their_barrier(seed):
-    grid, points, _ = random_motion(seed)
-    problem, _, _, outcome = solve(LIMITS, grid, points)
-    least = [problem.slacks(c.motion).min() for c in outcome.centres]
-    assert (np.diff(least) < 0.0).all()
-
-
-@pytest.mark.parametrize('limits', ALL, ids=NAMES)
-@pytest.mark.parametrize('seed', SEEDS)
-def test_the_method_ends_at_the_centre_of_the_least_barrier(seed, limits):
-    grid, points, _ = random_motion(seed)
-    problem, start, _, outcome = solve(limits, grid, points)
-    wanted = outcome.centres[1]
-    found = minimise(problem, CentralPathPoint(start, None), all_free(len(start.T)), never,
-                     wanted.barrier)
-    assert [c.barrier for c in found.centres] == [c.barrier for c in outcome.centres[:2]]
-    for one, other in zip(found.centres[-1].motion, wanted.motion):
-        assert (one == other).all()
-
-
-@pytest.mark.parametrize('seed', SEEDS)
-def test_from_a_centre_on_it_finds_the_same_optimum(seed):
-    grid, points, _ = random_motion(seed)
-    problem, _, _, outcome = solve(LIMITS, grid, points)
-    again = minimise(problem, outcome.centres[0], all_free(len(outcome.motion.T)), never)
-    assert again.centres[0].barrier <= outcome.centres[0].barrier
-    assert again.motion.T.sum() == pytest.approx(outcome.motion.T.sum(), rel=GAP)
-
-
-@pytest.mark.parametrize('limits', ALL, ids=NAMES)
-@pytest.mark.parametrize('seed', SEEDS[:3])
-def test_returned_motions_keep_the_conditions_of_optimality(seed, limits):
-    # Those of Karush, Kuhn and Tucker, by differences of slacks and ends: as far as changes that
-    # keep the ends can use it, the objective's gradient is a sum of constraints' gradients, with
-    # positive multipliers whose products with the slacks are a centre's gap.
-    grid, points, _ = random_motion(seed, n=6)
-    problem, _, _, outcome = solve(limits, grid, points)
-    motion, barrier = outcome.centres[-1]
-    x = np.concatenate([f.ravel() for f in motion])
-
-    def by_unknowns(function):
-        return np.stack([central_difference(lambda z, unit=unit: function(
-            problem.motion(x + z * unit)), 0.0, 1e-6).ravel() for unit in np.eye(len(x))], axis=1)
-
-    def ends(m):
-        at = grid.states(points, m)
-        return np.concatenate((at.q[:, grid.n] - points[1:], at.qd[:, grid.n] - nodes_of(m)[2]))
-
-    count = count_of(problem)
-    E, slack = by_unknowns(ends), problem.slacks(motion)[:count]
-    null = np.linalg.svd(E)[2][len(E):].T
-    rates = by_unknowns(lambda m: problem.slacks(m)[:count]) @ null
-    cost = null.T @ np.append(np.zeros(len(x) - len(motion.T)), np.ones(len(motion.T)))
-    # in multiples of barrier / slack, so that a constraint far away has no say
-    central = barrier / slack
-    parts, residual = nnls((rates * central[:, np.newaxis]).T, cost)
-    assert residual <= 1e-3 * np.linalg.norm(cost)
-    assert parts.sum() * barrier <= GAP * motion.T.sum()  # multipliers times slacks
 
 
 def test_a_step_whose_equations_are_singular_is_skipped(monkeypatch):

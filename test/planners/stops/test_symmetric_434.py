@@ -29,7 +29,8 @@ from rrr_traj_planner.planners.stops.torque_434 import law_for_torque, Segment
 RNG = np.random.default_rng(621)
 FREE = 1e-9  # a ratio that never binds
 
-# Of way / limit for velocity, acceleration and jerk; a third each without velocity or jerk limits.
+# Of displacement / limit for velocity, acceleration and jerk; a third each without limits of
+# velocity or jerk.
 WAYS = np.exp(RNG.uniform(-4.0, 2.0, 36))
 RATIOS = DisplacementRatios(
     WAYS / np.exp(RNG.uniform(-1.0, 1.5, 36)), WAYS / np.exp(RNG.uniform(-1.0, 1.5, 36)),
@@ -76,13 +77,13 @@ def test_with_an_acceleration_limit_alone_it_has_equal_thirds():
 
 
 def test_with_a_low_velocity_limit_the_cruise_is_at_constant_velocity():
-    # Paul's quartics of a duration t: way = v (T - t), peak acceleration 1.5 v / t = a.
-    way, v, a = 1.0, 0.1, 1.0
-    law = fastest(way / v, way / a, FREE)
+    # Paul's quartics of a duration t: displacement v (T - t), peak acceleration 1.5 v / t = a.
+    D, v, a = 1.0, 0.1, 1.0
+    law = fastest(D / v, D / a, FREE)
     assert law.a1.item() == pytest.approx(0.0, abs=1e-6)
     t = 1.5 * v / a
-    assert time_of(law, way / v, way / a, FREE) == pytest.approx(way / v + t, rel=1e-7)
-    assert law.first.item() == pytest.approx(t / (way / v + t), rel=1e-4)
+    assert time_of(law, D / v, D / a, FREE) == pytest.approx(D / v + t, rel=1e-7)
+    assert law.first.item() == pytest.approx(t / (D / v + t), rel=1e-4)
 
 
 def test_peaks_of_symmetric_laws_are_those_of_the_docstring():

@@ -16,11 +16,10 @@
 
 from dataclasses import replace
 
-from helpers.thesis_cases import POINTS
+from helpers.planning_cases import ARM, LIMITS, STRONG, table
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError, TimingError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
@@ -32,8 +31,6 @@ from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.planner import planner_with
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
-ARM, LIMITS = RobotModel(), JointLimits()
-STRONG = replace(LIMITS, max_effort=[150.0, 250.0, 200.0])  # joint 2 as table 6.3 needs it
 FREE = replace(LIMITS, max_effort=np.full(3, np.inf), max_jerk=np.full(3, np.inf),
                max_velocity=np.full(3, np.inf))
 PLANNERS = ['gauss', 'septic']
@@ -42,10 +39,6 @@ PLANNERS = ['gauss', 'septic']
 # (1.8683), and 15/8. The cycloid's is 2.
 PEAK = {'cycloid': 2.0, 'gauss': 1.8683, 'septic': 15.0 / 8.0}
 TABLES = {'6.1': 2.850, '6.3': 3.490}  # s, known of the cycloid
-
-
-def table(name, **request):
-    return PlanningRequest([POINTS[f'{name} point {k}'][0] for k in (1, 2, 3)], **request)
 
 
 @pytest.mark.parametrize('planner_id', PLANNERS)
@@ -69,7 +62,7 @@ def test_one_joint_alone_takes_the_time_of_two_transitions(planner_id):
 
 
 @pytest.mark.parametrize('planner_id', PLANNERS)
-def test_jerk_limits_are_kept_and_used_up(planner_id):
+def test_jerk_limits_hold_and_are_reached(planner_id):
     tight = replace(FREE, max_jerk=[2.0, 2.0, 2.0])
     peaks = plan(ARM, tight, table('6.1', planner_id=planner_id)).peaks
     assert (peaks.jerk <= 2.0 * (1.0 + 1e-6)).all()

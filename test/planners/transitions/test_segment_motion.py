@@ -21,12 +21,13 @@ from rrr_traj_planner.planners.transitions.segment_motion import (
     low_acceleration_parts,
     Parts,
     quick_parts,
+    Segments,
     trajectory,
 )
-from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
+from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw
 
 ROUNDING = 1e-9
-SEEDS = range(40)
+SEEDS = range(12)
 
 
 def segments(seed, n=6):
@@ -37,8 +38,8 @@ def segments(seed, n=6):
     v0, v1 = rng.uniform(-1.0, 1.0, (2, n, 3)) * limit
     v0, v1 = v0 * (rng.random((n, 3)) < 0.8), v1 * (rng.random((n, 3)) < 0.8)
     T = law.least_time(v1 - v0).max(axis=1, keepdims=True) * rng.uniform(1.0, 3.0, (n, 1)) + 1e-3
-    most = largest_displacement(law, limit, v0, v1, T)
-    least = -largest_displacement(law, limit, -v0, -v1, T)
+    most = largest_displacement(SegmentLimits(law, limit), v0, v1, T)
+    least = -largest_displacement(SegmentLimits(law, limit), -v0, -v1, T)
     share = rng.choice([0.0, 0.02, 0.5, 1.0], (n, 3)) + 0.0
     share = np.where(share == 0.5, rng.random((n, 3)), share)
     return law, limit, v0, v1, T, least + share * (most - least)
@@ -52,8 +53,8 @@ def displacement(parts, v0, v1, T):
 
 def parts_of(kind, law, limit, v0, v1, T, D):
     if kind == 'low acceleration':
-        return low_acceleration_parts(law, limit, v0, v1, T, D)
-    return quick_parts(law, v0, v1, T, D)
+        return low_acceleration_parts(SegmentLimits(law, limit), Segments(v0, v1, T, D))
+    return quick_parts(law, Segments(v0, v1, T, D))
 
 
 @pytest.mark.parametrize('kind', ['low acceleration', 'quick'])
@@ -86,10 +87,10 @@ def test_parts_of_the_motion_backwards_in_time_are_exchanged(seed):
     law, limit, v0, v1, T, D = segments(seed)
     v0 = np.where(v0 == v1, v0 + 1e-3, v0) * (1.0 - 1e-2)
     v1 = v1 * (1.0 - 1e-2)
-    D = 0.5 * (largest_displacement(law, limit, v0, v1, T)
-               - largest_displacement(law, limit, -v0, -v1, T))
-    ours = low_acceleration_parts(law, limit, v0, v1, T, D)
-    backwards = low_acceleration_parts(law, limit, v1, v0, T, D)
+    D = 0.5 * (largest_displacement(SegmentLimits(law, limit), v0, v1, T)
+               - largest_displacement(SegmentLimits(law, limit), -v0, -v1, T))
+    ours = low_acceleration_parts(SegmentLimits(law, limit), Segments(v0, v1, T, D))
+    backwards = low_acceleration_parts(SegmentLimits(law, limit), Segments(v1, v0, T, D))
     assert backwards.first == pytest.approx(ours.last, abs=1e-6)
     assert backwards.cruise == pytest.approx(ours.cruise, abs=1e-6)
 
@@ -97,8 +98,8 @@ def test_parts_of_the_motion_backwards_in_time_are_exchanged(seed):
 def test_with_time_to_spare_a_joint_takes_half_the_segment_for_each_transition():
     # 1 rad in 10 s from rest to rest: u = 0.2 rad/s, the acceleration 2 u / 5 s below its limit.
     law, rest = TransitionLaw(np.full(3, 2.0), np.zeros(3)), np.zeros((1, 3))
-    parts = low_acceleration_parts(
-        law, np.full(3, 5.0), rest, rest, np.array([[10.0]]), np.ones((1, 3)))
+    parts = low_acceleration_parts(SegmentLimits(law, np.full(3, 5.0)), Segments(
+        rest, rest, np.array([[10.0]]), np.ones((1, 3))))
     assert parts.first == pytest.approx(np.full((1, 3), 5.0))
     assert parts.last == pytest.approx(np.full((1, 3), 5.0))
     assert parts.cruise == pytest.approx(np.full((1, 3), 0.2))
@@ -107,7 +108,7 @@ def test_with_time_to_spare_a_joint_takes_half_the_segment_for_each_transition()
 def test_quick_parts_take_full_acceleration_and_the_lower_cruise():
     # 1 rad in 3 s at 1 rad/s^2: u (3 - 2 u) = 1, u = 0.5 rad/s, each transition 1 s.
     law, rest = TransitionLaw(np.full(3, 2.0), np.zeros(3)), np.zeros((1, 3))
-    parts = quick_parts(law, rest, rest, np.array([[3.0]]), np.ones((1, 3)))
+    parts = quick_parts(law, Segments(rest, rest, np.array([[3.0]]), np.ones((1, 3))))
     assert parts.first == pytest.approx(np.full((1, 3), 1.0))
     assert parts.cruise == pytest.approx(np.full((1, 3), 0.5))
 
@@ -117,10 +118,11 @@ def test_motion_passes_every_point_at_its_time_and_velocity(seed):
     law, limit, v0, v1, T, D = segments(seed)
     v0[1:], v0[0], v1[-1] = v1[:-1], 0.0, 0.0
     T = np.maximum(T, law.least_time(v1 - v0).max(axis=1, keepdims=True) * 1.01)
-    D = 0.5 * (largest_displacement(law, limit, v0, v1, T)
-               - largest_displacement(law, limit, -v0, -v1, T))
+    D = 0.5 * (largest_displacement(SegmentLimits(law, limit), v0, v1, T)
+               - largest_displacement(SegmentLimits(law, limit), -v0, -v1, T))
     points = np.vstack((np.zeros(3), np.cumsum(D, axis=0)))
-    motion = trajectory(points, v0, v1, T, low_acceleration_parts(law, limit, v0, v1, T, D))
+    parts = low_acceleration_parts(SegmentLimits(law, limit), Segments(v0, v1, T, D))
+    motion = trajectory(points, v0, v1, T, parts)
     assert motion.via_times == pytest.approx(np.concatenate(([0.0], np.cumsum(T))))
     q, qd, qdd, _ = motion(motion.via_times)
     assert q == pytest.approx(points, abs=ROUNDING)

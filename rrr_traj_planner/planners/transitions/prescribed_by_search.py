@@ -29,11 +29,9 @@ from rrr_traj_planner.planners.tolerances import DURATION_MARGIN, TORQUE_TOLERAN
 from rrr_traj_planner.planners.torque_scaling import cannot_hold, torque_time_scale
 from rrr_traj_planner.planners.transitions.transition_law import TransitionLaw
 
-# Chosen values, without unit.
-ROUNDS = 12              # of lower accelerations, at most
+# Chosen values, without unit; the scaling is refined by bisection.
 SCALING_STEP = 1.3       # factor between the scalings of durations that are tried in turn
 LARGEST_SCALING = 1e4    # of durations, up to which feasible ones are sought
-BISECTIONS = 20          # of the scaling: to 1.3^(2^-20)
 
 
 def within_torque(task: JointTask, law: TransitionLaw,
@@ -63,7 +61,7 @@ def within_torque(task: JointTask, law: TransitionLaw,
 
     """
     scale, too_fast, too_slow = 1.0, None, None  # of the acceleration
-    for _ in range(ROUNDS):
+    for _ in range(12):  # of lower accelerations, at most; chosen
         task.should_stop()
         motion = motion_by(TransitionLaw(law.slope / scale, law.root / scale ** 0.75))
         if motion is None:
@@ -162,7 +160,7 @@ def _least_scaling(motion_in: Callable[[Array], PiecewiseTrajectory | None], pro
         low, high = high, SCALING_STEP * high
         if high > LARGEST_SCALING:
             return None
-    for _ in range(BISECTIONS):
+    for _ in range(20):  # to 1.3^(2^-20)
         middle = float(np.sqrt(low * high))
         low, high = (low, middle) if has_motion(middle) else (middle, high)
     return high

@@ -13,7 +13,7 @@
 // limitations under the License.
 
 /* Magnitudes between samples of a motion, and by how much they exceed limits near the points of
- * the problem (solver/dense_check.py). Samples x are (N, 2 n checks + 1, K), in the order of
+ * the problem (solver/excess.py). Samples x are (N, 2 n checks + 1, K), in the order of
  * time, checks of them from one point to the next. */
 #include "export.h"
 

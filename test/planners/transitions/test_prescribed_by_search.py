@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Durations that are prescribed: kept where there is a motion, else others are offered."""
+"""Durations that are prescribed: accepted where there is a motion, else others are offered."""
 
 from dataclasses import replace
 
@@ -24,8 +24,8 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.core.motion_laws.cycloid import transition
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.prescribed_by_search import feasible_motion
 from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.transitions.prescribed_by_search import feasible_motion
 
 PROFILE = JointProfile(transition(*(np.array([x]) for x in (1.0, 0.0, 0.0, 0.0))))
 MOTION = PiecewiseTrajectory([PROFILE] * 3, [0.0, 1.0])
@@ -36,7 +36,7 @@ def slower_than(least):
     return lambda durations: MOTION if (durations >= np.array(least)).all() else None
 
 
-def test_durations_that_have_a_motion_are_kept():
+def test_durations_with_a_motion_are_accepted():
     assert feasible_motion(slower_than([1.0, 2.0]), np.array([1.0, 2.0])) is MOTION
 
 
@@ -50,7 +50,7 @@ def test_durations_in_the_same_proportion_are_offered():
     assert (np.array(no.value.least_durations) >= [3.0, 2.0]).all()
 
 
-def test_of_those_that_are_long_enough_nothing_more_is_asked_where_the_fastest_are_known():
+def test_durations_that_are_long_enough_stay_where_the_fastest_are_known():
     with pytest.raises(TimingError, match=(
             r'^segment_durations \[1\.5, 1\.0\] s are too short: feasible are \[1\.5, 2')) as no:
         feasible_motion(slower_than([1.0, 2.0]), np.array([1.5, 1.0]),
@@ -58,7 +58,7 @@ def test_of_those_that_are_long_enough_nothing_more_is_asked_where_the_fastest_a
     assert no.value.least_durations == pytest.approx((1.5, 2.0), rel=1e-5)
 
 
-def test_where_no_stretch_is_feasible_none_is_offered():
+def test_where_no_multiple_is_feasible_none_is_offered():
     with pytest.raises(TimingError, match=(
             r'^segment_durations \[1\.0\] s are too short, and no multiple of them is fe')) as no:
         feasible_motion(lambda durations: None, np.array([1.0]))

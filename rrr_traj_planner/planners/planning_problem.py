@@ -1,0 +1,111 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What a request asks of an arm: its scaled limits and the checked start state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
+from rrr_traj_planner.core.read_only import ReadOnlyArrays
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.planners.via_points import check_start, joint_via_points
+
+
+@dataclass(frozen=True, eq=False)
+class PlanningProblem(ReadOnlyArrays):
+    """
+    A request, and the arm that is to meet it.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits, scaled as requested.
+    request : PlanningRequest
+        Via points and how to pass them.
+    start : ndarray, shape (3,), optional
+        Joint positions [rad] where the motion starts, within the ranges; None: at the first via
+        point.
+
+    """
+
+    model: RobotModel
+    limits: JointLimits
+    request: PlanningRequest
+    start: Array | None
+
+    def joint_points(self, posture: Posture, passing: ViaPointBehaviour = THROUGH) -> Array:
+        """
+        Return joint positions of the start, if there is one, and of the via points.
+
+        Parameters
+        ----------
+        posture : Posture
+            Of all via points.
+        passing : ViaPointBehaviour
+            How the motion passes via points, for the choice of whole turns.
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            [rad].
+
+        Raises
+        ------
+        UnreachableError, JointRangeError, LimitViolationError
+            As of `joint_via_points`.
+
+        """
+        q = joint_via_points(
+            self.model, self.limits, self.request.via_points, self.start, posture, passing)
+        return q if self.start is None else np.vstack((self.start, q))
+
+
+def planning_problem(model: RobotModel, limits: JointLimits,
+                     request: PlanningRequest) -> PlanningProblem:
+    """
+    Return the problem that a request poses an arm.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits, before the request's scaling.
+    request : PlanningRequest
+        Via points and how to pass them.
+
+    Returns
+    -------
+    PlanningProblem
+        With scaled limits.
+
+    Raises
+    ------
+    StartStateError
+        If the start state is out of its range or cannot be held.
+
+    """
+    scaled = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
+    start = None if request.start is None else check_start(
+        model, scaled, request.start, request.start_state_tolerance)
+    return PlanningProblem(model, scaled, request, start)
