@@ -37,14 +37,16 @@ LONGEST = 900.0  # s: a fault may make a loop endless
 # takes their place.
 FAULTS = {
     'test/core/dynamics': (
-        ('base_inertia=I1[1] + I2[0] + I3[2],', 'base_inertia=I1[1] + I2[0] - I3[2],'),
-        ('shoulder_inertia=I2[2] + I3[1] + m2', 'shoulder_inertia=I2[2] + m2'),
-        ('upper_weight=(m2 * l2 + m3 * a2) * g,', 'upper_weight=(m2 * l2 + m3 * l2) * g,'),
-        ('s2 * c3 + c2 * s3, c2 * c3 - s2 * s3', 's2 * c3 + c2 * s3, c2 * c3 + s2 * s3'),
+        ('potential -= chain.mass[i]', 'potential += chain.mass[i]'),
+        ('moves = np.arange(3) <= i', 'moves = np.arange(3) < i'),
+        ('inertia = R @ chain.inertia[i] @ np.swapaxes(R, -1, -2)',
+         'inertia = R @ chain.inertia[i]'),
+        ('torque[1] -= 0.5 * dot(qd, p2), torque[2]', 'torque[1] -= dot(qd, p2), torque[2]'),
+        ('g->first[2] += a[0] * b[0] * c[1];', 'g->first[2] -= a[0] * b[0] * c[1];'),
     ),
     'test/core/kinematics': (
-        ('model.d4 * np.cos(q23), model.d4 * np.sin(q23)',
-         'model.d4 * np.cos(q23), -model.d4 * np.sin(q23)'),
+        ('second[i < j ? i : j][i < j ? j : i][x] * qd[j];',
+         'second[i < j ? i : j][i < j ? j : i][x];'),
         ('r, h = hypot(x, y), z - model.d1', 'r, h = hypot(x, y), z + model.d1'),
     ),
     'test/core/arm': (
@@ -92,9 +94,9 @@ FAULTS = {
         ('growth ** max(round_ - schedule.patience, 0)',
          'growth ** max(round_ + schedule.patience, 0)'),
         # torques and their derivatives
-        ('- t->M11_q2 * half + t->g2;', '+ t->M11_q2 * half + t->g2;'),
-        ('g[2][4] = -2.0 * t->M23_q3 * qd[1];', 'g[2][4] = -t->M23_q3 * qd[1];'),
-        ('hessian[4][4] = -2.0 * l3', 'hessian[4][4] = 2.0 * l3'),
+        ('x[i] += product[i] + g.first[i] +', 'x[i] += product[i] - g.first[i] +'),
+        ('+ product[j][i] - product[i][j];', '+ product[j][i] + product[i][j];'),
+        ('by_w[l][j] + by_w[j][l] - w[1]', 'by_w[l][j] + by_w[j][l] + w[1]'),
         # constraints, ramps
         ('to[1] = xk[i] - lower[i];', 'to[1] = xk[i] + lower[i];'),
         ('p->least_T ? T[k] - p->least_T[k] : 1.0;\n        duration_slack[0]',

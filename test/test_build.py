@@ -23,8 +23,10 @@ from helpers.places import ROOT
 import pytest
 from rrr_traj_planner.core.kernels import load
 
-NATIVE = 'rrr_traj_planner/planners/native'
-NEEDED = f'rrr_traj_planner needs a C compiler that builds its kernels, {NATIVE}: '
+NATIVE = 'rrr_traj_planner/core/native'  # where the library is
+OTHERS = 'rrr_traj_planner/planners/native'
+NEEDED = ('rrr_traj_planner needs a C compiler that builds its kernels, '
+          f'{NATIVE} and {OTHERS}: ')
 
 
 @pytest.fixture
@@ -32,7 +34,8 @@ def sources(tmp_path):
     """Return a folder with what a build reads: nothing is built in the repository."""
     for name in ('setup.py', 'setup.cfg', 'package.xml'):
         shutil.copy(ROOT / name, tmp_path)
-    shutil.copytree(ROOT / NATIVE, tmp_path / NATIVE, ignore=shutil.ignore_patterns('*.so'))
+    for folder in (NATIVE, OTHERS):
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns('*.so'))
     return tmp_path
 
 

@@ -21,7 +21,7 @@
 
 enum { DURATION_WEIGHT = 3 };   /* multiplicity of a least duration's logarithm: one per joint */
 
-/* For solver/library.py, which compares them. */
+/* For solver/timing_problem.py, which compares them. */
 EXPORTED const int64_t size_of_problem = sizeof(Problem), size_of_step = sizeof(Step);
 
 static double *duration_slacks(const Problem *p, double *slack)

@@ -153,7 +153,7 @@ static void differentiate(const ViaProblem *p)
     }
 }
 
-/* For solver/library.py, which compares it. */
+/* For solver/via_barrier.py, which compares it. */
 EXPORTED const int64_t size_of_via_problem = sizeof(ViaProblem);
 
 /* Evaluate the barrier and its derivatives at the first iterate. */
