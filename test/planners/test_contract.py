@@ -41,7 +41,6 @@ REPORTED_JERK = 1.1    # times its limit, of the quintic through the points
 BETWEEN_POINTS = 1e-3  # relative, of the quintic through the points
 NANOSECOND = 1e-9
 TORQUE_MISS = 1e-6     # relative, of a torque peak between the points of its search
-PATH_TORQUE_MISS = 2e-5  # relative, of one just before a step of acceleration
 FINE = 200.0           # times in the shortest piece
 STEP = 1e-3            # rad/s^2: larger steps of acceleration are reported
 CONTINUOUS_JERK = ['cycloid', 'cycloid_approach_a', 'cycloid_approach_b', 'cycloid_approach_c',
@@ -127,8 +126,7 @@ def test_joints_stay_in_their_ranges_between_the_via_points(motions):
 
 
 def test_peaks_are_those_of_the_dense_grid(planner_id, motions):
-    extremes, torque_miss = (
-        (PATH_EXTREMES, PATH_TORQUE_MISS) if planner_id in CARTESIAN else (1e-9, TORQUE_MISS))
+    extremes = PATH_EXTREMES if planner_id in CARTESIAN else 1e-9
     for m in motions.values():
         peaks = m.plan.peaks
         assert (m.q <= peaks.max_position + extremes).all()
@@ -137,7 +135,7 @@ def test_peaks_are_those_of_the_dense_grid(planner_id, motions):
                              (peaks.acceleration, m.largest('qdd')),
                              (peaks.jerk, m.largest('qddd'))):
             assert (dense <= exact + 1e-9 * (1.0 + exact)).all()
-        assert (m.largest('torque') <= m.plan.effort * (1.0 + torque_miss) + 1e-9).all()
+        assert (m.largest('torque') <= m.plan.effort * (1.0 + TORQUE_MISS) + 1e-9).all()
         # From a time of the grid to the next, a value rises by half a step's change at most.
         half = 0.5 * np.diff(m.t).max()
         assert (peaks.velocity <= m.largest('qd') + half * peaks.acceleration + HIT).all()

@@ -44,6 +44,7 @@ from rrr_traj_planner.core.trajectory.maximum import maximum_over_time
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory.trajectory import (
     ending_at_duration,
+    ONE_SIDED,
     Peaks,
     time_factor,
     times_within,
@@ -53,7 +54,6 @@ from rrr_traj_planner.core.trajectory.trajectory import (
 STEPS_PER_KNOT = 6       # of the time between knots, in the search for extremes; chosen
 POSITION_OFFSET = 1e2    # rad, makes positions positive, as `maximum_over_time` requires
 LEAST_STEP = 1e-6        # rad/s^2; acceleration steps below this are rounding
-ONE_SIDED = 1e-9         # s, offset for the left limit at a knot
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,6 +35,10 @@ Same = TypeVar('Same', bound='Trajectory')
 # Range of time-scaling factors, chosen so that the factor's fourth power is a normal float.
 LEAST_FACTOR, MOST_FACTOR = 1e-30, 1e30
 
+# By how much a time comes before a knot to give the limit from the left there: many times the
+# rounding of a time, in which no quantity changes by a part that is checked. Chosen.
+ONE_SIDED = 1e-9  # s
+
 
 @dataclass(frozen=True, eq=False)
 class Peaks(ReadOnlyArrays):
