@@ -142,3 +142,22 @@ def contiguous(values: Array) -> Array:
 
     """
     return np.ascontiguousarray(values, dtype=float)
+
+
+def addresses(rows: Array) -> range:
+    """
+    Return where the rows of an array begin: cheaper than the address of each.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (n, ...)
+        Of float64, contiguous; to be held as long as the addresses are used.
+
+    Returns
+    -------
+    range
+        Of n addresses.
+
+    """
+    first, step = rows.ctypes.data, rows.strides[0]
+    return range(first, first + len(rows) * step, step)

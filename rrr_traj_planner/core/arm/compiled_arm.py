@@ -27,6 +27,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kernels import declared, same_size_as
 
 KERNELS = declared({
+    'arm_gravity_torque': (None, [c_void_p, c_int32, *[c_void_p] * 2]),
     'arm_inertia_and_bias': (None, [c_void_p, c_int32, *[c_void_p] * 4]),
     'arm_inverse_dynamics': (None, [c_void_p, c_int32, *[c_void_p] * 4]),
     'arm_jacobian': (None, [c_void_p, c_int32, *[c_void_p] * 2]),

@@ -27,6 +27,9 @@ from rrr_traj_planner.core.arm.compiled_arm import compiled, KERNELS
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.tables import ELEMENTS
 from rrr_traj_planner.core.arrays import Array, joint_states
+from rrr_traj_planner.core.kernels import addresses
+
+AT_REST = np.zeros(3)  # rad/s
 
 
 def inertia_matrix(model: RobotModel, q: ArrayLike) -> Array:
@@ -51,7 +54,7 @@ def inertia_matrix(model: RobotModel, q: ArrayLike) -> Array:
         If the shape is wrong, or a value not finite.
 
     """
-    return _inertia_and_bias(model, *_states(q=q, qd=np.zeros(3)))[0]
+    return _inertia_and_bias(model, _states(q=q, qd=AT_REST))[0]
 
 
 def coriolis_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
@@ -76,8 +79,8 @@ def coriolis_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
         If a shape is wrong, or a value not finite.
 
     """
-    q, qd = _states(q=q, qd=qd)
-    return _inertia_and_bias(model, q, qd)[1] - gravity_torque(model, q)
+    at = _states(q=q, qd=qd)
+    return _inertia_and_bias(model, at)[1] - gravity_torque(model, at[0])
 
 
 def gravity_torque(model: RobotModel, q: ArrayLike) -> Array:
@@ -102,8 +105,10 @@ def gravity_torque(model: RobotModel, q: ArrayLike) -> Array:
         If the shape is wrong, or a value not finite.
 
     """
-    q, rest = _states(q=q, qd=np.zeros(3))
-    return _inertia_and_bias(model, q, rest)[1]
+    at, arm = _states(q=q), compiled(model)
+    torque = np.empty(at.shape[1:])
+    KERNELS.arm_gravity_torque(arm.address, torque.size // 3, at.ctypes.data, torque.ctypes.data)
+    return torque
 
 
 def inverse_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
@@ -128,10 +133,9 @@ def inverse_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayL
         If a shape is wrong, or a value not finite.
 
     """
-    states = _states(q=q, qd=qd, qdd=qdd)
-    tau, arm = np.empty(states[0].shape), compiled(model)
-    KERNELS.arm_inverse_dynamics(
-        arm.address, tau.size // 3, *(x.ctypes.data for x in (*states, tau)))
+    at, arm = _states(q=q, qd=qd, qdd=qdd), compiled(model)
+    tau = np.empty(at.shape[1:])
+    KERNELS.arm_inverse_dynamics(arm.address, tau.size // 3, *addresses(at), tau.ctypes.data)
     return tau
 
 
@@ -157,9 +161,9 @@ def forward_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, tau: ArrayL
         If a shape is wrong, or a value not finite.
 
     """
-    q, qd, tau = _states(q=q, qd=qd, tau=tau)
-    M, bias = _inertia_and_bias(model, q, qd)
-    return np.asarray(np.linalg.solve(M, (tau - bias)[..., np.newaxis])[..., 0])
+    at = _states(q=q, qd=qd, tau=tau)
+    M, bias = _inertia_and_bias(model, at)
+    return np.asarray(np.linalg.solve(M, (at[2] - bias)[..., np.newaxis])[..., 0])
 
 
 def kinetic_energy(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
@@ -184,9 +188,9 @@ def kinetic_energy(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
         If a shape is wrong, or a value not finite.
 
     """
-    q, qd = _states(q=q, qd=qd)
-    M, _ = _inertia_and_bias(model, q, qd)
-    return np.asarray(0.5 * np.einsum('...i,...ij,...j->...', qd, M, qd))
+    at = _states(q=q, qd=qd)
+    M, _ = _inertia_and_bias(model, at)
+    return np.asarray(0.5 * np.einsum('...i,...ij,...j->...', at[1], M, at[1]))
 
 
 def potential_energy(model: RobotModel, q: ArrayLike) -> Array:
@@ -211,22 +215,27 @@ def potential_energy(model: RobotModel, q: ArrayLike) -> Array:
         If the shape is wrong, or a value not finite.
 
     """
-    (q,), arm = _states(q=q), compiled(model)
-    energy = np.empty(q.shape[:-1])
-    KERNELS.arm_potential_energy(arm.address, energy.size, q.ctypes.data, energy.ctypes.data)
+    at, arm = _states(q=q), compiled(model)
+    energy = np.empty(at.shape[1:-1])
+    KERNELS.arm_potential_energy(arm.address, energy.size, at.ctypes.data, energy.ctypes.data)
     return energy
 
 
-def _states(**values: ArrayLike) -> list[Array]:
-    """Return checked values of one shape, as the kernels read them."""
-    return [np.ascontiguousarray(x) for x in np.broadcast_arrays(*joint_states(**values))]
+def _states(**values: ArrayLike) -> Array:
+    """Return checked values as rows of one array, as the kernels read them."""
+    arrays = joint_states(**values)
+    at = np.empty((len(arrays), *np.broadcast_shapes(*(x.shape for x in arrays))))
+    for row, x in zip(at, arrays):
+        row[...] = x
+    return at
 
 
-def _inertia_and_bias(model: RobotModel, q: Array, qd: Array) -> tuple[Array, Array]:
-    """Return M (..., 3, 3) and the torques of velocity and gravity (..., 3)."""
-    elements, bias, arm = np.empty((*q.shape[:-1], 6)), np.empty(q.shape), compiled(model)
-    KERNELS.arm_inertia_and_bias(arm.address, q.size // 3, *(
-        x.ctypes.data for x in (q, qd, elements, bias)))
+def _inertia_and_bias(model: RobotModel, at: Array) -> tuple[Array, Array]:
+    """Return M (..., 3, 3) and the torques of velocity and gravity (..., 3); at: q, qd, ..."""
+    q, arm = at[0], compiled(model)
+    elements, bias = np.empty((*q.shape[:-1], 6)), np.empty(q.shape)
+    KERNELS.arm_inertia_and_bias(arm.address, q.size // 3, *addresses(at[:2]),
+                                 elements.ctypes.data, bias.ctypes.data)
     M = np.empty((*q.shape, 3))
     for k, (i, j) in enumerate(ELEMENTS):
         M[..., i, j] = M[..., j, i] = elements[..., k]

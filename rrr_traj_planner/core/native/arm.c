@@ -34,7 +34,7 @@ EXPORTED const int64_t size_of_arm = sizeof(Arm);
 
 /* M and its derivatives by q2 (count a) and q3 (count b), by a + b, then by b: number
  * (a + b) (a + b + 1) / 2 + b. */
-enum { ORDERS_0 = 1, ORDERS_1 = 3, ORDERS_2 = 6, ORDERS_3 = 10 };
+enum { ORDERS_1 = 3, ORDERS_2 = 6, ORDERS_3 = 10 };
 
 /* order: a constant at every call, so that the loops unroll. */
 static inline void add_inertia(const Arm *arm, const Basis *by, const int order,
@@ -57,16 +57,13 @@ static inline void add_inertia(const Arm *arm, const Basis *by, const int order,
 static void inertia_derivatives(const Arm *arm, const Basis *by, int order,
                                 double (*M)[ELEMENTS])
 {
-    if (order == 1) {
-        memset(M, 0, ORDERS_1 * sizeof *M);
+    memset(M, 0, (order == 1 ? ORDERS_1 : order == 2 ? ORDERS_2 : ORDERS_3) * sizeof *M);
+    if (order == 1)
         add_inertia(arm, by, 1, M);
-    } else if (order == 2) {
-        memset(M, 0, ORDERS_2 * sizeof *M);
+    else if (order == 2)
         add_inertia(arm, by, 2, M);
-    } else {
-        memset(M, 0, ORDERS_3 * sizeof *M);
+    else
         add_inertia(arm, by, 3, M);
-    }
 }
 
 /* Derivatives of the potential energy: first (3), second (3, 3) and third (3, 3, 3), of these those
@@ -162,6 +159,18 @@ EXPORTED void arm_inverse_dynamics(const Arm *arm, int32_t n, const double *q, c
         times(M, qdd, torque);
         for (int i = 0; i < 3; ++i)
             torque[i] += bias[i];
+    }
+}
+
+/* The torques (n, 3) that hold the arm at rest. */
+EXPORTED void arm_gravity_torque(const Arm *arm, int32_t n, const double *q, double *torque)
+{
+    for (int s = 0; s < n; ++s, q += 3, torque += 3) {
+        Basis by[3];
+        Gravity g;
+        bases(q, 1, by);
+        gravity_derivatives(arm, by, 1, &g);
+        memcpy(torque, g.first, sizeof g.first);
     }
 }
 

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kernels import contiguous
+from rrr_traj_planner.core.kernels import addresses
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits
 
@@ -105,13 +105,10 @@ def derivatives(limits: SegmentLimits, v0: Array, v1: Array, T: Array) -> Deriva
 def _evaluated(limits: SegmentLimits, v0: Array, v1: Array, T: Array,
                derivatives: bool) -> tuple[Array, Array, Array, Array]:
     """Return cruise velocity and distance, and the distance's derivatives if requested."""
-    three = np.zeros(3)
-    shape = np.broadcast_shapes(np.shape(v0), np.shape(v1), np.shape(T), three.shape)
-    law_and_limit = [contiguous(x + three) for x in (*limits.law, limits.max_velocity)]
-    at = [contiguous(np.broadcast_to(x, shape)) for x in (v0, v1, T)]
-    cruise, distance = np.empty(shape), np.empty(shape)
+    shape = np.broadcast_shapes(np.shape(v0), np.shape(v1), np.shape(T), (3,))
+    law, at = np.array((*limits.law, limits.max_velocity)), np.empty((5, *shape))
+    at[0], at[1], at[2] = v0, v1, T
     gradient, hessian = (np.empty((*(shape if derivatives else (0,)), *(3,) * k)) for k in (1, 2))
-    KERNELS.largest_displacement_at(cruise.size // 3, *(x.ctypes.data for x in (
-        *law_and_limit, *at, cruise, distance)), *(
-            x.ctypes.data if derivatives else None for x in (gradient, hessian)))
-    return cruise, distance, gradient, hessian
+    KERNELS.largest_displacement_at(at[0].size // 3, *addresses(law), *addresses(at), *(
+        x.ctypes.data if derivatives else None for x in (gradient, hessian)))
+    return at[3], at[4], gradient, hessian

@@ -28,7 +28,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kernels import contiguous
+from rrr_traj_planner.core.kernels import addresses
 from rrr_traj_planner.planners.solver.library import KERNELS
 
 
@@ -79,12 +79,11 @@ class TransitionLaw(NamedTuple):
 
     def _by(self, kernel: Callable[..., None], values: Array) -> Array:
         """Return a kernel's results for values of shapes that broadcast to (..., 3)."""
-        shape = np.broadcast_shapes(np.shape(values), self.slope.shape)
-        values, slope, root = (contiguous(x) for x in (
-            np.broadcast_to(values, shape), self.slope, self.root))
-        found = np.empty(shape)
-        kernel(found.size // 3, *(x.ctypes.data for x in (slope, root, values, found)))
-        return found
+        law = np.array(self)
+        at = np.empty((2, *np.broadcast_shapes(np.shape(values), self.slope.shape)))
+        at[0] = values
+        kernel(at[0].size // 3, *addresses(law), *addresses(at))
+        return np.asarray(at[1])
 
 
 class SegmentLimits(NamedTuple):
