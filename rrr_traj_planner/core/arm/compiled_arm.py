@@ -32,6 +32,7 @@ KERNELS = declared({
     'arm_inverse_dynamics': (None, [c_void_p, c_int32, *[c_void_p] * 4]),
     'arm_jacobian': (None, [c_void_p, c_int32, *[c_void_p] * 2]),
     'arm_jacobian_rate': (None, [c_void_p, c_int32, *[c_void_p] * 3]),
+    'arm_path_terms': (None, [c_void_p, c_int32, *[c_void_p] * 6]),
     'arm_potential_energy': (None, [c_void_p, c_int32, *[c_void_p] * 2]),
     'arm_tip': (None, [c_void_p, c_int32, *[c_void_p] * 2]),
 })

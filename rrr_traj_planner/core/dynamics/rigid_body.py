@@ -139,6 +139,38 @@ def inverse_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayL
     return tau
 
 
+def path_torque_terms(model: RobotModel, q: Array, dq: Array,
+                      ddq: Array) -> tuple[Array, Array, Array]:
+    """
+    Return the terms m, c and g of the torque along a path: m sdd + c sd^2 + g.
+
+    Bobrow, Dubowsky & Gibson, Time-optimal control of robotic manipulators along specified paths,
+    IJRR 4, 1985.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q, dq, ddq : ndarray, shape (..., 3)
+        Joint positions [rad] and their derivatives by path length [rad/m], [rad/m^2].
+
+    Returns
+    -------
+    tuple of three ndarray, shape (..., 3)
+        [N m s^2/m], [N m s^2/m^2], [N m].
+
+    Raises
+    ------
+    InvalidInputError
+        If a shape is wrong, or a value not finite.
+
+    """
+    at, arm = _states(q=q, dq=dq, ddq=ddq), compiled(model)
+    m, c, g = found = np.empty(at.shape)
+    KERNELS.arm_path_terms(arm.address, m.size // 3, *addresses(at), *addresses(found))
+    return m, c, g
+
+
 def forward_dynamics(model: RobotModel, q: ArrayLike, qd: ArrayLike, tau: ArrayLike) -> Array:
     """
     Return the joint accelerations that torques cause (5.39 solved for qdd).

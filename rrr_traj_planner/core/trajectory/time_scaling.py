@@ -25,7 +25,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 
 TORQUE_TOLERANCE = 1e-9  # relative, for the rounding of a torque that is just at its limit
 
@@ -104,7 +104,7 @@ def squared_scaling_if_held(max_effort: Array, gravity: Array, torque: Array) ->
 def gravity_and_torque(model: RobotModel, q: Array, qd: Array,
                        qdd: Array) -> tuple[Array, Array]:
     """
-    Return the torques of gravity alone and of a motion; the terms at q are evaluated once.
+    Return the torques of gravity alone and of a motion.
 
     Parameters
     ----------
@@ -119,6 +119,4 @@ def gravity_and_torque(model: RobotModel, q: Array, qd: Array,
         [N m].
 
     """
-    rest = np.zeros_like(q)
-    gravity, torque = inverse_dynamics(model, q, np.stack((rest, qd)), np.stack((rest, qdd)))
-    return gravity, torque
+    return gravity_torque(model, q), inverse_dynamics(model, q, qd, qdd)

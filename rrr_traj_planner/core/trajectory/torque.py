@@ -22,7 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.trajectory.maximum import Extreme, maximum_over_time, SAME_TIME
 from rrr_traj_planner.core.trajectory.time_scaling import (
     gravity_and_torque,
@@ -161,7 +161,7 @@ class TorqueSweep:
 
     def _efforts(self, trajectory: Trajectory, times: Array) -> Array:
         """Return magnitudes of torque, each joint's at times of its own, (n, 3) [N m]."""
-        torque = gravity_and_torque(self.model, *trajectory(times.ravel())[:3])[1]
+        torque = inverse_dynamics(self.model, *trajectory(times.ravel())[:3])
         return np.abs(torque.reshape(-1, 3, 3).diagonal(axis1=1, axis2=2))
 
     def _refined(self, limits: JointLimits, trajectory: Trajectory) -> TorquePeaks:

@@ -27,7 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.dynamics.rigid_body import path_torque_terms
 from rrr_traj_planner.core.path.path_trajectory import ArmPath
 from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
 from rrr_traj_planner.planners.path_timing.pieces import piece_ends
@@ -98,10 +98,8 @@ class PathTable:
         ending[:, -1] = True
         q, dq, ddq, dddq = (f.reshape(*self.places.shape, 3) for f in arm_path(
             self.places.ravel(), left=ending.ravel()))
-        at_rest = np.zeros_like(q)
-        g, by_sdd, by_sd = inverse_dynamics(  # one evaluation of the terms that depend on q alone
-            arm_path.model, q, np.stack((at_rest, at_rest, dq)), np.stack((at_rest, dq, ddq)))
-        return PathTerms(dq, ddq, dddq, by_sdd - g, by_sd - g, g)
+        m, c, g = path_torque_terms(arm_path.model, q, dq, ddq)
+        return PathTerms(dq, ddq, dddq, m, c, g)
 
 
 @cache

@@ -1,0 +1,125 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* The inertia matrix and the potential energy of an arm with their derivatives, from its tables. */
+#ifndef RRR_TRAJ_PLANNER_ARM_TERMS_H
+#define RRR_TRAJ_PLANNER_ARM_TERMS_H
+
+#include "arm.h"
+#include "trigonometric.h"
+
+#include <string.h>
+
+enum { ELEMENTS = 6 };  /* of M: 11, 12, 13, 22, 23, 33 */
+
+/* M and its derivatives by q2 (count a) and q3 (count b), by a + b, then by b: number
+ * (a + b) (a + b + 1) / 2 + b. */
+enum { ORDERS_1 = 3, ORDERS_2 = 6, ORDERS_3 = 10 };
+
+/* order: a constant at every call, so that the loops unroll. */
+static inline void add_inertia(const Arm *arm, const Basis *by, const int order,
+                               double (*M)[ELEMENTS])
+{
+    for (int n = 0; n < arm->inertia_count; ++n) {
+        const int32_t *at = arm->inertia_at + 3 * n;
+        const double x = arm->inertia[n];
+        double second[MOST_ORDER + 1], third[MOST_ORDER + 1];
+        for (int d = 0; d <= order; ++d) {
+            second[d] = x * by[1].d[d][at[1]];
+            third[d] = by[2].d[d][at[2]];
+        }
+        for (int total = 0, row = 0; total <= order; ++total)
+            for (int b = 0; b <= total; ++b, ++row)
+                M[row][at[0]] += second[total - b] * third[b];
+    }
+}
+
+static inline void inertia_derivatives(const Arm *arm, const Basis *by, int order,
+                                double (*M)[ELEMENTS])
+{
+    memset(M, 0, (order == 1 ? ORDERS_1 : order == 2 ? ORDERS_2 : ORDERS_3) * sizeof *M);
+    if (order == 1)
+        add_inertia(arm, by, 1, M);
+    else if (order == 2)
+        add_inertia(arm, by, 2, M);
+    else
+        add_inertia(arm, by, 3, M);
+}
+
+/* Derivatives of the potential energy: first (3), second (3, 3) and third (3, 3, 3), of these those
+ * with indices in ascending order, up to an order. */
+typedef struct {
+    double first[3], second[3][3], third[3][3][3];
+} Gravity;
+
+static inline void gravity_derivatives(const Arm *arm, const Basis *by, int order, Gravity *g)
+{
+    memset(g, 0, sizeof *g);
+    for (int n = 0; n < arm->potential_count; ++n) {
+        const int32_t *at = arm->potential_at + 3 * n;
+        double a[MOST_ORDER + 1], b[MOST_ORDER + 1], c[MOST_ORDER + 1];
+        for (int d = 0; d <= order; ++d) {
+            a[d] = arm->potential[n] * by[0].d[d][at[0]];
+            b[d] = by[1].d[d][at[1]], c[d] = by[2].d[d][at[2]];
+        }
+        g->first[0] += a[1] * b[0] * c[0];
+        g->first[1] += a[0] * b[1] * c[0];
+        g->first[2] += a[0] * b[0] * c[1];
+        if (order < 2)
+            continue;
+        g->second[0][0] += a[2] * b[0] * c[0];
+        g->second[0][1] += a[1] * b[1] * c[0];
+        g->second[0][2] += a[1] * b[0] * c[1];
+        g->second[1][1] += a[0] * b[2] * c[0];
+        g->second[1][2] += a[0] * b[1] * c[1];
+        g->second[2][2] += a[0] * b[0] * c[2];
+        if (order < 3)
+            continue;
+        g->third[0][0][0] += a[3] * b[0] * c[0];
+        g->third[0][0][1] += a[2] * b[1] * c[0];
+        g->third[0][0][2] += a[2] * b[0] * c[1];
+        g->third[0][1][1] += a[1] * b[2] * c[0];
+        g->third[0][1][2] += a[1] * b[1] * c[1];
+        g->third[0][2][2] += a[1] * b[0] * c[2];
+        g->third[1][1][1] += a[0] * b[3] * c[0];
+        g->third[1][1][2] += a[0] * b[2] * c[1];
+        g->third[1][2][2] += a[0] * b[1] * c[2];
+        g->third[2][2][2] += a[0] * b[0] * c[3];
+    }
+}
+
+/* M v for M by its elements. */
+static inline void times(const double *M, const double *v, double *product)
+{
+    product[0] = M[0] * v[0] + M[1] * v[1] + M[2] * v[2];
+    product[1] = M[1] * v[0] + M[3] * v[1] + M[4] * v[2];
+    product[2] = M[2] * v[0] + M[4] * v[1] + M[5] * v[2];
+}
+
+static inline double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Coriolis and centrifugal torques; by: derivatives of M by q2 and q3. */
+static inline void coriolis(const double (*by)[ELEMENTS], const double *qd, double *torque)
+{
+    double p2[3], p3[3];
+    times(by[0], qd, p2), times(by[1], qd, p3);
+    for (int i = 0; i < 3; ++i)
+        torque[i] = qd[1] * p2[i] + qd[2] * p3[i];
+    torque[1] -= 0.5 * dot(qd, p2), torque[2] -= 0.5 * dot(qd, p3);
+}
+
+#endif
