@@ -233,7 +233,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch, ROOT.name).resolve()
         package = copied(folder)
-        files = [file for kind in ('*.py', '*.c', '*.inc') for file in package.rglob(kind)]
+        files = [file for kind in ('*.py', '*.[ch]', '*.inc') for file in package.rglob(kind)]
         for near in dict.fromkeys(near for _, (near, *_) in faults):
             if failure := first_failure(folder, [near, *others]):
                 raise SystemExit(f'without a fault: {failure}')
