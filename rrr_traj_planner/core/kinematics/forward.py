@@ -78,7 +78,8 @@ def radial_distance(model: RobotModel, q: ArrayLike) -> Array:
 
     """
     q = joint_values('q', q)
-    return np.asarray(model.a2 * np.cos(q[..., 1]) + model.d4 * np.sin(q[..., 1] + q[..., 2]))
+    tip = forward_kinematics(model, q)
+    return np.asarray(np.cos(q[..., 0]) * tip[..., 0] + np.sin(q[..., 0]) * tip[..., 1])
 
 
 def jacobian(model: RobotModel, q: ArrayLike) -> Array:
