@@ -65,8 +65,9 @@ FAULTS = {
     'test/core/simulation': (
         ('slope ** 2 - 4.0 * half * self.acceleration',
          'slope ** 2 + 4.0 * half * self.acceleration'),
-        ('torque = spring * max(1.0 + self.damping * rate, 0.0)',
-         'torque = spring * max(1.0 - self.damping * rate, 0.0)'),
+        ('torque = spring * fmax(1.0 + damping * rate, 0.0);',
+         'torque = spring * fmax(1.0 - damping * rate, 0.0);'),
+        ('elements[element[i][j]] = i == j;', 'elements[element[i][j]] = 1.0;'),
         ('self._velocity_gain = (1.0 - pole) ** 2 / step',
          'self._velocity_gain = (1.0 - pole) / step'),
     ),

@@ -144,7 +144,7 @@ def contiguous(values: Array) -> Array:
     return np.ascontiguousarray(values, dtype=float)
 
 
-def addresses(rows: Array) -> range:
+def addresses(rows: Array) -> list[int]:
     """
     Return where the rows of an array begin: cheaper than the address of each.
 
@@ -155,9 +155,9 @@ def addresses(rows: Array) -> range:
 
     Returns
     -------
-    range
-        Of n addresses.
+    list of int
+        The n addresses.
 
     """
     first, step = rows.ctypes.data, rows.strides[0]
-    return range(first, first + len(rows) * step, step)
+    return [first + k * step for k in range(len(rows))]

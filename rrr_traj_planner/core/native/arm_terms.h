@@ -22,6 +22,7 @@
 #include <string.h>
 
 enum { ELEMENTS = 6 };  /* of M: 11, 12, 13, 22, 23, 33 */
+static const int element[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};  /* by row and column */
 
 /* M and its derivatives by q2 (count a) and q3 (count b), by a + b, then by b: number
  * (a + b) (a + b + 1) / 2 + b. */
@@ -121,5 +122,21 @@ static inline void coriolis(const double (*by)[ELEMENTS], const double *qd, doub
         torque[i] = qd[1] * p2[i] + qd[2] * p3[i];
     torque[1] -= 0.5 * dot(qd, p2), torque[2] -= 0.5 * dot(qd, p3);
 }
+
+/* M x = b, for M by its elements, symmetric and positive definite. */
+static inline void solve_symmetric(const double *M, const double *b, double *x)
+{
+    const double C00 = M[3] * M[5] - M[4] * M[4], C01 = M[2] * M[4] - M[1] * M[5];
+    const double C02 = M[1] * M[4] - M[2] * M[3], C11 = M[0] * M[5] - M[2] * M[2];
+    const double C12 = M[1] * M[2] - M[0] * M[4], C22 = M[0] * M[3] - M[1] * M[1];
+    const double det = M[0] * C00 + M[1] * C01 + M[2] * C02;
+    x[0] = (C00 * b[0] + C01 * b[1] + C02 * b[2]) / det;
+    x[1] = (C01 * b[0] + C11 * b[1] + C12 * b[2]) / det;
+    x[2] = (C02 * b[0] + C12 * b[1] + C22 * b[2]) / det;
+}
+
+/* arm.c: M (n, 6) and the torques of velocity and gravity (n, 3), at n states. */
+void arm_inertia_and_bias(const Arm *arm, int32_t n, const double *q, const double *qd,
+                          double (*M)[ELEMENTS], double *bias);
 
 #endif

@@ -22,8 +22,6 @@ static int second_row(int i, int j) { return 3 + (i == 2) + (j == 2); }
 
 static int third_row(int i, int j, int k) { return 6 + (i == 2) + (j == 2) + (k == 2); }
 
-static const int element[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};  /* of M, by row and column */
-
 /* Columns of the state: q, qd, qdd, jerk of the joints. */
 enum { Q, QD = 3, QDD = 6, STATE = 12 };
 

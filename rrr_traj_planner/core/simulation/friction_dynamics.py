@@ -36,7 +36,6 @@ from rrr_traj_planner.core.dynamics.constrained import (
     rates_with_reactions,
 )
 from rrr_traj_planner.core.simulation.energy import EnergyLedger
-from rrr_traj_planner.core.simulation.friction_step import Dissipation, friction_step, Load, rates
 from rrr_traj_planner.core.simulation.joint_stops import (
     clipped,
     Contact,
@@ -47,6 +46,7 @@ from rrr_traj_planner.core.simulation.joint_stops import (
 )
 from rrr_traj_planner.core.simulation.root_finding import EVENT_TOLERANCE, locate_event
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+from rrr_traj_planner.core.simulation.time_step import Dissipation, Load, TimeStep
 from rrr_traj_planner.core.states import State, Triple
 
 
@@ -64,7 +64,9 @@ class FrictionDynamics:
     Parameters
     ----------
     arm : ArmDynamics
-        The arm.
+        The arm's terms at a state.
+    advanced : TimeStep
+        Its integration step.
     bounds : Bounds
         Ends of the joints' ranges: hard stops, or where bumpers begin [rad].
     friction : Friction
@@ -76,9 +78,9 @@ class FrictionDynamics:
 
     """
 
-    def __init__(self, arm: ArmDynamics, bounds: Bounds, friction: Friction, bumper: SoftStops,
-                 ledger: EnergyLedger) -> None:
-        self._arm, self._ledger = arm, ledger
+    def __init__(self, arm: ArmDynamics, advanced: TimeStep, bounds: Bounds, friction: Friction,
+                 bumper: SoftStops, ledger: EnergyLedger) -> None:
+        self._arm, self._advanced, self._ledger = arm, advanced, ledger
         self._low, self._high = bounds
         self._bumper = bumper
         (v1, v2, v3), (c1, c2, c3) = friction.viscous.tolist(), friction.coulomb.tolist()
@@ -134,7 +136,7 @@ class FrictionDynamics:
         slip = _signs(qd, self._coulomb)
         load = self._load(state, torque, slip)
         if at != FREE or 0.0 in qd:
-            x, _ = rates(load, self._arm(q + qd), q, qd)
+            x = self._advanced.accelerations(q + qd, load)
             ranges = (_range(c1, qd1, x[0], at[0], shortest),
                       _range(c2, qd2, x[1], at[1], shortest),
                       _range(c3, qd3, x[2], at[2], shortest))
@@ -142,7 +144,7 @@ class FrictionDynamics:
             lock = (_locked(a[0], ranges[0]), _locked(a[1], ranges[1]), _locked(a[2], ranges[2]))
             qd, lock = self._brought_to_rest(t, qd, lock, at)
             slip = _signs((qd[0] or a[0], qd[1] or a[1], qd[2] or a[2]), self._coulomb)
-            load = self._load(state, torque, slip)._replace(lock=lock)
+            load = self._load(state, torque, slip, lock)
         return q + qd, load, slip
 
     def _brought_to_rest(self, t: Terms, qd: Triple, lock: Contact,
@@ -153,7 +155,7 @@ class FrictionDynamics:
             self._ledger.stops += kinetic_energy(t, qd) - kinetic_energy(t, after)
         return after, lock
 
-    def _load(self, state: State, torque: Triple, slip: Contact) -> Load:
+    def _load(self, state: State, torque: Triple, slip: Contact, lock: Contact = FREE) -> Load:
         """Return the load for given sliding directions."""
         (c1, c2, c3), (s1, s2, s3), (n1, n2, n3) = self._coulomb, slip, torque
         sides = self._bumper.sides(state, self._low, self._high)
@@ -162,16 +164,14 @@ class FrictionDynamics:
             e1, e2, e3 = (low if side > 0 else high
                           for side, low, high in zip(sides, self._low, self._high))
             edges = (e1, e2, e3)
-        return Load((n1 - c1 * s1, n2 - c2 * s2, n3 - c3 * s3), self._viscous, FREE, sides, edges,
-                    self._bumper)
+        return Load((n1 - c1 * s1, n2 - c2 * s2, n3 - c3 * s3), self._viscous, edges,
+                    self._bumper.stiffness, self._bumper.damping, lock, sides)
 
     def _until_event(self, state: State, load: Load, slip: Contact, h: float,
                      hard: Bounds) -> tuple[float, State]:
         """Return the time of the next event, or h, and the state then."""
-        t = self._arm(state)
-
         def trial(x: float) -> tuple[State, Dissipation]:
-            return friction_step(self._arm, t, state, load, x)
+            return self._advanced(state, load, x), self._advanced.dissipated
 
         taken, (after, lost) = h, trial(h)
         margin = self._margin(after, load, slip, hard)
@@ -207,9 +207,8 @@ class FrictionDynamics:
                 int(at[2] or c[2] and abs(qd[2]) <= EVENT_TOLERANCE))
         before = state[:3] + self._brought_to_rest(self._arm(state), qd, lock, FREE)[0]
         slip = _signs(before[3:], c)
-        load = self._load(before, torque, slip)._replace(lock=lock)
-        after, lost = friction_step(self._arm, self._arm(before), before, load, h)
-        self._record_losses(lost, slip, before, after)
+        after = self._advanced(before, self._load(before, torque, slip, lock), h)
+        self._record_losses(self._advanced.dissipated, slip, before, after)
         return clipped(after, *hard)
 
     def _record_losses(self, lost: Dissipation, slip: Contact, before: State,

@@ -45,7 +45,7 @@ from rrr_traj_planner.core.simulation.joint_stops import (
 )
 from rrr_traj_planner.core.simulation.saturation_and_contact import SaturationAndContactMonitor
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
-from rrr_traj_planner.core.simulation.time_step import free_step, held_step
+from rrr_traj_planner.core.simulation.time_step import Load, TimeStep
 from rrr_traj_planner.core.states import State, Triple
 
 
@@ -83,11 +83,11 @@ class ArmPhysics:
                  monitor: SaturationAndContactMonitor | None = None) -> None:
         self.low, self.high, self._monitor = low, high, monitor or SaturationAndContactMonitor()
         self.ledger = EnergyLedger() if ledger is None else ledger
-        self.terms = ArmDynamics(model)
+        self.terms, self._advanced, self._load = ArmDynamics(model), TimeStep(model), Load()
         self._bumper, friction = soft_stops or SoftStops(), friction or Friction()
         self._viscous, self._coulomb = friction.viscous.tolist(), friction.coulomb.tolist()
         self._with_friction = None if friction.is_none and not self._bumper.width else (
-            FrictionDynamics(self.terms, Bounds(low, high), friction,
+            FrictionDynamics(self.terms, self._advanced, Bounds(low, high), friction,
                              self._bumper, self.ledger))
 
     def bumper_energy(self, state: State) -> float:
@@ -134,12 +134,17 @@ class ArmPhysics:
         (l1, l2, l3), (u1, u2, u3) = self.low, self.high
         q1, q2, q3 = state[:3]
         if l1 < q1 < u1 and l2 < q2 < u2 and l3 < q3 < u3:
-            after = free_step(self.terms, t, state, torque, h)
+            after = self._freely(state, torque, h)
             q1, q2, q3 = after[:3]
             if l1 <= q1 <= u1 and l2 <= q2 <= u2 and l3 <= q3 <= u3:
                 return after
         after = self._step_with_stops(state, torque, h)
         return self._record_contacts(t, state, after, torque, h)
+
+    def _freely(self, state: State, torque: Triple, h: float, lock: Contact = FREE) -> State:
+        """Return the state after a time without impacts, with some joints held at rest."""
+        self._load.torque, self._load.lock = torque, lock
+        return self._advanced(state, self._load, h)
 
     def _record_contacts(self, t: Terms, state: State, after: State, torque: Triple,
                          h: float) -> State:
@@ -176,8 +181,7 @@ class ArmPhysics:
             qd = held(t, state[3:], at)
             self._record_impact(t, state[3:], qd)
             state = state[:3] + qd
-            state = clipped(held_step(self.terms, self.terms(state), state, torque, left, at),
-                            low, high)
+            state = clipped(self._freely(state, torque, left, at), low, high)
             t, at = self.terms(state), contact(state, low, high)
         qd = permitted(t, state[3:], at)
         self._record_impact(t, state[3:], qd)
@@ -215,14 +219,13 @@ class ArmPhysics:
     def _until_impact(self, state: State, torque: Triple, h: float, lock: Contact,
                       low: Triple, high: Triple) -> tuple[float, State]:
         """Return the time [s] until a joint reaches a stop, or h, and the state then."""
-        arm, t = self.terms, self.terms(state)
-        after = held_step(arm, t, state, torque, h, lock)
+        after = self._freely(state, torque, h, lock)
         if _overshoot(after, low, high) <= 0.0:
             return h, after
         before, taken = 0.0, h
         for _ in range(40):  # 1 ms / 2^40 is 1e-15 s
             middle = 0.5 * (before + taken)
-            trial = held_step(arm, t, state, torque, middle, lock)
+            trial = self._freely(state, torque, middle, lock)
             if _overshoot(trial, low, high) > 0.0:
                 taken, after = middle, trial
             else:

@@ -21,11 +21,15 @@ Mechanics 42, 1975): the torque is continuous at contact, and a bumper never pul
 
 from __future__ import annotations
 
+import ctypes
 from dataclasses import dataclass
 
+from rrr_traj_planner.core.kernels import declared
 from rrr_traj_planner.core.scalars import not_negative
 from rrr_traj_planner.core.simulation.joint_stops import Contact
 from rrr_traj_planner.core.states import State, Triple
+
+KERNELS = declared({'bumper_torque': (ctypes.c_double, [*[ctypes.c_double] * 4, ctypes.c_void_p])})
 
 
 @dataclass(frozen=True)
@@ -100,9 +104,10 @@ class SoftStops:
             Power dissipated [W].
 
         """
-        spring = self.stiffness * depth
-        torque = spring * max(1.0 + self.damping * rate, 0.0)
-        return torque, (torque - spring) * rate
+        dissipated = ctypes.c_double()
+        torque = KERNELS.bumper_torque(self.stiffness, self.damping, depth, rate,
+                                       ctypes.byref(dissipated))
+        return torque, dissipated.value
 
     def energy(self, state: State, low: Triple, high: Triple) -> float:
         """

@@ -13,111 +13,116 @@
 # limitations under the License.
 
 """
-Integration step of qdd = f(q, qd), of fourth order.
+Integration step of the simulated arm between events, with friction, bumpers and held joints.
 
-Nyström's method for second-order equations (Hairer, Nørsett and Wanner, Solving Ordinary
-Differential Equations I, section II.14): the two inner stages share one position. Torques are
-constant over a step (zero-order hold).
+Nyström's method of fourth order for second-order equations (Hairer, Nørsett and Wanner, Solving
+Ordinary Differential Equations I, section II.14). Torques are constant over a step (zero-order
+hold); the energy dissipated is integrated with it, to the same order.
 """
 
 from __future__ import annotations
 
-from rrr_traj_planner.core.dynamics.arm_dynamics import accelerations, ArmDynamics, Terms
-from rrr_traj_planner.core.dynamics.constrained import held
-from rrr_traj_planner.core.simulation.joint_stops import Contact, FREE
+import ctypes
+from ctypes import c_double, c_int32, c_void_p
+from typing import NamedTuple
+
+from rrr_traj_planner.core.arm.compiled_arm import compiled
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kernels import declared, same_size_as
 from rrr_traj_planner.core.states import State, Triple
 
+KERNELS = declared({
+    'arm_rates': (None, [c_void_p] * 5),
+    'arm_step': (None, [c_void_p, c_void_p, c_double, *[c_void_p] * 3]),
+})
 
-def free_step(arm: ArmDynamics, t: Terms, state: State, torque: Triple, h: float) -> State:
+
+@same_size_as('size_of_load')
+class Load(ctypes.Structure):
     """
-    Return the state after a time step of an arm without stops.
+    Torques and constraints on the joints until the next event, as in native/step.c.
+
+    `torque`: constant, of motors and disturbance, less Coulomb friction [N m]. `viscous`
+    [N m s/rad]. `edges`: where the bumpers begin that joints are in [rad]; `sides`: 1 for each
+    joint in its lower bumper, -1 in its upper one; `stiffness` [N m/rad], `damping` [s/rad].
+    `lock`: not 0 for each joint held at rest.
+    """
+
+    _fields_ = [*((name, c_double * 3) for name in ('torque', 'viscous', 'edges')),
+                *((name, c_double) for name in ('stiffness', 'damping')),
+                *((name, c_int32 * 3) for name in ('lock', 'sides'))]
+
+
+class Dissipation(NamedTuple):
+    """Energy dissipated during a step [J]."""
+
+    viscous: float
+    bumpers: float
+
+
+class TimeStep:
+    """
+    The integration step of an arm. Not to be called from two threads at once.
 
     Parameters
     ----------
-    arm : ArmDynamics
+    model : RobotModel
         The arm.
-    t : Terms
-        At the state.
-    state : tuple of 6 floats
-        Positions [rad] and velocities [rad/s].
-    torque : tuple of 3 floats
-        Joint torques [N m], held over the step.
-    h : float
-        Length of the step [s].
-
-    Returns
-    -------
-    tuple of 6 floats
-        Positions [rad] and velocities [rad/s].
 
     """
-    q1, q2, q3, qd1, qd2, qd3 = state
-    n1, n2, n3 = torque
-    half = 0.5 * h
-    eighth = 0.5 * half * half
-    a1, a2, a3 = accelerations(t, n1, n2, n3)
-    m1, m2, m3 = (q1 + half * qd1 + eighth * a1, q2 + half * qd2 + eighth * a2,
-                  q3 + half * qd3 + eighth * a3)
-    b1, b2, b3 = accelerations(arm((m1, m2, m3, qd1 + half * a1, qd2 + half * a2,
-                                    qd3 + half * a3)), n1, n2, n3)
-    c1, c2, c3 = accelerations(arm((m1, m2, m3, qd1 + half * b1, qd2 + half * b2,
-                                    qd3 + half * b3)), n1, n2, n3)
-    d1, d2, d3 = accelerations(arm((
-        q1 + h * (qd1 + half * c1), q2 + h * (qd2 + half * c2), q3 + h * (qd3 + half * c3),
-        qd1 + h * c1, qd2 + h * c2, qd3 + h * c3)), n1, n2, n3)
-    sixth = h / 6.0
-    return (q1 + h * (qd1 + sixth * (a1 + b1 + c1)),
-            q2 + h * (qd2 + sixth * (a2 + b2 + c2)),
-            q3 + h * (qd3 + sixth * (a3 + b3 + c3)),
-            qd1 + sixth * (a1 + 2.0 * (b1 + c1) + d1),
-            qd2 + sixth * (a2 + 2.0 * (b2 + c2) + d2),
-            qd3 + sixth * (a3 + 2.0 * (b3 + c3) + d3))
 
+    def __init__(self, model: RobotModel) -> None:
+        self._arm = compiled(model)
+        self._before, self._after = (c_double * 6)(), (c_double * 6)()
+        self._lost = (c_double * 2)()
+        self._results = tuple(map(ctypes.addressof, (self._before, self._after, self._lost)))
 
-def held_step(arm: ArmDynamics, t: Terms, state: State, torque: Triple, h: float,
-              lock: Contact) -> State:
-    """
-    Return the state after a time step in which stops hold some joints at rest.
+    def __call__(self, state: State, load: Load, h: float) -> State:
+        """
+        Return the state after a time; what was dissipated is then in `dissipated`.
 
-    The same method as `free_step`, with the held joints' accelerations zero.
+        Parameters
+        ----------
+        state : tuple of 6 floats
+            Positions [rad] and velocities [rad/s]; those of joints that are held must be 0.
+        load : Load
+            What acts on the joints.
+        h : float
+            [s].
 
-    Parameters
-    ----------
-    arm, t, state, torque, h
-        As in `free_step`.
-    lock : tuple of 3 ints
-        Not 0 for each joint that is held; its velocity must be 0.
+        Returns
+        -------
+        tuple of 6 floats
+            Positions [rad] and velocities [rad/s].
 
-    Returns
-    -------
-    tuple of 6 floats
-        Positions [rad] and velocities [rad/s].
+        """
+        self._before[:] = state  # type: ignore[call-overload]  # any sequence
+        KERNELS.arm_step(self._arm.address, ctypes.addressof(load), h, *self._results)
+        q1, q2, q3, qd1, qd2, qd3 = self._after
+        return q1, q2, q3, qd1, qd2, qd3
 
-    """
-    if lock == FREE:
-        return free_step(arm, t, state, torque, h)
+    @property
+    def dissipated(self) -> Dissipation:
+        """Return what the last step dissipated."""
+        return Dissipation(*self._lost)
 
-    def acceleration(at: Terms) -> Triple:
-        return held(at, accelerations(at, *torque), lock)
+    def accelerations(self, state: State, load: Load) -> Triple:
+        """
+        Return the accelerations at a state.
 
-    q, qd = state[:3], state[3:]
-    a = acceleration(t)
-    middle = _moved(q, qd, a, 0.5 * h)
-    b = acceleration(arm(middle + _added(qd, a, 0.5 * h)))
-    c = acceleration(arm(middle + _added(qd, b, 0.5 * h)))
-    d = acceleration(arm(_moved(q, qd, c, h) + _added(qd, c, h)))
-    sixth = h / 6.0
-    return _moved(q, qd, _added(_added(a, b, 1.0), c, 1.0), h, sixth) + _added(
-        qd, _added(_added(a, d, 1.0), _added(b, c, 1.0), 2.0), sixth)
+        Parameters
+        ----------
+        state, load
+            As when it is called.
 
+        Returns
+        -------
+        tuple of 3 floats
+            [rad/s^2].
 
-def _moved(q: Triple, qd: Triple, a: Triple, h: float, factor: float | None = None) -> Triple:
-    """Return q + h (qd + factor a); the factor is h / 2 for a constant acceleration."""
-    factor = 0.5 * h if factor is None else factor
-    return (q[0] + h * (qd[0] + factor * a[0]), q[1] + h * (qd[1] + factor * a[1]),
-            q[2] + h * (qd[2] + factor * a[2]))
-
-
-def _added(x: Triple, y: Triple, factor: float) -> Triple:
-    """Return x + factor y."""
-    return x[0] + factor * y[0], x[1] + factor * y[1], x[2] + factor * y[2]
+        """
+        self._before[:] = state  # type: ignore[call-overload]  # any sequence
+        before, after, lost = self._results
+        KERNELS.arm_rates(self._arm.address, ctypes.addressof(load), before, after, lost)
+        a1, a2, a3 = self._after[:3]
+        return a1, a2, a3

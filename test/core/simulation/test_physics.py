@@ -21,14 +21,13 @@ from math import inf, pi
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.dynamics.arm_dynamics import ArmDynamics
 from rrr_traj_planner.core.dynamics.rigid_body import (
     forward_dynamics,
     kinetic_energy,
     potential_energy,
 )
 from rrr_traj_planner.core.simulation.physics import ArmPhysics
-from rrr_traj_planner.core.simulation.time_step import free_step, held_step
+from rrr_traj_planner.core.simulation.time_step import Load, TimeStep
 from scipy.integrate import solve_ivp
 
 MODEL = RobotModel()
@@ -85,12 +84,11 @@ def test_method_is_of_fourth_order():
 
 
 def test_a_step_with_joints_held_is_the_step_of_the_rest_of_the_arm():
-    physics, state = unlimited(), (0.3, 0.5, -0.4, 1.0, 0.0, 1.5)
-    after = held_step(ArmDynamics(MODEL), physics.terms(state), state, NO_TORQUE, STEP, (0, 1, 0))
+    state = (0.3, 0.5, -0.4, 1.0, 0.0, 1.5)
+    after = TimeStep(MODEL)(state, Load(lock=(0, 1, 0)), STEP)
     assert (after[1], after[4]) == (0.5, 0.0)
     heavy = RobotModel(inertia=MODEL.inertia + np.array([[0, 0, 0], [0, 0, 1e15], [0, 0, 0]]))
-    other = ArmPhysics(heavy, (-inf,) * 3, (inf,) * 3)  # joint 2 too heavy to be moved
-    expected = free_step(ArmDynamics(heavy), other.terms(state), state, NO_TORQUE, STEP)
+    expected = TimeStep(heavy)(state, Load(), STEP)  # joint 2 too heavy to be moved
     np.testing.assert_allclose(after, expected, atol=1e-12)
 
 
