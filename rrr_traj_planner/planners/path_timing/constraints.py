@@ -146,7 +146,7 @@ def limited_quantities(problem: TimingProblem, z: Array, at_points: bool) -> tup
     """
     z = contiguous(z)
     x, gravity = np.empty((*z.shape[:2], QUANTITIES)), np.empty((*z.shape[:2], 3))
-    KERNELS.path_quantities(problem.at, z.shape[1], at_points, z.ctypes.data, x.ctypes.data,
+    KERNELS.path_quantities(problem.address, z.shape[1], at_points, z.ctypes.data, x.ctypes.data,
                             gravity.ctypes.data)
     return x, gravity
 
