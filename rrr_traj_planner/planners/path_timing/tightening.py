@@ -31,7 +31,7 @@ from rrr_traj_planner.planners.path_timing.constraints import (
     PathConstraints,
     QUANTITIES,
 )
-from rrr_traj_planner.planners.path_timing.dense_check import dense_check, DenseCheck
+from rrr_traj_planner.planners.path_timing.dense_check import dense_check, PathCheck
 from rrr_traj_planner.planners.path_timing.initial_speeds import initial_speeds_of
 from rrr_traj_planner.planners.path_timing.start import motion_with_speeds, uniform_along
 from rrr_traj_planner.planners.path_timing.table import PathTable
@@ -95,6 +95,7 @@ class _Rounds:
         self._durations = DurationConstraints.all_free(len(steady), 1)
         self._workspace = Workspace()
         self._previous: PathConstraints | None = None
+        self._last: tuple[Outcome, PathCheck] | None = None
         self._constraints = self._within(np.zeros((len(steady), 2 * grid.n + 1, QUANTITIES)))
         self._start = CentralPathPoint(_slow_start(task, table, self._constraints, steady), None)
         # each with its duration and a lower bound of all durations [s]
@@ -105,7 +106,7 @@ class _Rounds:
         self._task.should_stop()
         return self._constraints.problem.is_within(self._start.motion)
 
-    def solved(self) -> Outcome | None:
+    def solve(self) -> Outcome | None:
         previous = self._previous
         outcome = minimise(self._constraints.problem, self._start, self._durations,
                            self._task.should_stop,
@@ -113,27 +114,28 @@ class _Rounds:
                            relative_gap=RELATIVE_GAP if previous else ROUGH_GAP)
         return None if previous and not outcome.within else outcome
 
-    def eased(self) -> bool:
+    def relax(self) -> bool:
         """Take back half of margins that were enlarged too much at once."""
         assert self._previous is not None
         self._constraints = self._within(
             0.5 * (self._previous.margins + self._constraints.margins))
         return True
 
-    def finished(self, outcome: Outcome, tolerance: float) -> bool:
-        self._outcome, self._check = _last_forward(
+    def accept(self, outcome: Outcome, tolerance: float) -> bool:
+        self._last = outcome, check = _last_forward(
             outcome, self._start, self._constraints.problem, self._bounds)
-        self.found.append(_slowed(self._outcome, self._check.time_scale))
-        fits = self._previous is not None and self._check.time_scale <= 1.0 + tolerance
+        self.found.append(_slowed(outcome, check.time_scale))
+        fits = self._previous is not None and check.time_scale <= 1.0 + tolerance
         return fits or self._task.should_stop()
 
-    def tightened(self) -> bool:
-        centres, constraints = self._outcome.centres, self._constraints
-        if not centres:
+    def tighten(self) -> bool:
+        assert self._last is not None
+        (outcome, check), constraints = self._last, self._constraints
+        if not outcome.centres:
             return False
-        self._start = centres[-CENTRES_BACK if self._previous else -1:][0]
+        self._start = outcome.centres[-CENTRES_BACK if self._previous else -1:][0]
         self._previous, self._constraints = constraints, self._within(
-            constraints.margins + self._check.excess)
+            constraints.margins + check.excess)
         return True
 
     def _within(self, margins: Array) -> PathConstraints:
@@ -142,7 +144,7 @@ class _Rounds:
 
 
 def _last_forward(outcome: Outcome, start: CentralPathPoint, problem: TimingProblem,
-                  bounds: Array) -> tuple[Outcome, DenseCheck]:
+                  bounds: Array) -> tuple[Outcome, PathCheck]:
     """Return the last motion on which the tip never moves backward, as when cancelled it may."""
     passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion)
     for motion in passed:
