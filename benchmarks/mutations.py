@@ -158,7 +158,7 @@ FAULTS = {
     'test/planners/path_timing': (
         ('ratio = np.abs(table.values.g) / task.limits.max_effort',
          'ratio = np.abs(table.values.g) / task.limits.max_velocity'),
-        ('constraints.margins + self._check.excess)', 'constraints.margins - self._check.excess)'),
+        ('constraints.margins + check.excess)', 'constraints.margins - self._check.excess)'),
         ('T, motion, _ = min(rounds.found', 'T, motion, _ = max(rounds.found'),
         ('time_scaled(outcome.motion, factor), T - outcome.gap',
          'time_scaled(outcome.motion, factor), T + outcome.gap'),

@@ -29,7 +29,11 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
-from rrr_traj_planner.core.trajectory.controller_spline import spline_excess, SplineExcess
+from rrr_traj_planner.core.trajectory.controller_spline import (
+    RANGE_TOLERANCE,
+    spline_excess,
+    SplineExcess,
+)
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.sampling import (
     LEAST_GAP,
@@ -115,7 +119,9 @@ def answer_points(problem: PlanningProblem, trajectory: Trajectory) -> AnswerPoi
             f'{list(request.segment_durations)} s: between the points the motion would '
             'exceed its limits')
     raise ConvergenceError(
-        f'planner {request.planner_id}: the points do not follow the motion')
+        f'planner {request.planner_id}: the quintics between the points need a time '
+        f'scale of {factor:.6g}, limit 1, and leave a range by '
+        f'{excess.outside.max(initial=0.0):.3g} rad, limit {RANGE_TOLERANCE:g} rad')
 
 
 def _best_refined(problem: PlanningProblem, trajectory: Trajectory,

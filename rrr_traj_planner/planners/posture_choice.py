@@ -110,7 +110,7 @@ def path_postures(problem: PlanningProblem) -> list[Posture]:
         raise StartStateError(
             f'the start state is on elbow branch {posture_of(model, start).elbow} '
             f'({model.joint_names[2]} at {start[2]:.6g} rad): along a path of the tip the arm '
-            f'cannot come to {elbow}')
+            f'cannot change to elbow {elbow!r}')
     return own
 
 

@@ -16,11 +16,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import TimingError
+from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 
 
 def whole_microseconds(durations: Array) -> Array:
@@ -39,6 +39,42 @@ def whole_microseconds(durations: Array) -> Array:
 
     """
     return np.asarray(np.ceil(durations * 1e6) / 1e6)
+
+
+def least_feasible(durations: Array, candidates: Sequence[Array], margins: Sequence[float],
+                   is_feasible: Callable[[Array], bool]) -> Array:
+    """
+    Return the first feasible durations: candidates in turn, each lengthened by margins in turn.
+
+    Parameters
+    ----------
+    durations : ndarray, shape (n,)
+        As prescribed [s], for the message.
+    candidates : sequence of ndarray, shape (n,)
+        About the least feasible ones [s].
+    margins : sequence of float
+        Parts of the candidates.
+    is_feasible : callable
+        Returns whether given durations are.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In whole microseconds [s].
+
+    Raises
+    ------
+    ConvergenceError
+        If none is feasible.
+
+    """
+    for candidate in candidates:
+        for margin in margins:
+            feasible = whole_microseconds(candidate * (1.0 + margin))
+            if is_feasible(feasible):
+                return feasible
+    raise ConvergenceError(
+        f'no feasible durations found for segment_durations {durations.tolist()} s')
 
 
 def durations_too_short(durations: Array, feasible: Array, segments: Sequence[int] = (),

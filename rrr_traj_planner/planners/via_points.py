@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -116,16 +118,16 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
         raise StartStateError(f'start state: {model.joint_names[j]} is at {at} rad, limits '
                               f'{lowest} to {highest} rad{allowed}{hint}')
     start = np.clip(start, low, high)
-    failure = holding_failure(model, limits, start[np.newaxis])
+    failure = holding_failure(model, limits, start[np.newaxis], ['start state'])
     if failure is not None:
-        raise StartStateError(str(failure).replace('via point 0', 'start state'))
+        raise StartStateError(str(failure))
     return start
 
 
-def holding_failure(model: RobotModel, limits: JointLimits,
-                    q: Array) -> LimitViolationError | None:
+def holding_failure(model: RobotModel, limits: JointLimits, q: Array,
+                    names: Sequence[str] = ()) -> LimitViolationError | None:
     """
-    Return the error of the first via point that the motors cannot hold against gravity.
+    Return the error of the first pose that the motors cannot hold against gravity.
 
     Parameters
     ----------
@@ -135,6 +137,8 @@ def holding_failure(model: RobotModel, limits: JointLimits,
         Effort limits.
     q : ndarray, shape (n, 3)
         Joint positions [rad].
+    names : sequence of str, optional
+        What the poses are, for the message; by default via points.
 
     Returns
     -------
@@ -147,7 +151,8 @@ def holding_failure(model: RobotModel, limits: JointLimits,
     if not len(broken):
         return None
     i, j = map(int, broken[0])
-    return holding_error(f'via point {i}:', model.joint_names[j], float(torque[i, j]),
+    where = names[i] if names else f'via point {i}'
+    return holding_error(f'{where}:', model.joint_names[j], float(torque[i, j]),
                          float(limits.max_effort[j]), i)
 
 

@@ -93,7 +93,7 @@ def stepped(problem, m, step, size):
     problem.begin(m, DurationConstraints.all_free(len(m.T), m.inner.shape[-1]))
     arrays = problem.arrays
     arrays['slack'][:], arrays['direction 0'][:] = -np.inf, flat(step)
-    if not KERNELS.timing_trial(problem.at, problem.steps[0].at, size, 1.0, 0.0):
+    if not KERNELS.timing_trial(problem.address, problem.steps[0].address, size, 1.0, 0.0):
         return None
     return problem.motion(arrays['variables 0'].copy()), arrays['slack 0'].copy()
 

@@ -41,13 +41,13 @@ class Case:
         N, J = len(self.motion.T), self.motion.inner.shape[-1]
         self.durations = (durations or DurationConstraints.all_free(N, J))._replace(
             weights=rng.uniform(0.5, 2.0, N))
-        self.arrays, self.at = self.problem.arrays, self.problem.at
+        self.arrays, self.address = self.problem.arrays, self.problem.address
         self.problem.begin(self.motion, self.durations)
         self.x = self.arrays['variables'].copy()
         self.arrays['slack'][:] = self.problem.slacks(self.motion)
         self.arrays['dual'][:] = BARRIER / self.arrays['slack'] * rng.uniform(
             0.5, 2.0, self.arrays['slack'].size)
-        KERNELS.timing_linearise(self.at, BARRIER)
+        KERNELS.timing_linearise(self.address, BARRIER)
 
     def states(self, x):
         """Return position, velocity, acceleration and jerk at the points, (N, P, 4, J)."""
@@ -71,9 +71,9 @@ class Case:
     def newton(self, exact):
         """Return the step, its slacks' rates and its gain, by the kernel."""
         step = self.problem.steps[0]
-        assert KERNELS.timing_newton(self.at, exact, step.at)
+        assert KERNELS.timing_newton(self.address, exact, step.address)
         return (self.arrays['direction 0'].copy(), self.arrays['rate 0'].copy(),
-                step.found.predicted_decrease)
+                step.structure.predicted_decrease)
 
     def dense(self, exact, g=None, g_T=None):
         """Return the step and its gain by solving all conditions of optimality at once."""

@@ -155,7 +155,8 @@ def test_path_begins_at_the_start_s_tip(planner_id, elbow):
 def test_a_start_on_the_other_branch_is_refused(planner_id):
     start = inverse_kinematics(MODEL, (1.0, 0.0, 0.6), 'down')
     with pytest.raises(StartStateError, match=(
-            r'^the start state is on elbow branch down \(joint_3 at .* rad\): along a path')):
+            r'^the start state is on elbow branch down \(joint_3 at .* rad\): along a path of the '
+            r"tip the arm cannot change to elbow 'up'$")):
         planned(planner_id, [(1.0, 0.3, 0.7)], start=start, elbow='up')
 
 

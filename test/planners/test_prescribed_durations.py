@@ -21,10 +21,11 @@ from helpers.planning_cases import ARM, LIMITS, table
 from helpers.random_tasks import random_task, Task
 import numpy as np
 import pytest
-from rrr_traj_planner.core.errors import InvalidInputError, TimingError
+from rrr_traj_planner.core.errors import ConvergenceError, InvalidInputError, TimingError
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner
+from rrr_traj_planner.planners.short_durations import least_feasible
 
 KEPT = 1e-9  # s
 IMPOSSIBLE = {'cycloid_approach_a': ([10.0, 3.5], [3.0, 30.0])}  # it has no motion for these
@@ -72,6 +73,21 @@ def test_offered_durations_are_the_least_in_their_proportion(planner_id):
     assert offered.sum() < 10.0
     with pytest.raises(TimingError):
         plan(ARM, LIMITS, replace(request, segment_durations=0.99 * offered))
+
+
+def test_margins_grow_until_durations_are_feasible_and_none_are_offered_if_they_never_are():
+    asked, candidates = [], [np.array([1.0, 2.0]), np.array([4.0, 5.0])]
+
+    def is_feasible(T):
+        asked.append(T.tolist())
+        return T[0] > 4.0
+
+    found = least_feasible(np.ones(2), candidates, (0.0, 0.5), is_feasible)
+    assert asked == [[1.0, 2.0], [1.5, 3.0], [4.0, 5.0], [6.0, 7.5]]
+    assert found.tolist() == asked[-1]
+    with pytest.raises(ConvergenceError, match=(
+            r'^no feasible durations found for segment_durations \[1\.0, 1\.0\] s$')):
+        least_feasible(np.ones(2), candidates[:1], (0.0, 0.5), is_feasible)
 
 
 def test_cycloid_refuses_durations_of_some_segments_only():

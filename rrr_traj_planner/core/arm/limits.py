@@ -105,8 +105,7 @@ class JointLimits(ReadOnlyArrays):
         """
         Return the least factor on all times with which a motion satisfies these limits.
 
-        Velocity falls with the factor, acceleration with its square, jerk with its cube
-        (Hollerbach, Dynamic scaling of manipulator trajectories, 1984).
+        See `kinematic_time_scale`.
 
         Parameters
         ----------
@@ -119,6 +118,27 @@ class JointLimits(ReadOnlyArrays):
             At most 1 if the motion itself satisfies them.
 
         """
-        return float(max((velocity / self.max_velocity).max(),
-                         np.sqrt((acceleration / self.max_acceleration).max()),
-                         np.cbrt((jerk / self.max_jerk).max())))
+        return kinematic_time_scale(
+            velocity / self.max_velocity, acceleration / self.max_acceleration,
+            jerk / self.max_jerk)
+
+
+def kinematic_time_scale(velocity: Array, acceleration: Array, jerk: Array) -> float:
+    """
+    Return the least factor on all times with which a motion satisfies kinematic limits.
+
+    Velocity falls with the factor, acceleration with its square, jerk with its cube
+    (Hollerbach, Dynamic scaling of manipulator trajectories, 1984).
+
+    Parameters
+    ----------
+    velocity, acceleration, jerk : ndarray
+        Ratios of magnitudes to their limits, without unit.
+
+    Returns
+    -------
+    float
+        At most 1 if the motion itself satisfies them.
+
+    """
+    return float(max(velocity.max(), np.sqrt(acceleration.max()), np.cbrt(jerk.max())))

@@ -35,7 +35,7 @@ from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 CHECKS = 12      # samples between two points
 
 
-class DenseCheck:
+class JointCheck:
     """
     Positions, velocities, accelerations and torques of a motion, densely sampled.
 

@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
-from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
+from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 
@@ -112,7 +112,7 @@ class Margins(NamedTuple):
         """
         return self._replace(efforts=np.minimum(self.efforts, self.gravity_margins))
 
-    def widened(self, task: JointTask, grid: Grid, slow: Variables, check: DenseCheck) -> Margins:
+    def widened(self, task: JointTask, grid: Grid, slow: Variables, check: JointCheck) -> Margins:
         """
         Return margins enlarged where a motion exceeds limits.
 
@@ -125,7 +125,7 @@ class Margins(NamedTuple):
         slow : Variables
             With stops at the via points; margins of positions are at most half its distance to
             the ends of the ranges.
-        check : DenseCheck
+        check : JointCheck
             Of a motion that exceeds limits.
 
         Returns

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
@@ -28,9 +29,9 @@ from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.joint_timing.tightening import tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
-from rrr_traj_planner.planners.short_durations import durations_too_short, whole_microseconds
+from rrr_traj_planner.planners.short_durations import durations_too_short, least_feasible
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, Variables, with_durations
+from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled, Variables, with_durations
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import DURATION_TOLERANCE
 
@@ -41,6 +42,77 @@ FREE_WEIGHT = 1e-3      # of free durations while the scaling of the prescribed 
 LEAST_REDUCTION = 1.02  # factor on peak acceleration that justifies another round
 # Tried in turn on top of the least durations until they can be prescribed.
 OFFER_MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
+
+
+class PrescribedProblem(NamedTuple):
+    """Via points and limits, the family of motions, and prescribed durations."""
+
+    task: JointTask
+    grid: Grid
+    durations: Array  # [s], NaN where free
+
+    @property
+    def free(self) -> BoolArray:
+        """Return which durations are free."""
+        return np.isnan(self.durations)
+
+    def problem(self, proportions: Array, weights: Array,
+                least_T: Array | None = None) -> JointProblem:
+        """
+        Return the problem of least weighted durations.
+
+        Parameters
+        ----------
+        proportions : ndarray, shape (N,)
+            Durations with a common factor [s], 0 where fixed or free.
+        weights : ndarray, shape (N,)
+            Of the durations in the sum that is minimised.
+        least_T : ndarray, shape (N,), optional
+            Least durations of the segments [s].
+
+        Returns
+        -------
+        JointProblem
+            Of motions that need not stop at any via point.
+
+        """
+        no_stops = np.zeros((len(self.durations) - 1, 3), dtype=bool)
+        return JointProblem(self.task, self.grid, DurationConstraints(
+            self.free, proportions, weights, no_stops), least_T)
+
+    def scaling(self, solved: Solved) -> float:
+        """
+        Return the largest ratio of a motion's durations to the prescribed ones.
+
+        Parameters
+        ----------
+        solved : Solved
+            The motion.
+
+        Returns
+        -------
+        float
+            Without unit.
+
+        """
+        return float(np.nanmax(np.diff(solved.trajectory.via_times) / self.durations))
+
+    def is_met_by(self, solved: Solved | None) -> bool:
+        """
+        Return whether a motion is as fast as prescribed.
+
+        Parameters
+        ----------
+        solved : Solved or None
+            The motion, if there is one.
+
+        Returns
+        -------
+        bool
+            Whether there is one, and its scaling is at most 1.
+
+        """
+        return solved is not None and self.scaling(solved) <= 1.0 + DURATION_TOLERANCE
 
 
 def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
@@ -68,21 +140,24 @@ def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
     ------
     TimingError
         If the durations are too short; with feasible ones.
+    ConvergenceError
+        If they are too short, and no feasible ones are found.
 
     """
-    solved = _least_scaled(task, grid, durations)
+    problem = PrescribedProblem(task, grid, durations)
+    solved = _least_scaled(problem)
     if solved is None:
         return None
-    if _scaling(solved, durations) > 1.0 + DURATION_TOLERANCE:
-        raise _too_short(task, grid, durations)
-    if np.isnan(durations).any():
-        return _fastest_of_free(task, grid, durations, solved)
-    return _least_peak_acceleration(task, grid, durations, solved)
+    if not problem.is_met_by(solved):
+        raise _too_short(problem)
+    if problem.free.any():
+        return _fastest_of_free(problem, solved)
+    return _least_peak_acceleration(problem, solved)
 
 
-def _least_scaled(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
+def _least_scaled(problem: PrescribedProblem) -> Solved | None:
     """Return the motion with the least common factor on the prescribed durations."""
-    free = np.isnan(durations)
+    durations, free = problem.durations, problem.free
     proportions = np.where(free, 0.0, durations)
     weights = np.where(free, FREE_WEIGHT, 1.0 / np.where(free, 1.0, durations) / (~free).sum())
 
@@ -93,17 +168,11 @@ def _least_scaled(task: JointTask, grid: Grid, durations: Array) -> Solved | Non
         scaling = float((m.T / durations)[~free].max())
         return with_durations(m, np.where(free, m.T, scaling * proportions))
 
-    constraints = DurationConstraints(free, proportions, weights, _no_stops(durations))
-    return tightened(JointProblem(task, grid, constraints, LEAST_SCALING * proportions),
+    return tightened(problem.problem(proportions, weights, LEAST_SCALING * proportions),
                      initial_motion)
 
 
-def _scaling(solved: Solved, durations: Array) -> float:
-    """Return the largest ratio of a motion's durations to the prescribed ones."""
-    return float(np.nanmax(np.diff(solved.trajectory.via_times) / durations))
-
-
-def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved]) -> Solved | None:
+def _in_time(problem: PrescribedProblem, found: list[Solved]) -> Solved | None:
     """
     Return the first of several motions that keeps its limits when slowed to the exact durations.
 
@@ -111,74 +180,72 @@ def _in_time(task: JointTask, grid: Grid, durations: Array, found: list[Solved])
     do, the motion that stops at every via point is returned: its path is statically feasible.
     """
     for solved in found:
-        slower = solved.trajectory.time_scaled(1.0 / _scaling(solved, durations))
-        if torque_fits(task, slower):
+        slower = solved.trajectory.time_scaled(1.0 / problem.scaling(solved))
+        if torque_fits(problem.task, slower):
             return solved._replace(trajectory=slower)
+    return _stopping(problem)
+
+
+def _stopping(problem: PrescribedProblem) -> Solved | None:
+    """Return the motion that stops at every via point; None where none is found."""
+    task, grid, durations = problem
     segments = len(durations)
-    problem = JointProblem(task, grid, DurationConstraints.all_free(segments, 3))
-    motion = rest_to_rest(task, problem.constraints(Margins.none(grid, segments)))
+    stops = JointProblem(task, grid, DurationConstraints.all_free(segments, 3))
+    motion = rest_to_rest(task, stops.constraints(Margins.none(grid, segments)))
     if motion is None:
         return None
-    T = np.where(np.isnan(durations), motion.T, durations)
+    T = np.where(problem.free, motion.T, durations)
     if (motion.T > T).any():
         raise durations_too_short(durations, np.maximum(T, motion.T))
     return Solved(grid.trajectory(task.points, with_durations(motion, T)), motion,
                   float(T.sum()), np.inf)
 
 
-def _least_peak_acceleration(task: JointTask, grid: Grid, durations: Array,
-                             solved: Solved) -> Solved | None:
+def _least_peak_acceleration(problem: PrescribedProblem, solved: Solved) -> Solved | None:
     """
     Return the motion of least peak acceleration over its limit.
 
     A motion that is faster than prescribed, slowed to its durations, satisfies lower acceleration
     limits; the problem is solved again under those until the durations are just met.
     """
+    task = problem.task
     limit = np.minimum(task.limits.max_acceleration, solved.trajectory.peaks().acceleration.max())
     found = [solved]  # of least acceleration first
     for _ in range(12):  # at most; chosen
         task.should_stop()
-        z = _scaling(solved, durations)
+        z = problem.scaling(found[0])
         if z ** 2 > 1.0 / LEAST_REDUCTION:
             break
         limit = limit * z ** 2
-        lower = replace(task, limits=replace(task.limits, max_acceleration=limit))
-        again = _least_scaled(lower, grid, durations)
-        if again is None or _scaling(again, durations) > 1.0 + DURATION_TOLERANCE:
+        again = _least_scaled(problem._replace(task=replace(
+            task, limits=replace(task.limits, max_acceleration=limit))))
+        if again is None or not problem.is_met_by(again):
             break
-        solved = again
-        found.insert(0, solved)
-    return _in_time(task, grid, durations, found)
+        found.insert(0, again)
+    return _in_time(problem, found)
 
 
-def _fastest_of_free(task: JointTask, grid: Grid, durations: Array,
-                     solved: Solved) -> Solved | None:
+def _fastest_of_free(problem: PrescribedProblem, solved: Solved) -> Solved | None:
     """Return the motion with the least sum of free durations, the others as prescribed."""
-    free, z = np.isnan(durations), _scaling(solved, durations)
+    free, durations = problem.free, problem.durations
     m = solved.motion
-    z = float(np.nanmax(m.T / durations))
-    start = grid.restored(task.points, Variables(
-        m.inner * z ** 2, m.v * z, m.a * z ** 2, np.where(free, m.T / z, durations)))
-    constraints = DurationConstraints(free, np.zeros(len(free)), free.astype(float),
-                                      _no_stops(durations))
-    found = tightened(JointProblem(task, grid, constraints), lambda planned, _: start)
-    if found is None or _scaling(found, durations) > 1.0 + DURATION_TOLERANCE:
-        return _in_time(task, grid, durations, [solved])
-    return found
+    m = time_scaled(m, float(1.0 / np.nanmax(m.T / durations)))
+    start = problem.grid.restored(
+        problem.task.points, m._replace(T=np.where(free, m.T, durations)))
+    found = tightened(problem.problem(np.zeros(len(free)), free.astype(float)),
+                      lambda planned, _: start)
+    return found if problem.is_met_by(found) else _in_time(problem, [solved])
 
 
-def _no_stops(durations: Array) -> BoolArray:
-    return np.zeros((len(durations) - 1, 3), dtype=bool)
-
-
-def _too_short(task: JointTask, grid: Grid, durations: Array) -> TimingError:
+def _too_short(problem: PrescribedProblem) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
-    least_T = np.nan_to_num(durations)
-    found = fastest(task, grid, least_T)
+    durations, least_T = problem.durations, np.nan_to_num(problem.durations)
+    found = fastest(problem.task, problem.grid, least_T)
     least = np.maximum(np.diff(found.trajectory.via_times), least_T) if found else least_T
-    for margin in OFFER_MARGINS:
-        feasible = whole_microseconds(least * (1.0 + margin))
-        solved = _least_scaled(task, grid, feasible)
-        if solved is not None and _scaling(solved, feasible) <= 1.0 + DURATION_TOLERANCE:
-            break
-    return durations_too_short(durations, feasible)
+
+    def is_feasible(T: Array) -> bool:
+        longer = problem._replace(durations=T)
+        return longer.is_met_by(_least_scaled(longer))
+
+    return durations_too_short(
+        durations, least_feasible(durations, [least], OFFER_MARGINS, is_feasible))

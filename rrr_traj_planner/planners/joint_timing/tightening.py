@@ -22,7 +22,7 @@ Each round starts from the last point near the central path that satisfies its m
 from __future__ import annotations
 
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
-from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
+from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
@@ -56,7 +56,7 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion) -> Solved | 
 
     """
     rounds = _Rounds(problem, initial_motion)
-    if rounds.started():
+    if rounds.start_from_rest():
         tighten(rounds, SCHEDULE, problem.task.should_stop)
     return rounds.best or rounds.best_that_fits()
 
@@ -75,16 +75,17 @@ class _Rounds:
         self._centres: list[CentralPathPoint] = []
         self._retries, self._restarts = 0, RESTARTED_SEGMENTS
         self._outcomes: list[tuple[Outcome, Variables]] = []  # each with its start
+        self._check: JointCheck | None = None  # of the last outcome
         self.best: Solved | None = None
 
-    def started(self) -> bool:
-        """Return whether there is a motion from rest to rest to start from."""
+    def start_from_rest(self) -> bool:
+        """Start from a motion from rest to rest; return whether there is one."""
         started = _start_from_rest(self._problem, self._margins, self._initial_motion)
         if started is not None:
             self._margins, self._constraints, self._start = started
         return started is not None
 
-    def solved(self) -> Outcome | None:
+    def solve(self) -> Outcome | None:
         start = self._start or _last_within(self._constraints, self._centres)
         if start is None:
             return None
@@ -94,7 +95,7 @@ class _Rounds:
         self._outcomes.append((outcome, start.motion))
         return outcome
 
-    def eased(self) -> bool:
+    def relax(self) -> bool:
         if self._centres and self._retries < RETRIES:
             nearer = _nearer(self._problem, self._margins, self._centres,
                              BARRIER_INCREASE ** self._retries)
@@ -102,12 +103,12 @@ class _Rounds:
                 self._centres = self._centres + nearer
                 self._retries += 1
                 return True
-        return self.started()
+        return self.start_from_rest()
 
-    def finished(self, outcome: Outcome, tolerance: float) -> bool:
+    def accept(self, outcome: Outcome, tolerance: float) -> bool:
         task, durations = self._problem.task, self._problem.durations
-        self._check = DenseCheck(task, self._problem.grid, outcome.motion)
-        if self._check.time_scale() <= 1.0 + tolerance and not self._check.beyond_range.any():
+        self._check = check = JointCheck(task, self._problem.grid, outcome.motion)
+        if check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any():
             task.should_stop()
             fits = self._problem.fitting(outcome, outcome.motion)
             if fits is not None and fits.cost <= (1.0 + tolerance) * durations.cost(
@@ -118,9 +119,9 @@ class _Rounds:
             self.best = self.best_that_fits()
         return self.best is not None
 
-    def tightened(self) -> bool:
+    def tighten(self) -> bool:
         problem, before = self._problem, self._margins
-        assert self._slow is not None
+        assert self._slow is not None and self._check is not None
         self._margins = before.widened(problem.task, problem.grid, self._slow, self._check)
         self._constraints = problem.constraints(self._margins)
         segments = len(problem.durations.free)

@@ -23,7 +23,7 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.limits import JointLimits, kinematic_time_scale
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.kernels import contiguous
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
@@ -146,7 +146,7 @@ def limited_quantities(problem: TimingProblem, z: Array, at_points: bool) -> tup
     """
     z = contiguous(z)
     x, gravity = np.empty((*z.shape[:2], QUANTITIES)), np.empty((*z.shape[:2], 3))
-    KERNELS.path_quantities(problem.at, z.shape[1], at_points, z.ctypes.data, x.ctypes.data,
+    KERNELS.path_quantities(problem.address, z.shape[1], at_points, z.ctypes.data, x.ctypes.data,
                             gravity.ctypes.data)
     return x, gravity
 
@@ -171,5 +171,5 @@ def least_time_scale(x: Array, gravity: Array, bounds: Array) -> float:
     """
     ratio = (np.abs(x) / bounds).reshape(-1, QUANTITIES).max(axis=0)
     by_torque = squared_scaling(bounds[..., TORQUE], gravity, x[..., TORQUE])
-    return float(max(*ratio[VELOCITY], ratio[SPEED], np.sqrt(ratio[ACCELERATION].max()),
-                     np.cbrt(ratio[JERK].max()), np.sqrt(by_torque.max())))
+    kinematic = kinematic_time_scale(ratio[VELOCITY], ratio[ACCELERATION], ratio[JERK])
+    return float(max(kinematic, ratio[SPEED], np.sqrt(by_torque.max())))

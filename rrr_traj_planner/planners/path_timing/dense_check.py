@@ -28,7 +28,7 @@ CHECKS = 8        # samples between two points
 BACKWARD = 1e-12  # part of the largest speed up to which a negative speed is rounding
 
 
-class DenseCheck(NamedTuple):
+class PathCheck(NamedTuple):
     """The result of a dense check of a motion."""
 
     excess: Array   # of every limited quantity near each point, (N, 2 n + 1, QUANTITIES)
@@ -42,7 +42,7 @@ class DenseCheck(NamedTuple):
         return self.slowest >= -BACKWARD * self.fastest
 
 
-def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> DenseCheck:
+def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> PathCheck:
     """
     Return by how much a motion exceeds its limits between the points, by the path's table.
 
@@ -58,12 +58,12 @@ def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> DenseChe
 
     Returns
     -------
-    DenseCheck
+    PathCheck
         With CHECKS samples between two points.
 
     """
     z = problem.grid.samples(problem.points, m, 2 * CHECKS)[..., 0]
     x, gravity = limited_quantities(problem, z, at_points=False)
-    return DenseCheck(excess_near_points(x, bounds, CHECKS, reach=CHECKS),
-                      least_time_scale(x, gravity, bounds),
-                      float(z[:, :, 1].min()), float(z[:, :, 1].max()))
+    return PathCheck(excess_near_points(x, bounds, CHECKS, reach=CHECKS),
+                     least_time_scale(x, gravity, bounds),
+                     float(z[:, :, 1].min()), float(z[:, :, 1].max()))

@@ -29,6 +29,7 @@ from rrr_traj_planner.core.arrays import BoolArray
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import place_on_path
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
+from rrr_traj_planner.planners.path_timing.problem import PathProblem
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.path_timing.tightening import tightened
@@ -101,7 +102,7 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     _check_held(task, table)
     steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
     task.should_stop()
-    motion, gap = tightened(task, table, grid, steady)
+    motion, gap = tightened(PathProblem(task, table, grid, steady))
     task.should_stop()
     return Timed(_trajectory(task, table, grid, motion), gap)
 

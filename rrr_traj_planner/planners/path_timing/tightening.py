@@ -23,19 +23,17 @@ central path of the one before, and its constraints are shifted from those limit
 from __future__ import annotations
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.path_timing.constraints import (
-    all_bounds,
     least_time_scale,
     limited_quantities,
     PathConstraints,
     QUANTITIES,
 )
-from rrr_traj_planner.planners.path_timing.dense_check import dense_check, DenseCheck
+from rrr_traj_planner.planners.path_timing.dense_check import dense_check, PathCheck
 from rrr_traj_planner.planners.path_timing.initial_speeds import initial_speeds_of
+from rrr_traj_planner.planners.path_timing.problem import PathProblem
 from rrr_traj_planner.planners.path_timing.start import motion_with_speeds, uniform_along
-from rrr_traj_planner.planners.path_timing.table import PathTable
-from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.solver.interior_point import (
     CentralPathPoint,
     minimise,
@@ -43,9 +41,9 @@ from rrr_traj_planner.planners.solver.interior_point import (
     RELATIVE_GAP,
 )
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled, Variables
+from rrr_traj_planner.planners.solver.ramps import time_scaled, Variables
 from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
-from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 from rrr_traj_planner.planners.tolerances import START_SCALING
 
 # Chosen values, without unit: half and twice of ROUGH_GAP and CENTRES_BACK of 1 or 5 change
@@ -55,21 +53,14 @@ ROUGH_GAP = 0.3         # part of the total time: the gap to which the first rou
 CENTRES_BACK = 3        # which of the last centres a round with larger margins starts from
 
 
-def tightened(task: PathTask, table: PathTable, grid: Grid,
-              steady: BoolArray) -> tuple[Variables, float]:
+def tightened(problem: PathProblem) -> tuple[Variables, float]:
     """
     Return the fastest motion along a path, and a bound on the time that the optimum saves.
 
     Parameters
     ----------
-    task : PathTask
+    problem : PathProblem
         Path and limits.
-    table : PathTable
-        The path's.
-    grid : Grid
-        Discretisation: n ramps per segment.
-    steady : ndarray, shape (N,)
-        Pieces along which the tip's speed is constant.
 
     Returns
     -------
@@ -79,9 +70,9 @@ def tightened(task: PathTask, table: PathTable, grid: Grid,
         [s].
 
     """
-    rounds = _Rounds(task, table, grid, steady)
+    rounds = _Rounds(problem)
     if rounds.may_begin():
-        tighten(rounds, SCHEDULE, task.should_stop)
+        tighten(rounds, SCHEDULE, problem.task.should_stop)
     T, motion, _ = min(rounds.found, key=lambda f: f[0])
     return motion, max(T - max(least for *_, least in rounds.found), 0.0)
 
@@ -89,60 +80,57 @@ def tightened(task: PathTask, table: PathTable, grid: Grid,
 class _Rounds:
     """The rounds of one path; see `solver.tightening.TightenedProblem`."""
 
-    def __init__(self, task: PathTask, table: PathTable, grid: Grid, steady: BoolArray) -> None:
-        self._task, self._table, self._grid, self._steady = task, table, grid, steady
-        self._bounds = all_bounds(task.limits, task.max_tip_speed)
-        self._durations = DurationConstraints.all_free(len(steady), 1)
-        self._workspace = Workspace()
+    def __init__(self, problem: PathProblem) -> None:
+        self._problem, N = problem, len(problem.steady)
+        self._durations = DurationConstraints.all_free(N, 1)
         self._previous: PathConstraints | None = None
-        self._constraints = self._within(np.zeros((len(steady), 2 * grid.n + 1, QUANTITIES)))
-        self._start = CentralPathPoint(_slow_start(task, table, self._constraints, steady), None)
+        self._last: tuple[Outcome, PathCheck] | None = None
+        self._constraints = problem.constraints(
+            np.zeros((N, 2 * problem.grid.n + 1, QUANTITIES)))
+        self._start = CentralPathPoint(_slow_start(problem, self._constraints), None)
         # each with its duration and a lower bound of all durations [s]
         self.found = [(float(self._start.motion.T.sum()), self._start.motion, -np.inf)]
 
     def may_begin(self) -> bool:
         """Return whether the start is within the limits."""
-        self._task.should_stop()
+        self._problem.task.should_stop()
         return self._constraints.problem.is_within(self._start.motion)
 
-    def solved(self) -> Outcome | None:
+    def solve(self) -> Outcome | None:
         previous = self._previous
         outcome = minimise(self._constraints.problem, self._start, self._durations,
-                           self._task.should_stop,
+                           self._problem.task.should_stop,
                            previous=previous.problem if previous else None,
                            relative_gap=RELATIVE_GAP if previous else ROUGH_GAP)
         return None if previous and not outcome.within else outcome
 
-    def eased(self) -> bool:
+    def relax(self) -> bool:
         """Take back half of margins that were enlarged too much at once."""
         assert self._previous is not None
-        self._constraints = self._within(
+        self._constraints = self._problem.constraints(
             0.5 * (self._previous.margins + self._constraints.margins))
         return True
 
-    def finished(self, outcome: Outcome, tolerance: float) -> bool:
-        self._outcome, self._check = _last_forward(
-            outcome, self._start, self._constraints.problem, self._bounds)
-        self.found.append(_slowed(self._outcome, self._check.time_scale))
-        fits = self._previous is not None and self._check.time_scale <= 1.0 + tolerance
-        return fits or self._task.should_stop()
+    def accept(self, outcome: Outcome, tolerance: float) -> bool:
+        self._last = outcome, check = _last_forward(
+            outcome, self._start, self._constraints.problem, self._problem.bounds)
+        self.found.append(_slowed(outcome, check.time_scale))
+        fits = self._previous is not None and check.time_scale <= 1.0 + tolerance
+        return fits or self._problem.task.should_stop()
 
-    def tightened(self) -> bool:
-        centres, constraints = self._outcome.centres, self._constraints
-        if not centres:
+    def tighten(self) -> bool:
+        assert self._last is not None
+        (outcome, check), constraints = self._last, self._constraints
+        if not outcome.centres:
             return False
-        self._start = centres[-CENTRES_BACK if self._previous else -1:][0]
-        self._previous, self._constraints = constraints, self._within(
-            constraints.margins + self._check.excess)
+        self._start = outcome.centres[-CENTRES_BACK if self._previous else -1:][0]
+        self._previous, self._constraints = constraints, self._problem.constraints(
+            constraints.margins + check.excess)
         return True
-
-    def _within(self, margins: Array) -> PathConstraints:
-        return PathConstraints(self._table, self._task.limits, self._task.max_tip_speed,
-                               self._grid, margins, self._steady, self._workspace)
 
 
 def _last_forward(outcome: Outcome, start: CentralPathPoint, problem: TimingProblem,
-                  bounds: Array) -> tuple[Outcome, DenseCheck]:
+                  bounds: Array) -> tuple[Outcome, PathCheck]:
     """Return the last motion on which the tip never moves backward, as when cancelled it may."""
     passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion)
     for motion in passed:
@@ -159,11 +147,10 @@ def _slowed(outcome: Outcome, time_scale: float) -> tuple[float, Variables, floa
     return factor * T, time_scaled(outcome.motion, factor), T - outcome.gap
 
 
-def _slow_start(task: PathTask, table: PathTable, constraints: PathConstraints,
-                steady: BoolArray) -> Variables:
+def _slow_start(problem: PathProblem, constraints: PathConstraints) -> Variables:
     """Return a feasible motion to start from, of constant speed if any piece is to have it."""
-    grid, bounds = constraints.grid, all_bounds(task.limits, task.max_tip_speed)
-    if steady.any():
+    table, grid, bounds = problem.table, problem.grid, problem.bounds
+    if problem.steady.any():
         m = uniform_along(grid, table.ends)
     else:
         m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))

@@ -72,7 +72,7 @@ def minimise(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> Solution:
         Within RELATIVE_GAP of the optimum, where the problem is convex and it is not cancelled.
 
     """
-    count, found = barrier.constraints, barrier.found
+    count, found = barrier.constraints, barrier.structure
     weight = count / found.objective
     stopped = _centre(barrier, weight, CENTRED, should_stop)
     while not stopped and count / weight >= RELATIVE_GAP * found.objective:
@@ -89,7 +89,7 @@ def _centre(barrier: ViaBarrier, weight: float, decrement: float,
     for _ in range(25):  # at most, before the weight is raised
         if should_stop():
             return True
-        rounding = ROUNDING * weight * barrier.found.objective
+        rounding = ROUNDING * weight * barrier.structure.objective
         squared = _step(barrier, weight)
         if squared is None or squared < decrement or squared < rounding:
             break
@@ -98,14 +98,14 @@ def _centre(barrier: ViaBarrier, weight: float, decrement: float,
 
 def _step(barrier: ViaBarrier, weight: float) -> float | None:
     """Take a Newton step; return its decrement squared, None where rounding allows no decrease."""
-    at, found = barrier.at, barrier.found
+    address, found = barrier.address, barrier.structure
     for _ in range(30):  # of damping, at most
-        change = KERNELS.via_attempt(at, weight)
+        change = KERNELS.via_attempt(address, weight)
         squared: float = found.decrement
         if not squared >= 0.0:
             return None
         if change <= -SUFFICIENT_DECREASE * squared:
-            KERNELS.via_accept(at, LESS_DAMPING)
+            KERNELS.via_accept(address, LESS_DAMPING)
             return squared
-        KERNELS.via_damp(at, TOLERATED_RISE, MORE_DAMPING)
+        KERNELS.via_damp(address, TOLERATED_RISE, MORE_DAMPING)
     return None

@@ -123,10 +123,10 @@ class _Run:
 
     def __init__(self, problem: TimingProblem, barrier: float | None,
                  previous: TimingProblem | None) -> None:
-        self._problem, self._at = problem, problem.at
-        self._count = KERNELS.timing_constraint_count(problem.at)
+        self._problem, self._address = problem, problem.address
+        self._count = KERNELS.timing_constraint_count(problem.address)
         self._cost = self._best_cost = KERNELS.timing_cost(
-            problem.at, problem.arrays.addresses['variables'])
+            problem.address, problem.arrays.addresses['variables'])
         self._best, self._gap = problem.arrays['variables'].copy(), math.inf
         self._centres: list[CentralPathPoint] = []
         self._barrier = barrier or START * self._cost / self._count
@@ -143,11 +143,11 @@ class _Run:
 
     def iterate(self) -> None:
         """Take one Newton step, as far as the line search allows; `ended` if there is none."""
-        problem, at = self._problem, self._at
-        KERNELS.timing_linearise(at, self._barrier)
+        problem, address = self._problem, self._address
+        KERNELS.timing_linearise(address, self._barrier)
         reducing_shifts = problem.shifted
         if math.isnan(self._log) and not reducing_shifts:
-            self._log = KERNELS.timing_log_sum(at, problem.arrays.addresses['slack'])
+            self._log = KERNELS.timing_log_sum(address, problem.arrays.addresses['slack'])
         found = best_step(problem, self._barrier, None if reducing_shifts else self._merit())
         if found is None:
             self.ended = True
@@ -155,14 +155,15 @@ class _Run:
         size, step = found.size, found.step
         self._moved = size > 0.0
         if reducing_shifts and self._moved:
-            KERNELS.timing_reduce_shifts(at, step.at, size, SMALL_SHIFT)
-        KERNELS.timing_accept(at, step.at, self._moved, self._barrier, TO_BOUNDARY, DUAL_CORRIDOR)
+            KERNELS.timing_reduce_shifts(address, step.address, size, SMALL_SHIFT)
+        KERNELS.timing_accept(address, step.address, self._moved, self._barrier, TO_BOUNDARY,
+                              DUAL_CORRIDOR)
         if self._moved:
-            self._cost = step.found.cost
-            self._log = math.nan if reducing_shifts else step.found.log
+            self._cost = step.structure.cost
+            self._log = math.nan if reducing_shifts else step.structure.log
             if not problem.shifted and (reducing_shifts or self._cost < self._best_cost):
                 self._best, self._best_cost = problem.arrays['variables'].copy(), self._cost
-        self._predicted_decrease = step.found.predicted_decrease
+        self._predicted_decrease = step.structure.predicted_decrease
         if reducing_shifts:
             self.ended = not self._moved
             return
@@ -200,18 +201,18 @@ class _Run:
 def _central(problem: TimingProblem, barrier: float) -> None:
     """Set every multiplier to its value on the central path: barrier / slack."""
     addresses = problem.arrays.addresses
-    KERNELS.timing_slacks(problem.at, addresses['variables'], addresses['slack'])
-    KERNELS.timing_central_duals(problem.at, barrier)
+    KERNELS.timing_slacks(problem.address, addresses['variables'], addresses['slack'])
+    KERNELS.timing_central_duals(problem.address, barrier)
 
 
 def _first_barrier(problem: TimingProblem, barrier: float) -> float:
     """Return a barrier parameter large enough to move a start that is close to a limit off it."""
     _central(problem, barrier)
     for _ in range(6):  # at most
-        KERNELS.timing_linearise(problem.at, barrier)
+        KERNELS.timing_linearise(problem.address, barrier)
         decrease = predicted_decrease_of(problem)
         if decrease is None or decrease < FAR_FROM_CENTRE * barrier:
             break
         barrier /= BARRIER_REDUCTION
-        KERNELS.timing_central_duals(problem.at, barrier)
+        KERNELS.timing_central_duals(problem.address, barrier)
     return barrier

@@ -79,7 +79,8 @@ def best_step(problem: TimingProblem, barrier: float,
         if best is None or found.size > best.size:
             best = found
         if found.size <= SHORT and KERNELS.timing_correct(
-                problem.at, step.at, max(found.size, LEAST_CORRECTED), corrected.at):
+                problem.address, step.address, max(found.size, LEAST_CORRECTED),
+                corrected.address):
             found = _search(problem, corrected, barrier, merit)
             if found.size > best.size:
                 best = found
@@ -103,27 +104,30 @@ def predicted_decrease_of(problem: TimingProblem) -> float | None:
         None where the Newton system is singular.
 
     """
-    return next((float(step.found.predicted_decrease) for step, _ in _newton_steps(problem)), None)
+    steps = _newton_steps(problem)
+    return next((float(step.structure.predicted_decrease) for step, _ in steps), None)
 
 
 def _newton_steps(problem: TimingProblem) -> Iterator[tuple[Step, Step]]:
     """Yield the Newton steps, each with memory for its correction."""
     exact, exact_corrected, plain, plain_corrected = problem.steps
     if not problem.limits.bounds_alone:
-        if KERNELS.timing_newton(problem.at, 1, exact.at) and exact.found.predicted_decrease > 0.0:
+        solved = KERNELS.timing_newton(problem.address, 1, exact.address)
+        if solved and exact.structure.predicted_decrease > 0.0:
             yield exact, exact_corrected
-    if KERNELS.timing_newton(problem.at, 0, plain.at):
+    if KERNELS.timing_newton(problem.address, 0, plain.address):
         yield plain, plain_corrected
 
 
 def _search(problem: TimingProblem, step: Step, barrier: float,
             merit: float | None) -> LineSearchResult:
     """Backtrack along a step, by parabolas of the slacks where it violates a constraint."""
-    at, found = problem.at, step.found
+    address, found = problem.address, step.structure
     fastest_fall = found.max_relative_slack_decrease
     size = TO_BOUNDARY / fastest_fall if fastest_fall > TO_BOUNDARY else 1.0
     for _ in range(30):  # at most
-        feasible = KERNELS.timing_trial(at, step.at, size, LEAST_SLACK_RETAINED, TARGET_SLACK)
+        feasible = KERNELS.timing_trial(address, step.address, size, LEAST_SLACK_RETAINED,
+                                        TARGET_SLACK)
         if feasible and (merit is None or found.cost - barrier * found.log
                          <= merit - SUFFICIENT_DECREASE * size * found.predicted_decrease):
             return LineSearchResult(step, size)

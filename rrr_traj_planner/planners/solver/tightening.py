@@ -40,20 +40,20 @@ class Schedule(NamedTuple):
 class TightenedProblem(Protocol):
     """A least-time problem with margins to its limits."""
 
-    def solved(self) -> Outcome | None:
+    def solve(self) -> Outcome | None:
         """Return the solution; None where no start is known that satisfies the margins."""
 
-    def eased(self) -> bool:
+    def relax(self) -> bool:
         """Relax the margins for another start; return False where none is left to try."""
 
-    def finished(self, outcome: Outcome, tolerance: float) -> bool:
+    def accept(self, outcome: Outcome, tolerance: float) -> bool:
         """
         Store a solution; return whether it satisfies the tolerance.
 
         Parameters
         ----------
         outcome : Outcome
-            Of `solved`.
+            Of `solve`.
         tolerance : float
             Part by which a motion may have to be slowed to keep its limits at all times.
 
@@ -64,7 +64,7 @@ class TightenedProblem(Protocol):
 
         """
 
-    def tightened(self) -> bool:
+    def tighten(self) -> bool:
         """Enlarge margins where the last solution exceeds limits; return whether that helps."""
 
 
@@ -85,12 +85,12 @@ def tighten(problem: TightenedProblem, schedule: Schedule,
     """
     for round_ in range(schedule.rounds):
         should_stop()
-        outcome = problem.solved()
+        outcome = problem.solve()
         if outcome is None:
-            if problem.eased():
+            if problem.relax():
                 continue
             return
         should_stop()
         tolerance = schedule.tolerance * schedule.growth ** max(round_ - schedule.patience, 0)
-        if problem.finished(outcome, tolerance) or not problem.tightened():
+        if problem.accept(outcome, tolerance) or not problem.tighten():
             return

@@ -75,8 +75,8 @@ class _Step(ctypes.Structure):  # as in native/timing_problem.h
 class Step(NamedTuple):
     """A Newton step, and the result of a trial along it."""
 
-    at: Any     # its address, for the kernels
-    found: Any  # the structure itself: see native/timing_problem.h
+    address: Any    # of the structure, for the kernels
+    structure: Any  # see native/timing_problem.h
 
 
 class Workspace:
@@ -125,8 +125,8 @@ class TimingProblem:
     ----------
     grid, points, limits
         As given.
-    at : object
-        The problem's address, for the kernels.
+    address : object
+        Of the problem, for the kernels.
 
     """
 
@@ -155,7 +155,7 @@ class TimingProblem:
         self._bind('general_at', general_at.astype(np.int32))
         self._bind('has_general', limits.general.any(axis=1).astype(np.uint8))
         self._shape = N, n, J
-        self.at: Any = ctypes.byref(self._problem)
+        self.address: Any = ctypes.byref(self._problem)
 
     def _bind(self, name: str, values: Any) -> None:
         """Give the kernels an array's address, and hold the array as long as the problem."""
@@ -178,7 +178,7 @@ class TimingProblem:
             'gradient_T': (N,), 'hessian_T': (N,), 'trial_variables': (unknowns,),
             'trial_states': states, 'trial_values': values, 'trial_slack': (slacks,),
             'trial_gradient': states, 'trial_gradient_T': (N,), 'step_states': states,
-            'newton': (KERNELS.timing_newton_size(self.at),)}
+            'newton': (KERNELS.timing_newton_size(self.address),)}
         sizes = (unknowns, unknowns, slacks, unknowns, slacks)
         arena = self._workspace.arena({**shapes, **{
             f'{name} {k}': (size,) for k in range(STEPS) for name, size in zip(_STEP, sizes)}})
@@ -260,7 +260,7 @@ class TimingProblem:
         """
         flat = motion.flat()
         found = np.empty(self.arrays['slack'].size)
-        KERNELS.timing_slacks(self.at, flat.ctypes.data, found.ctypes.data)
+        KERNELS.timing_slacks(self.address, flat.ctypes.data, found.ctypes.data)
         return found
 
     def is_within(self, motion: Variables) -> bool:

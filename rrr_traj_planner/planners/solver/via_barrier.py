@@ -98,10 +98,10 @@ class ViaBarrier:
 
     Attributes
     ----------
-    at : object
-        The problem's address, for the kernels.
-    found : object
-        The structure itself: objective of the iterate, and decrement of the last step, squared.
+    address : object
+        Of the problem, for the kernels.
+    structure : object
+        The problem itself: objective of the iterate, and decrement of the last step, squared.
     arrays : Arena
         The kernels' arrays, under the names of native/via_problem.h.
     constraints : int
@@ -130,10 +130,10 @@ class ViaBarrier:
         for name, array in given.items():
             self.arrays[name][...] = array
         self.arrays['damping'][:] = 0.0
-        self.found: Any = _ViaProblem(n=n, **self.arrays.addresses)
-        self.at: Any = ctypes.byref(self.found)
+        self.structure: Any = _ViaProblem(n=n, **self.arrays.addresses)
+        self.address: Any = ctypes.byref(self.structure)
         self.constraints = 12 * n + 6 * (n - 1)
         point = self.arrays['point']
         self.velocities, self.durations = point[:3 * n - 3].reshape(-1, 3), point[3 * n - 3:]
         self.velocities[:], self.durations[:] = v, T
-        KERNELS.via_begin(self.at)
+        KERNELS.via_begin(self.address)

@@ -25,9 +25,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import ConvergenceError
-from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.motion import (
     motion_slowed_for_torque,
     motion_with_least_durations,
@@ -35,7 +34,11 @@ from rrr_traj_planner.planners.transitions.motion import (
     segment_time_scale,
     TimedMotion,
 )
-from rrr_traj_planner.planners.transitions.via_problem import at_rest, slower_at, ViaProblem
+from rrr_traj_planner.planners.transitions.transition_problem import (
+    at_lower_velocities,
+    TransitionProblem,
+)
+from rrr_traj_planner.planners.transitions.via_problem import rests_everywhere
 
 # Numbers of rounds, at most; chosen: half and twice of the second change none of 28 random plans.
 STRAIGHTENING_ROUNDS = 5   # of reducing via velocities where gravity blocks the path
@@ -44,16 +47,14 @@ OVERSHOOT_ROUNDS = 8       # of reducing via velocities where a joint overshoots
 BACKWARD = 1.0, 0.5        # exponents tried for shortening a segment lengthened too much; chosen
 
 
-def fastest(task: JointTask, problem: ViaProblem, least_T: Array | None) -> TimedMotion:
+def fastest(problem: TransitionProblem, least_T: Array | None) -> TimedMotion:
     """
     Return the motion of least total time, slowed as its torques require.
 
     Parameters
     ----------
-    task : JointTask
-        The arm and its limits.
-    problem : ViaProblem
-        The via points.
+    problem : TransitionProblem
+        The via points, the arm and its limits.
     least_T : ndarray, shape (n,), optional
         Durations [s] that no segment may fall below.
 
@@ -68,24 +69,22 @@ def fastest(task: JointTask, problem: ViaProblem, least_T: Array | None) -> Time
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    problem, motion, scaling = _statically_feasible_motion(task, problem, least_T)
+    problem, motion, scaling = _statically_feasible_motion(problem, least_T)
     candidates = [(motion, scaling)]
     for backward in BACKWARD:
-        candidates += _slowed(task, problem, least_T, motion, scaling, backward)
+        candidates += _slowed(problem, least_T, motion, scaling, backward)
     totals = [m.durations.sum() * max(1.0, s.max()) for m, s in candidates]
-    return motion_slowed_for_torque(task, candidates[int(np.argmin(totals))][0])
+    return motion_slowed_for_torque(problem.task, candidates[int(np.argmin(totals))][0])
 
 
-def fastest_with_stops(task: JointTask, problem: ViaProblem, least_T: Array) -> TimedMotion:
+def fastest_with_stops(problem: TransitionProblem, least_T: Array) -> TimedMotion:
     """
     Return the motion of least total time with a stop at every via point.
 
     Parameters
     ----------
-    task : JointTask
-        The arm and its limits.
-    problem : ViaProblem
-        The via points.
+    problem : TransitionProblem
+        The via points, the arm and its limits.
     least_T : ndarray, shape (n,)
         Durations [s] that no segment may fall below.
 
@@ -100,11 +99,10 @@ def fastest_with_stops(task: JointTask, problem: ViaProblem, least_T: Array) -> 
         If gravity alone exceeds an effort limit between the via points.
 
     """
-    stops = at_rest(problem)
-    return motion_slowed_for_torque(task, _least_time_motion(task, stops, least_T))
+    return motion_slowed_for_torque(problem.task, _least_time_motion(problem.at_rest(), least_T))
 
 
-def _slowed(task: JointTask, problem: ViaProblem, least_T: Array | None, motion: TimedMotion,
+def _slowed(problem: TransitionProblem, least_T: Array | None, motion: TimedMotion,
             scaling: Array, backward: float) -> Iterator[tuple[TimedMotion, Array]]:
     """
     Yield motions and their time scaling, each lengthened as the torques of the one before require.
@@ -114,46 +112,44 @@ def _slowed(task: JointTask, problem: ViaProblem, least_T: Array | None, motion:
     lacking = np.zeros(len(scaling), dtype=bool)
     for _ in range(SLOWING_ROUNDS):
         lacking |= scaling > 1.0
-        if not lacking.any() or np.isinf(scaling).any() or task.should_stop():
+        if not lacking.any() or np.isinf(scaling).any() or problem.task.should_stop():
             return
         change = np.where(scaling > 1.0, scaling, scaling ** backward)
         slow = np.where(lacking, motion.durations * change, 0.0)
         slow = slow if least_T is None else np.maximum(slow, least_T)
-        motion = _least_time_motion(task, problem, slow)
-        scaling = segment_time_scale(task, motion)
+        motion = _least_time_motion(problem, slow)
+        scaling = segment_time_scale(problem.task, motion)
         yield motion, scaling
 
 
-def _statically_feasible_motion(task: JointTask, problem: ViaProblem,
-                                least_T: Array | None) -> tuple[ViaProblem, TimedMotion, Array]:
+def _statically_feasible_motion(problem: TransitionProblem, least_T: Array | None,
+                                ) -> tuple[TransitionProblem, TimedMotion, Array]:
     """
     Return the fastest motion whose path is statically feasible, and its segments' time scaling.
 
     Lower via velocities straighten the path; the time scaling is infinite where gravity exceeds a
     limit even between stops.
     """
-    for _ in range(STRAIGHTENING_ROUNDS):
-        task.should_stop()
-        motion = _least_time_motion(task, problem, least_T)
-        scaling = segment_time_scale(task, motion)
+    def attempt(slower: TransitionProblem) -> tuple[
+            tuple[TransitionProblem, TimedMotion, Array] | None, BoolArray | None]:
+        motion = _least_time_motion(slower, least_T)
+        scaling = segment_time_scale(slower.task, motion)
         blocked = np.isinf(scaling)
-        if not blocked.any():
-            return problem, motion, scaling
-        problem = slower_at(problem, np.tile(blocked[:, np.newaxis], 3))
-    motion = _least_time_motion(task, at_rest(problem), least_T)
-    return at_rest(problem), motion, segment_time_scale(task, motion)
+        if not blocked.any() or rests_everywhere(slower.via):
+            return (slower, motion, scaling), None
+        return None, np.tile(blocked[:, np.newaxis], 3)
+
+    found = at_lower_velocities(problem, STRAIGHTENING_ROUNDS, attempt)
+    assert found is not None  # at rest there is one
+    return found
 
 
-def _least_time_motion(task: JointTask, problem: ViaProblem, least_T: Array | None) -> TimedMotion:
+def _least_time_motion(problem: TransitionProblem, least_T: Array | None) -> TimedMotion:
     """Return the motion of least total time within the kinematic limits."""
-    for round_ in range(OVERSHOOT_ROUNDS + 1):
-        task.should_stop()
-        if round_ == OVERSHOOT_ROUNDS:
-            problem = at_rest(problem)
-        motion, overshoot = (quickest_motion(task, problem) if least_T is None
-                             else motion_with_least_durations(task, problem, least_T))
-        if motion is not None:
-            return motion
-        problem = slower_at(problem, overshoot)
-    raise ConvergenceError(
-        f'{problem.function.name}: even stops at the via points overshoot a range')
+    motion = at_lower_velocities(problem, OVERSHOOT_ROUNDS, lambda slower: (
+        quickest_motion(slower) if least_T is None
+        else motion_with_least_durations(slower, least_T)))
+    if motion is None:
+        raise ConvergenceError(f'{problem.via.function.name}: even stops at the via points '
+                               'overshoot a range')
+    return motion

@@ -34,7 +34,8 @@ from rrr_traj_planner.planners.torque_scaling import (
     squared_time_scale_by_segment,
 )
 from rrr_traj_planner.planners.transitions import segment_motion
-from rrr_traj_planner.planners.transitions.via_problem import rests_everywhere, ViaProblem
+from rrr_traj_planner.planners.transitions.transition_problem import TransitionProblem
+from rrr_traj_planner.planners.transitions.via_problem import rests_everywhere
 from rrr_traj_planner.planners.transitions.via_velocities import least_time, least_time_scale
 
 # Without unit: parts of a duration.
@@ -48,7 +49,7 @@ class TimedMotion(NamedTuple):
     durations: Array
 
 
-def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
+def timed_motion(problem: TransitionProblem, durations: Array,
                  low_acceleration: bool = True) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return a motion of given durations, and which segments overshoot a joint's range.
@@ -58,10 +59,8 @@ def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
 
     Parameters
     ----------
-    task : JointTask
-        The arm and its limits.
-    problem : ViaProblem
-        The via points.
+    problem : TransitionProblem
+        The via points, the arm and its limits.
     durations : ndarray, shape (n,)
         [s].
     low_acceleration : bool
@@ -73,29 +72,30 @@ def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
         None where it overshoots, or no motion satisfies the kinematic limits.
 
     """
-    if rests_everywhere(problem):
-        factor = float((problem.rest_to_rest_times() / durations).max())
-        v, T = np.zeros_like(problem.highest), durations * factor
+    via = problem.via
+    if rests_everywhere(via):
+        factor = float((via.rest_to_rest_times() / durations).max())
+        v, T = np.zeros_like(via.highest), durations * factor
     else:
-        factor, solution = least_time_scale(problem, durations)
+        factor, solution = least_time_scale(via, durations)
         v, T = solution.velocities, solution.durations
     if factor > 1.0 + SCALING_TOLERANCE:
-        return None, np.zeros_like(problem.displacements, dtype=bool)
+        return None, np.zeros_like(via.displacements, dtype=bool)
     if factor <= 1.0 and low_acceleration:
         v, T, factor = v * factor, durations, 1.0
-    motion, overshoot = _motion_of(task, problem, v, T, durations)
+    motion, overshoot = _motion_of(problem, v, T, durations)
     if motion is not None and factor != 1.0:
         motion = motion._replace(trajectory=motion.trajectory.time_scaled(1.0 / factor))
     return motion, overshoot
 
 
-def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion | None, BoolArray]:
+def quickest_motion(problem: TransitionProblem) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return the motion of least total time, and which segments overshoot a joint's range.
 
     Parameters
     ----------
-    task, problem
+    problem : TransitionProblem
         As in `timed_motion`.
 
     Returns
@@ -104,22 +104,23 @@ def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion |
         None where it overshoots. Its note tells if planning was stopped before it converged.
 
     """
-    stops = problem.rest_to_rest_times()
-    v, T, gap = np.zeros_like(problem.highest), stops, 0.0
-    if not rests_everywhere(problem):
-        found = least_time(problem, should_stop=task.should_stop)
+    via = problem.via
+    stops = via.rest_to_rest_times()
+    v, T, gap = np.zeros_like(via.highest), stops, 0.0
+    if not rests_everywhere(via):
+        found = least_time(via, should_stop=problem.task.should_stop)
         gap = found.gap - float(max(found.durations.sum() - stops.sum(), 0.0))
         if found.durations.sum() <= stops.sum():  # it was not stopped early
             v, T = found.velocities, found.durations
     slower = 1.0 + DURATION_MARGIN
-    motion, overshoot = _motion_of(task, problem, v / slower, T * slower, T * slower)
+    motion, overshoot = _motion_of(problem, v / slower, T * slower, T * slower)
     if motion is not None:
         motion.trajectory.note = unconverged_note(gap, motion.trajectory.duration)
     return motion, overshoot
 
 
-def motion_with_least_durations(task: JointTask, problem: ViaProblem,
-                                least_T: Array) -> tuple[TimedMotion | None, BoolArray]:
+def motion_with_least_durations(problem: TransitionProblem, least_T: Array,
+                                ) -> tuple[TimedMotion | None, BoolArray]:
     """
     Return the motion of least total time with lower bounds on durations, and what overshoots.
 
@@ -127,7 +128,7 @@ def motion_with_least_durations(task: JointTask, problem: ViaProblem,
 
     Parameters
     ----------
-    task, problem
+    problem : TransitionProblem
         As in `timed_motion`.
     least_T : ndarray, shape (n,)
         Durations [s] that no segment may fall below.
@@ -138,9 +139,10 @@ def motion_with_least_durations(task: JointTask, problem: ViaProblem,
         As of `timed_motion`.
 
     """
-    durations = (np.maximum(problem.rest_to_rest_times(), least_T) if rests_everywhere(problem)
-                 else least_time(problem, least_T, task.should_stop).durations)
-    return timed_motion(task, problem, durations * (1.0 + DURATION_MARGIN))
+    task, via = problem
+    durations = (np.maximum(via.rest_to_rest_times(), least_T) if rests_everywhere(via)
+                 else least_time(via, least_T, task.should_stop).durations)
+    return timed_motion(problem, durations * (1.0 + DURATION_MARGIN))
 
 
 def segment_time_scale(task: JointTask, motion: TimedMotion) -> Array:
@@ -193,22 +195,22 @@ def motion_slowed_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotio
     return TimedMotion(motion.trajectory.time_scaled(factor), motion.durations * factor)
 
 
-def _motion_of(task: JointTask, problem: ViaProblem, v: Array, T: Array,
+def _motion_of(problem: TransitionProblem, v: Array, T: Array,
                durations: Array) -> tuple[TimedMotion | None, BoolArray]:
     """Return the motion of given velocities and durations; none where it overshoots a range."""
-    rest = np.zeros((1, 3))
+    (task, via), rest = problem, np.zeros((1, 3))
     v0, v1 = np.concatenate((rest, v)), np.concatenate((v, rest))
-    parts = segment_motion.low_acceleration_parts(problem.segment_limits, segment_motion.Segments(
-        v0, v1, T[:, np.newaxis], problem.displacements))
-    overshoot = _overshoot(task, problem, v0, v1, parts)
+    parts = segment_motion.low_acceleration_parts(via.segment_limits, segment_motion.Segments(
+        v0, v1, T[:, np.newaxis], via.displacements))
+    overshoot = _overshoot(problem, v0, v1, parts)
     if overshoot.any():
         return None, overshoot
     trajectory = segment_motion.trajectory(
-        task.points, v0, v1, T[:, np.newaxis], parts, problem.function)
+        task.points, v0, v1, T[:, np.newaxis], parts, via.function)
     return TimedMotion(trajectory, durations), overshoot
 
 
-def _overshoot(task: JointTask, problem: ViaProblem, v0: Array, v1: Array,
+def _overshoot(problem: TransitionProblem, v0: Array, v1: Array,
                parts: segment_motion.Parts) -> BoolArray:
     """
     Return which joints leave their range in which segments, shape (n, 3).
@@ -216,7 +218,8 @@ def _overshoot(task: JointTask, problem: ViaProblem, v0: Array, v1: Array,
     Via points are within it, and between them position has an extreme only where velocity changes
     sign in a transition, at a distance below velocity times duration.
     """
-    limits, cruise = task.limits, parts.cruise
+    (task, via), cruise = problem, parts.cruise
+    limits = task.limits
     least, most = limits.min_position, limits.max_position
     out = np.zeros(v0.shape, dtype=bool)
     for point, duration, velocity, way in (
@@ -227,7 +230,7 @@ def _overshoot(task: JointTask, problem: ViaProblem, v0: Array, v1: Array,
         if doubtful.any():  # a last transition is a first one, backwards
             row, joint = np.nonzero(doubtful)
             at = row, joint
-            ranges = JointProfile(problem.function.transition(
+            ranges = JointProfile(via.function.transition(
                 duration[at], point[at], way * velocity[at], way * cruise[at])).piece_ranges
             out[at] |= (ranges[0] < least[joint] - JOINT_ROUNDING) | (
                 ranges[1] > most[joint] + JOINT_ROUNDING)

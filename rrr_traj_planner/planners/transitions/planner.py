@@ -22,6 +22,7 @@ from rrr_traj_planner.planners.registration import JointPlanner
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.transitions.fastest import fastest
 from rrr_traj_planner.planners.transitions.prescribed import prescribed
+from rrr_traj_planner.planners.transitions.transition_problem import TransitionProblem
 from rrr_traj_planner.planners.transitions.via_problem import via_problem_of
 
 
@@ -64,9 +65,9 @@ def planner_with(function: TransitionFunction) -> JointPlanner:
             If gravity alone exceeds an effort limit between the via points.
 
         """
-        problem = via_problem_of(task, function)
+        problem = TransitionProblem(task, via_problem_of(task, function))
         if task.durations is None:
-            return fastest(task, problem, None).trajectory
-        return prescribed(task, problem, task.durations).trajectory
+            return fastest(problem, None).trajectory
+        return prescribed(problem, task.durations).trajectory
 
     return plan

@@ -22,7 +22,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
-from rrr_traj_planner.planners.joint_timing.dense_check import DenseCheck
+from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.margins import LARGER, Margins, MOST_VELOCITY_MARGIN
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem
@@ -80,7 +80,7 @@ class Case:
                                durations._replace(fixed_velocities=margins.at_rest), never).motion
 
     def check(self, m):
-        return DenseCheck(self.task, self.grid, m)
+        return JointCheck(self.task, self.grid, m)
 
     def trajectory(self, m):
         return self.grid.trajectory(self.points, m)
@@ -254,7 +254,7 @@ def test_joints_that_leave_their_range_beside_a_via_point_at_its_end_stop_there(
         m = grid.restored(points, m)
         margins = Margins.none(grid, 3)
         slow = rest_to_rest(task, constraints_with(margins, task, grid))
-        at_rest = margins.widened(task, grid, slow, DenseCheck(task, grid, m)).at_rest
+        at_rest = margins.widened(task, grid, slow, JointCheck(task, grid, m)).at_rest
         beside = grid.states(points, m).q[[k - 1, k], :, j].max() > points[k, j] + 1e-6
         assert not beside or at_rest[k - 1, j]
         assert not np.delete(at_rest, j, axis=1).any()

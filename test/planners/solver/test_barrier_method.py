@@ -91,8 +91,8 @@ def test_at_the_end_the_gradient_of_objective_and_barrier_vanishes(seed):
     found = least_time(problem)
     weight = (12 * len(found.durations) + 6 * len(found.velocities)) / found.gap
     end = ViaBarrier(problem, found.velocities, found.durations)
-    KERNELS.via_attempt(end.at, weight)
-    assert end.found.decrement <= 1e-5
+    KERNELS.via_attempt(end.address, weight)
+    assert end.structure.decrement <= 1e-5
     assert found.gap < RELATIVE_GAP * found.durations.sum()
 
 

@@ -23,26 +23,26 @@ SCHEDULE = Schedule(rounds=6, tolerance=1e-3, patience=2, growth=2.0)
 class Scripted:
     """A problem that says in each round what it is told to, and writes down what it is asked."""
 
-    def __init__(self, solved=(), eased=True, finished_in=None, tightened=True):
-        self._solved, self._eased, self._tightened = iter(solved), eased, tightened
-        self._finished_in, self.asked, self.tolerances = finished_in, [], []
+    def __init__(self, solved=(), relaxes=True, accepted_in=None, tightens=True):
+        self._solved, self._relaxes, self._tightens = iter(solved), relaxes, tightens
+        self._accepted_in, self.asked, self.tolerances = accepted_in, [], []
 
-    def solved(self):
-        self.asked.append('solved')
+    def solve(self):
+        self.asked.append('solve')
         return next(self._solved, 'a motion')
 
-    def eased(self):
-        self.asked.append('eased')
-        return self._eased
+    def relax(self):
+        self.asked.append('relax')
+        return self._relaxes
 
-    def finished(self, outcome, tolerance):
+    def accept(self, outcome, tolerance):
         assert outcome == 'a motion'
         self.tolerances.append(tolerance)
-        return len(self.tolerances) == self._finished_in
+        return len(self.tolerances) == self._accepted_in
 
-    def tightened(self):
-        self.asked.append('tightened')
-        return self._tightened
+    def tighten(self):
+        self.asked.append('tighten')
+        return self._tightens
 
 
 def rounds(problem):
@@ -53,18 +53,18 @@ def rounds(problem):
 def test_the_tolerance_grows_after_some_rounds_and_no_more_than_all_are_made():
     found = rounds(Scripted())
     assert found.tolerances == pytest.approx([1e-3, 1e-3, 1e-3, 2e-3, 4e-3, 8e-3], rel=1e-12)
-    assert found.asked == ['solved', 'tightened'] * 6
+    assert found.asked == ['solve', 'tighten'] * 6
 
 
 def test_a_solution_within_its_tolerance_is_the_last():
-    assert rounds(Scripted(finished_in=2)).asked == ['solved', 'tightened', 'solved']
+    assert rounds(Scripted(accepted_in=2)).asked == ['solve', 'tighten', 'solve']
 
 
 def test_margins_that_do_not_grow_end_it():
-    assert rounds(Scripted(tightened=False)).asked == ['solved', 'tightened']
+    assert rounds(Scripted(tightens=False)).asked == ['solve', 'tighten']
 
 
-def test_without_a_start_margins_are_eased_and_the_problem_is_solved_again():
-    found = rounds(Scripted(solved=['a motion', None, None], finished_in=2))
-    assert found.asked == ['solved', 'tightened', 'solved', 'eased', 'solved', 'eased', 'solved']
-    assert rounds(Scripted(solved=[None], eased=False)).asked == ['solved', 'eased']
+def test_without_a_start_margins_are_relaxed_and_the_problem_is_solved_again():
+    found = rounds(Scripted(solved=['a motion', None, None], accepted_in=2))
+    assert found.asked == ['solve', 'tighten', 'solve', 'relax', 'solve', 'relax', 'solve']
+    assert rounds(Scripted(solved=[None], relaxes=False)).asked == ['solve', 'relax']

@@ -77,13 +77,13 @@ def test_rates_and_gain_are_differences_along_the_followed_step(kind, seed):
     _, rate, gain = case.newton(0)
     step, arrays = case.problem.steps[0], case.arrays
     near = arrays['slack'].copy()
-    size = 1e-4 / max(step.found.max_relative_slack_decrease, 1.0)
+    size = 1e-4 / max(step.structure.max_relative_slack_decrease, 1.0)
 
     def followed(part):
         arrays['slack'][:] = -np.inf  # whatever is left is kept
-        assert KERNELS.timing_trial(case.at, step.at, part * size, 1.0, 0.0)
+        assert KERNELS.timing_trial(case.address, step.address, part * size, 1.0, 0.0)
         arrays['slack'][:] = near
-        merit = step.found.cost - BARRIER * step.found.log
+        merit = step.structure.cost - BARRIER * step.structure.log
         return np.append(arrays['slack 0'], merit)
 
     *difference, slope = central_difference(followed, 0.0, 1.0) / size
@@ -110,7 +110,7 @@ def test_curvature_is_the_difference_of_the_weighted_gradients(kind, seed):
 
     def gradient(part):
         arrays['variables'][:] = x + part * size * change
-        KERNELS.timing_linearise(case.at, BARRIER)
+        KERNELS.timing_linearise(case.address, BARRIER)
         return np.einsum('npe,npez->npz', weights, arrays['jacobian']), arrays['states'].copy()
 
     (plus, up), (minus, down) = gradient(1.0), gradient(-1.0)
@@ -125,14 +125,14 @@ def test_a_correction_is_the_dense_solution_for_what_rates_leave_out(kind):
     case = Case(kind, 3)
     _, rate, _ = case.newton(0)
     plain, corrected = case.problem.steps[:2]
-    size = 0.05 / max(plain.found.max_relative_slack_decrease, 1.0)
+    size = 0.05 / max(plain.structure.max_relative_slack_decrease, 1.0)
     arrays = case.arrays
     near = arrays['slack'].copy()
-    assert KERNELS.timing_correct(case.at, plain.at, size, corrected.at)
+    assert KERNELS.timing_correct(case.address, plain.address, size, corrected.address)
     left = {}
     for step, k in ((plain, 0), (corrected, 1)):
         arrays['slack'][:] = -np.inf
-        assert KERNELS.timing_trial(case.at, step.at, size, 1.0, 0.0)
+        assert KERNELS.timing_trial(case.address, step.address, size, 1.0, 0.0)
         arrays['slack'][:] = near
         left[k] = arrays[f'slack {k}'] - near - size * rate
     weight = arrays['dual'] / near
@@ -157,8 +157,8 @@ def test_accepting_a_step_moves_multipliers_and_keeps_them_positive_in_sight_of_
     arrays, step = case.arrays, case.problem.steps[0]
     before, slack = arrays['dual'].copy(), arrays['slack'].copy()
     assert KERNELS.timing_trial(
-        case.at, step.at, 0.5 / step.found.max_relative_slack_decrease, 0.0, 0.0)
-    KERNELS.timing_accept(case.at, step.at, 1, BARRIER, 0.995, 1e6)
+        case.address, step.address, 0.5 / step.structure.max_relative_slack_decrease, 0.0, 0.0)
+    KERNELS.timing_accept(case.address, step.address, 1, BARRIER, 0.995, 1e6)
     assert (arrays['variables'] == arrays['variables 0']).all()
     # Newton for dual * slack = barrier, shortened by the part that keeps each above 1 - 0.995
     change = (BARRIER - before * rate) / slack - before
@@ -181,10 +181,10 @@ def test_shifts_are_what_former_limits_are_wider_by_and_go_with_the_step():
     assert set(np.round(shift, 9)) == {0.0, *np.round(0.5 * LIMITS.max_velocity, 9)}
     step = close.steps[0]
     arrays['slack 0'][:] = 10.0
-    KERNELS.timing_reduce_shifts(close.at, step.at, 0.25, 0.0)
+    KERNELS.timing_reduce_shifts(close.address, step.address, 0.25, 0.0)
     assert arrays['shift'] == pytest.approx(0.75 * shift)
     assert close.shifted
-    KERNELS.timing_reduce_shifts(close.at, step.at, 0.0, 1.0)  # small beside slacks of 10
+    KERNELS.timing_reduce_shifts(close.address, step.address, 0.0, 1.0)  # small: slacks are 10
     assert not close.shifted and (arrays['shift'] == 0.0).all()
     assert arrays['slack 0'] == pytest.approx(10.0 - 0.75 * shift)
 
@@ -218,5 +218,5 @@ def test_the_objective_is_the_weighted_sum_of_durations_for_python_and_the_kerne
     durations = DurationConstraints.all_free(3, 3)._replace(weights=np.array([2.0, 0.0, 0.5]))
     problem = bounds(FREE, grid, points).problem
     problem.begin(m, durations)
-    kernels_own = KERNELS.timing_cost(problem.at, problem.arrays.addresses['variables'])
+    kernels_own = KERNELS.timing_cost(problem.address, problem.arrays.addresses['variables'])
     assert durations.cost(m.T) == kernels_own == 4.0

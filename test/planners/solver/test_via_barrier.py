@@ -136,8 +136,8 @@ def test_newton_step_is_that_of_a_dense_solve(seed, common):
     n, rng = len(T), np.random.default_rng(seed)
     barrier.arrays['damping'][:] = rng.choice([0.0, 0.5, 8.0], 7 * n - 3)
     weight = 7.0
-    KERNELS.via_attempt(barrier.at, weight)
-    squared = barrier.found.decrement
+    KERNELS.via_attempt(barrier.address, weight)
+    squared = barrier.structure.decrement
     g, H = dense(barrier)
     # unknowns of the step: all of them, or via velocities and a common factor of durations
     basis = np.eye(4 * n - 3)
@@ -158,14 +158,14 @@ def test_an_attempt_tells_how_the_merit_changes_and_accepting_it_moves_the_itera
     barrier, weight = ViaBarrier(problem, v, T, least_T), 7.0
     start, a = np.append(v, T), barrier.arrays
     a['damping'][:] = 8.0
-    change = KERNELS.via_attempt(barrier.at, weight)
+    change = KERNELS.via_attempt(barrier.address, weight)
     moved = start + a['step']
     assert change == pytest.approx(weight * a['step'][v.size:].sum() + value(
         problem, least_T, moved) - value(problem, least_T, start), rel=1e-9, abs=1e-12)
     assert (a['point'] == start).all()
-    KERNELS.via_accept(barrier.at, 0.25)
+    KERNELS.via_accept(barrier.address, 0.25)
     assert (a['point'] == moved).all() and (a['damping'] == 2.0).all()
-    assert barrier.found.objective == pytest.approx(moved[v.size:].sum())
+    assert barrier.structure.objective == pytest.approx(moved[v.size:].sum())
     there = ViaBarrier(problem, barrier.velocities, barrier.durations, least_T)
     for name in ('before', 'gradient', 'hessian', 'bound'):
         assert (a[name] == there.arrays[name]).all()
@@ -176,13 +176,13 @@ def test_parts_that_an_attempt_breaks_are_damped_and_none_else_once_they_are_sti
     problem, least_T, v, T = problem_and_point(seed)
     barrier = ViaBarrier(problem, v, T, least_T)
     a = barrier.arrays
-    assert KERNELS.via_attempt(barrier.at, 1e3) == np.inf  # much too far
+    assert KERNELS.via_attempt(barrier.address, 1e3) == np.inf  # much too far
     broken = np.isinf(a['after'])
-    KERNELS.via_damp(barrier.at, 0.75, 4.0)
+    KERNELS.via_damp(barrier.address, 0.75, 4.0)
     assert broken.any() and (a['damping'] > 0.0)[broken].all()
     assert set(a['damping']) <= {0.0, 1.0}
     a['damping'][:] = 1e9
-    KERNELS.via_damp(barrier.at, 0.75, 4.0)
+    KERNELS.via_damp(barrier.address, 0.75, 4.0)
     assert ((a['damping'] > 1e9) == broken).all()
 
 
