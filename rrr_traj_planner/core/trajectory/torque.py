@@ -27,7 +27,7 @@ from rrr_traj_planner.core.trajectory.maximum import Extreme, maximum_over_time,
 from rrr_traj_planner.core.trajectory.time_scaling import (
     gravity_and_torque,
     squared_scaling_if_held,
-    TORQUE_TOLERANCE,
+    TORQUE_ROUNDING,
 )
 from rrr_traj_planner.core.trajectory.trajectory import ONE_SIDED, times_within, Trajectory
 
@@ -137,7 +137,7 @@ class TorqueSweep:
             moved = self._moved(self._before[key], trajectory) if key in self._before else None
             # Another peak may be the largest after the scaling.
             if moved is None or (np.abs(self.torque)
-                                 > moved.effort.value * (1.0 + TORQUE_TOLERANCE)).any():
+                                 > moved.effort.value * (1.0 + TORQUE_ROUNDING)).any():
                 moved = self._refined(limits, trajectory)
             self._peaks[key] = moved
         return self._peaks[key]
