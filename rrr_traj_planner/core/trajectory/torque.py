@@ -200,12 +200,12 @@ def torque_sweep(model: RobotModel, trajectory: Trajectory) -> TorqueSweep:
     Returns
     -------
     TorqueSweep
-        On `torque_grid`.
+        At times dense enough for every high maximum of torque, before each step too.
 
     """
     found = trajectory.cache.get('torque_sweep')
     if not isinstance(found, TorqueSweep) or found.model is not model:
-        times = torque_grid(trajectory)
+        times = _torque_grid(trajectory)
         found = trajectory.cache['torque_sweep'] = TorqueSweep(
             model, times, *gravity_and_torque(model, *trajectory(times)[:3]))
     return found
@@ -252,7 +252,7 @@ def peak_holding_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
 
     """
     return maximum_over_time(lambda t: np.abs(gravity_torque(model, trajectory(t)[0])),
-                             torque_grid(trajectory))
+                             _torque_grid(trajectory))
 
 
 def time_scale_for_torque(model: RobotModel, limits: JointLimits,
@@ -281,7 +281,7 @@ def time_scale_for_torque(model: RobotModel, limits: JointLimits,
     return torque_sweep(model, trajectory).peaks(limits, trajectory).scaling
 
 
-def torque_grid(trajectory: Trajectory) -> Array:
+def _torque_grid(trajectory: Trajectory) -> Array:
     """
     Return times dense enough to resolve every high peak of the torque.
 
