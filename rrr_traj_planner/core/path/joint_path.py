@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Joint positions along a path of the tip, with their derivatives by arc length."""
+"""
+Joint positions along a path of the tip, with their derivatives by arc length.
+
+`joint_path` is part of the library; no planner calls it: `workspace_check` and `ArmPath`
+evaluate `unlimited_joint_path` themselves.
+"""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@
 """
 Least radius of an arc at a given tip speed, and largest speed on it (thesis 5.4.1).
 
-A function of the library: no planner calls it. They find radii and speeds along the whole path.
+Part of the library; no planner calls it: planners time the whole path.
 """
 
 from __future__ import annotations
