@@ -231,7 +231,7 @@ def _at_rest(qd: Triple, coulomb: Triple) -> Triple:
 
 
 def _range(coulomb: float, qd: float, x: float, side: int, shortest: float) -> Range:
-    """Return the range of reactions of friction and a hard stop [N m]."""
+    """Return the least and the largest torque that friction and a hard stop can exert [N m]."""
     friction = coulomb if qd == 0.0 else 0.0
     if qd != 0.0 and side * qd > -side * x * 0.5 * shortest:  # it is leaving its stop
         side = 0

@@ -224,7 +224,8 @@ class Slowdowns:
         own = motion.knots - begin
         s = rates.at(t[np.newaxis])[0][0]
         own = own[(own > 0.0) & (own < s[-1])]
-        # s(t) inverted: linear interpolation, two Newton steps; near the stop ds/dt is small.
+        # s(t) inverted: linear interpolation, two Newton steps. ds/dt, 1 at first, vanishes at the
+        # stop: the bound, chosen, only keeps the step finite there.
         passed = np.interp(own, s, t)
         for _ in range(2):
             s, sd = (x[0] for x in rates.at(passed[np.newaxis])[:2])

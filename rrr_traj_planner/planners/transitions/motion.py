@@ -70,7 +70,7 @@ def timed_motion(task: JointTask, problem: ViaProblem, durations: Array,
     Returns
     -------
     tuple of TimedMotion and ndarray of bool, shape (n, 3)
-        None where it overshoots, or no motion satisfies the kinematic limits.
+        The motion is None where a segment overshoots, or none satisfies the kinematic limits.
 
     """
     if rests_everywhere(problem):
@@ -101,7 +101,8 @@ def quickest_motion(task: JointTask, problem: ViaProblem) -> tuple[TimedMotion |
     Returns
     -------
     tuple of TimedMotion and ndarray of bool, shape (n, 3)
-        None where it overshoots. Its note tells if planning was stopped before it converged.
+        The motion is None where a segment overshoots. Its note tells if planning was stopped
+        before it converged.
 
     """
     stops = problem.rest_to_rest_times()
