@@ -20,7 +20,8 @@
 #include <string.h>
 
 /* Multiplicity of a least duration's logarithm: one for each joint. Only motions of three joints
- * have least durations (joint_timing/constraints.py); those along a path, of one coordinate, do not. */
+ * have least durations (joint_timing/constraints.py); those along a path, of one coordinate, have
+ * none. */
 enum { DURATION_WEIGHT = 3 };
 
 /* For solver/timing_problem.py, which compares them. */
