@@ -154,7 +154,7 @@ class FrictionDynamics:
         return after, lock
 
     def _load(self, state: State, torque: Triple, slip: Contact) -> Load:
-        """Return the load for given sliding directions."""
+        """Return torques, friction and stops for given sliding directions."""
         (c1, c2, c3), (s1, s2, s3), (n1, n2, n3) = self._coulomb, slip, torque
         sides = self._bumper.sides(state, self._low, self._high)
         edges = self._low

@@ -143,7 +143,7 @@ class TorqueSweep:
         return self._peaks[key]
 
     def _moved(self, before: TorquePeaks, trajectory: Trajectory) -> TorquePeaks:
-        """Return the extremes of a motion slightly scaled in time, from those of the other."""
+        """Return the extremes of a slightly time-scaled motion, from those of the unscaled one."""
         time = before.effort.time * self._factor
         apart = NEIGHBOUR * self.times[-1] / len(self.times)
         times = time + np.multiply.outer((-apart, -SAME_TIME, 0.0, SAME_TIME, apart), np.ones(3))

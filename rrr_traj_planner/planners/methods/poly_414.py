@@ -124,7 +124,7 @@ def _fastest(task: JointTask, problem: ViaProblem, t_acc: float) -> Trajectory:
 
 
 def _beside(transitions: Array, bounds: Array) -> Array:
-    """Return transitions limited to the bounds of both segments beside them."""
+    """Return transitions no longer than the bounds of the segments before and after each."""
     inner = np.minimum(np.append(bounds, np.inf), np.append(np.inf, bounds))
     return np.asarray(np.minimum(transitions, inner))
 

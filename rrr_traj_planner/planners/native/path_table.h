@@ -43,7 +43,8 @@ static inline void path_columns(const double *c3, size_t stride, double x, doubl
         value[k] = ((c3[k] * x + c2[k]) * x + c1[k]) * x + c0[k];
 }
 
-/* The 12 quantities of the joints: velocity, acceleration, jerk and torque of three joints each. */
+/* The 12 quantities of the joints: velocity, acceleration, jerk and torque, of three joints each.
+ */
 static inline void joint_quantities(const double d[KINDS][3], double v, double a, double jerk,
                                     double *x)
 {
