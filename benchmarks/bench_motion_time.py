@@ -38,7 +38,7 @@ TARGETS = {  # of random tasks: limits, target of the median, of the worst
 
 
 def tables() -> list[Row]:
-    """Return our times over the limits, and the times that were asked for."""
+    """Return our times over the limits, and the targets."""
     rows = []
     for (task, _), most in zip(thesis_tasks(), MOST_SECONDS):
         ours, best = _times(task)

@@ -42,7 +42,7 @@ from toppra.interpolator import AbstractGeometricPath
 
 PATHS = 24                    # random ones for each planner
 RANDOM_REPETITIONS = 3        # of planning each of them
-MOTION = 1.08                 # the most that is asked for
+MOTION = 1.08                 # the target, at most
 TIMING = {'line_arc': 1.0, 'line_polynomial': 2.0}  # of timing a path that is ready,
 RANDOM_TIMING = 2.0                                 # and a random one
 PLAIN = 20                    # from the seed of one plain task to the next

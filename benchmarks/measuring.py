@@ -33,7 +33,7 @@ LEAST_REPETITIONS = 3  # where a time is given for all of them
 
 
 class Row(NamedTuple):
-    """A ratio of what is ours to what is theirs, and what it must not exceed, if that is asked."""
+    """A ratio of what is ours to what is theirs, and its target, at most, if it has one."""
 
     row: str
     ratio: float

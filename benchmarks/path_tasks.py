@@ -46,7 +46,7 @@ PLANNERS = ('line_arc', 'line_polynomial')
 FAMILIES = {'line_arc': path_design.line_arc, 'line_polynomial': path_design.line_polynomial}
 
 HELD = 0.99               # of an effort limit, that gravity takes at most on the path
-LOOKS = 25                # on a leg while it is drawn
+CHECKS = 25               # on a leg while it is drawn
 PLACES = 2000             # on the whole path
 LEGS = (0.05, 0.6)        # of the arm's reach
 SMALL = (0.003, 0.03)     # likewise
@@ -160,8 +160,8 @@ def _next_tip(rng: np.random.Generator, kind: str, task: Task,
         u = np.cos(turn) * before + np.sin(turn) * _unit(u - (u @ before) * before)
     elif kind == 'near an edge':
         shoulder = np.array((0.0, 0.0, task.model.d1))
-        room = most * _between(rng, EDGE)
-        W = most - room if rng.random() < 0.7 else least + room
+        margin = most * _between(rng, EDGE)
+        W = most - margin if rng.random() < 0.7 else least + margin
         return shoulder + W * _unit(tips[-1] + length * u - shoulder)
     return tips[-1] + length * u
 
@@ -172,7 +172,7 @@ def _unit(v: np.ndarray) -> np.ndarray:
 
 def _is_free(task: Task, a: np.ndarray, b: np.ndarray) -> bool:
     """Return whether the arm can be held, within its ranges, on a straight line."""
-    p = np.linspace(a, b, LOOKS)
+    p = np.linspace(a, b, CHECKS)
     rest = np.zeros_like(p)
     try:
         q = joint_path(task.model, task.limits, (p, rest, rest, rest),

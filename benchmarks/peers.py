@@ -55,14 +55,14 @@ def toppra_duration(task: JointTask) -> float:
 
 def ruckig_duration(task: JointTask) -> float:
     """Return how long Ruckig's motion from the first via point to the last takes [s]."""
-    limits, asked = task.limits, ruckig.InputParameter(3)
-    asked.current_position, asked.target_position = task.points[0].tolist(), task.points[
+    limits, requested = task.limits, ruckig.InputParameter(3)
+    requested.current_position, requested.target_position = task.points[0].tolist(), task.points[
         -1].tolist()
-    asked.max_velocity = limits.max_velocity.tolist()
-    asked.max_acceleration = limits.max_acceleration.tolist()
-    asked.max_jerk = limits.max_jerk.tolist()
+    requested.max_velocity = limits.max_velocity.tolist()
+    requested.max_acceleration = limits.max_acceleration.tolist()
+    requested.max_jerk = limits.max_jerk.tolist()
     trajectory = ruckig.Trajectory(3)
-    ruckig.Ruckig(3).calculate(asked, trajectory)
+    ruckig.Ruckig(3).calculate(requested, trajectory)
     return float(trajectory.duration)
 
 

@@ -25,7 +25,7 @@ from measuring import Row
 MET, MISSED = '#2a7a3b', '#c0392b'
 INCHES_A_ROW, WIDTH, MARGIN = 0.22, 13.0, 1.8
 DPI = 120
-ROOM = 2.5  # factor between the outermost ratios and the edges
+EDGE_FACTOR = 2.5  # factor between the outermost ratios and the edges
 
 
 def draw(rows: list[Row], setting: str, path: Path) -> None:
@@ -44,7 +44,7 @@ def draw(rows: list[Row], setting: str, path: Path) -> None:
     """
     shares = [row.ratio / row.target for row in rows]
     shown = [s for s in shares if math.isfinite(s) and s > 0.0]
-    low, high = min([*shown, 0.5]) / ROOM, max([*shown, 2.0]) * ROOM
+    low, high = min([*shown, 0.5]) / EDGE_FACTOR, max([*shown, 2.0]) * EDGE_FACTOR
     figure = Figure(figsize=(WIDTH, INCHES_A_ROW * len(rows) + MARGIN), layout='constrained')
     axes = figure.subplots()
     for y, (row, share) in enumerate(zip(rows, shares)):
@@ -63,7 +63,7 @@ def draw(rows: list[Row], setting: str, path: Path) -> None:
     axes.grid(axis='x', which='major', linewidth=0.5, color='0.85')
     axes.set_xlabel('ratio / target [1], logarithmic; 1 is the target: green met, red missed\n'
                     'number at the point: the ratio, ours / theirs [1]')
-    axes.set_title('rrr_traj_planner: what make bench has measured, over what is asked for')
+    axes.set_title('rrr_traj_planner: what make bench has measured, over its target')
     figure.text(0.01, 0.002, setting.replace('\n', '; '), fontsize=6.5, color='0.35')
     figure.get_layout_engine().set(rect=(0.0, 0.02, 1.0, 0.98))
     figure.savefig(path, dpi=DPI)

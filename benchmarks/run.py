@@ -87,9 +87,9 @@ def main() -> int:
     BUILD.mkdir(exist_ok=True)
     RESULT.write_text(json.dumps([row.as_json() for row in found], indent=1,
                                  allow_nan=False) + '\n')
-    asked = [row for row in found if row.target is not None]
-    draw(asked, setting(), PICTURE)
-    print(f'{sum(bool(row.met) for row in asked)} of {len(asked)} targets met, {len(found)} rows; '
+    rated = [row for row in found if row.target is not None]
+    draw(rated, setting(), PICTURE)
+    print(f'{sum(bool(row.met) for row in rated)} of {len(rated)} targets met, {len(found)} rows; '
           f'written to {RESULT.relative_to(BUILD.parent)} and {PICTURE.relative_to(BUILD.parent)}')
     if failed:
         print(f'FAILED, without rows: {", ".join(failed)}')

@@ -39,10 +39,10 @@ from tasks import Task  # noqa: E402
 PER_KNOT = 12            # checked points between two knots of the motion
 PER_POINT = 20           # and between two points of the answer
 MOST = 200_000           # of them in all
-ROOM = 1e-6              # relative, the promise of every planner
-POINTS_ROOM = 1e-3       # relative, of the quintics through the points
-ANGLE_ROOM = 1e-9        # rad
-PLACE_ROOM = 1e-8        # m, and rad/s of what rests
+LIMIT_TOLERANCE = 1e-6   # relative, the promise of every planner
+POINTS_TOLERANCE = 1e-3  # relative, of the quintics through the points
+ANGLE_TOLERANCE = 1e-9   # rad
+PLACE_TOLERANCE = 1e-8   # m, and rad/s of what rests
 OVERSHOOT = 1e-6         # rad that a quintic may leave a range by
 NANOSECOND = 1e-9        # s
 NO_TORQUE = 1e-6         # N m
@@ -56,12 +56,12 @@ def violations(task: Task, found: Plan) -> list[str]:
     steps = np.arange(PER_KNOT) / PER_KNOT
     t = (motion.knots[:-1, np.newaxis] + np.diff(motion.knots)[:, np.newaxis] * steps).ravel()
     t = np.append(t[:: max(1, len(t) // MOST)], motion.duration)
-    broken = _beyond(task, limits, *motion(t), ROOM, ANGLE_ROOM)
+    broken = _beyond(task, limits, *motion(t), LIMIT_TOLERANCE, ANGLE_TOLERANCE)
     followed = controller_motion(found.points)
     broken += [f'at the points: {text}' for text in _beyond(
-        task, limits, *followed, POINTS_ROOM, OVERSHOOT)]
+        task, limits, *followed, POINTS_TOLERANCE, OVERSHOOT)]
     effort = np.abs(inverse_dynamics(task.model, *followed[:3])).max(axis=0)
-    if not (effort <= found.effort * (1.0 + POINTS_ROOM) + NO_TORQUE).all():
+    if not (effort <= found.effort * (1.0 + POINTS_TOLERANCE) + NO_TORQUE).all():
         broken.append(f'torque at the points: {effort}, told {found.effort}')
     q = found.points.positions
     inside = np.minimum(q - limits.min_position, limits.max_position - q).min(axis=1)
@@ -76,7 +76,7 @@ def violations(task: Task, found: Plan) -> list[str]:
     inner = slice(None) if not misses else [0, -1]
     missed = np.abs(forward_kinematics(task.model, motion(found.via_times[inner])[0])
                     - task.request.via_points[inner]).max()
-    if missed > PLACE_ROOM:
+    if missed > PLACE_TOLERANCE:
         broken.append(f'via point missed by {missed:.3g} m')
     points, stamps = found.points, np.round(found.points.times / NANOSECOND)
     if (np.diff(stamps) <= 0.0).any() or stamps[0] != 0.0:
@@ -119,13 +119,13 @@ def _scaled(task: Task):
     return task.limits.scaled(r.velocity_scaling, r.acceleration_scaling)
 
 
-def _beyond(task: Task, limits, q, qd, qdd, jerk, room: float, angle: float) -> list[str]:
+def _beyond(task: Task, limits, q, qd, qdd, jerk, tolerance: float, angle: float) -> list[str]:
     """Return the limits that states exceed."""
     tau = inverse_dynamics(task.model, q, qd, qdd)
     broken = [f'{name}: {np.abs(x).max(axis=0)} over {bound}' for name, x, bound in (
         ('velocity', qd, limits.max_velocity), ('acceleration', qdd, limits.max_acceleration),
         ('jerk', jerk, limits.max_jerk), ('torque', tau, limits.max_effort))
-        if not (np.abs(x) <= bound * (1.0 + room)).all()]
+        if not (np.abs(x) <= bound * (1.0 + tolerance)).all()]
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max()
     return broken if outside <= angle else [
         *broken, f'position: {outside:.3g} rad outside its range']

@@ -37,20 +37,20 @@ from rrr_traj_planner.planners.planning import plan  # noqa: E402
 from soak_time_optimal import PERCENTILES, Result  # noqa: E402
 from tasks import Task  # noqa: E402
 
-PER_SAMPLE = 20      # checked points between two samples
-PER_KNOT = 8         # and between two knots
-ROOM = 1e-6          # relative, the promise of every planner
-POINTS_ROOM = 1e-3   # relative, of the quintic through the points
-ANGLE_ROOM = 1e-9    # rad
-PLACE_ROOM = 1e-9    # m
-REST = 1e-9          # rad/s and rad/s^2
-BESIDE = 1e-9        # s from a knot, where both sides are looked at
+PER_SAMPLE = 20          # checked points between two samples
+PER_KNOT = 8             # and between two knots
+LIMIT_TOLERANCE = 1e-6   # relative, the promise of every planner
+POINTS_TOLERANCE = 1e-3  # relative, of the quintic through the points
+ANGLE_TOLERANCE = 1e-9   # rad
+PLACE_TOLERANCE = 1e-9   # m
+REST = 1e-9              # rad/s and rad/s^2
+BESIDE = 1e-9            # s from a knot, where both sides are checked
 LEAST_BESIDE, PART_OF_PIECE = 1e-12, 1e-4  # less beside short pieces, where jerk is steep
-CONTINUOUS = 1e-9    # rad, rad/s, rad/s^2
-ROUNDING = 1e-13     # of the largest value, in what is evaluated on both sides
-PROGRESS = 100       # tasks, after which it is said how far it is
-NANOSECOND = 1e-9    # to which stamps are rounded
-TOLD = 1e-2          # rad/s^2 of a step that the note must tell of
+CONTINUOUS = 1e-9        # rad, rad/s, rad/s^2
+ROUNDING = 1e-13         # of the largest value, in what is evaluated on both sides
+PROGRESS = 100           # tasks, after which it is said how far it is
+NANOSECOND = 1e-9        # to which stamps are rounded
+TOLD = 1e-2              # rad/s^2 of a step that the note must tell of
 
 
 def soak(seed: int, limit: float) -> Result:
@@ -88,9 +88,9 @@ def _limits_broken(task: Task, found: Plan, t: np.ndarray) -> list[str]:
     broken = [f'{name}: {np.abs(x).max(axis=0)} over {bound}' for name, x, bound in (
         ('velocity', qd, limits.max_velocity), ('acceleration', qdd, limits.max_acceleration),
         ('jerk', jerk, limits.max_jerk), ('torque', tau, limits.max_effort))
-        if (np.abs(x) > bound * (1.0 + ROOM)).any()]
+        if (np.abs(x) > bound * (1.0 + LIMIT_TOLERANCE)).any()]
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max()
-    if outside > ANGLE_ROOM:
+    if outside > ANGLE_TOLERANCE:
         broken.append(f'position: {outside:.3g} rad outside its range')
     if np.abs([*qd[[0, -1]], *qdd[[0, -1]]]).max() > REST:
         broken.append('not at rest at an end')
@@ -104,10 +104,10 @@ def _points_missed(task: Task, found: Plan) -> list[str]:
                        for p in task.request.via_points])
     turns = (q - wanted) / (2.0 * np.pi)
     missed = 2.0 * np.pi * np.abs(turns - np.round(turns)).max()
-    broken = [f'via point missed by {missed:.3g} rad'] if missed > ANGLE_ROOM else []
+    broken = [f'via point missed by {missed:.3g} rad'] if missed > ANGLE_TOLERANCE else []
     if task.request.start is not None:
         off = np.abs(found.trajectory(0.0)[0] - task.request.start).max()
-        broken += [f'start missed by {off:.3g} rad'] if off > ANGLE_ROOM else []
+        broken += [f'start missed by {off:.3g} rad'] if off > ANGLE_TOLERANCE else []
     return broken
 
 
@@ -120,16 +120,16 @@ def _path_left(task: Task, found: Plan, t: np.ndarray) -> list[str]:
     tip = forward_kinematics(task.model, q)
     broken = []
     off = np.linalg.norm(tip - path(np.clip(s, 0.0, path.length))[0], axis=1).max()
-    if off > PLACE_ROOM:
+    if off > PLACE_TOLERANCE:
         broken.append(f'{off:.3g} m off its path')
     nearest = np.min([_distance_to_leg(tip, a, b)
                       for a, b in zip(path.points[:-1], path.points[1:])], axis=0).max()
-    if nearest > request.max_deviation + PLACE_ROOM:
+    if nearest > request.max_deviation + PLACE_TOLERANCE:
         broken.append(f'{nearest:.6g} m from the polyline, {request.max_deviation:.6g} m allowed')
     if (np.diff(s) < -ROUNDING * path.length).any() or (sd < -REST).any():
         broken.append('goes back')
     speed = np.linalg.norm(np.einsum('nij,nj->ni', jacobian(task.model, q), qd), axis=1)
-    if speed.max() > request.max_tip_speed * (1.0 + ROOM):
+    if speed.max() > request.max_tip_speed * (1.0 + LIMIT_TOLERANCE):
         broken.append(f'tip at {speed.max():.6g} m/s over {request.max_tip_speed:.6g} m/s')
     if len(motion.via_times) > 2 and not (motion.progress(motion.via_times[1:-1])[1] > 0.0).all():
         broken.append('stops at a via point')
@@ -173,7 +173,7 @@ def _samples_broken(task: Task, found: Plan) -> list[str]:
     broken = []
     for name, x, bound in (('velocity', qd, limits.max_velocity),
                            ('acceleration', qdd, limits.max_acceleration)):
-        if (np.abs(x) > bound * (1.0 + POINTS_ROOM)).any():
+        if (np.abs(x) > bound * (1.0 + POINTS_TOLERANCE)).any():
             broken.append(f'{name} between points: {np.abs(x).max(axis=0)} over {bound}')
     away = np.abs(times[:, np.newaxis] - found.via_times).min(axis=0).max()
     if away > NANOSECOND:

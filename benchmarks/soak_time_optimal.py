@@ -35,14 +35,14 @@ from rrr_traj_planner.planners.planning import plan  # noqa: E402
 from soak_tasks import KINDS, soak_task  # noqa: E402
 from tasks import Task  # noqa: E402
 
-PER_SAMPLE = 20          # checked points between two samples
-ROOM = 1e-6              # relative, the promise of every planner
-POSITION_ROOM = 1e-9     # rad
-PLACE_ROOM = 1e-8        # m, and s for what rests
-KNOT_WIDTH = 1e-9        # s, the distance over which jerk is looked at for jumps,
-PART_OF_PIECE = 1e-5     # less between short pieces, in which jerk rises steeply
-JUMP = 1e-3              # of the largest jerk, that counts as none
-PROGRESS = 250           # tasks after which it is said how far it has come
+PER_SAMPLE = 20            # checked points between two samples
+LIMIT_TOLERANCE = 1e-6     # relative, the promise of every planner
+POSITION_TOLERANCE = 1e-9  # rad
+PLACE_TOLERANCE = 1e-8     # m, and s for what rests
+KNOT_WIDTH = 1e-9          # s, the distance over which jerk is checked for jumps,
+PART_OF_PIECE = 1e-5       # less between short pieces, in which jerk rises steeply
+JUMP = 1e-3                # of the largest jerk, that counts as none
+PROGRESS = 250             # tasks after which it is said how far it has come
 PERCENTILES = (50, 90, 99, 100)
 
 
@@ -84,15 +84,15 @@ def violations(task: Task, found: Plan) -> list[str]:
     broken = [f'{name}: {np.abs(x).max(axis=0)} over {bound}' for name, x, bound in (
         ('velocity', qd, limits.max_velocity), ('acceleration', qdd, limits.max_acceleration),
         ('jerk', jerk, limits.max_jerk), ('torque', tau, limits.max_effort))
-        if (np.abs(x) > bound * (1.0 + ROOM)).any()]
+        if (np.abs(x) > bound * (1.0 + LIMIT_TOLERANCE)).any()]
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max()
-    if outside > POSITION_ROOM:
+    if outside > POSITION_TOLERANCE:
         broken.append(f'position: {outside:.3g} rad outside its range')
     missed = np.abs(forward_kinematics(task.model, motion(found.via_times)[0])
                     - task.request.via_points).max()
-    if missed > PLACE_ROOM:
+    if missed > PLACE_TOLERANCE:
         broken.append(f'via point missed by {missed:.3g} m')
-    if np.abs([*qd[[0, -1]], *qdd[[0, -1]]]).max() > PLACE_ROOM:
+    if np.abs([*qd[[0, -1]], *qdd[[0, -1]]]).max() > PLACE_TOLERANCE:
         broken.append('not at rest at an end')
     return broken + _jumps(found, float(np.abs(jerk).max()))
 

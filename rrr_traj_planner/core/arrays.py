@@ -54,7 +54,7 @@ def finite_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = No
 
     """
     array = _checked(name, value, shape)
-    refuse_where(name, array, ~np.isfinite(array), 'finite')
+    _refuse_where(name, array, ~np.isfinite(array), 'finite')
     return array
 
 
@@ -102,7 +102,7 @@ def bound_array(name: str, value: ArrayLike, shape: tuple[int, ...] | None = Non
 
     """
     array = _checked(name, value, shape)
-    refuse_where(name, array, np.isnan(array), 'a number')
+    _refuse_where(name, array, np.isnan(array), 'a number')
     return array
 
 
@@ -132,7 +132,7 @@ def joint_values(name: str, value: ArrayLike) -> Array:
     if array.ndim < 1 or array.shape[-1] != 3:
         raise InvalidInputError(f'{name} has shape {array.shape}, must have (..., 3)')
     if not isfinite(np.add.reduce(array, axis=None)):  # of finite values too, where they are huge
-        refuse_where(name, array, ~np.isfinite(array), 'finite')
+        _refuse_where(name, array, ~np.isfinite(array), 'finite')
     return array
 
 
@@ -193,7 +193,7 @@ def parameter_values(name: str, value: ArrayLike) -> Array:
     if array.ndim > 1:
         raise InvalidInputError(f'{name} has shape {array.shape}, must have (n) or ()')
     if np.isnan(array).any():
-        refuse_where(name, array, np.isnan(array), 'a number')
+        _refuse_where(name, array, np.isnan(array), 'a number')
     return array
 
 
@@ -233,7 +233,7 @@ def truth_array(name: str, value: ArrayLike, shape: tuple[int, ...]) -> BoolArra
     return array
 
 
-def refuse_where(name: str, array: Array, wrong: BoolArray, wanted: str) -> None:
+def _refuse_where(name: str, array: Array, wrong: BoolArray, wanted: str) -> None:
     """
     Raise for the first value that is wrong.
 

@@ -143,7 +143,7 @@ def _best_refined(problem: PlanningProblem, trajectory: Trajectory,
 def _refined(problem: PlanningProblem, trajectory: Trajectory, min_spacing: float,
              overshoot_before: bool) -> tuple[TrajectoryPoints, SplineExcess]:
     """
-    Return points, divided until the quintics keep limits or no interval can be divided.
+    Return points with intervals divided until the quintics keep limits or none can be divided.
 
     At steps of acceleration the quintic overshoots on the side with a margin, or before all steps.
     """

@@ -219,14 +219,14 @@ def _with_exact_zeros(q: Array) -> Array:
 
 
 def _repeated(model: RobotModel, q: Array) -> BoolArray:
-    """Return which joint positions are the ones before, in the same posture, shape (n - 1,)."""
+    """Return which via points repeat the one before, in the same posture, shape (n - 1,)."""
     ways = np.abs(np.diff(q, axis=0)).max(axis=1)
     same_tips = _same_tips(forward_kinematics(model, q)) & (ways <= SAME_POSTURE)
     return np.asarray((ways <= JOINT_ROUNDING) | same_tips)
 
 
 def _same_tips(tips: Array) -> BoolArray:
-    """Return which positions of the tip are the ones before, shape (n - 1,)."""
+    """Return at which via points the tip is where it was at the one before, shape (n - 1,)."""
     return np.asarray(np.linalg.norm(np.diff(tips, axis=0), axis=1) <= TIP_ROUNDING)
 
 

@@ -30,7 +30,7 @@ from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
-from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_TOLERANCE
+from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
 
 
 def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
@@ -147,7 +147,7 @@ def holding_failure(model: RobotModel, limits: JointLimits, q: Array,
 
     """
     torque = np.abs(gravity_torque(model, q))
-    broken = np.argwhere(torque > limits.max_effort * (1.0 + TORQUE_TOLERANCE))
+    broken = np.argwhere(torque > limits.max_effort * (1.0 + TORQUE_ROUNDING))
     if not len(broken):
         return None
     i, j = map(int, broken[0])

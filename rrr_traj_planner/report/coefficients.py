@@ -71,14 +71,14 @@ def coefficients(trajectory: Trajectory) -> Coefficients:
         Numbers of pieces, and of coefficients for each.
 
     """
-    profiles = profiles_of(trajectory)
+    profiles = _profiles_of(trajectory)
     moving = np.concatenate([is_transition(p.pieces) for p in profiles])
     return Coefficients(int(moving.sum()), int((~moving).sum()),
                         PER_TRANSITION[_function(profiles[0].pieces)],
                         _per_cruise(profiles[0].pieces))
 
 
-def profiles_of(trajectory: Trajectory) -> tuple[JointProfile, ...]:
+def _profiles_of(trajectory: Trajectory) -> tuple[JointProfile, ...]:
     """
     Return the piecewise functions that describe a motion.
 

@@ -198,11 +198,11 @@ def _comparison(plans: ThesisPlans) -> list[Content]:
                       'line_polynomial, of the progress along the path.'),
         methods_table(plans.table_6_3, 'methods_table_6_3', 'Methods on table 6.3',
                       'With 250 N m for joint 2.'),
-        total_times(plans.table_6_1, 'times_table_6_1', 'Total time on table 6.1'),
-        total_times(plans.table_6_3, 'times_table_6_3', 'Total time on table 6.3')]
+        _total_times(plans.table_6_1, 'times_table_6_1', 'Total time on table 6.1'),
+        _total_times(plans.table_6_3, 'times_table_6_3', 'Total time on table 6.3')]
 
 
-def total_times(found: Sequence[Attempt], name: str, title: str) -> Picture:
+def _total_times(found: Sequence[Attempt], name: str, title: str) -> Picture:
     """
     Return the figure of the methods' total times.
 

@@ -27,7 +27,8 @@ from rrr_traj_planner.planners.solver.via_barrier import _ViaProblem
 
 SOURCES = [path for layer in ('core', 'planners')
            for path in sorted((ROOT / 'rrr_traj_planner' / layer / 'native').glob('*.[ch]'))]
-REPEATED = {'arm': _Arm, 'load': Load, 'problem': _Problem, 'step': _Step, 'via_problem': _ViaProblem}
+REPEATED = {'arm': _Arm, 'load': Load, 'problem': _Problem, 'step': _Step,
+            'via_problem': _ViaProblem}
 C_TYPES = {'int32_t': 'c_int', 'double': 'c_double', 'Ramp': '_Ramp'}
 
 
@@ -40,8 +41,9 @@ def declared_fields(name):
     for declaration in re.sub(r'/\*.*?\*/', '', body, flags=re.S).split(';')[:-1]:
         words = declaration.replace('const ', '').split(maxsplit=1)
         for field in words[1].split(','):
-            ctype = 'c_void_p' if '*' in field else C_TYPES[words[0]]
-            fields.append((re.search(r'\w+', field)[0], ctype))
+            name, count = re.search(r'(\w+)(?:\[(\d)\])?', field).groups()
+            ctype = C_TYPES[words[0]] + (f'_Array_{count}' if count else '')
+            fields.append((name, 'c_void_p' if '*' in field else ctype))
     return fields
 
 

@@ -40,7 +40,7 @@ from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints,
 # Excesses up to these are not reported: relative to the larger of the range's end and 1 rad, since
 # positions may have been rounded to four digits; and relative to a limit, since quintics through
 # samples of a motion at its limit exceed it by up to 0.1 %.
-POSITION_TOLERANCE, LIMIT_TOLERANCE = 1e-4, 2e-3
+POSITION_TOLERANCE, INTERPOLATION_TOLERANCE = 1e-4, 2e-3
 
 ACCURACY = 1e-6  # of extremes, relative to the bound that they exceed; chosen
 
@@ -173,7 +173,7 @@ def _with_tolerance(quantity: str, low: ArrayLike, high: ArrayLike) -> tuple[Arr
     """Return bounds widened by the reporting tolerance."""
     low, high = np.asarray(low), np.asarray(high)
     if quantity != 'position':
-        return low * (1.0 + LIMIT_TOLERANCE), high * (1.0 + LIMIT_TOLERANCE)
+        return low * (1.0 + INTERPOLATION_TOLERANCE), high * (1.0 + INTERPOLATION_TOLERANCE)
     return (low - POSITION_TOLERANCE * np.maximum(1.0, np.abs(low)),
             high + POSITION_TOLERANCE * np.maximum(1.0, np.abs(high)))
 

@@ -172,7 +172,11 @@ _SIDES: dict[int, Range] = {0: NO_REACTION, 1: (0.0, inf), -1: (-inf, 0.0)}
 
 @lru_cache
 def _cases(moving: tuple[bool, ...]) -> list[_Case]:
-    """Return the cases for joints of which some surely move, those with more at rest first."""
+    """
+    Return all combinations of rest (0) and either direction, for joints of which some surely move.
+
+    Combinations with more joints at rest come first.
+    """
     signs = [(1,) if moves else (0, 1, -1) for moves in moving]
     return sorted(((a, b, c) for a, b, c in product(*signs)),
                   key=lambda case: sum(map(abs, case)))

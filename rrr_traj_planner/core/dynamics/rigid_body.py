@@ -16,7 +16,8 @@
 Dynamics of the arm for one state (shape (3,)) or many (shape (..., 3)), by its tables.
 
 tau = M(q) qdd + C(q, qd) qd + g(q): thesis (5.39), where H stands for the inertia matrix M and h
-for the Coriolis and centrifugal torques C qd.
+for the Coriolis and centrifugal torques C qd. `forward_dynamics` is part of the library; no
+planner calls it, and the simulated arm has the same equations in floats.
 """
 
 from __future__ import annotations

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Position, velocity and acceleration of every link's frame and centre of mass (5.13-5.28)."""
+"""
+Position, velocity and acceleration of every link's frame and centre of mass (5.13-5.28).
+
+Part of the library; no planner calls it: dynamics are evaluated from the arm's tables.
+"""
 
 from __future__ import annotations
 

@@ -17,6 +17,7 @@ The cycloid: pieces whose acceleration is c - b cos(w s), s in [0, 1] (3.4-3.7, 
 
 Full-period transitions, general ones between non-zero accelerations, half-period ramps and
 cruises are all such pieces. Fields of a piece may be floats or arrays of one shape.
+`general_transition` is part of the library; no planner calls it.
 """
 
 from __future__ import annotations

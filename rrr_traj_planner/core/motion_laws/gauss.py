@@ -154,7 +154,7 @@ def _truncated(name: str, k: float, steepest: float,
 
 
 class _Truncated:
-    """An even function of u, lowered to 0 at u = -k and k, over s in [0, 1]; can be pickled."""
+    """An even function of u, less its value at u = -k and k, as a function of s in [0, 1]."""
 
     def __init__(self, k: float, value: Curve, first: Curve, second: Curve,
                  slope: Curve) -> None:

@@ -15,10 +15,12 @@
 """
 The 4-3-4 law: a quartic lift-off, a cubic cruise and a quartic set-down, from rest to rest.
 
-After Lin (thesis, sections 2.2.2 and 4.2, c; classical in Paul, Craig and Fu-Gonzalez-Lee). Over a
-normalised time u in [0, 1] a normalised position goes from 0 to 1. The three polynomials have 14
-coefficients; 14 conditions give them: rest at both ends (position, velocity, acceleration: 6),
-both joins' positions from either side (4), velocity and acceleration continuous at both joins (4).
+After Lin et al. (thesis, sections 2.2.2 and 4.2, c; [30] in a list of references that we do not
+have). The 14 conditions are those of the textbook: Fu, Gonzalez & Lee, Robotics, McGraw-Hill 1987,
+section 4.3 (joint-interpolated trajectories). Over a normalised time u in [0, 1] a normalised
+position goes from 0 to 1. The three polynomials have 14 coefficients; 14 conditions give them:
+rest at both ends (position, velocity, acceleration: 6), both joins' positions from either side
+(4), velocity and acceleration continuous at both joins (4).
 Lin prescribes the joins' times and positions. Here the accelerations at the joins are prescribed
 instead of the positions, with which they are in one-to-one relation; the conditions then have a
 closed-form solution:

@@ -83,7 +83,7 @@ def axis_planes(path: CartesianPath, posture: Posture, theta_1: float) -> AxisPl
         The parts.
 
     """
-    outward = common_plane(path.points)
+    outward = _common_plane(path.points)
     if outward is not None:
         azimuth = _azimuth(outward) if outward.any() else theta_1 - (
             np.pi if posture.shoulder == 'back' else 0.0)
@@ -128,7 +128,7 @@ def zone_sides(points: Array, started: bool) -> IntArray:
     n = len(points)
     side, on_axis = np.zeros(max(n - 2, 0), dtype=np.intp), np.hypot(
         *points[:, :2].T) <= TIP_ROUNDING
-    if not on_axis.any() or common_plane(points) is not None:
+    if not on_axis.any() or _common_plane(points) is not None:
         return side
     last = max((k for k in range(1, n) if _in_half_plane(points[:k + 1])), default=0)
     first = min((k for k in range(n - 1) if _in_half_plane(points[k:])), default=n - 1)
@@ -141,10 +141,10 @@ def zone_sides(points: Array, started: bool) -> IntArray:
 
 def _in_half_plane(points: Array) -> bool:
     """Return whether points lie in a vertical half plane bounded by joint axis 1."""
-    return common_plane(points) is not None and not passes_axis(points)
+    return _common_plane(points) is not None and not passes_axis(points)
 
 
-def common_plane(points: Array) -> Array | None:
+def _common_plane(points: Array) -> Array | None:
     """
     Return the vertical plane through joint axis 1 in which points lie.
 
@@ -187,7 +187,7 @@ def passes_axis(points: Array) -> bool:
         True where all are in a vertical plane through the axis, on both sides of it.
 
     """
-    outward = common_plane(points)
+    outward = _common_plane(points)
     return outward is not None and bool((points[:, :2] @ outward < -TIP_ROUNDING).any())
 
 

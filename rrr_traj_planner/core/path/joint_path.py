@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Joint positions along a path of the tip, with their derivatives by arc length."""
+"""
+Joint positions along a path of the tip, with their derivatives by arc length.
+
+`joint_path` is part of the library; no planner calls it: `workspace_check` and `ArmPath`
+evaluate `unlimited_joint_path` themselves.
+"""
 
 from __future__ import annotations
 
@@ -69,7 +74,7 @@ def joint_path(model: RobotModel, limits: JointLimits,
 
     """
     points = PathPoints(*(joint_values(n, v) for n, v in zip(PathPoints._fields, derivatives)))
-    refuse_singular(model, points.p)
+    _refuse_singular(model, points.p)
     path = unlimited_joint_path(model, points, posture)
     start_q = None if start is None else finite_array('start', start, (3,))
     path = path._replace(q=path.q + whole_turns(path.q, limits, start_q))
@@ -78,7 +83,7 @@ def joint_path(model: RobotModel, limits: JointLimits,
     return path
 
 
-def refuse_singular(model: RobotModel, p: Array) -> None:
+def _refuse_singular(model: RobotModel, p: Array) -> None:
     """
     Raise if samples are unreachable or singular.
 

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Least radius of an arc at a given tip speed, and largest speed on it (thesis 5.4.1)."""
+"""
+Least radius of an arc at a given tip speed, and largest speed on it (thesis 5.4.1).
+
+Part of the library; no planner calls it: planners time the whole path.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +41,7 @@ Floats: TypeAlias = NDArray[np.floating[Any]]
 # Chosen values.
 UNIT_TOLERANCE = 1e-9     # of the directions' lengths and of their right angle
 SINGULAR = 1e-9           # relative volume of the Jacobian below which a pose is singular
-LIMIT_ROUNDING = 1e-12    # relative, for a limit that is just met
+INTERVAL_ROUNDING = 1e-12  # relative, for a limit that is just met
 
 
 class Bound(NamedTuple):
@@ -169,14 +173,14 @@ def _largest(model: RobotModel, rows: list[_Row], where: str) -> Bound:
             least, first = Bound(low, row.joint, row.quantity), row
         if high < most.value:
             most = Bound(high, row.joint, row.quantity)
-    if first is not None and least.value > most.value * (1.0 + LIMIT_ROUNDING):
+    if first is not None and least.value > most.value * (1.0 + INTERVAL_ROUNDING):
         raise _violation(model, first, most.value, where)
     return most
 
 
 def _interval(row: _Row) -> tuple[float, float]:
     """Return the interval of x in which a row satisfies its limit; empty if it never does."""
-    most = row.limit * (1.0 + LIMIT_ROUNDING)
+    most = row.limit * (1.0 + INTERVAL_ROUNDING)
     if row.slope == 0.0:
         return (-np.inf, np.inf) if abs(row.base) <= most else (np.inf, -np.inf)
     ends = (-most - row.base) / row.slope, (most - row.base) / row.slope

@@ -156,7 +156,7 @@ class FrictionDynamics:
         return after, lock
 
     def _load(self, state: State, torque: Triple, slip: Contact, lock: Contact = FREE) -> Load:
-        """Return the load for given sliding directions."""
+        """Return torques, friction and bumpers for given sliding directions."""
         (c1, c2, c3), (s1, s2, s3), (n1, n2, n3) = self._coulomb, slip, torque
         sides = self._bumper.sides(state, self._low, self._high)
         edges = self._low
@@ -230,7 +230,7 @@ def _at_rest(qd: Triple, coulomb: Triple) -> Triple:
 
 
 def _range(coulomb: float, qd: float, x: float, side: int, shortest: float) -> Range:
-    """Return the range of reactions of friction and a hard stop [N m]."""
+    """Return the least and the largest torque that friction and a hard stop can exert [N m]."""
     friction = coulomb if qd == 0.0 else 0.0
     if qd != 0.0 and side * qd > -side * x * 0.5 * shortest:  # it is leaving its stop
         side = 0

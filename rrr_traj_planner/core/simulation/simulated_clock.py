@@ -44,7 +44,7 @@ class SimulatedClock:
 
     def due(self, now: int, reached: int, most: int) -> int:
         """
-        Return the simulated time that is due.
+        Return the time to which the simulation should advance now.
 
         Parameters
         ----------

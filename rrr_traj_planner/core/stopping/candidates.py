@@ -41,7 +41,7 @@ Indices = NDArray[np.int_]
 SPACING, LEAST_SPACING = 0.005, 1e-4
 
 # Offset for one-sided limits at a knot [s]; chosen: above the rounding of times, below any piece.
-ONE_SIDED = 1e-7
+BESIDE_KNOT = 1e-7
 
 
 class JointBrakes:
@@ -210,8 +210,8 @@ class Slowdowns:
         q = self._states(chosen, t[np.newaxis])[0][0][0]
         # At the original knots, velocity and acceleration may step.
         starts, ends = ([x[0] for x in self._states(chosen, times[np.newaxis])[1][:2]]
-                        for times in (np.append(0.0, t[1:-1] + ONE_SIDED), np.append(
-                            t[1:-1] - ONE_SIDED, t[-1])))
+                        for times in (np.append(0.0, t[1:-1] + BESIDE_KNOT), np.append(
+                            t[1:-1] - BESIDE_KNOT, t[-1])))
         ends[0][-1] = 0.0
         c = hermite(np.diff(t)[:, np.newaxis], (q[:-1], *starts), (q[1:], *ends))
         return _after(self.task, float(self.delays[i]), t, np.stack(c, axis=-1), q[-1])
@@ -224,7 +224,8 @@ class Slowdowns:
         own = motion.knots - begin
         s = rates.at(t[np.newaxis])[0][0]
         own = own[(own > 0.0) & (own < s[-1])]
-        # s(t) inverted: linear interpolation, two Newton steps; near the stop ds/dt is small.
+        # s(t) inverted: linear interpolation, two Newton steps. ds/dt, 1 at first, vanishes at the
+        # stop: the bound, chosen, only keeps the step finite there.
         passed = np.interp(own, s, t)
         for _ in range(2):
             s, sd = (x[0] for x in rates.at(passed[np.newaxis])[:2])

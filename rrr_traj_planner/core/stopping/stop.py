@@ -234,7 +234,7 @@ def _end(motion: ReferenceTrajectory, now: float, qd: Array,
     """Return the state at a motion's end, from which a stop there starts."""
     if motion.ends_moving:
         return motion.final, motion.final_velocity, motion.final_acceleration
-    # At rest: 1e-6 rad/s, 1e-9 rad in a millisecond; chosen.
+    # Up to 1e-6 rad/s counts as rest: it is 1e-9 rad in a controller's period of 1 ms; chosen.
     rests = now >= motion.end or bool(np.abs(qd).max() <= 1e-6)
     return (motion.final, np.zeros(3), np.zeros(3)) if rests else (motion.final, qd, qdd)
 

@@ -125,7 +125,7 @@ def spline_through(points: TrajectoryPoints) -> QuinticSpline:
         Lines, cubics and quintics between them.
 
     """
-    coefficients = segment_coefficients(points, segment_orders(points))
+    coefficients = _segment_coefficients(points, segment_orders(points))
     return QuinticSpline(points.times, coefficients, points.positions[-1])
 
 
@@ -160,7 +160,7 @@ def hermite(T: float | Array, start: tuple[Array, ...], end: tuple[Array, ...]) 
             (12.0 * d - 6.0 * (v0 + v1) - (a0 - a1) * T) / (2.0 * T ** 4)]
 
 
-def segment_coefficients(points: TrajectoryPoints, orders: IntArray) -> Array:
+def _segment_coefficients(points: TrajectoryPoints, orders: IntArray) -> Array:
     """
     Return the polynomials between points.
 

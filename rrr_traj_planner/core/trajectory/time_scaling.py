@@ -27,7 +27,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 
-TORQUE_TOLERANCE = 1e-9  # relative, for the rounding of a torque that is just at its limit
+TORQUE_ROUNDING = 1e-9  # relative, for the rounding of a torque that is just at its limit
 
 
 def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Array,
@@ -97,7 +97,7 @@ def squared_scaling_if_held(max_effort: Array, gravity: Array, torque: Array) ->
         Infinite where the arm cannot be held at rest.
 
     """
-    held = np.abs(gravity) <= max_effort * (1.0 + TORQUE_TOLERANCE)
+    held = np.abs(gravity) <= max_effort * (1.0 + TORQUE_ROUNDING)
     return np.where(held, squared_scaling(max_effort, gravity, torque), np.inf)
 
 

@@ -27,7 +27,7 @@ from rrr_traj_planner.core.trajectory.maximum import Extreme, maximum_over_time,
 from rrr_traj_planner.core.trajectory.time_scaling import (
     gravity_and_torque,
     squared_scaling_if_held,
-    TORQUE_TOLERANCE,
+    TORQUE_ROUNDING,
 )
 from rrr_traj_planner.core.trajectory.trajectory import ONE_SIDED, times_within, Trajectory
 
@@ -137,13 +137,13 @@ class TorqueSweep:
             moved = self._moved(self._before[key], trajectory) if key in self._before else None
             # Another peak may be the largest after the scaling.
             if moved is None or (np.abs(self.torque)
-                                 > moved.effort.value * (1.0 + TORQUE_TOLERANCE)).any():
+                                 > moved.effort.value * (1.0 + TORQUE_ROUNDING)).any():
                 moved = self._refined(limits, trajectory)
             self._peaks[key] = moved
         return self._peaks[key]
 
     def _moved(self, before: TorquePeaks, trajectory: Trajectory) -> TorquePeaks:
-        """Return the extremes of a motion slightly scaled in time, from those of the other."""
+        """Return the extremes of a slightly time-scaled motion, from those of the unscaled one."""
         time = before.effort.time * self._factor
         apart = NEIGHBOUR * self.times[-1] / len(self.times)
         times = time + np.multiply.outer((-apart, -SAME_TIME, 0.0, SAME_TIME, apart), np.ones(3))
@@ -200,12 +200,12 @@ def torque_sweep(model: RobotModel, trajectory: Trajectory) -> TorqueSweep:
     Returns
     -------
     TorqueSweep
-        On `torque_grid`.
+        At times dense enough for every high maximum of torque, before each step too.
 
     """
     found = trajectory.cache.get('torque_sweep')
     if not isinstance(found, TorqueSweep) or found.model is not model:
-        times = torque_grid(trajectory)
+        times = _torque_grid(trajectory)
         found = trajectory.cache['torque_sweep'] = TorqueSweep(
             model, times, *gravity_and_torque(model, *trajectory(times)[:3]))
     return found
@@ -252,7 +252,7 @@ def peak_holding_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
 
     """
     return maximum_over_time(lambda t: np.abs(gravity_torque(model, trajectory(t)[0])),
-                             torque_grid(trajectory))
+                             _torque_grid(trajectory))
 
 
 def time_scale_for_torque(model: RobotModel, limits: JointLimits,
@@ -281,7 +281,7 @@ def time_scale_for_torque(model: RobotModel, limits: JointLimits,
     return torque_sweep(model, trajectory).peaks(limits, trajectory).scaling
 
 
-def torque_grid(trajectory: Trajectory) -> Array:
+def _torque_grid(trajectory: Trajectory) -> Array:
     """
     Return times dense enough to resolve every high peak of the torque.
 

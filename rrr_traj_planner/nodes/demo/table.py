@@ -73,15 +73,15 @@ def checked_values(run: Run) -> list[CheckedValue]:
     found = []
     last = len(run.task.via_points) - 1
     missed = _planner(run).misses_via_points
-    for i, (planned, executed) in enumerate(zip(planned_errors(run), executed_errors(run))):
+    for i, (planned, executed) in enumerate(zip(_planned_errors(run), _executed_errors(run))):
         if missed and 0 < i < last:  # this planner misses inner via points by construction
             continue
         found += [CheckedValue(f'via point {i}: planned error', planned, PLANNED_BOUND, 'rad'),
                   CheckedValue(f'via point {i}: tip error', executed, EXECUTED_BOUND, 'm')]
-    found.append(CheckedValue('final error', final_error(run), FINAL_BOUND, 'm'))
-    if follows_path(run):
+    found.append(CheckedValue('final error', _final_error(run), FINAL_BOUND, 'm'))
+    if _follows_path(run):
         bound = run.config.max_deviation
-        planned, executed = deviations(run)
+        planned, executed = _deviations(run)
         found += [CheckedValue('planned distance from the polyline', planned, bound, 'm'),
                   CheckedValue('distance from the polyline', executed, bound + EXECUTED_BOUND,
                                'm')]
@@ -89,7 +89,7 @@ def checked_values(run: Run) -> list[CheckedValue]:
         for joint, p, m in zip(run.config.model.joint_names, peak, limit):
             found.append(
                 CheckedValue(f'{joint}: planned {name}', p, m * (1.0 + TOLERANCE), unit))
-    for joint, p, m in zip(run.config.model.joint_names, executed_torque(run),
+    for joint, p, m in zip(run.config.model.joint_names, _executed_torque(run),
                            run.config.limits.max_effort):
         # A torque at the limit means saturation: the bound is the next smaller number.
         found.append(CheckedValue(f'{joint}: executed torque', p, np.nextafter(m, 0.0), 'N m'))
@@ -117,19 +117,19 @@ def table(run: Run, found: list[CheckedValue]) -> str:
              f'{"via point":<28}{"at [s]":>9}{"planned error [rad]":>22}'
              f'{"tip error [mm]":>21}']
     for i, (point, t, planned, executed) in enumerate(zip(
-            run.task.via_points, run.response.via_times, planned_errors(run),
-            executed_errors(run))):
+            run.task.via_points, run.response.via_times, _planned_errors(run),
+            _executed_errors(run))):
         where = '(' + ', '.join(f'{x:g}' for x in point) + ') m'
         lines.append(f'{i:<3}{where:<25}{t:>9.3f}{planned:>22.1e}{1e3 * executed:>21.4f}')
-    lines += [f'{"at rest":<28}{"":>9}{"":>22}{1e3 * final_error(run):>21.4f}']
-    if follows_path(run):
-        planned, executed = deviations(run)
+    lines += [f'{"at rest":<28}{"":>9}{"":>22}{1e3 * _final_error(run):>21.4f}']
+    if _follows_path(run):
+        planned, executed = _deviations(run)
         lines.append(f'distance from the polyline: planned {1e3 * planned:.2f} mm, executed '
                      f'{1e3 * executed:.2f} mm, allowed {1e3 * run.config.max_deviation:g} mm')
     lines += [run.response.message, ''] if run.response.message else ['']
     lines.append(f'{"peaks: planned / limit":<24}' + ''.join(
         f'{joint:>24}' for joint in run.config.model.joint_names))
-    rows = [*_peaks(run), ('executed torque', executed_torque(run),
+    rows = [*_peaks(run), ('executed torque', _executed_torque(run),
                            run.config.limits.max_effort, 'N m')]
     for name, peak, limit, unit in rows:
         label = f'{name} [{unit}]'
@@ -140,7 +140,7 @@ def table(run: Run, found: list[CheckedValue]) -> str:
     return '\n'.join(lines)
 
 
-def follows_path(run: Run) -> bool:
+def _follows_path(run: Run) -> bool:
     """
     Return whether the planner is Cartesian: whether it plans the tip's path.
 
@@ -162,7 +162,7 @@ def _planner(run: Run) -> Registered:
     return planner(run.task.planner_id or run.config.default_planner_id)
 
 
-def deviations(run: Run) -> tuple[float, float]:
+def _deviations(run: Run) -> tuple[float, float]:
     """
     Return the tip's largest distances from the polyline through the via points.
 
@@ -185,7 +185,7 @@ def deviations(run: Run) -> tuple[float, float]:
     return planned, executed
 
 
-def planned_errors(run: Run) -> list[float]:
+def _planned_errors(run: Run) -> list[float]:
     """
     Return the plan's joint position errors at the via points [rad].
 
@@ -205,7 +205,7 @@ def planned_errors(run: Run) -> list[float]:
         run.config.model, run.task.via_points, run.planned.positions[index])]
 
 
-def executed_errors(run: Run) -> list[float]:
+def _executed_errors(run: Run) -> list[float]:
     """
     Return the distances of the simulated arm's tip from the via points at their times [m].
 
@@ -224,7 +224,7 @@ def executed_errors(run: Run) -> list[float]:
     return [float(error) for error in tip_errors(run.config.model, run.task.via_points, q)]
 
 
-def final_error(run: Run) -> float:
+def _final_error(run: Run) -> float:
     """
     Return the distance of the arm's final position from the last via point [m].
 
@@ -243,7 +243,7 @@ def final_error(run: Run) -> float:
     return float(np.linalg.norm(tip - run.task.via_points[-1]))
 
 
-def executed_torque(run: Run) -> Array:
+def _executed_torque(run: Run) -> Array:
     """
     Return the largest recorded torque of each motor [N m].
 

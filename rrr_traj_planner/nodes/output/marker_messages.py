@@ -45,7 +45,7 @@ LINE_WIDTH, BALL = 1.0 / 320.0, 1.0 / 64.0
 
 MAX_POINTS = 1000  # largest number of via points drawn; RViz becomes slow with more
 
-SAME_TIME = 1e-9  # s, rounding of times
+VIA_TIME_ROUNDING = 1e-9  # s, rounding of times
 
 
 def arm_markers(model: RobotModel, frame: str, joints: Iterable[tuple[float, float, float]],
@@ -104,7 +104,7 @@ def plan_markers(points: TrajectoryPoints, via_times: Array, model: RobotModel,
 
     """
     some = picked(len(via_times), MAX_POINTS)
-    via = np.searchsorted(points.times, via_times[some] - SAME_TIME).clip(
+    via = np.searchsorted(points.times, via_times[some] - VIA_TIME_ROUNDING).clip(
         max=len(points.times) - 1)
     shown = picked(len(points.times), MAX_POINTS, via)
     path, passed = (_points(forward_kinematics(model, points.positions[i]))

@@ -93,7 +93,7 @@ class PlannerConfig:
         except InvalidInputError as error:
             raise InvalidInputError(f'default_planner_id: {error}') from None
         return cls(
-            robot_model(values), joint_limits(values),
+            _robot_model(values), joint_limits(values),
             half_transition=values['poly_414.t_acc'],
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
@@ -146,14 +146,14 @@ class ArmConfig:
                 f'with controller.damping_ratio {gains.damping_ratio:g} and physics_step '
                 f'{step:g} s')
         with named({'step': 'physics_step'}):
-            settings = ArmSettings(robot_model(values), limits, gains, step,
+            settings = ArmSettings(_robot_model(values), limits, gains, step,
                                    encoder=encoder(values, gains), **physical_options(values))
         return cls(settings, values['publish_rate'], _initial_positions(values, limits),
                    trajectory_rules(values), values['publish_clock'], values['real_time_factor'],
                    frame_names(values), values['marker_rate'])
 
 
-def robot_model(values: Values) -> RobotModel:
+def _robot_model(values: Values) -> RobotModel:
     """
     Return the arm's model.
 

@@ -65,7 +65,7 @@ class NodeStart:
         files = parameter_files([*sys.argv, *(arguments or ())])
         self._unused = [file for file in files if not has_section_for(Path(file), self._name)]
         arm = ', '.join(f for f in files if f not in self._unused) or DEFAULT
-        self._text = (f'{self._name}: {arm}; {limits_text(limits, parameters.joint_names)}; '
+        self._text = (f'{self._name}: {arm}; {_limits_text(limits, parameters.joint_names)}; '
                       f'{offer}; ready')
         self._claim = claim(node.context.get_domain_id(), self._name)
         self._others = 0
@@ -124,7 +124,7 @@ def parameter_files(arguments: Sequence[str]) -> list[str]:
     return [file for option, file in zip(arguments, arguments[1:]) if option == '--params-file']
 
 
-def limits_text(limits: JointLimits, joint_names: Sequence[str]) -> str:
+def _limits_text(limits: JointLimits, joint_names: Sequence[str]) -> str:
     """
     Return the joints' limits as one line of text.
 

@@ -79,7 +79,7 @@ class Recorder:
                 continue
             try:
                 definition(types[0])
-                self._subscribe(message_type(types[0]), topic, compatible_qos(offered))
+                self._subscribe(message_type(types[0]), topic, _compatible_qos(offered))
             except (ImportError, AttributeError, LookupError, OSError) as error:
                 self._known.add(topic)
                 self._node.get_logger().warning(
@@ -102,7 +102,7 @@ class Recorder:
         def write(message: bytes, info: Any) -> None:
             if not self._bag.has(name):
                 text = type_name(kind)
-                self._bag.add_topic(name, text, definition(text), offered_qos(self._node, name))
+                self._bag.add_topic(name, text, definition(text), _offered_qos(self._node, name))
             now = time_ns()
             self._bag.write(name, message, info['received_timestamp'] or now,
                             info['source_timestamp'] or now)
@@ -110,7 +110,7 @@ class Recorder:
         return write
 
 
-def compatible_qos(offered: Sequence[QoSProfile]) -> QoSProfile:
+def _compatible_qos(offered: Sequence[QoSProfile]) -> QoSProfile:
     """
     Return the strictest quality of service that is compatible with all publishers of a topic.
 
@@ -174,7 +174,7 @@ def type_name(kind: Any) -> str:
     return f'{package}/{folder}/{kind.__name__}'
 
 
-def offered_qos(node: Node, topic: str) -> str:
+def _offered_qos(node: Node, topic: str) -> str:
     """
     Return the quality of service that a topic's publishers offer, for playback of the bag.
 

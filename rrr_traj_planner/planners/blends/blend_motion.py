@@ -15,11 +15,14 @@
 """
 Linear motions with blends around the via points: approach (b) of thesis 4.2, after Paul.
 
-(Siciliano et al., Robotics, 4.2.2: linear polynomials with blends.) In joint
-space the arm follows the lines between the via points. A transition, centred on the time at which
-two lines meet in a via point, leads from the velocity of one to that of the other: it cuts the
-corner, and the via point is missed. The first transition begins at the start and the last ends at
-the end: these two points are reached. A via point's time is the middle of its transition.
+The thesis cites Paul [42], in a list of references that we do not have: see Paul, Robot
+Manipulators, MIT Press 1981, chapter 5; Siciliano et al., Robotics, 4.2.2 (linear polynomials with
+blends).
+
+In joint space the arm follows the lines between the via points. A transition, centred on the time
+at which two lines meet in a via point, leads from the velocity of one to that of the other: it
+cuts the corner, and the via point is missed. The first transition begins at the start and the last
+ends at the end: these two points are reached. A via point's time is the middle of its transition.
 """
 
 from __future__ import annotations

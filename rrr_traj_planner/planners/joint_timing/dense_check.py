@@ -32,7 +32,9 @@ from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
-CHECKS = 12      # samples between two points
+# Samples between two points, chosen: half and twice as many change 28 random motions by 0.003 % in
+# the mean, by 0.12 % at most.
+CHECKS = 12
 
 
 class JointCheck:

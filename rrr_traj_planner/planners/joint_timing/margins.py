@@ -102,12 +102,12 @@ class Margins(NamedTuple):
 
     def of_slow_motion(self) -> Margins:
         """
-        Return the margins limited to those that a slow motion can satisfy.
+        Return the margins, reduced to what a slow motion can satisfy.
 
         Returns
         -------
         Margins
-            For efforts at most half of the torque that gravity leaves.
+            Those of efforts are at most half of what gravity's torque leaves of the limits.
 
         """
         return self._replace(efforts=np.minimum(self.efforts, self.gravity_margins))

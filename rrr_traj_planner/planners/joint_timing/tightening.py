@@ -157,9 +157,10 @@ def _last_within(constraints: JointConstraints,
 def _nearer(problem: JointProblem, margins: Margins, centres: list[CentralPathPoint],
             factor: float) -> list[CentralPathPoint]:
     """
-    Return centres for a part of the margins, where no known one satisfies all of them.
+    Return centres nearer to satisfying the margins, where no known one satisfies all of them.
 
-    The larger the barrier parameter, the further they are from all limits.
+    They are those of a problem with a part of the margins, the largest that a known centre
+    satisfies. The larger the barrier parameter, the further they are from all limits.
     """
     for part in PARTS_OF_MARGINS[1:]:
         constraints = problem.constraints(margins.part(part))

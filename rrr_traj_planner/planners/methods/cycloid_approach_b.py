@@ -126,6 +126,6 @@ def _lines(law: TransitionLaw, D: Array, durations: Array) -> Array | None:
             T[k] -= step
             if T[k] <= 0.0:
                 return None
-            if step <= 1e-15 * T[k]:  # converged to the last digit
+            if step <= 1e-15 * T[k]:  # a few units in the last place (2^-52): converged
                 break
     return T

@@ -15,6 +15,9 @@
 """
 `poly_414`: lines in joint space, blended by quartics around the via points (6.1-6.8, after Paul).
 
+The thesis's [42], in a list of references that we do not have. The quartic transition is in Paul,
+Robot Manipulators, MIT Press 1981, chapter 5.
+
 Every transition lasts 2 t_acc, centred on the time at which two lines meet in their via point,
 which is missed. Lines have the least durations that the limits and the transitions allow, none
 less than 2 t_acc. Where torque exceeds its limits, the whole motion is slowed, t_acc with it. Jerk
@@ -121,7 +124,7 @@ def _fastest(task: JointTask, problem: ViaProblem, t_acc: float) -> Trajectory:
 
 
 def _beside(transitions: Array, bounds: Array) -> Array:
-    """Return transitions limited to the bounds of both segments beside them."""
+    """Return transitions no longer than the bounds of the segments before and after each."""
     inner = np.minimum(np.append(bounds, np.inf), np.append(np.inf, bounds))
     return np.asarray(np.minimum(transitions, inner))
 

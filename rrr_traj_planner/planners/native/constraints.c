@@ -19,7 +19,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { DURATION_WEIGHT = 3 };   /* multiplicity of a least duration's logarithm: one per joint */
+/* Multiplicity of a least duration's logarithm: one for each joint. Only motions of three joints
+ * have least durations (joint_timing/constraints.py); those along a path, of one coordinate, have
+ * none. */
+enum { DURATION_WEIGHT = 3 };
 
 /* For solver/timing_problem.py, which compares them. */
 EXPORTED const int64_t size_of_problem = sizeof(Problem), size_of_step = sizeof(Step);

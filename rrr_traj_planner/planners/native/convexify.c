@@ -19,7 +19,8 @@
 #include <math.h>
 
 /* For a block scaled to a unit diagonal, without unit: pivots above which it is positive definite
- * as it stands, the least eigenvalue that it is given, and entries that count as zero. */
+ * as it stands (far above their rounding errors, some 1e-15), the least eigenvalue that it is
+ * given, and entries that count as zero (below the rounding of the diagonal). Chosen. */
 static const double CLEARLY_CONVEX = 1e-10, LEAST_EIGENVALUE = 1e-12, NOTHING = 1e-17;
 static const double TINY = 1e-300;  /* added to diagonal entries, which may be 0 */
 enum { SWEEPS = 30 };  /* at most: convergence is quadratic, some five are needed */

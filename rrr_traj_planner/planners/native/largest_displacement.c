@@ -100,10 +100,13 @@ double largest_displacement(const Law *law, double v0, double v1, double T)
     return displacement(law, fastest_cruise(law, v0, v1, T), v0, v1, T);
 }
 
-/* A transition by u: its duration t(u), i = 1 / t'(u), m = (t + u / i) / (2 t), k = i di/du; see
- * `derivatives` in transitions/largest_displacement.py. */
+/* A shortest transition, which changes the velocity by u; see `derivatives` in
+ * transitions/largest_displacement.py. */
 typedef struct {
-    double t, m, i, k;
+    double t;  /* its duration t(u) [s] */
+    double m;  /* d(u t / 2) / du = m t: 1 where acceleration limits it, 3 / 4 where jerk does */
+    double i;  /* du / dt, by how much u rises with the duration: 1 / t'(u) [rad/s^2] */
+    double k;  /* d2u / dt2, likewise: i di / du [rad/s^3] */
 } Transition;
 
 static Transition transition(const Law *law, double u)

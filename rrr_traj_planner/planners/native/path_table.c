@@ -17,7 +17,8 @@
 #include "timing_problem.h"
 #include "path_table.h"
 
-enum { SPEED = 12, ALONG, QUANTITIES };  /* those limited: of the joints, then of the tip */
+/* Those limited: 12 of the joints (joint_quantities), then the tip's speed and acceleration. */
+enum { SPEED = 12, ALONG, QUANTITIES };
 
 /* Columns of the table at position s of a segment, and their derivatives by s up to an order. */
 static void table_at(const Problem *p, int segment, int point, double s, int order,
@@ -93,7 +94,7 @@ void path_at(const Problem *p, int segment, int point, const double *z, double *
     const double (*d)[3] = (const double (*)[3])found[0], (*s)[3] = (const double (*)[3])found[1],
         (*ss)[3] = (const double (*)[3])found[2];
     if (x)
-        limited_quantities(d, z[1], z[2], z[3], x);
+        joint_quantities(d, z[1], z[2], z[3], x);
     for (int j = 0; gradient && j < 3; ++j)
         joint_gradients(d, s, j, z, gradient + 4 * j);
     for (int j = 0; second && j < 3; ++j)
@@ -111,7 +112,7 @@ EXPORTED void path_quantities(const Problem *p, int32_t samples, int32_t at_poin
             double found[3][KINDS][3];
             const double (*d)[3] = (const double (*)[3])found[0];
             table_at(p, k, at_points ? i : -1, z[0], 0, found);
-            limited_quantities(d, z[1], z[2], z[3], x);
+            joint_quantities(d, z[1], z[2], z[3], x);
             x[SPEED] = z[1], x[ALONG] = z[2];
             for (int j = 0; j < 3; ++j)
                 gravity[j] = d[G][j];

@@ -43,9 +43,10 @@ static inline void path_columns(const double *c3, size_t stride, double x, doubl
         value[k] = ((c3[k] * x + c2[k]) * x + c1[k]) * x + c0[k];
 }
 
-/* The limited quantities (12): velocity, acceleration, jerk and torque of three joints each. */
-static inline void limited_quantities(const double d[KINDS][3], double v, double a, double jerk,
-                                double *x)
+/* The 12 quantities of the joints: velocity, acceleration, jerk and torque, of three joints each.
+ */
+static inline void joint_quantities(const double d[KINDS][3], double v, double a, double jerk,
+                                    double *x)
 {
     for (int j = 0; j < 3; ++j) {
         x[j] = d[DQ][j] * v;

@@ -20,9 +20,11 @@
 #include <math.h>
 #include <string.h>
 
-static const double FIXED_PIVOT = 1e60;  /* diagonal entry of a velocity that does not change */
+/* Diagonal entry of a velocity that does not change: the step that it gives is below the rounding
+ * of any velocity, and the products of several such entries are still finite. */
+static const double FIXED_PIVOT = 1e60;
 /* Multiples of the diagonal added in turn until the band is positive definite (inertia correction:
- * Waechter & Biegler 2006, 3.1). */
+ * Waechter & Biegler 2006, 3.1); chosen: from a slight change to twice the diagonal. */
 static const double REGULARISATION[] = {0.0, 1e-9, 1e-6, 1e-3, 1.0};
 
 /* The banded system of velocities and accelerations at the via points, with two right-hand sides:

@@ -38,7 +38,8 @@ VELOCITY, ACCELERATION, JERK, TORQUE = (slice(3 * k, 3 * k + 3) for k in range(4
 SPEED, ALONG = 12, 13  # the tip's speed, and its acceleration along the path
 
 # Bound on the tip's acceleration along pieces of constant speed [m/s^2]: a barrier method needs an
-# interior.
+# interior. Chosen: half and twice of it change 26 random motions by 0.07 % in the mean, at most by
+# 0.3 %.
 STEADY = 1e-3
 
 

@@ -24,8 +24,11 @@ from rrr_traj_planner.planners.solver.excess import excess_near_points
 from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
-CHECKS = 8        # samples between two points
-BACKWARD = 1e-12  # part of the largest speed up to which a negative speed is rounding
+# Samples between two points, chosen: of 26 random motions, half as many make one 2.8 % slower, and
+# all of them 0.3 % in the mean; twice as many make them 0.04 % faster.
+CHECKS = 8
+# Part of the largest speed up to which a negative speed is rounding; chosen: many times 2^-52.
+BACKWARD = 1e-12
 
 
 class PathCheck(NamedTuple):

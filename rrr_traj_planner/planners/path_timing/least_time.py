@@ -18,6 +18,7 @@ The fastest motion along a given path (Bobrow, Dubowsky & Gibson 1985; Shin & Mc
 The method is that of `time_optimal`, direct transcription and an interior-point method, with one
 coordinate, the path length s, instead of the joints: its acceleration is a sequence of ramps, the
 pieces of the path are its segments, and the joints' limits are functions of s, sd, sdd and sddd.
+`fastest_along` is both steps in one, for tests and benchmarks; the planner takes them one by one.
 """
 
 from __future__ import annotations

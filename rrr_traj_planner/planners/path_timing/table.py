@@ -33,7 +33,9 @@ from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
 from rrr_traj_planner.planners.path_timing.pieces import piece_ends
 from scipy.interpolate import CubicSpline
 
-INTERVALS = 64  # of each piece, between the table's positions
+# Of each piece, between the table's positions; chosen: half and twice as many change 26 random
+# motions by 0.01 % in the mean, by 0.24 % at most.
+INTERVALS = 64
 
 
 class PathTerms(NamedTuple):

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-Limits between a problem's points: what densely sampled quantities reach, and by how much too far.
+By how much densely sampled quantities exceed their limits between a problem's points.
 
 Between samples a smooth quantity rises by at most an eighth of its second difference, up to terms
 of higher order (the error of linear interpolation).

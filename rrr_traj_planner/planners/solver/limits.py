@@ -29,8 +29,9 @@ class Limits(NamedTuple):
     """
     Limits as arrays; P = 2 n + 1 points of a segment, at each E general constraints.
 
-    The general constraints are on torque if the arm is given, on motion along a path if its table
-    is; else there are none.
+    The general constraints are on the joints' torques where `arm` is given, and on the joints'
+    velocities, accelerations, jerks and torques along a path where `table` is given. Where neither
+    is, there are none.
     """
 
     lower: Array            # (N, P, 4 J), of position, velocity, acceleration and jerk

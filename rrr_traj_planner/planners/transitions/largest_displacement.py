@@ -84,9 +84,10 @@ def derivatives(limits: SegmentLimits, v0: Array, v1: Array, T: Array) -> Deriva
     """
     Return the largest displacement and its derivatives.
 
-    The transition at end k changes velocity by u_k and lasts t_k = t(u_k). With i_k = 1 / t'(u_k)
-    and m_k = (t_k + u_k / i_k) / (2 t_k), the derivative of its displacement u t / 2 by u is m t:
-    m is 1 where the acceleration limit is active, 3 / 4 where the jerk limit is.
+    The displacement is that of the cruise in the whole time, cruise T, less u t / 2 at each end:
+    there a transition changes the velocity by u = cruise - v0 or cruise - v1, in its least time
+    t(u). The kernel differentiates this by the chain rule; the cruise follows from t(u0) + t(u1)
+    = T, or is the velocity limit.
 
     Parameters
     ----------

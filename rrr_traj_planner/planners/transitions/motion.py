@@ -69,7 +69,7 @@ def timed_motion(problem: TransitionProblem, durations: Array,
     Returns
     -------
     tuple of TimedMotion and ndarray of bool, shape (n, 3)
-        None where it overshoots, or no motion satisfies the kinematic limits.
+        The motion is None where a segment overshoots, or none satisfies the kinematic limits.
 
     """
     via = problem.via
@@ -101,7 +101,8 @@ def quickest_motion(problem: TransitionProblem) -> tuple[TimedMotion | None, Boo
     Returns
     -------
     tuple of TimedMotion and ndarray of bool, shape (n, 3)
-        None where it overshoots. Its note tells if planning was stopped before it converged.
+        The motion is None where a segment overshoots. Its note tells if planning was stopped
+        before it converged.
 
     """
     via = problem.via

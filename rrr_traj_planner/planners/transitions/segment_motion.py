@@ -73,7 +73,7 @@ def low_acceleration_parts(limits: SegmentLimits, segments: Segments) -> Parts:
     """
     def parts(given: Segments) -> Parts:
         found = _limited(limits, given)
-        for share in (_share_left(limits.law, given), np.full_like(given.D, 0.5)):
+        for share in (_share_of_last(limits.law, given), np.full_like(given.D, 0.5)):
             found = _where_allowed(limits, _split(share, given), found, given)
         return found
 
@@ -179,8 +179,12 @@ def _split(share: Array, segments: Segments) -> Parts:
     return Parts((1.0 - share) * T, cruise, share * T)
 
 
-def _share_left(law: TransitionLaw, segments: Segments) -> Array:
-    """Return the largest share of the last transition, the first at its acceleration limit."""
+def _share_of_last(law: TransitionLaw, segments: Segments) -> Array:
+    """
+    Return the part of a segment that is left for the last transition, at most a half.
+
+    The first transition is at its acceleration limit, and there is no cruise.
+    """
     v0, v1, T, D = segments
     excess = 2.0 * (D / T - 0.5 * (v0 + v1))
     with np.errstate(divide='ignore', invalid='ignore'):

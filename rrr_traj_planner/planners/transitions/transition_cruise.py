@@ -63,7 +63,8 @@ def _change(law: TransitionLaw, ahead: Array, T: Array) -> Array:
             for _ in range(12):  # convergence is quadratic
                 t = law.root * np.sqrt(x)
                 x = x + np.maximum(ahead - x * T + 0.5 * x * t, 0.0) / (T - 0.75 * t)
-            # Less, as a part of the displacement, is rounding.
+            # Rounding is up to some 1e-15 of the displacement; a root that was missed leaves more
+            # than this part of it. Chosen.
             fits = np.abs(x * T - 0.5 * x * law.least_time(x) - ahead) <= 1e-11 * ahead
             u = np.where(jerk_limited | np.isnan(u), np.where(fits, x, np.nan), u)
         u = np.where(ahead > 0.0, u, 0.0)
@@ -119,7 +120,7 @@ def stopping_time(limits: SegmentLimits, v0: Array, D: Array, grid: Array) -> Ar
 def stopping_bracket(limits: SegmentLimits, v0: Array, D: Array,
                      grid: Array) -> tuple[Array, Array]:
     """
-    Return durations of a last segment, to rest: one that is too short, and a feasible one.
+    Return two durations of a last segment that ends at rest: one too short, the other feasible.
 
     Parameters
     ----------

@@ -85,7 +85,7 @@ def least_time_scale(problem: ViaProblem, durations: Array) -> tuple[float, Solu
     """
     n = len(problem.displacements)
     least = float((problem.rest_to_rest_times() / durations).max())
-    # Durations are positive where nothing moves, too.
+    # Durations are positive where nothing moves, too: at least a millionth of those given; chosen.
     factor = START_MARGIN * max(least, 1e-6)
     solution = minimise(ViaBarrier(problem, np.zeros((n - 1, 3)), factor * durations,
                                    proportions=durations), never)
