@@ -42,8 +42,9 @@ def declared_fields(name):
         words = declaration.replace('const ', '').split(maxsplit=1)
         for field in words[1].split(','):
             name, count = re.search(r'(\w+)(?:\[(\d)\])?', field).groups()
-            ctype = C_TYPES[words[0]] + (f'_Array_{count}' if count else '')
-            fields.append((name, 'c_void_p' if '*' in field else ctype))
+            ctype = 'c_void_p' if '*' in field else C_TYPES[words[0]]
+            is_array = count and '*' not in field
+            fields.append((name, ctype + (f'_Array_{count}' if is_array else '')))
     return fields
 
 
