@@ -22,6 +22,10 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 
+# By what parts of themselves about least durations are lengthened until they are feasible: from
+# rounding on to where the margins of a planner's own search can no longer be the reason. Chosen.
+MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
+
 
 def whole_microseconds(durations: Array) -> Array:
     """
@@ -41,10 +45,10 @@ def whole_microseconds(durations: Array) -> Array:
     return np.asarray(np.ceil(durations * 1e6) / 1e6)
 
 
-def least_feasible(durations: Array, candidates: Sequence[Array], margins: Sequence[float],
+def least_feasible(durations: Array, candidates: Sequence[Array],
                    is_feasible: Callable[[Array], bool]) -> Array:
     """
-    Return the first feasible durations: candidates in turn, each lengthened by margins in turn.
+    Return the first feasible durations: candidates in turn, each lengthened by MARGINS in turn.
 
     Parameters
     ----------
@@ -52,8 +56,6 @@ def least_feasible(durations: Array, candidates: Sequence[Array], margins: Seque
         As prescribed [s], for the message.
     candidates : sequence of ndarray, shape (n,)
         About the least feasible ones [s].
-    margins : sequence of float
-        Parts of the candidates.
     is_feasible : callable
         Returns whether given durations are.
 
@@ -69,7 +71,7 @@ def least_feasible(durations: Array, candidates: Sequence[Array], margins: Seque
 
     """
     for candidate in candidates:
-        for margin in margins:
+        for margin in MARGINS:
             feasible = whole_microseconds(candidate * (1.0 + margin))
             if is_feasible(feasible):
                 return feasible

@@ -76,18 +76,21 @@ def test_offered_durations_are_the_least_in_their_proportion(planner_id):
 
 
 def test_margins_grow_until_durations_are_feasible_and_none_are_offered_if_they_never_are():
-    asked, candidates = [], [np.array([1.0, 2.0]), np.array([4.0, 5.0])]
+    tried, candidates = [], [np.array([1.0, 2.0]), np.array([4.0, 5.0])]
 
     def is_feasible(T):
-        asked.append(T.tolist())
-        return T[0] > 4.0
+        tried.append(T.tolist())
+        return T[0] > 4.01
 
-    found = least_feasible(np.ones(2), candidates, (0.0, 0.5), is_feasible)
-    assert asked == [[1.0, 2.0], [1.5, 3.0], [4.0, 5.0], [6.0, 7.5]]
-    assert found.tolist() == asked[-1]
+    found = least_feasible(np.ones(2), candidates, is_feasible)
+    parts = 1e-6, 1e-5, 1e-4, 1e-3, 1e-2
+    assert tried[:2] == [[1.0, 2.0], [1.000001, 2.000002]]
+    assert tried[7] == [4.0, 5.0]
+    assert [T[0] for T in tried[8:]] == [round(4.0 * (1.0 + part), 6) for part in parts]
+    assert found.tolist() == tried[-1] == [4.04, 5.05]
     with pytest.raises(ConvergenceError, match=(
             r'^no feasible durations found for segment_durations \[1\.0, 1\.0\] s$')):
-        least_feasible(np.ones(2), candidates[:1], (0.0, 0.5), is_feasible)
+        least_feasible(np.ones(2), candidates[:1], is_feasible)
 
 
 def test_cycloid_refuses_durations_of_some_segments_only():

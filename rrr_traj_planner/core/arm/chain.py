@@ -33,8 +33,8 @@ from rrr_traj_planner.core.read_only import ReadOnlyArrays
 # from CAD are rounded to 1e-4 rad at worst.
 PARALLEL = 1e-3
 
-# Relative difference up to which an inertia tensor counts as symmetric and its principal moments
-# as satisfying the triangle inequality.
+# Part of an inertia tensor up to which it may be asymmetric, or a principal moment negative:
+# rounding of descriptions with seven digits. Chosen.
 INERTIA_TOLERANCE = 1e-6
 
 

@@ -33,6 +33,7 @@ NO_EFFORT_LIMIT = 1e6    # N m
 
 RADIUS = 1.0 / 32.0  # of the drawn rods, over the arm's reach; chosen
 
+# Of links, alternating; red, green, blue and opacity, chosen.
 COLOURS = {'light': (0.75, 0.75, 0.78, 1.0), 'dark': (0.35, 0.37, 0.42, 1.0)}
 
 Numbers = tuple[float, float, float]

@@ -29,7 +29,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kinematics.postures import Elbow, Posture
+from rrr_traj_planner.core.kinematics.postures import Elbow, elbow_angles, Posture
 
 
 class JointPath(NamedTuple):
@@ -152,12 +152,8 @@ def _in_plane(model: RobotModel, z: Array, elbow: Elbow) -> tuple[list[Array], l
     linear in the highest derivatives of A and B.
     """
     a2, d4 = model.a2, model.d4
-    W = np.hypot(*z[0])
-    least, most = model.reach
-    gamma = 2.0 * np.arctan2(np.sqrt((W - least) * (W + least)), np.sqrt((most - W) * (most + W)))
-    beta = np.arctan2(d4 * np.sin(gamma), a2 - d4 * np.cos(gamma))  # at the shoulder (5.11)
-    A = np.arctan2(z[0, 1], z[0, 0]) + (beta if elbow == 'up' else -beta)
-    theta_3 = gamma - pi / 2 if elbow == 'up' else 1.5 * pi - gamma
+    beta, theta_3 = elbow_angles(model, np.hypot(*z[0]), elbow)
+    A = np.arctan2(z[0, 1], z[0, 0]) + beta
     B = A + theta_3 - pi / 2
     a, b = (length * np.array([np.cos(x), np.sin(x)]) for length, x in ((a2, A), (d4, B)))
     area = a[1] * b[0] - a[0] * b[1]

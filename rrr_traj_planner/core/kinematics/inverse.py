@@ -20,7 +20,7 @@ Thesis (5.8)-(5.12) corrected.
 
 from __future__ import annotations
 
-from math import atan2, ceil, cos, hypot, pi, sin, sqrt
+from math import atan2, ceil, hypot, pi
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,7 +28,13 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import format_distinct, UnreachableError
 from rrr_traj_planner.core.kinematics.joint_ranges import nearest_turns, TURN
-from rrr_traj_planner.core.kinematics.postures import Elbow, ELBOWS, Shoulder, SHOULDERS
+from rrr_traj_planner.core.kinematics.postures import (
+    Elbow,
+    elbow_angles,
+    ELBOWS,
+    Shoulder,
+    SHOULDERS,
+)
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 from rrr_traj_planner.core.scalars import one_of
 
@@ -70,7 +76,6 @@ def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'u
     x, y, z = finite_array('position', position, (3,)).tolist()
     one_of('elbow', elbow, ELBOWS)
     one_of('shoulder', shoulder, SHOULDERS)
-    a2, d4 = model.a2, model.d4
     r, h = hypot(x, y), z - model.d1
     back = shoulder == 'back'
     before = 0.0 if previous is None else float(finite_array('previous', previous, (3,))[0])
@@ -79,14 +84,9 @@ def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'u
     else:
         theta_1 = _wrapped(atan2(y, x) + (pi if back else 0.0))
     W = _distance_in_reach(model, (x, y, z), hypot(r, h))
-    # Half-angle and tangent forms of 5.9 and 5.11: accurate at the workspace's edges too.
-    least, most = model.reach
-    gamma = 2.0 * atan2(sqrt((W - least) * (W + least)), sqrt((most - W) * (most + W)))
-    beta = atan2(d4 * sin(gamma), a2 - d4 * cos(gamma))  # at the shoulder, from tip to link 2
-    elevation = atan2(h, -r if back else r)
-    if elbow == 'up':
-        return np.array([theta_1, _wrapped(elevation + beta), gamma - pi / 2])
-    return np.array([theta_1, _wrapped(elevation - beta), 1.5 * pi - gamma])
+    beta, theta_3 = elbow_angles(model, np.asarray(W), elbow)
+    theta_2 = _wrapped(atan2(h, -r if back else r) + float(beta))
+    return np.array([theta_1, theta_2, float(theta_3)])
 
 
 def nearest_solution(model: RobotModel, position: ArrayLike, q: ArrayLike) -> Array:

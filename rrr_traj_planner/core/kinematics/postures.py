@@ -57,6 +57,35 @@ class Posture(NamedTuple):
         return f'elbow {self.elbow}' + (', shoulder back' if self.shoulder == 'back' else '')
 
 
+def elbow_angles(model: RobotModel, distance: Array, elbow: Elbow) -> tuple[Array, Array]:
+    """
+    Return the angles of the triangle of shoulder, elbow and tip (5.9, 5.11).
+
+    Half-angle and tangent forms: accurate at the workspace's edges too.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    distance : ndarray
+        Of the tip from the shoulder, within reach [m].
+    elbow : {'up', 'down'}
+        The branch.
+
+    Returns
+    -------
+    shoulder : ndarray
+        From the direction of the tip to that of link 2 [rad].
+    theta_3 : ndarray
+        Position of joint 3, in [-pi/2, 3 pi/2] [rad].
+
+    """
+    (least, most), W = model.reach, distance
+    gamma = 2.0 * np.arctan2(np.sqrt((W - least) * (W + least)), np.sqrt((most - W) * (most + W)))
+    beta = np.arctan2(model.d4 * np.sin(gamma), model.a2 - model.d4 * np.cos(gamma))
+    return (beta, gamma - 0.5 * np.pi) if elbow == 'up' else (-beta, 1.5 * np.pi - gamma)
+
+
 def posture_of(model: RobotModel, q: Array) -> Posture:
     """
     Return the posture of joint positions.

@@ -28,7 +28,8 @@ from rrr_traj_planner.core.path.deviation import polyline_deviation
 from rrr_traj_planner.core.path.tangent_lines import Tangents
 from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
 
-# Zones of which both length and turn are no larger than these are omitted: rounding.
+# Zones of which both length and turn are no larger than these are omitted: some hundred times the
+# rounding of positions of a metre, and of angles between lines. Chosen.
 SHORTEST_ZONE = 1e-13  # m
 SMALLEST_TURN = 5e-13  # rad, to either side of the via point
 STEPS_PER_PIECE = 24   # of the path, in `grid`; chosen

@@ -32,9 +32,6 @@ from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_er
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
-# Distance from joint axis 1 or from an edge of the workspace below which a tip position counts as
-# a singularity: would need unbounded velocity.
-
 
 def joint_path(model: RobotModel, limits: JointLimits,
                derivatives: tuple[Array, Array, Array, Array], posture: Posture,

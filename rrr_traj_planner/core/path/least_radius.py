@@ -38,7 +38,7 @@ from rrr_traj_planner.core.scalars import not_negative, positive
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
 
-# Chosen values.
+# Chosen values, without unit: many times the rounding of the quantities, far below any effect.
 UNIT_TOLERANCE = 1e-9     # of the directions' lengths and of their right angle
 SINGULAR = 1e-9           # relative volume of the Jacobian below which a pose is singular
 INTERVAL_ROUNDING = 1e-12  # relative, for a limit that is just met

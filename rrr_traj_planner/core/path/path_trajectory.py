@@ -52,8 +52,9 @@ from rrr_traj_planner.core.trajectory.trajectory import (
 )
 
 STEPS_PER_KNOT = 6       # of the time between knots, in the search for extremes; chosen
-POSITION_OFFSET = 1e2    # rad, makes positions positive, as `maximum_over_time` requires
-LEAST_STEP = 1e-6        # rad/s^2; acceleration steps below this are rounding
+# rad, makes positions positive, as `maximum_over_time` requires: above all ranges but of 16 turns.
+POSITION_OFFSET = 1e2
+LEAST_STEP = 1e-6        # rad/s^2; acceleration steps below this are rounding; chosen
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,10 +50,12 @@ SHORTEST_STEP = 1e-9  # m
 # Least distance from joint axis 1 at which the tip may pass it: nearer, joint 1 would have to turn
 # with practically unbounded velocity. Chosen.
 AXIS_CLEARANCE = 1e-6   # m
-FINEST = 1e-8           # m^2: no excursion of a squared distance larger than this is missed
-COARSE_ANGLE = 1e-8     # rad, the same of a joint; within NEAR_END [rad] of an end of its range
-FINEST_ANGLE = 0.01 * JOINT_ROUNDING  # rad: less than later checks find
-NEAR_END = 1e-6
+
+# Largest excursions that may be missed, chosen so that what is missed is rounding to later checks:
+FINEST = 1e-8           # m^2, of a squared distance
+COARSE_ANGLE = 1e-8     # rad, of a joint
+FINEST_ANGLE = 0.01 * JOINT_ROUNDING  # rad, of a joint within NEAR_END of an end of its range
+NEAR_END = 1e-6         # rad
 # Bound on a second derivative between two samples, over the larger of theirs; chosen.
 SAFETY = 2.0
 

@@ -29,7 +29,7 @@ from rrr_traj_planner.core.simulation.saturation_and_contact import SaturationAn
 from rrr_traj_planner.core.states import Desired, State, Triple
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
 
-NO_DISTURBANCE = (0.0, 0.0, 0.0)
+NO_DISTURBANCE = (0.0, 0.0, 0.0)  # N m
 
 
 class ControlLoop:

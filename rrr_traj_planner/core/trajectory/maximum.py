@@ -37,7 +37,7 @@ OFFSETS = np.array([-32.0, -8.0, -1.0, 0.0, 1.0, 8.0, 32.0]) / 64.0
 # quantity on an equal grid, a half with corners (RISE), seven quarters with neighbouring steps of
 # ratio seven (ZOOMED_RISE, rounded up).
 RISE, ZOOMED_RISE, NEGLIGIBLE = 0.5, 2.0, 1e-8
-# Points no further apart are the two sides of a knot.
+# Points no further apart are the two sides of a knot: ten times ONE_SIDED. Chosen.
 SAME_TIME = 1e-8  # s
 
 

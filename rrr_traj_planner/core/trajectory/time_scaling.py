@@ -27,7 +27,8 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 
-TORQUE_ROUNDING = 1e-9  # relative, for the rounding of a torque that is just at its limit
+# Relative rounding of a torque just at its limit; chosen, a thousandth of what is promised.
+TORQUE_ROUNDING = 1e-9
 
 
 def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Array,

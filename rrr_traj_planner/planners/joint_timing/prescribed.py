@@ -40,8 +40,6 @@ from rrr_traj_planner.planners.tolerances import DURATION_TOLERANCE
 LEAST_SCALING = 0.2     # of prescribed durations, down to which the problem is solved
 FREE_WEIGHT = 1e-3      # of free durations while the scaling of the prescribed is minimised
 LEAST_REDUCTION = 1.02  # factor on peak acceleration that justifies another round
-# Tried in turn on top of the least durations until they can be prescribed.
-OFFER_MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1)
 
 
 class PrescribedProblem(NamedTuple):
@@ -248,4 +246,4 @@ def _too_short(problem: PrescribedProblem) -> TimingError:
         return longer.is_met_by(_least_scaled(longer))
 
     return durations_too_short(
-        durations, least_feasible(durations, [least], OFFER_MARGINS, is_feasible))
+        durations, least_feasible(durations, [least], is_feasible))

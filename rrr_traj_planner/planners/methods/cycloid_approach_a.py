@@ -61,7 +61,7 @@ GRID = np.concatenate((np.geomspace(0.4, 2.5, 36), np.geomspace(2.8, 60.0, 12)))
 REFINED_SEGMENTS = 12      # at most: beyond, the beam search's result is not refined
 PASSES = 0.08 * 0.5 ** np.arange(16.0)  # of coordinate descent: largest steps, parts of a duration
 REFINING_STEPS = np.array([-1.0, -0.5, -0.25, -0.1, 0.1, 0.25, 0.5, 1.0])  # over the largest
-SHORTEST = 1e-6            # s, duration in place of a least one of 0
+SHORTEST = 1e-6            # duration in place of a least one of 0 [s]
 
 
 @register('cycloid_approach_a')

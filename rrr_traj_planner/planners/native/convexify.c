@@ -22,7 +22,7 @@
  * as it stands (far above their rounding errors, some 1e-15), the least eigenvalue that it is
  * given, and entries that count as zero (below the rounding of the diagonal). Chosen. */
 static const double CLEARLY_CONVEX = 1e-10, LEAST_EIGENVALUE = 1e-12, NOTHING = 1e-17;
-static const double TINY = 1e-300;  /* added to diagonal entries, which may be 0 */
+static const double TINY = 1e-300;  /* added to diagonal entries, which may be 0: the least that divides; chosen */
 enum { SWEEPS = 30 };  /* at most: convergence is quadratic, some five are needed */
 
 static int is_clearly_convex(double a[3][3])

@@ -132,7 +132,7 @@ class ViaBarrier:
         self.arrays['damping'][:] = 0.0
         self.structure: Any = _ViaProblem(n=n, **self.arrays.addresses)
         self.address: Any = ctypes.byref(self.structure)
-        self.constraints = 12 * n + 6 * (n - 1)
+        self.constraints = 12 * n + 6 * (n - 1) + (n if least_T is not None else 0)
         point = self.arrays['point']
         self.velocities, self.durations = point[:3 * n - 3].reshape(-1, 3), point[3 * n - 3:]
         self.velocities[:], self.durations[:] = v, T

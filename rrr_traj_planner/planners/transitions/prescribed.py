@@ -40,10 +40,6 @@ from rrr_traj_planner.planners.transitions.transition_problem import (
     TransitionProblem,
 )
 
-# Tried in turn on top of the least durations until they can be prescribed, as parts of them;
-# chosen.
-MARGINS = (0.0, 1e-6, 1e-5, 1e-4, 1e-3)
-
 
 def prescribed(problem: TransitionProblem, durations: Array) -> TimedMotion:
     """
@@ -133,4 +129,4 @@ def _least_feasible(problem: TransitionProblem, durations: Array) -> Array:
     return least_feasible(
         durations, [motion.durations for motion in (
             fastest(problem, durations), fastest_with_stops(problem, durations))],
-        MARGINS, lambda T: _within_limits(problem, T) is not None)
+        lambda T: _within_limits(problem, T) is not None)
