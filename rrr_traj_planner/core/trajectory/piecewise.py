@@ -40,6 +40,10 @@ from rrr_traj_planner.core.trajectory.trajectory import (
 MOST_STEPS = 60        # chosen: bisections alone would reach 1e-18
 ZERO_TOLERANCE = 1e-9  # of the normalised time
 
+# Part of a joint's largest velocity that is rounding where it rests; chosen: some hundred times
+# the rounding of a sum of velocities. In a second a joint so fast moves by less than 1e-12 rad.
+AT_REST = 1e-13
+
 # Difference of the joints' durations, and of a via time beyond the end, that is accepted [s, and
 # relative to longer durations]; chosen: a nanosecond, the resolution of messages.
 DURATION_ROUNDING = 1e-9
@@ -109,7 +113,9 @@ class JointProfile(ReadOnlyArrays):
         s = self.pieces.turning_points()
         position, velocity = self._columns().at(s)[:2]
         least, most = position.min(axis=1), position.max(axis=1)
-        row, col = np.nonzero(velocity[:, :-1] * velocity[:, 1:] < 0.0)
+        speed = np.abs(velocity)
+        sign = np.where(speed > AT_REST * speed.max(), np.sign(velocity), 0.0)
+        row, col = np.nonzero(sign[:, :-1] * sign[:, 1:] < 0.0)
         if len(row):
             turning = self._zero_of_velocity(row, s[row, col], s[row, col + 1])
             np.minimum.at(least, row, turning)
