@@ -36,6 +36,9 @@ LARGEST_STEP = 0.3  # rad, largest turn of a line in an iteration; chosen
 COLOURS = 3
 BAND = 3  # half bandwidth of the matrix: 2 components of 3 lines
 
+# Cyclic permutations of coordinates: what is y, and what is z, for x, y, z.
+NEXT, AFTER_NEXT = np.array((1, 2, 0)), np.array((2, 0, 1))
+
 
 class Accuracy(NamedTuple):
     """Convergence tolerances and iteration limits of the Newton method."""
@@ -280,8 +283,8 @@ def _basis(direction: Array) -> Array:
 
 def _cross(a: Array, b: Array) -> Array:
     """Return products of vectors, many times faster than `numpy.cross`."""
-    y, z = [1, 2, 0], [2, 0, 1]  # cyclic permutations: what is y and z for x, y, z
-    return np.asarray(a[..., y] * b[..., z] - a[..., z] * b[..., y])
+    return np.asarray(a.take(NEXT, -1) * b.take(AFTER_NEXT, -1)
+                      - a.take(AFTER_NEXT, -1) * b.take(NEXT, -1))
 
 
 def _unit(vectors: Array) -> Array:
