@@ -93,7 +93,7 @@ def _repeated(function):
 
 def _in_pinocchio() -> tuple[pinocchio.Model, pinocchio.Data]:
     model = pinocchio.buildModelFromXML(urdf(ARM, JointLimits()))
-    model.gravity.linear = np.array([0.0, 0.0, -ARM.gravity])
+    model.gravity.linear = ARM.gravity
     return model, model.createData()
 
 

@@ -19,6 +19,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
@@ -95,9 +96,9 @@ def _part_near(parts: np.ndarray, i: int, j: int) -> int:
 def random_arm(rng: np.random.Generator) -> RobotModel:
     """Return an arm with a geometry, masses and inertias of its own."""
     a2, d4 = rng.uniform(0.3, 1.2, 2)
-    return RobotModel(
+    return RobotModel.from_lengths(ArmLengths(
         a2=a2, d4=d4, l2=rng.uniform(0.2, 0.8) * a2, l3=rng.uniform(0.2, 0.8) * d4,
-        mass=rng.uniform(2.0, 40.0, 3), inertia=rng.uniform(0.02, 1.5, (3, 3)))
+        mass=rng.uniform(2.0, 40.0, 3), inertia=rng.uniform(0.02, 1.5, (3, 3))))
 
 
 def random_limits(rng: np.random.Generator, model: RobotModel, elbow: str) -> JointLimits:

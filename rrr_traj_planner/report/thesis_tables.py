@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 import numpy as np
+from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.tasks import T_ACC
 from rrr_traj_planner.report.tables import Table
@@ -48,11 +49,11 @@ def _table_6_2() -> Table:
 
 def _appendix_b() -> list[Table]:
     task = table_6_1()
-    model, limits = task.model, task.limits
-    lengths = [['1', '-', '-', f'{model.d1:g}'], ['2', f'{model.l2:g}', f'{model.a2:g}', '-'],
-               ['3', f'{model.l3:g}', '-', f'{model.d4:g}']]
+    arm, limits = ArmLengths(), task.limits
+    lengths = [['1', '-', '-', f'{arm.d1:g}'], ['2', f'{arm.l2:g}', f'{arm.a2:g}', '-'],
+               ['3', f'{arm.l3:g}', '-', f'{arm.d4:g}']]
     masses = [[str(i + 1), f'{m:g}', *(f'{x:g}' for x in inertia)]
-              for i, (m, inertia) in enumerate(zip(model.mass, model.inertia))]
+              for i, (m, inertia) in enumerate(zip(arm.mass, arm.inertia))]
     ranges = [[str(i + 1), f'{low:g} … {high:g}', f'±{v:g}', f'±{a:g}', f'±{tau:g}']
               for i, (low, high, v, a, tau) in enumerate(zip(
                   np.degrees(limits.min_position), np.degrees(limits.max_position),

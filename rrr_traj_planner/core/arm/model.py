@@ -11,8 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
-
-"""The arm's kinematic and dynamic parameters, and its joint names."""
+"""An arm: its chain of joints and links, gravity, the motors' inertia, friction, joint names."""
 
 from __future__ import annotations
 
@@ -22,14 +21,17 @@ from functools import cached_property
 
 import numpy as np
 from rrr_traj_planner.core.arm.chain import Chain
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.inertia_check import lacking_inertia
+from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.tables import ArmTables, tables_of
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
-from rrr_traj_planner.core.scalars import finite, names, positive
+from rrr_traj_planner.core.scalars import finite, kind_of, names
 
-UNITS = {'d1': 'm', 'a2': 'm', 'd4': 'm', 'l2': 'm', 'l3': 'm', 'gravity': 'm/s^2'}
 JOINT_NAMES = ('joint_1', 'joint_2', 'joint_3')
+GRAVITY = 9.81  # m/s^2
 
 
 def _default(*values: object) -> Array:
@@ -39,99 +41,109 @@ def _default(*values: object) -> Array:
 @dataclass(frozen=True, eq=False)
 class RobotModel(ReadOnlyArrays):
     """
-    A three-revolute-joint arm: a vertical joint, then two parallel horizontal ones.
+    An arm, leg or finger of three revolute joints.
 
-    The defaults are the thesis's arm (appendix B). Frames follow Denavit-Hartenberg as in
-    section 5.2; centres of mass lie on joint axis 1, at l2 along x2 from joint axis 2, and at
-    l3 along z3 from joint axis 3.
+    The default is the thesis's arm (appendix B). `from_lengths` makes others of its kind.
 
     Parameters
     ----------
-    d1 : float
-        Height of joint axis 2 above the base [m].
-    a2, d4 : float
-        Length of the upper arm and of the forearm [m].
-    l2, l3 : float
-        Distance from joint axis to centre of mass, links 2 and 3 [m].
-    mass : array_like, shape (3,)
-        Masses of the links [kg].
-    inertia : array_like, shape (3, 3)
-        A row for each link: Ix, Iy, Iz about its centre of mass, in the axes of its frame
-        [kg m^2].
-    gravity : float
-        Acceleration of gravity along -z of the base [m/s^2].
+    chain : Chain
+        Joints and links.
+    gravity : array_like, shape (3,)
+        Acceleration of gravity in the base frame [m/s^2].
+    rotor_inertia : array_like, shape (3,)
+        Of the motors, reflected to the joints [kg m^2].
+    friction : Friction
+        Of the joints.
     joint_names : sequence of str
         Three distinct names.
 
     Raises
     ------
     InvalidInputError
-        If a value is not finite, a length a2 or d4 is not positive, a mass or inertia is
-        negative, the arm's inertia is not positive, or names repeat.
+        If a value is not finite or of another kind, a rotor's inertia is negative, or names
+        repeat.
 
     """
 
-    d1: float = 0.5
-    a2: float = 0.9
-    d4: float = 0.7
-    l2: float = 0.5
-    l3: float = 0.5
-    mass: Array = _default(40.0, 16.0, 12.0)
-    inertia: Array = _default((1.5, 0.1, 1.5), (0.12, 0.12, 0.01), (0.12, 0.12, 0.01))
-    gravity: float = 9.81
+    chain: Chain = field(default_factory=ArmLengths().chain)
+    gravity: Array = _default(0.0, 0.0, -GRAVITY)
+    rotor_inertia: Array = _default(0.0, 0.0, 0.0)
+    friction: Friction = field(default_factory=Friction)
     joint_names: Sequence[str] = JOINT_NAMES
 
     def __post_init__(self) -> None:
         """Check every value and make the arrays read-only."""
-        for name, unit in UNITS.items():
-            object.__setattr__(self, name, finite(name, getattr(self, name), unit))
-        object.__setattr__(self, 'mass', finite_array('mass', self.mass, (3,)))
-        object.__setattr__(self, 'inertia', finite_array('inertia', self.inertia, (3, 3)))
+        kind_of('chain', self.chain, Chain)
+        kind_of('friction', self.friction, Friction)
+        for name in ('gravity', 'rotor_inertia'):
+            object.__setattr__(self, name, finite_array(name, getattr(self, name), (3,)))
         object.__setattr__(self, 'joint_names', names('joint_names', self.joint_names))
-        for name in ('a2', 'd4'):
-            positive(name, getattr(self, name), UNITS[name])
-        for name in ('mass', 'inertia'):
-            if (getattr(self, name) < 0.0).any():
-                raise InvalidInputError(f'{name} is {getattr(self, name)}, must not be negative')
+        if (self.rotor_inertia < 0.0).any():
+            raise InvalidInputError(
+                f'rotor_inertia is {self.rotor_inertia.tolist()} kg m^2, must not be negative')
         found = self.joint_names
         if len(found) != 3 or len(set(found)) != 3 or '' in found:
             raise InvalidInputError(f'joint_names is {list(found)}, must be 3 distinct names')
-        self._check_inertia()
+        super().__post_init__()
 
-    def _check_inertia(self) -> None:
-        """Refuse an arm whose inertia matrix is singular or not finite in some pose."""
-        for name, mass, length in (('l2', self.mass[1], self.l2), ('l3', self.mass[2], self.l3)):
-            with np.errstate(over='ignore'):
-                moment = mass * np.square(length)
-            if not np.isfinite(moment):
-                raise InvalidInputError(
-                    f'{name} is {length} m: the inertia of {mass} kg there is not finite')
-        if self.inertia[2, 1] + self.mass[2] * self.l3 ** 2 <= 0.0:
-            raise InvalidInputError('link 3 has no inertia about joint axis 3')
-        if self.inertia[1, 2] + self.mass[1] * self.l2 ** 2 <= 0.0 and (
-                self.inertia[2, 1] * self.mass[2] <= 0.0):
-            raise InvalidInputError('links 2 and 3 have no inertia about joint axis 2')
-        if self.inertia[0, 1] <= 0.0 and min(
-                self.inertia[1, 0], self.inertia[1, 1] + self.mass[1] * self.l2 ** 2) <= 0.0:
-            raise InvalidInputError('the arm can have no inertia about joint axis 1')
+    @classmethod
+    def from_lengths(cls, lengths: ArmLengths, gravity: float = GRAVITY,
+                     joint_names: Sequence[str] = JOINT_NAMES) -> RobotModel:
+        """
+        Return an arm of the thesis's kind.
 
-    @cached_property
-    def chain(self) -> Chain:
-        """Joints and links, in the base frame with all joints at zero."""
-        elbow = np.array((self.a2, 0.0, self.d1))
-        shoulder = np.array((0.0, 0.0, self.d1))
-        (I1, I2, I3), down = self.inertia, np.array((0.0, 0.0, -1.0))
-        return Chain(
-            axis=np.array(((0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, -1.0, 0.0))),
-            point=np.array((shoulder, shoulder, elbow)), tip=elbow + self.d4 * down,
-            mass=self.mass, centre=np.array((
-                shoulder, shoulder + (self.l2, 0.0, 0.0), elbow + self.l3 * down)),
-            inertia=np.array((np.diag(I1[[0, 2, 1]]), np.diag(I2[[0, 2, 1]]), np.diag(I3))))
+        Parameters
+        ----------
+        lengths : ArmLengths
+            Lengths, masses and inertias.
+        gravity : float
+            Acceleration of gravity along -z of the base [m/s^2].
+        joint_names : sequence of str
+            Three distinct names.
+
+        Returns
+        -------
+        RobotModel
+            The arm.
+
+        Raises
+        ------
+        InvalidInputError
+            If gravity is not finite, names repeat, or a joint has no inertia in some pose.
+
+        """
+        down = -finite('gravity', gravity, 'm/s^2')
+        model = cls(lengths.chain(), np.array((0.0, 0.0, down)), joint_names=joint_names)
+        if model.lacking_inertia:
+            raise InvalidInputError(model.lacking_inertia)
+        return model
 
     @cached_property
     def tables(self) -> ArmTables:
         """Coefficients of its kinematics and dynamics."""
-        return tables_of(self.chain, np.array((0.0, 0.0, -self.gravity)), np.zeros(3))
+        return tables_of(self.chain, self.gravity, self.rotor_inertia)
+
+    @cached_property
+    def lacking_inertia(self) -> str:
+        """Which joints a torque could accelerate without bound in some pose; empty: none."""
+        return lacking_inertia(self.tables.inertia)
+
+    # Until the inverse kinematics no longer need them.
+    @property
+    def d1(self) -> float:
+        """Height of joint axis 2 [m]."""
+        return float(self.chain.point[1][2])
+
+    @property
+    def a2(self) -> float:
+        """Length of link 2 [m]."""
+        return float(np.linalg.norm(self.chain.point[2] - self.chain.point[1]))
+
+    @property
+    def d4(self) -> float:
+        """Length of link 3 [m]."""
+        return float(np.linalg.norm(self.chain.tip - self.chain.point[2]))
 
     @property
     def reach(self) -> tuple[float, float]:

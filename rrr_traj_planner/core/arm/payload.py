@@ -56,8 +56,8 @@ def with_payload(model: RobotModel, mass: float) -> RobotModel:
     """
     Return the arm with a point mass at its tip.
 
-    The tip is at d4, link 3's centre of mass at l3 along z3 from joint axis 3: together they are a
-    link 3 with another mass, centre of mass and inertia (parallel-axis theorem).
+    Link 3 and the point mass are one body, with another mass, centre of mass and inertia
+    (parallel-axis theorem).
 
     Parameters
     ----------
@@ -80,10 +80,12 @@ def with_payload(model: RobotModel, mass: float) -> RobotModel:
     mass = not_negative('mass', mass, 'kg')
     if mass == 0.0:
         return model
-    m1, m2, m3 = model.mass.tolist()
-    l3 = (m3 * model.l3 + mass * model.d4) / (m3 + mass)
-    parallel_axis = m3 * (model.l3 - l3) ** 2 + mass * (model.d4 - l3) ** 2
-    inertia = model.inertia.copy()
-    inertia[2, :2] += parallel_axis
-    return replace(model, l3=l3, mass=np.array((m1, m2, m3 + mass)),
-                   inertia=inertia)
+    chain = model.chain
+    both = chain.mass[2] + mass
+    lever = chain.tip - chain.centre[2]
+    reduced = chain.mass[2] * mass / both
+    inertia = chain.inertia.copy()
+    inertia[2] += reduced * (lever @ lever * np.eye(3) - np.outer(lever, lever))
+    masses, centre = chain.mass.copy(), chain.centre.copy()
+    masses[2], centre[2] = both, chain.centre[2] + mass / both * lever
+    return replace(model, chain=replace(chain, mass=masses, centre=centre, inertia=inertia))

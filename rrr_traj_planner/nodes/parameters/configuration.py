@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
+from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.urdf import FrameNames
@@ -174,12 +175,12 @@ def _robot_model(values: Values) -> RobotModel:
 
     """
     inertia = np.array([list(values[f'arm.inertia_{i}']) for i in (1, 2, 3)])
-    parameters = {name: f'arm.{name}' for name in (
-        'd1', 'a2', 'd4', 'l2', 'l3', 'gravity', 'mass')}
-    with named(parameters):
-        return RobotModel(
+    parameters = {name: f'arm.{name}' for name in ('d1', 'a2', 'd4', 'l2', 'l3', 'mass')}
+    with named(parameters | {'gravity': 'arm.gravity'}):
+        lengths = ArmLengths(
             **{name: values[parameter] for name, parameter in parameters.items()},
-            inertia=inertia, joint_names=values['joint_names'])
+            inertia=inertia)
+        return RobotModel.from_lengths(lengths, values['arm.gravity'], values['joint_names'])
 
 
 def joint_limits(values: Values) -> JointLimits:
