@@ -29,7 +29,7 @@ from peers import both, GRID_POINTS, torque_of
 from rrr_traj_planner.core.cancellation import never
 from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.kinematics.postures import Posture
-from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.path_timing.least_time import fastest_along
 from rrr_traj_planner.planners.path_timing.task import PathTask

@@ -34,7 +34,7 @@ from rrr_traj_planner.core.path import design as path_design
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.path.joint_path import joint_path
 from rrr_traj_planner.core.path.largest_radii import largest_radii
-from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.request import PlanningRequest
 from soak_tasks import random_arm, random_limits

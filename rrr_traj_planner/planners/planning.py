@@ -32,7 +32,6 @@ from rrr_traj_planner.core.errors import (
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.motion_laws import cycloid
-from rrr_traj_planner.core.path.axis_planes import passes_axis
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 from rrr_traj_planner.core.scalars import kind_of
 from rrr_traj_planner.core.trajectory.limit_check import violations
@@ -44,7 +43,7 @@ from rrr_traj_planner.planners.answer_size import check_answer_size
 from rrr_traj_planner.planners.missed_via_points import miss_note, misses
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning_problem import planning_problem, PlanningProblem
-from rrr_traj_planner.planners.posture_choice import first_possible, joint_postures, path_postures
+from rrr_traj_planner.planners.posture_choice import first_possible, joint_postures, path_beginnings
 from rrr_traj_planner.planners.registration import CartesianPlanner, Registered
 from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner.planners.request import PlanningRequest
@@ -122,9 +121,19 @@ def _planned_joints(method: Registered, problem: PlanningProblem) -> Plan:
         raise InvalidInputError(
             f'segment_durations[{int(np.isnan(durations).argmax())}] is nan: planner '
             f'{problem.request.planner_id} takes every duration or none')
-    return first_possible(
-        joint_postures(problem, method.passing), lambda posture: _plan_through(
-            method, problem, problem.joint_points(posture, method.passing)))
+    tried: dict[bytes, RrrPlannerError] = {}  # by joint positions
+
+    def attempt(posture: Posture) -> Plan:
+        q = problem.joint_points(posture, method.passing)
+        if q.tobytes() in tried:
+            raise tried[q.tobytes()]
+        try:
+            return _plan_through(method, problem, q)
+        except RrrPlannerError as error:
+            tried[q.tobytes()] = error
+            raise
+
+    return first_possible(joint_postures(problem, method.passing), attempt)
 
 
 def _plan_through(method: Registered, problem: PlanningProblem, q: Array) -> Plan:
@@ -165,31 +174,27 @@ def _planned_path(method: CartesianPlanner, problem: PlanningProblem) -> Plan:
         raise InvalidInputError(
             f'planner {problem.request.planner_id} takes no segment_durations: its time is the '
             'least')
-    return first_possible(
-        path_postures(problem), lambda posture: _plan_along_path(method, problem, posture))
-
-
-def _plan_along_path(method: CartesianPlanner, problem: PlanningProblem,
-                     posture: Posture) -> Plan:
-    """Return the plan along a path of the tip, in one posture."""
     request, start = problem.request, problem.start
     tips = request.via_points
     if start is not None:
         tips = np.vstack((forward_kinematics(problem.model, start), tips))
     same = _same_tips(tips)
     distinct = tips[np.concatenate(([True], ~same))]
-    if len(distinct) == 1 or not passes_axis(tips):  # else in two postures
-        q = problem.joint_points(posture)
-        check_answer_size(problem.limits, request, q)
-        if len(distinct) == 1:
-            return _rest(problem, q)
-    try:
+    q = problem.joint_points(problem.asked)
+    check_answer_size(problem.limits, request, q)
+    if len(distinct) == 1:
+        return _rest(problem, q)
+
+    def attempt(first: Array) -> Plan:
         trajectory = method(CartesianTask(
-            problem.model, problem.limits, distinct, start, posture, request.max_deviation,
+            problem.model, problem.limits, distinct, first, start, request.max_deviation,
             request.max_tip_speed, request.steady_zones, _spacing(request), request.should_stop))
+        return _checked(problem, trajectory, _via_times(request, trajectory, same))
+
+    try:
+        return first_possible(path_beginnings(problem), attempt)
     except RrrPlannerError as error:
         raise _renumbered(error, same, start is not None) from error
-    return _checked(problem, trajectory, _via_times(request, trajectory, same))
 
 
 def _renumbered(error: RrrPlannerError, same: BoolArray, started: bool) -> RrrPlannerError:

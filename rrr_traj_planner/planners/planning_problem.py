@@ -22,7 +22,9 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
+from rrr_traj_planner.core.kinematics.postures import ANY, Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.planners.request import PlanningRequest
@@ -53,6 +55,11 @@ class PlanningProblem(ReadOnlyArrays):
     request: PlanningRequest
     start: Array | None
 
+    @property
+    def asked(self) -> Posture:
+        """Return what the request asks of the arm's posture."""
+        return Posture(self.request.elbow, self.request.shoulder)
+
     def joint_points(self, posture: Posture, passing: ViaPointBehaviour = THROUGH) -> Array:
         """
         Return joint positions of the start, if there is one, and of the via points.
@@ -60,7 +67,7 @@ class PlanningProblem(ReadOnlyArrays):
         Parameters
         ----------
         posture : Posture
-            Of all via points.
+            Of all via points, so far as it is asked for.
         passing : ViaPointBehaviour
             How the motion passes via points, for the choice of whole turns.
 
@@ -101,10 +108,16 @@ def planning_problem(model: RobotModel, limits: JointLimits,
 
     Raises
     ------
+    InvalidInputError
+        If it names a posture, and the arm's have no names.
     StartStateError
         If the start state is out of its range or cannot be held.
 
     """
+    asked = Posture(request.elbow, request.shoulder)
+    if asked != ANY and not has_named_postures(model):
+        raise InvalidInputError(
+            f'{asked} is asked for, but the postures of this arm have no names')
     scaled = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
     start = None if request.start is None else check_start(
         model, scaled, request.start, request.start_state_tolerance)

@@ -11,8 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
-
-"""The postures in which a motion is planned, in order: the start's own first."""
+"""The branches of the inverse kinematics in which a motion is planned, in order: the start's first."""
 
 from __future__ import annotations
 
@@ -20,6 +19,7 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 import numpy as np
+from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import (
     JointRangeError,
     LimitViolationError,
@@ -27,36 +27,37 @@ from rrr_traj_planner.core.errors import (
     StartStateError,
     UnreachableError,
 )
-from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range
+from rrr_traj_planner.core.kinematics.axis_frame import axis_frame
+from rrr_traj_planner.core.kinematics.inverse import reachable
+from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, TURN
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import (
-    ELBOWS,
+    ALL,
+    in_posture,
     Posture,
     posture_of,
     postures_of,
-    Shoulder,
-    SHOULDERS,
 )
-from rrr_traj_planner.core.kinematics.travel_time import travel_time, ViaPointBehaviour
-from rrr_traj_planner.core.path.axis_planes import passes_axis
-from rrr_traj_planner.core.rounding import JOINT_ROUNDING
+from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_time, ViaPointBehaviour
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 from rrr_traj_planner.planners.planning_problem import PlanningProblem
 
 # A start this close to where postures meet counts as in all of them: noise must not decide.
 # Chosen, a hundred times the 1e-4 rad of a coarse encoder.
-MEETING = 0.01  # rad
+MEETING = 0.01
 
+Branch = TypeVar('Branch')
 Answer = TypeVar('Answer')
 
 
 def joint_postures(problem: PlanningProblem, passing: ViaPointBehaviour) -> list[Posture]:
     """
-    Return the postures for a motion in joint space through via points, in order.
+    Return what is asked of the posture of a motion in joint space through via points, in order.
 
     Parameters
     ----------
     problem : PlanningProblem
-        Via points, the start and the requested branch; limits for the estimate of time, where the
+        Via points, the start and the requested posture; limits for the estimate of time, where the
         start has several postures.
     passing : ViaPointBehaviour
         How the motion passes via points.
@@ -64,66 +65,87 @@ def joint_postures(problem: PlanningProblem, passing: ViaPointBehaviour) -> list
     Returns
     -------
     list of Posture
-        The start's first; then the other elbow, then the shoulder's front. Without a start: the
-        shoulder's front, with the elbow up before down.
+        The start's; then any that is requested, which may change from point to point; then each
+        alone.
 
     """
-    elbow = problem.request.elbow
-    if problem.start is None:
-        return [Posture(e) for e in ELBOWS if elbow in (None, e)]
-    own = postures_of(problem.model, problem.start, MEETING)
-    if len(own) > 1:
-        own.sort(key=lambda posture: _time(problem, posture, passing))
-    shoulders: tuple[Shoulder, Shoulder] = own[0].shoulder, 'front'
-    others = [Posture(e, s) for s in shoulders for e in ELBOWS]
-    return [p for p in dict.fromkeys((*own, *others)) if elbow in (None, p.elbow)]
+    asked = problem.asked
+    own: list[Posture] = []
+    if problem.start is not None:
+        own = [p for p in postures_of(problem.model, problem.start, MEETING) if asked.includes(p)]
+        if len(own) > 1:
+            own.sort(key=lambda posture: _time(problem, posture, passing))
+    return list(dict.fromkeys((*own, asked, *filter(asked.includes, ALL))))
 
 
-def path_postures(problem: PlanningProblem) -> list[Posture]:
+def path_beginnings(problem: PlanningProblem) -> list[Array]:
     """
-    Return the postures for a path of the tip, in order.
+    Return joint positions in which a path of the tip may begin, in order.
 
     Parameters
     ----------
     problem : PlanningProblem
-        Via points, the requested branch, and the start: along a path of the tip its posture is
+        Via points, the requested posture, and the start: along a path of the tip its branch is
         kept.
 
     Returns
     -------
-    list of Posture
-        At least one, in which the path begins: without a start the shoulder's front, or the back
-        too where the path changes from one to the other.
+    list of ndarray, shape (3,)
+        The start, or the solutions at the first via point up to whole turns, those first in whose
+        posture the estimated time through the via points is least [rad].
 
     Raises
     ------
     StartStateError
-        If the start is on another elbow branch than requested.
+        If the start is in another posture than requested.
+    UnreachableError
+        If there is none.
 
     """
-    model, start, elbow = problem.model, problem.start, problem.request.elbow
-    if start is None:
-        shoulders = SHOULDERS if passes_axis(problem.request.via_points) else SHOULDERS[:1]
-        return [Posture(e, s) for s in shoulders for e in ELBOWS if elbow in (None, e)]
-    own = [p for p in postures_of(model, start, JOINT_ROUNDING) if elbow in (None, p.elbow)]
-    if not own:
-        raise StartStateError(
-            f'the start state is on elbow branch {posture_of(model, start).elbow} '
-            f'({model.joint_names[2]} at {start[2]:.6g} rad): along a path of the tip the arm '
-            f'cannot change to elbow {elbow!r}')
-    return own
+    model, start, asked = problem.model, problem.start, problem.asked
+    if start is not None:
+        own = postures_of(model, start, JOINT_ROUNDING)
+        if own and not any(map(asked.includes, own)):
+            raise StartStateError(
+                f'the start state is in another posture ({posture_of(model, start)}) than '
+                f'requested ({asked}): along a path of the tip the arm cannot change it')
+        return [start]
+    first = problem.request.via_points[0]
+    found = _away_from_axis(problem, reachable(model, first))
+    asked_for = found[in_posture(model, found, asked)]
+    if not len(asked_for):
+        raise UnreachableError(f'via point 0 is out of reach with {asked}', 0.0, 0)
+    times = {p: _time(problem, p, THROUGH) for p in {posture_of(model, q) for q in asked_for}
+             if p is not None}
+    return sorted(asked_for, key=lambda q: times.get(posture_of(model, q), np.inf))
 
 
-def first_possible(postures: Sequence[Posture], attempt: Callable[[Posture], Answer]) -> Answer:
+def _away_from_axis(problem: PlanningProblem, found: Array) -> Array:
+    """Return solutions, on joint axis 1 with joint 1 towards the path and half a turn from it."""
+    frame = axis_frame(problem.model)
+    points = frame.coordinates(problem.request.via_points)
+    distance = np.hypot(*points[:, :2].T)
+    if distance[0] > TIP_ROUNDING:
+        return found
+    away = np.flatnonzero(distance > TIP_ROUNDING)
+    azimuth = float(np.arctan2(*points[away[0], 1::-1])) if len(away) else float(
+        np.clip(0.0, problem.limits.min_position[0], problem.limits.max_position[0]))
+    turned = [found.copy(), found.copy()]
+    for q, angle in zip(turned, (azimuth, azimuth + 0.5 * TURN)):
+        q[:, 0] = angle
+    return np.concatenate(turned)
+
+
+def first_possible(branches: Sequence[Branch], attempt: Callable[[Branch], Answer]) -> Answer:
     """
-    Return the answer in the first posture that has one.
+    Return the answer on the first branch that has one.
 
     Parameters
     ----------
-    postures : sequence of Posture
+    branches : sequence
         In the order in which they are tried.
     attempt : callable
-        Returns the answer in a posture, or raises why there is none.
+        Returns the answer on a branch, or raises why there is none.
 
     Returns
     -------
@@ -133,13 +155,13 @@ def first_possible(postures: Sequence[Posture], attempt: Callable[[Posture], Ans
     Raises
     ------
     UnreachableError, LimitViolationError, StartStateError
-        If there is none: of the first posture that keeps the joints' ranges, else of the first.
+        If there is none: of the first branch that keeps the joints' ranges, else of the first.
 
     """
     failures: list[RrrPlannerError] = []
-    for posture in postures:
+    for branch in branches:
         try:
-            return attempt(posture)
+            return attempt(branch)
         except (UnreachableError, LimitViolationError, StartStateError) as error:
             failures.append(error)
     raise next((e for e in failures if not isinstance(e, JointRangeError)), failures[0])
@@ -148,8 +170,10 @@ def first_possible(postures: Sequence[Posture], attempt: Callable[[Posture], Ans
 def _time(problem: PlanningProblem, posture: Posture, passing: ViaPointBehaviour) -> float:
     """Return the estimated time through via points, infinite where a joint leaves its range."""
     model, limits, start = problem.model, problem.limits, problem.start
-    assert start is not None
-    q = joint_sequence(model, limits, problem.request.via_points, posture, start, passing)
+    try:
+        q = joint_sequence(model, limits, problem.request.via_points, posture, start, passing)
+    except UnreachableError:
+        return np.inf
     if out_of_range(q, limits).any():
         return np.inf
-    return travel_time(limits, np.vstack((start, q)), passing)
+    return travel_time(limits, q if start is None else np.vstack((start, q)), passing)

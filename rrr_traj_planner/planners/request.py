@@ -25,7 +25,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, finite_array, number_array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import counted, InvalidInputError, shown
-from rrr_traj_planner.core.kinematics.postures import Elbow, ELBOWS
+from rrr_traj_planner.core.kinematics.postures import Elbow, ELBOWS, Shoulder, SHOULDERS
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.scalars import (
@@ -72,8 +72,10 @@ class PlanningRequest(ReadOnlyArrays):
     sample_period : float
         Time between the points of the answer [s].
     elbow : {'up', 'down'}, optional
-        Branch; None: with a start, its own if feasible, else the other; without, up if feasible,
-        else down.
+        Branch of the inverse kinematics at all via points. None: with a start, its own if that is
+        possible; else those of the least estimated time.
+    shoulder : {'front', 'back'}, optional
+        Likewise.
     max_deviation : float
         Largest distance of a Cartesian path from the polyline [m].
     max_tip_speed : float
@@ -106,6 +108,7 @@ class PlanningRequest(ReadOnlyArrays):
     acceleration_scaling: float = 1.0
     sample_period: float = 0.01
     elbow: Elbow | None = None
+    shoulder: Shoulder | None = None
     max_deviation: float = 0.05
     max_tip_speed: float = np.inf
     steady_zones: bool = False
@@ -128,6 +131,8 @@ class PlanningRequest(ReadOnlyArrays):
             object.__setattr__(self, name, checked(name, getattr(self, name)))
         if self.elbow is not None:
             one_of('elbow', self.elbow, ELBOWS)
+        if self.shoulder is not None:
+            one_of('shoulder', self.shoulder, SHOULDERS)
         if not callable(self.should_stop):
             raise InvalidInputError(f'should_stop is {shown(self.should_stop)}, must be callable')
         if self.segment_durations is not None:

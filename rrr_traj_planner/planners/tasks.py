@@ -22,7 +22,6 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
-from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
 T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
@@ -96,11 +95,11 @@ class CartesianTask(ReadOnlyArrays):
         Scaled as requested.
     tips : ndarray, shape (n + 1, 3)
         Tip positions [m]; the start's is the first.
+    first : ndarray, shape (3,)
+        Joint positions [rad] at the first of them, up to whole turns: the arm follows the path on
+        their branch of the inverse kinematics.
     start : ndarray, shape (3,), optional
-        Joint positions [rad] at the first of them, where the motion begins; None: in the same
-        posture, with any whole turns.
-    posture : Posture
-        In which the arm follows the path.
+        The same where the motion begins with their whole turns; None: with any.
     max_deviation : float
         Largest distance of the path from the polyline [m].
     max_tip_speed : float
@@ -117,8 +116,8 @@ class CartesianTask(ReadOnlyArrays):
     model: RobotModel
     limits: JointLimits
     tips: Array
+    first: Array
     start: Array | None
-    posture: Posture
     max_deviation: float
     max_tip_speed: float
     steady_zones: bool

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Via points in joint space, in one posture, checked against ranges and holding torques."""
+"""Via points in joint space, checked against ranges and holding torques."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ import numpy as np
 from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import format_distinct, LimitViolationError, StartStateError
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
-from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.kinematics.postures import ANY, Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
 
 
 def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
-                     start: Array | None, posture: Posture,
+                     start: Array | None, posture: Posture = ANY,
                      passing: ViaPointBehaviour = THROUGH) -> Array:
     """
-    Return joint positions of via points, all in one posture.
+    Return joint positions of via points.
 
     Parameters
     ----------
@@ -50,9 +50,9 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
     start : ndarray, shape (3,), optional
         Joint positions [rad] before the first via point.
     posture : Posture
-        The posture.
+        Of all points, so far as it is asked for.
     passing : ViaPointBehaviour
-        How the motion passes via points, for the choice of whole turns.
+        How the motion passes via points, for the choice of solutions and whole turns.
 
     Returns
     -------
@@ -62,16 +62,17 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
     Raises
     ------
     UnreachableError
-        If a point is outside the workspace.
+        If a point is outside the workspace, or out of reach in the posture.
     JointRangeError
         If a joint would be out of its range.
     LimitViolationError
         If the motors cannot hold the arm at a point.
 
     """
-    q = joint_sequence(model, limits, points, posture, start, passing)
+    q = joint_sequence(model, limits, points, posture, start, passing,
+                       lambda x: can_hold(model, limits, x))
     for i, j in np.argwhere(out_of_range(q, limits)).tolist():
-        raise range_error(model, limits, f'via point {i}', j, float(q[i, j]), posture, i)
+        raise range_error(model, limits, f'via point {i}', j, q[i], i)
     failure = holding_failure(model, limits, q)
     if failure is not None:
         raise failure
@@ -124,6 +125,29 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
     return start
 
 
+def can_hold(model: RobotModel, limits: JointLimits, q: Array) -> BoolArray:
+    """
+    Return in which poses the motors can hold the arm against gravity.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Effort limits.
+    q : ndarray, shape (n, 3)
+        Joint positions [rad].
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        Which.
+
+    """
+    most = limits.max_effort * (1.0 + TORQUE_ROUNDING)
+    return np.asarray((np.abs(gravity_torque(model, q)) <= most).all(axis=1))
+
+
 def holding_failure(model: RobotModel, limits: JointLimits, q: Array,
                     names: Sequence[str] = ()) -> LimitViolationError | None:
     """
@@ -146,11 +170,11 @@ def holding_failure(model: RobotModel, limits: JointLimits, q: Array,
         None where all can be held.
 
     """
-    torque = np.abs(gravity_torque(model, q))
-    broken = np.argwhere(torque > limits.max_effort * (1.0 + TORQUE_ROUNDING))
-    if not len(broken):
+    unheld = np.flatnonzero(~can_hold(model, limits, q))
+    if not len(unheld):
         return None
-    i, j = map(int, broken[0])
+    i, torque = int(unheld[0]), np.abs(gravity_torque(model, q))
+    j = int((torque[i] / limits.max_effort).argmax())
     where = names[i] if names else f'via point {i}'
     return holding_error(f'{where}:', model.joint_names[j], float(torque[i, j]),
                          float(limits.max_effort[j]), i)

@@ -29,7 +29,7 @@ from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.postures import ELBOWS, Posture
 from rrr_traj_planner.core.path import design as path_design
 from rrr_traj_planner.core.path.largest_radii import largest_radii
-from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.path_timing.least_time import fastest_along
 from rrr_traj_planner.planners.path_timing.task import PathTask

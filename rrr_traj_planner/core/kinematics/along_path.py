@@ -11,25 +11,31 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
-
 """
 Inverse kinematics along a path: joint positions and three derivatives by arc length.
 
-Thesis (5.8)-(5.12), differentiated three times.
-
-The derivatives of the tip's position are expressed in the arm's vertical plane, and the constraint
-of the two links in that plane is differentiated three times. Only angles need the arc tangent.
+Joint positions by Newton's method on the tip's position, from near ones; the derivatives by
+differentiating p(s) = tip(q(s)) three times (Bobrow, Dubowsky and Gibson 1985, appendix). In C.
 """
 
 from __future__ import annotations
 
-from math import pi
+from ctypes import c_int32, c_void_p
 from typing import NamedTuple
 
 import numpy as np
+from rrr_traj_planner.core.arm.compiled_arm import compiled
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kinematics.postures import Elbow, elbow_angles, Posture
+from rrr_traj_planner.core.kernels import contiguous, declared
+
+KERNELS = declared({
+    'arm_joint_path': (c_int32, [c_void_p, c_int32, *[c_void_p] * 5]),
+    'arm_follow_path': (c_int32, [c_void_p, c_int32, *[c_void_p] * 9]),
+})
+
+DETERMINANT, FIRST, SECOND, LEAST_GAIN = range(4)  # columns, as in native/joint_path.c
+REGULARITY = 4
 
 
 class JointPath(NamedTuple):
@@ -45,43 +51,30 @@ class PathPoints(NamedTuple):
     """
     Positions of the tip and their first three derivatives by arc length, shape (n, 3).
 
-    For a piece of the path in a vertical plane through joint axis 1 the plane's azimuth is given
-    too: joint 1 is constant there, also where the piece meets the axis.
+    For a piece of the path in a plane through joint axis 1 the plane's normal is given too: joint 1
+    is constant there, also where the piece meets the axis.
     """
 
     p: Array     # [m]
     dp: Array    # [1]
     ddp: Array   # [1/m]
     dddp: Array  # [1/m^2]
-    plane: Array | None = None  # [rad], shape (n,); NaN elsewhere
+    normal: Array | None = None  # unit vectors, shape (n, 3); NaN elsewhere
 
 
-def unlimited_joint_path(model: RobotModel, points: PathPoints, posture: Posture) -> JointPath:
+class FollowedPoints(NamedTuple):
+    """Joint positions at points of a path, from the first to the last that was reached."""
+
+    q: Array           # [rad], shape (m, 3)
+    rates: Array       # (2, m, 3) [rad/m]: as the path leaves and as it reaches each point
+    regularity: Array  # (2, m, 4): det J and two derivatives by arc length, least gain; likewise
+    error: Array       # (m - 1,) [rad]: of each position predicted from the one before
+
+
+def joint_path_near(model: RobotModel, points: PathPoints,
+                    guess: Array) -> tuple[JointPath, Array]:
     """
-    Return continuous joint positions along a path, without regard to the joints' ranges.
-
-    Parameters
-    ----------
-    model : RobotModel
-        The arm.
-    points : PathPoints
-        In the path's order, none singular.
-    posture : Posture
-        The posture; where the path crosses joint axis 1, at its beginning.
-
-    Returns
-    -------
-    JointPath
-        Joint positions and derivatives.
-
-    """
-    found = joint_path_modulo_turns(model, points, posture)
-    return found._replace(q=np.unwrap(found.q, axis=0))
-
-
-def joint_path_modulo_turns(model: RobotModel, points: PathPoints, posture: Posture) -> JointPath:
-    """
-    Return joint positions at points of a path, each joint up to whole turns.
+    Return joint positions at points of a path, the nearest to given ones.
 
     Parameters
     ----------
@@ -89,81 +82,96 @@ def joint_path_modulo_turns(model: RobotModel, points: PathPoints, posture: Post
         The arm.
     points : PathPoints
         In any order, none singular.
-    posture : Posture
-        The posture; where the path crosses joint axis 1, at its beginning.
+    guess : ndarray, shape (n, 3)
+        Positions near those sought [rad].
 
     Returns
     -------
     JointPath
-        Joint positions and derivatives.
+        Joint positions and derivatives; NaN where there is no solution near the guess.
+    ndarray, shape (n, 4)
+        Determinant of the Jacobian and two derivatives by arc length [m^3, m^2, m], and its least
+        gain, a lower bound on its least singular value [m/rad].
 
     """
-    theta_1, radial = _cylindrical(points)
-    if points.plane is not None:
-        _fix_joint_1(points, points.plane, theta_1, radial)
-    if posture.shoulder == 'back':
-        theta_1[0], radial = theta_1[0] + pi, [-x for x in radial]
-    z = np.array(radial), np.stack([x[:, 2] for x in points[:4]])
-    z[1][0] -= model.d1
-    upper, fore = _in_plane(model, np.stack(z, axis=1), posture.elbow)
-    # The forearm's direction in the plane is theta_2 + theta_3 - 90 deg.
-    third = [f - u for f, u in zip(fore, upper)]
-    third[0] = third[0] + pi / 2
-    return JointPath(*(np.stack(joints, axis=-1) for joints in zip(theta_1, upper, third)))
+    n, arm = len(guess), compiled(model)
+    path, normal, q = contiguous(np.array(points[:4])), points.normal, np.array(guess, dtype=float)
+    normals = None if normal is None else contiguous(normal)
+    derivatives, regularity = np.empty((n, 3, 3)), np.empty((n, REGULARITY))
+    done = KERNELS.arm_joint_path(
+        arm.address, n, path.ctypes.data, _address(normals), q.ctypes.data,
+        derivatives.ctypes.data, regularity.ctypes.data)
+    if done < n:
+        raise RuntimeError(f'no joint positions at point {done} of a path near {guess[done]} rad')
+    return JointPath(q, *np.moveaxis(derivatives, 1, 0)), regularity
 
 
-def _cylindrical(points: PathPoints) -> tuple[list[Array], list[Array]]:
-    """Return theta_1 and the distance from joint axis 1, each with three derivatives."""
-    theta = np.arctan2(points.p[:, 1], points.p[:, 0])
-    r = np.hypot(points.p[:, 0], points.p[:, 1])
-    if points.plane is not None:  # avoids 0 / 0 on the axis; `_fix_joint_1` sets the values
-        r = np.where(np.isfinite(points.plane), 1.0, r)
-    c, s = points.p[:, 0] / r, points.p[:, 1] / r
-    # Radial and tangential components of each derivative.
-    (u1, t1), (u2, t2), (u3, t3) = (
-        (c * d[:, 0] + s * d[:, 1], c * d[:, 1] - s * d[:, 0]) for d in points[1:4])
-    theta1, r1 = t1 / r, u1
-    theta2 = (t2 - 2.0 * r1 * theta1) / r
-    r2 = u2 + r * theta1 ** 2
-    theta3 = (t3 + theta1 * (r * theta1 ** 2 - 3.0 * r2) - 3.0 * r1 * theta2) / r
-    r3 = u3 + 3.0 * r1 * theta1 ** 2 + 3.0 * r * theta1 * theta2
-    return [theta, theta1, theta2, theta3], [r, r1, r2, r3]
-
-
-def _fix_joint_1(points: PathPoints, plane: Array, theta_1: list[Array],
-                 radial: list[Array]) -> None:
-    """Set theta_1 and the signed distance from joint axis 1 where joint 1 is constant."""
-    at = np.flatnonzero(np.isfinite(plane))
-    theta = plane[at]
-    theta_1[0][at] = theta
-    for derivative in theta_1[1:]:
-        derivative[at] = 0.0
-    for r, x in zip(radial, points[:4]):
-        assert x is not None
-        r[at] = np.cos(theta) * x[at, 0] + np.sin(theta) * x[at, 1]
-
-
-def _in_plane(model: RobotModel, z: Array, elbow: Elbow) -> tuple[list[Array], list[Array]]:
+def follow_points(model: RobotModel, s: Array, leaving: PathPoints, reaching: PathPoints,
+                  first: Array) -> FollowedPoints:
     """
-    Return the directions of both links in the arm's plane, each with three derivatives.
+    Return joint positions along a path by continuation from its first point.
 
-    With z the tip's radial and vertical position and its derivatives, shape (4, 2, n): z = a + b
-    with a of length a2 at angle A, b of length d4 at angle B. Each derivative of this equation is
-    linear in the highest derivatives of A and B.
+    Each position is predicted by a Taylor polynomial from the one before, then corrected
+    (predictor-corrector: Allgower and Georg, Introduction to Numerical Continuation Methods,
+    2003, chapter 2).
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    s : ndarray, shape (n,)
+        Path coordinates [m], ascending.
+    leaving, reaching : PathPoints
+        The path there, after and before each point.
+    first : ndarray, shape (3,)
+        Joint positions near those at the first point [rad].
+
+    Returns
+    -------
+    FollowedPoints
+        Up to the last point that was reached before a singular one.
+
     """
-    a2, d4 = model.a2, model.d4
-    beta, theta_3 = elbow_angles(model, np.hypot(*z[0]), elbow)
-    A = np.arctan2(z[0, 1], z[0, 0]) + beta
-    B = A + theta_3 - pi / 2
-    a, b = (length * np.array([np.cos(x), np.sin(x)]) for length, x in ((a2, A), (d4, B)))
-    area = a[1] * b[0] - a[0] * b[1]
+    n, arm = len(s), compiled(model)
+    q, rates = np.empty((n, 3)), np.empty((2, n, 3, 3))
+    regularity, error = np.empty((2, n, REGULARITY)), np.empty(n - 1)
+    q[0] = first
+    s = contiguous(s)
+    of_sides = [contiguous(np.array(side[:4])) for side in (leaving, reaching)]
+    normals = [None if side.normal is None else contiguous(side.normal)
+               for side in (leaving, reaching)]
+    done = KERNELS.arm_follow_path(
+        arm.address, n, s.ctypes.data, *(address for side, normal in zip(of_sides, normals)
+                                         for address in (side.ctypes.data, _address(normal))),
+        q.ctypes.data, rates.ctypes.data, regularity.ctypes.data, error.ctypes.data)
+    return FollowedPoints(q[:done], rates[:, :done, 0], regularity[:, :done],
+                          error[:max(done - 1, 0)])
 
-    def solve(w: Array) -> tuple[Array, Array]:
-        """Return x and y with x a + y b, rotated by 90 deg, equal to w."""
-        return -(w * b).sum(axis=0) / area, (w * a).sum(axis=0) / area
 
-    A1, B1 = solve(z[1])
-    A2, B2 = solve(z[2] + A1 ** 2 * a + B1 ** 2 * b)
-    cubic = A1 * A1 ** 2 * a + B1 * B1 ** 2 * b
-    A3, B3 = solve(z[3] + 3.0 * (A1 * A2 * a + B1 * B2 * b) + np.array([-cubic[1], cubic[0]]))
-    return [A, A1, A2, A3], [B, B1, B2, B3]
+def singular_distance(regularity: Array) -> Array:
+    """
+    Return the distances to the nearest singular positions along a path, in the complex plane.
+
+    The squared determinant is analytic there, where joint positions have a branch point: of its
+    Taylor polynomial of degree 2, the root nearest to 0.
+
+    Parameters
+    ----------
+    regularity : ndarray, shape (..., 4)
+        As returned by `joint_path_near`.
+
+    Returns
+    -------
+    ndarray, shape (...)
+        [m], infinite where there is none.
+
+    """
+    det, first, second = np.moveaxis(regularity[..., :LEAST_GAIN], -1, 0)
+    a, b, c = first ** 2 + det * second, det * first, det ** 2  # of a x^2 + 2 b x + c
+    farther = np.abs(np.abs(b) + np.sqrt(b * b - a * c + 0j))   # a times the other root
+    with np.errstate(divide='ignore', invalid='ignore'):
+        return np.asarray(np.where(c > 0.0, c / farther, 0.0))
+
+
+def _address(array: Array | None) -> int | None:
+    return None if array is None else int(array.ctypes.data)

@@ -23,7 +23,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import format_distinct, JointRangeError
-from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.kinematics.postures import posture_of
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 
 TURN = 2.0 * pi  # rad
@@ -104,8 +104,8 @@ def out_of_range(q: Array, limits: JointLimits) -> BoolArray:
     return outside
 
 
-def range_error(model: RobotModel, limits: JointLimits, where: str, joint: int, value: float,
-                posture: Posture, via_point: int = -1) -> JointRangeError:
+def range_error(model: RobotModel, limits: JointLimits, where: str, joint: int, q: Array,
+                via_point: int = -1) -> JointRangeError:
     """
     Return the error for a joint out of its range.
 
@@ -119,10 +119,8 @@ def range_error(model: RobotModel, limits: JointLimits, where: str, joint: int, 
         Location in the plan, for the message.
     joint : int
         Index of the joint.
-    value : float
-        Its position there [rad].
-    posture : Posture
-        Posture of the solution.
+    q : ndarray, shape (3,)
+        Joint positions there [rad].
     via_point : int
         Index of the via point at fault, -1 if there is none.
 
@@ -132,9 +130,11 @@ def range_error(model: RobotModel, limits: JointLimits, where: str, joint: int, 
         To be raised.
 
     """
-    name, low, high = model.joint_names[joint], *(
-        float(x[joint]) for x in (limits.min_position, limits.max_position))
+    name, value = model.joint_names[joint], float(q[joint])
+    low, high = float(limits.min_position[joint]), float(limits.max_position[joint])
     at, lowest, highest = format_distinct(value, low, high)
+    posture = posture_of(model, q)
+    named = '' if posture is None else f' ({posture})'
     return JointRangeError(
-        f'{where}: {name} would be at {at} rad ({posture}), limits {lowest} to {highest} rad',
+        f'{where}: {name} would be at {at} rad{named}, limits {lowest} to {highest} rad',
         name, value, low if value < low else high, via_point)

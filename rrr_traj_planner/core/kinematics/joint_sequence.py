@@ -13,38 +13,53 @@
 # limitations under the License.
 
 """
-Inverse kinematics at consecutive via points: whole turns and free angles chosen jointly.
+Inverse kinematics at consecutive via points: solutions, whole turns and free angles chosen jointly.
 
-The nearest solution at every point gives the least travel. If it leaves a joint's range, or if the
-other direction might avoid a reversal, the turns of all points are chosen together for the least
-estimated time (`least_time_turns`). On joint axis 1, where theta_1 is free, it is interpolated
-between the point before and the point after.
+First one of the solutions at each point is chosen (`least_time_chain`), in one posture or in any.
+Then whole turns: the nearest solution at every point gives the least travel. If it leaves a joint's
+range, or if the other direction might avoid a reversal, the turns of all points are chosen together
+for the least estimated time (`least_time_turns`). On joint axis 1, where theta_1 is free, it is
+interpolated between the point before and the point after.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import UnreachableError
-from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.kinematics.axis_frame import axis_frame
+from rrr_traj_planner.core.kinematics.inverse import point_text, reachable
 from rrr_traj_planner.core.kinematics.joint_ranges import (
     nearest_turns,
     out_of_range,
     TURN,
     whole_turns,
 )
+from rrr_traj_planner.core.kinematics.least_time_chain import least_time_chain
 from rrr_traj_planner.core.kinematics.least_time_turns import least_time_turns, TRAVEL
-from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.kinematics.postures import ANY, in_posture, Posture
+from rrr_traj_planner.core.kinematics.solutions import all_solutions
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_times, ViaPointBehaviour
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
+# Cost of a solution that is out of a range or cannot be held, far above any motion's time; so the
+# fewest of them are taken. Chosen.
+IMPOSSIBLE = 1e9  # s
 
-def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, posture: Posture,
-                   start: Array | None = None, passing: ViaPointBehaviour = THROUGH) -> Array:
+# Range of a joint from which on the turns of its solutions are not listed one by one: they are
+# chosen afterwards. Chosen: up to then a solution has at most two.
+WIDE = 2.0 * TURN  # rad
+
+
+def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, posture: Posture = ANY,
+                   start: Array | None = None, passing: ViaPointBehaviour = THROUGH,
+                   can_hold: Callable[[Array], BoolArray] | None = None) -> Array:
     """
-    Return joint positions at consecutive via points, all in one posture.
+    Return joint positions at consecutive via points.
 
     Parameters
     ----------
@@ -55,11 +70,14 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
     points : ndarray, shape (n, 3)
         Tip positions [m].
     posture : Posture
-        The posture.
+        Of all points, so far as it is asked for.
     start : ndarray, shape (3,), optional
         Joint positions before the first point [rad].
     passing : ViaPointBehaviour
         How the motion passes the points, for the estimate of time.
+    can_hold : callable, optional
+        Which of joint positions (m, 3) the arm can hold at rest, (m,); others are avoided. None:
+        all.
 
     Returns
     -------
@@ -69,11 +87,13 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
     Raises
     ------
     UnreachableError
-        If a point is outside the workspace; with its number.
+        If a point is outside the workspace, or out of reach in the posture; with its number.
 
     """
-    q = _solutions(model, points, posture)
-    free = np.hypot(points[:, 0], points[:, 1]) <= TIP_ROUNDING
+    frame = axis_frame(model)
+    free = np.hypot(*frame.coordinates(points)[:, :2].T) <= TIP_ROUNDING
+    options = _options(model, limits, points, posture, free)
+    q = _chosen(limits, options, start, passing, can_hold)
     if start is not None:
         q, free = np.vstack((start, q)), np.concatenate(([False], free))
     if free.all():
@@ -96,14 +116,63 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
     return q if start is None else q[1:]
 
 
-def _solutions(model: RobotModel, points: Array, posture: Posture) -> Array:
-    """Return joint positions at each point, each joint up to whole turns."""
-    q = np.empty((len(points), 3))
-    for i, point in enumerate(points):
-        try:
-            q[i] = inverse_kinematics(model, point, posture.elbow, shoulder=posture.shoulder)
-        except UnreachableError as error:
-            raise UnreachableError(f'via point {i}: {error}', error.distance, i) from None
+def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Posture,
+             free: BoolArray) -> list[Array]:
+    """Return the solutions at each point; NaN where joint 1 is free."""
+    found, count = all_solutions(model, points)
+    options = []
+    for i, (q, n) in enumerate(zip(found, count)):
+        fits = q[:n][in_posture(model, q[:n], posture)]
+        if not len(fits):
+            raise _unreachable(model, points[i], posture, i)
+        options.append(_with_turns(fits, limits, free[i]))
+        if free[i]:
+            options[-1][:, 0] = np.nan
+    return options
+
+
+def _chosen(limits: JointLimits, options: list[Array], start: Array | None,
+            passing: ViaPointBehaviour, can_hold: Callable[[Array], BoolArray] | None) -> Array:
+    """Return one of the solutions at each point, up to whole turns."""
+    wide = limits.max_position - limits.min_position > WIDE
+    costs = []
+    for q in options:
+        outside = (out_of_range(q, limits) & ~wide).any(axis=1)
+        held = np.ones(len(q), dtype=bool) if can_hold is None else can_hold(q)
+        costs.append(IMPOSSIBLE * (2.0 * outside + ~held))
+    if start is None:
+        return np.array([q[k] for q, k in zip(options, least_time_chain(
+            limits, options, costs, passing))])
+    chosen = least_time_chain(
+        limits, [start[np.newaxis], *options], [np.zeros(1), *costs], passing)
+    return np.array([q[k] for q, k in zip(options, chosen[1:])])
+
+
+def _unreachable(model: RobotModel, point: Array, posture: Posture, i: int) -> UnreachableError:
+    """Return the error of a via point without a solution in the posture."""
+    try:
+        reachable(model, point)
+    except UnreachableError as error:
+        return UnreachableError(f'via point {i}: {error}', error.distance, i)
+    return UnreachableError(
+        f'via point {i}: {point_text(point)} is out of reach with {posture}', 0.0, i)
+
+
+def _with_turns(q: Array, limits: JointLimits, free: bool) -> Array:
+    """Return solutions with every whole turn within the ranges, or as they are outside all."""
+    for j in range(1 if free else 0, 3):
+        low, high = limits.min_position[j], limits.max_position[j]
+        if high - low > WIDE:
+            continue
+        first = np.ceil((low - q[:, j]) / TURN)
+        turned = []
+        for turns in (first, first + 1.0, first + 2.0):
+            inside = q.copy()
+            inside[:, j] += TURN * turns
+            turned.append(inside[inside[:, j] <= high])
+        none = q[q[:, j] + TURN * first > high]
+        none[:, j] += TURN * np.round((0.5 * (low + high) - none[:, j]) / TURN)
+        q = np.concatenate((*turned, none))
     return q
 
 

@@ -13,9 +13,10 @@
 # limitations under the License.
 
 """
-The four branches of the inverse kinematics: elbow up or down, shoulder front or back.
+The named branches of the inverse kinematics: elbow up or down, shoulder front or back.
 
-Thesis (5.8)-(5.12).
+They are the signs of the two factors of the Jacobian's determinant (`branch_factors`); an arm whose
+determinant has no such factors has no named postures. Thesis (5.8)-(5.12) for its arm.
 """
 
 from __future__ import annotations
@@ -24,9 +25,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.kinematics.forward import radial_distance
-from rrr_traj_planner.core.rounding import TIP_ROUNDING
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.kinematics.branch_factors import branch_factors, has_named_postures
+
+ROUNDING = 1e-9  # part of a factor's scale up to which it is none; chosen
 
 Elbow = Literal['up', 'down']
 Shoulder = Literal['front', 'back']
@@ -36,57 +38,51 @@ SHOULDERS: tuple[Shoulder, Shoulder] = ('front', 'back')
 
 class Posture(NamedTuple):
     """
-    A branch of the inverse kinematics.
+    A branch of the inverse kinematics, or what is asked of one.
 
     Parameters
     ----------
-    elbow : {'up', 'down'}
-        By the sign of cos theta_3 (5.10): up where theta_3 is within a right angle of 0. With
+    elbow : {'up', 'down'}, optional
+        None: either. Of the thesis's arm it is up where theta_3 is within a right angle of 0: with
         the shoulder at the front, the elbow is then above the line from shoulder to tip.
-    shoulder : {'front', 'back'}
-        Front where joint 1 turns the arm's plane towards the tip, back where the arm reaches
-        over its shoulder: joint 1 is half a turn away.
+    shoulder : {'front', 'back'}, optional
+        Front where the tip is on that side of joint axis 1 on which it is with all joints at zero,
+        back where the arm reaches over its shoulder. None: either.
 
     """
 
-    elbow: Elbow = 'up'
-    shoulder: Shoulder = 'front'
+    elbow: Elbow | None = None
+    shoulder: Shoulder | None = None
 
     def __str__(self) -> str:
         """Return the posture for an error's message."""
-        return f'elbow {self.elbow}' + (', shoulder back' if self.shoulder == 'back' else '')
+        names = [f'{kind} {name}' for kind, name in zip(self._fields, self) if name is not None]
+        return ', '.join(names[:1] if self.shoulder == 'front' and self.elbow else names)
+
+    def includes(self, other: Posture | None) -> bool:
+        """
+        Return whether another posture is one of those asked for.
+
+        Parameters
+        ----------
+        other : Posture, optional
+            None: without a name.
+
+        Returns
+        -------
+        bool
+            False where a name is asked for that the other does not have.
+
+        """
+        return all(asked is None or (other is not None and asked == name)
+                   for asked, name in zip(self, other or self))
 
 
-def elbow_angles(model: RobotModel, distance: Array, elbow: Elbow) -> tuple[Array, Array]:
-    """
-    Return the angles of the triangle of shoulder, elbow and tip (5.9, 5.11).
-
-    Half-angle and tangent forms: accurate at the workspace's edges too.
-
-    Parameters
-    ----------
-    model : RobotModel
-        The arm.
-    distance : ndarray
-        Of the tip from the shoulder, within reach [m].
-    elbow : {'up', 'down'}
-        The branch.
-
-    Returns
-    -------
-    shoulder : ndarray
-        From the direction of the tip to that of link 2 [rad].
-    theta_3 : ndarray
-        Position of joint 3, in [-pi/2, 3 pi/2] [rad].
-
-    """
-    (least, most), W = model.reach, distance
-    gamma = 2.0 * np.arctan2(np.sqrt((W - least) * (W + least)), np.sqrt((most - W) * (most + W)))
-    beta = np.arctan2(model.d4 * np.sin(gamma), model.a2 - model.d4 * np.cos(gamma))
-    return (beta, gamma - 0.5 * np.pi) if elbow == 'up' else (-beta, 1.5 * np.pi - gamma)
+ANY = Posture()
+ALL = tuple(Posture(elbow, shoulder) for shoulder in SHOULDERS for elbow in ELBOWS)
 
 
-def posture_of(model: RobotModel, q: Array) -> Posture:
+def posture_of(model: RobotModel, q: Array) -> Posture | None:
     """
     Return the posture of joint positions.
 
@@ -99,11 +95,47 @@ def posture_of(model: RobotModel, q: Array) -> Posture:
 
     Returns
     -------
-    Posture
-        At a singular position, up rather than down and front rather than back.
+    Posture or None
+        None where the arm's postures have no names. At a singular position, up rather than down
+        and front rather than back.
 
     """
-    return postures_of(model, q, 0.0)[0]
+    if not has_named_postures(model):
+        return None
+    elbow, shoulder = _relative_factors(model, q)
+    return Posture(ELBOWS[0 if elbow >= -ROUNDING else 1],
+                   SHOULDERS[0 if shoulder >= -ROUNDING else 1])
+
+
+def in_posture(model: RobotModel, q: Array, posture: Posture) -> BoolArray:
+    """
+    Return which joint positions are in a posture.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q : ndarray, shape (n, 3)
+        Joint positions [rad].
+    posture : Posture
+        What is asked for.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        All where nothing is asked for; none where the arm's postures have no names. Positions
+        where postures meet are in both.
+
+    """
+    if posture == ANY:
+        return np.ones(len(q), dtype=bool)
+    if not has_named_postures(model):
+        return np.zeros(len(q), dtype=bool)
+    fits = np.ones(len(q), dtype=bool)
+    for factor, asked, names in zip(_relative_factors(model, q), posture, (ELBOWS, SHOULDERS)):
+        if asked is not None:
+            fits &= (factor if asked == names[0] else -factor) >= -ROUNDING
+    return fits
 
 
 def postures_of(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
@@ -119,18 +151,25 @@ def postures_of(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
     q : ndarray, shape (3,)
         Joint positions [rad].
     tolerance : float
-        Distance of joint 3 from the angle at which elbow up and down meet [rad]; times the arm's
-        reach, distance of the tip from joint axis 1 [m].
+        Part of their scales up to which factors of the determinant count as zero.
 
     Returns
     -------
     list of Posture
-        The posture of the positions themselves first.
+        The posture of the positions themselves first; none where postures have no names.
 
     """
-    cosine, r = float(np.cos(q[2])), float(radial_distance(model, q))
-    elbows = ELBOWS if cosine >= 0.0 else ELBOWS[::-1]
-    shoulders = SHOULDERS if r >= -TIP_ROUNDING else SHOULDERS[::-1]
-    return [Posture(elbow, shoulder)
-            for shoulder in shoulders[:2 if abs(r) <= tolerance * model.reach[1] else 1]
-            for elbow in elbows[:2 if abs(cosine) <= tolerance else 1]]
+    own = posture_of(model, q)
+    if own is None:
+        return []
+    near = [bool(abs(float(factor)) <= tolerance) for factor in _relative_factors(model, q)]
+    others = [p for p in ALL if p != own and all(
+        meets or a == b for meets, a, b in zip(near, p, own))]
+    return [own, *others]
+
+
+def _relative_factors(model: RobotModel, q: Array) -> tuple[Array, Array]:
+    """Return the factors over their scales: a product of two links' lengths, and the reach."""
+    elbow, shoulder = branch_factors(model, q)
+    size = model.chain.size
+    return elbow / (0.5 * size) ** 2, shoulder / size

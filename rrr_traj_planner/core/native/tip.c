@@ -13,7 +13,7 @@
 // limitations under the License.
 
 /* The tip's position and its derivatives by joint positions, from an arm's table. */
-#include "arm.h"
+#include "tip.h"
 #include "trigonometric.h"
 
 #include "export.h"
@@ -21,38 +21,44 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Add a derivative, a, b and c times by the joints, of all coordinates; out: stride doubles from
- * one to the next. */
-static void add_derivative(const Arm *arm, const Basis *by, int a, int b, int c, double *out,
-                           size_t stride)
+/* By how often each derivative is taken by q1, q2, q3; of one order in sequence. */
+static const int8_t order_of[ORDERS][3] = {
+    {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1},
+    {2, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 2, 0}, {0, 1, 1}, {0, 0, 2},
+    {3, 0, 0}, {2, 1, 0}, {2, 0, 1}, {1, 2, 0}, {1, 1, 1}, {1, 0, 2}, {0, 3, 0}, {0, 2, 1},
+    {0, 1, 2}, {0, 0, 3}};
+
+void tip_derivatives(const Arm *arm, const double *q, int order, Vector *x)
 {
+    static const int counts[] = {1, 4, 10, ORDERS};
+    const int count = counts[order];
+    Basis by[3];
+    bases(q, order, by);
+    memset(x, 0, (size_t)count * sizeof *x);
     for (int n = 0; n < arm->tip_count; ++n) {
         const int32_t *at = arm->tip_at + 4 * n;
-        out[at[0] * stride] += arm->tip[n] * by[0].d[a][at[1]] * by[1].d[b][at[2]]
-            * by[2].d[c][at[3]];
+        for (int k = 0; k < count; ++k)
+            x[k][at[0]] += arm->tip[n] * by[0].d[order_of[k][0]][at[1]]
+                * by[1].d[order_of[k][1]][at[2]] * by[2].d[order_of[k][2]][at[3]];
     }
 }
 
 /* Positions (n, 3). */
 EXPORTED void arm_tip(const Arm *arm, int32_t n, const double *q, double *p)
 {
-    memset(p, 0, 3 * (size_t)n * sizeof *p);
-    for (int s = 0; s < n; ++s, q += 3, p += 3) {
-        Basis by[3];
-        bases(q, 0, by);
-        add_derivative(arm, by, 0, 0, 0, p, 1);
-    }
+    for (int s = 0; s < n; ++s, q += 3, p += 3)
+        tip_derivatives(arm, q, 0, (Vector *)p);
 }
 
 /* Jacobians (n, 3, 3): coordinate, joint. */
 EXPORTED void arm_jacobian(const Arm *arm, int32_t n, const double *q, double *J)
 {
-    memset(J, 0, 9 * (size_t)n * sizeof *J);
     for (int s = 0; s < n; ++s, q += 3, J += 9) {
-        Basis by[3];
-        bases(q, 1, by);
+        Vector x[4];
+        tip_derivatives(arm, q, 1, x);
         for (int j = 0; j < 3; ++j)
-            add_derivative(arm, by, j == 0, j == 1, j == 2, J + j, 3);
+            for (int c = 0; c < 3; ++c)
+                J[3 * c + j] = x[first_by[j]][c];
     }
 }
 
@@ -61,18 +67,13 @@ EXPORTED void arm_jacobian_rate(const Arm *arm, int32_t n, const double *q, cons
                                 double *rate)
 {
     for (int s = 0; s < n; ++s, q += 3, qd += 3, rate += 9) {
-        Basis by[3];
-        double second[3][3][3] = {{{0.0}}};  /* joint, joint, coordinate */
-        bases(q, 2, by);
-        for (int i = 0; i < 3; ++i)
-            for (int j = i; j < 3; ++j)
-                add_derivative(arm, by, (i == 0) + (j == 0), (i == 1) + (j == 1),
-                               (i == 2) + (j == 2), second[i][j], 1);
-        for (int x = 0; x < 3; ++x)
+        Vector x[10];
+        tip_derivatives(arm, q, 2, x);
+        for (int c = 0; c < 3; ++c)
             for (int i = 0; i < 3; ++i) {
-                rate[3 * x + i] = 0.0;
+                rate[3 * c + i] = 0.0;
                 for (int j = 0; j < 3; ++j)
-                    rate[3 * x + i] += second[i < j ? i : j][i < j ? j : i][x] * qd[j];
+                    rate[3 * c + i] += x[second_by[i][j]][c] * qd[j];
             }
     }
 }

@@ -21,25 +21,14 @@ Int. J. Robotics Research 4(3), 1985.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array, BoolArray, parameter_values
-from rrr_traj_planner.core.kinematics.along_path import (
-    joint_path_modulo_turns,
-    JointPath,
-    unlimited_joint_path,
-)
-from rrr_traj_planner.core.kinematics.joint_ranges import nearest_turns, TURN, whole_turns
-from rrr_traj_planner.core.kinematics.postures import Posture
-from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
-from rrr_traj_planner.core.path.cartesian_path import CartesianPath
-from rrr_traj_planner.core.read_only import make_read_only, ReadOnlyArrays
+from rrr_traj_planner.core.arrays import Array, parameter_values
+from rrr_traj_planner.core.path.arm_path import ArmPath
+from rrr_traj_planner.core.read_only import make_read_only
 from rrr_traj_planner.core.trajectory.maximum import maximum_over_time
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory.trajectory import (
@@ -55,69 +44,6 @@ STEPS_PER_KNOT = 6       # of the time between knots, in the search for extremes
 # rad, makes positions positive, as `maximum_over_time` requires: above all ranges but of 16 turns.
 POSITION_OFFSET = 1e2
 LEAST_STEP = 1e-6        # rad/s^2; acceleration steps below this are rounding; chosen
-
-
-@dataclass(frozen=True, eq=False)
-class ArmPath(ReadOnlyArrays):
-    """
-    A path of the tip as one arm follows it, in one posture.
-
-    Parameters
-    ----------
-    model : RobotModel
-        The arm.
-    limits : JointLimits
-        Joint ranges, which determine the whole turns of each joint.
-    path : CartesianPath
-        The path, within the workspace and the ranges.
-    posture : Posture
-        The posture.
-    start : ndarray, shape (3,), optional
-        As in `whole_turns`.
-
-    """
-
-    model: RobotModel
-    limits: JointLimits
-    path: CartesianPath
-    posture: Posture
-    start: Array | None = None
-
-    @cached_property
-    def planes(self) -> AxisPlanes:
-        """Parts of the path in a plane through joint axis 1, where joint 1 is constant."""
-        return axis_planes(
-            self.path, self.posture, 0.0 if self.start is None else float(self.start[0]))
-
-    @cached_property
-    def _turning(self) -> tuple[Array, Array]:
-        """Path coordinates, and joint positions there with their whole turns."""
-        s = self.path.grid
-        q = unlimited_joint_path(self.model, self.planes.points(self.path, s), self.posture).q
-        return s, q + whole_turns(q, self.limits, self.start)
-
-    def __call__(self, s: Array, left: bool | BoolArray = False) -> JointPath:
-        """
-        Return joint positions and their derivatives by arc length.
-
-        Parameters
-        ----------
-        s : ndarray, shape (m,)
-            Path coordinates [m], in any order.
-        left : bool or ndarray of bool, shape (m,)
-            At a join, the values of the piece that ends there.
-
-        Returns
-        -------
-        JointPath
-            Of shape (m, 3) each.
-
-        """
-        found = joint_path_modulo_turns(
-            self.model, self.planes.points(self.path, s, left), self.posture)
-        grid, known = self._turning
-        near = np.stack([np.interp(s, grid, known[:, j]) for j in range(3)], axis=1)
-        return found._replace(q=found.q + TURN * nearest_turns(near - found.q))
 
 
 class PathPeaks(NamedTuple):

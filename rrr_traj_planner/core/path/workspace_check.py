@@ -16,68 +16,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
-from rrr_traj_planner.core.errors import (
-    format_distinct,
-    LimitViolationError,
-    StartStateError,
-    UnreachableError,
-)
-from rrr_traj_planner.core.kinematics.along_path import unlimited_joint_path
+from rrr_traj_planner.core.errors import format_distinct, StartStateError
+from rrr_traj_planner.core.kinematics.axis_frame import axis_frame
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import (
     nearest_turns,
     range_error,
     TURN,
     whole_turns,
 )
-from rrr_traj_planner.core.kinematics.postures import Posture
-from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
+from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
+from rrr_traj_planner.core.path.following import followed_path, place_on_path, SHORTEST_STEP
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 
-# Intervals that may contain an excursion are halved: largest number of rounds, shortest interval;
-# chosen: 1e-12 of the first, and less than the tip is told apart by.
-BISECTIONS = 40
-SHORTEST_STEP = 1e-9  # m
-
-# Least distance from joint axis 1 at which the tip may pass it: nearer, joint 1 would have to turn
-# with practically unbounded velocity. Chosen.
-AXIS_CLEARANCE = 1e-6   # m
+BISECTIONS = 40  # largest number of rounds of halving intervals; chosen: 1e-12 of the first
 
 # Largest excursions that may be missed, chosen so that what is missed is rounding to later checks:
-FINEST = 1e-8           # m^2, of a squared distance
 COARSE_ANGLE = 1e-8     # rad, of a joint
 FINEST_ANGLE = 0.01 * JOINT_ROUNDING  # rad, of a joint within NEAR_END of an end of its range
 NEAR_END = 1e-6         # rad
 # Bound on a second derivative between two samples, over the larger of theirs; chosen.
 SAFETY = 2.0
 
-# Values and a bound on the magnitude of their second derivatives by s, shape (m,) each.
-Quantity = Callable[[Array], tuple[Array, Array]]
 
-
-class JointRange(NamedTuple):
-    """Joint positions at the start of a path, and their extremes along it [rad]."""
-
-    start: Array  # shape (3,); with the whole turns that keep each joint in its range
-    least: Array
-    most: Array
-
-
-def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
-                    posture: Posture, start: Array | None = None,
-                    should_stop: ShouldStop = never) -> JointRange:
+def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath, first: Array,
+                    start: Array | None = None, should_stop: ShouldStop = never) -> ArmPath:
     """
-    Raise if a path leaves the workspace or a joint's range anywhere, between points too.
+    Return a path as an arm follows it, within the joints' ranges; raise if it cannot.
 
-    Every interval in which a bound on the second derivative allows an excursion is
+    Every interval in which a bound on the second derivative allows a joint to leave its range is
     halved until none is left.
 
     Parameters
@@ -88,17 +63,17 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
         Ranges of the joints.
     path : CartesianPath
         The path.
-    posture : Posture
-        The posture; where the path crosses joint axis 1 in a plane with it, at its beginning.
+    first : ndarray, shape (3,)
+        Joint positions at its beginning, up to whole turns [rad].
     start : ndarray, shape (3,), optional
-        Joint positions in which the path is to begin [rad]; None: in any whole turns.
+        The same, with the whole turns with which the path is to begin; None: with any.
     should_stop : callable
         Polled in every round; called for its exceptions; the return value is ignored.
 
     Returns
     -------
-    JointRange
-        Joint positions at the start, and their extremes along the path.
+    ArmPath
+        Its known joint positions contain their extremes along the path.
 
     Raises
     ------
@@ -109,159 +84,62 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
         If the path crosses joint axis 1 where joint 1 would have to turn, or a joint leaves its
         range; likewise.
     StartStateError
-        If the path does not begin in the given joint positions.
+        If the arm would have to turn joint 1 first, with the tip on its axis.
 
     """
-    planes = axis_planes(path, posture, _free_angle(limits, start))
-    _check_reach(model, path)
-    _check_axis(model, path, planes)
-    grid = path.grid
+    if start is not None:
+        _check_direction(model, path, start)
+    arm_path = followed_path(model, path, first, should_stop)
+    arm_path = arm_path.turned(whole_turns(arm_path.q, limits, start))
+    arm_path = _with_extremes(arm_path, limits, should_stop)
+    _check_ranges(arm_path, limits)
+    return arm_path
+
+
+def _check_direction(model: RobotModel, path: CartesianPath, start: Array) -> None:
+    """Raise if a path leaves joint axis 1 in a plane other than that in which the arm is."""
+    frame = axis_frame(model)
+    if not frame.swings_in_plane or np.hypot(
+            *frame.coordinates(forward_kinematics(model, start))[:2]) > TIP_ROUNDING:
+        return
+    off_axis = frame.coordinates(path(path.grid)[0])
+    away = np.flatnonzero(np.hypot(*off_axis[:, :2].T) > TIP_ROUNDING)
+    if not len(away):
+        return
+    leaves = path(path.grid[max(away[0] - 1, 0)])
+    x, y, _ = frame.rotation @ leaves[1]
+    if np.hypot(x, y) <= TIP_ROUNDING:
+        x, y, _ = off_axis[away[0]]
+    wanted = float(np.arctan2(y, x))
+    wanted += 0.5 * TURN * float(np.round((start[0] - wanted) / (0.5 * TURN)))
+    if abs(wanted - start[0]) > JOINT_ROUNDING:
+        at, needed = format_distinct(float(start[0]), wanted)
+        raise StartStateError(
+            f'start state: {model.joint_names[0]} is at {at} rad with the tip on joint axis 1 '
+            f'(singularity): it would need unbounded velocity to reach {needed} rad, where the '
+            'path leaves the axis')
+
+
+def _with_extremes(arm_path: ArmPath, limits: JointLimits, should_stop: ShouldStop) -> ArmPath:
+    """Return a path with joint positions known wherever one of them may be an extreme."""
+    s = arm_path.s
     for _ in range(BISECTIONS):
         should_stop()
-        joints = unlimited_joint_path(model, planes.points(path, grid), posture)
-        from_left = unlimited_joint_path(model, planes.points(path, grid, left=True), posture)
-        h = np.diff(grid)[:, np.newaxis]
-        second_derivative = np.maximum(np.abs(joints.ddq[:-1]), np.abs(from_left.ddq[1:]))
+        leaving, reaching = arm_path(s), arm_path(s, left=True)
+        q, h = leaving.q, np.diff(s)[:, np.newaxis]
+        second_derivative = np.maximum(np.abs(leaving.ddq[:-1]), np.abs(reaching.ddq[1:]))
         excursion = 0.125 * SAFETY * h ** 2 * second_derivative
-        low = np.minimum(joints.q[:-1], joints.q[1:]) - excursion
-        high = np.maximum(joints.q[:-1], joints.q[1:]) + excursion
-        least, most = joints.q.min(axis=0), joints.q.max(axis=0)
+        low = np.minimum(q[:-1], q[1:]) - excursion
+        high = np.maximum(q[:-1], q[1:]) + excursion
+        least, most = q.min(axis=0), q.max(axis=0)
         # Only where an extreme may be higher than the highest sample is a finer grid needed.
         open_ = ((low < least - _resolution(least, limits.min_position))
                  | (high > most + _resolution(most, limits.max_position))).any(axis=1)
         open_ &= h[:, 0] > SHORTEST_STEP
         if not open_.any():
             break
-        grid = np.sort(np.concatenate((grid, 0.5 * (grid[:-1] + grid[1:])[open_])))
-    q = joints.q + whole_turns(joints.q, limits, start)
-    if start is not None:
-        _check_start(model, start, q[0])
-    _check_ranges(model, limits, path, posture, grid, q)
-    return JointRange(q[0], q.min(axis=0), q.max(axis=0))
-
-
-def place_on_path(path: CartesianPath, s: float) -> tuple[str, int]:
-    """
-    Return a text for a path coordinate, and the nearest via point.
-
-    Parameters
-    ----------
-    path : CartesianPath
-        The path.
-    s : float
-        The path coordinate [m].
-
-    Returns
-    -------
-    tuple of str and int
-        The text, and the number of the via point that is nearest along the path.
-
-    """
-    nearest = int(np.abs(path.via_s - s).argmin())
-    before = int(np.clip(np.searchsorted(path.via_s, s, side='right') - 1, 0,
-                         len(path.via_s) - 2))
-    return (f'at {s:.6g} m along the path, between via points {before} and {before + 1} '
-            f'(nearest: {nearest})', nearest)
-
-
-def _free_angle(limits: JointLimits, start: Array | None) -> float:
-    """Return the position of joint 1 where any is possible [rad]."""
-    low, high = limits.min_position[0], limits.max_position[0]
-    return float(np.clip(0.0, low, high) if start is None else start[0])
-
-
-def _check_start(model: RobotModel, start: Array, q: Array) -> None:
-    """Raise if a path begins in joint positions other than those of the arm."""
-    gap = np.abs(start - q)
-    if gap.max() > JOINT_ROUNDING:
-        j = int(gap.argmax())
-        at, wanted = format_distinct(start[j], q[j])
-        raise StartStateError(
-            f'start state: {model.joint_names[j]} is at {at} rad with the tip on joint axis 1 '
-            f'(singularity): it would need unbounded velocity to reach {wanted} rad, where the '
-            'path leaves the axis')
-
-
-def _peak(quantity: Quantity, grid: Array) -> tuple[float, float]:
-    """Return the largest value, to FINEST where it is positive, and its path coordinate."""
-    for _ in range(BISECTIONS):
-        value, second_derivative = quantity(grid)
-        h = np.diff(grid)
-        bound = np.maximum(value[:-1], value[1:]) + (
-            0.125 * SAFETY * h ** 2 * np.maximum(second_derivative[:-1], second_derivative[1:]))
-        open_ = (bound > max(float(value.max()), 0.0) + 1e-3 * FINEST) & (h > SHORTEST_STEP)
-        if not open_.any():
-            break
-        grid = np.sort(np.concatenate((grid, 0.5 * (grid[:-1] + grid[1:])[open_])))
-    return float(value.max()), float(grid[value.argmax()])
-
-
-def _squared_distance(p: Array, dp: Array, ddp: Array) -> tuple[Array, Array]:
-    """Return squares of lengths, and bounds on the magnitudes of their second derivatives."""
-    return (p * p).sum(axis=1), 2.0 * ((dp * dp).sum(axis=1) + np.linalg.norm(
-        p, axis=1) * np.linalg.norm(ddp, axis=1))
-
-
-def _two_sided(path: CartesianPath, s: Array, origin: tuple[float, float, float],
-               axes: slice) -> tuple[Array, Array]:
-    """Return the squared distance from a point or an axis, and bounds on its second derivative."""
-    value, of_sides = np.zeros(0), []
-    for left in (False, True):
-        p, dp, ddp, _ = path(s, left)
-        value, second_derivative = _squared_distance(
-            (p - origin)[:, axes], dp[:, axes], ddp[:, axes])
-        of_sides.append(second_derivative)
-    return value, np.maximum(*of_sides)
-
-
-def _check_reach(model: RobotModel, path: CartesianPath) -> None:
-    """Raise if a path leaves the spherical shell that the tip can reach."""
-    least, most = model.reach
-    shoulder = (0.0, 0.0, model.d1)
-
-    def beyond(s: Array) -> tuple[Array, Array]:
-        squared, second_derivative = _two_sided(path, s, shoulder, slice(3))
-        return squared - (most - TIP_ROUNDING) ** 2, second_derivative
-
-    def inside(s: Array) -> tuple[Array, Array]:
-        squared, second_derivative = _two_sided(path, s, shoulder, slice(3))
-        return (least + TIP_ROUNDING) ** 2 - squared, second_derivative
-
-    for quantity, bound, what in ((beyond, most, "beyond the arm's reach of"),
-                                  (inside, least, 'nearer than the arm can fold,')):
-        excess, s = _peak(quantity, path.grid)
-        if excess > 0.0:
-            W = float(np.linalg.norm(path(s)[0] - shoulder))
-            place, nearest = place_on_path(path, s)
-            miss = max(W - most, least - W)
-            distance, limit = format_distinct(W, bound)
-            where = (f'{what} {limit} m' if miss > 0.0 else
-                     'on the edge of the workspace (singularity: would need unbounded velocity)')
-            raise UnreachableError(
-                f'{place}: the tip would be {distance} m from the shoulder, {where}',
-                distance=max(miss, 0.0), via_point=nearest)
-
-
-def _check_axis(model: RobotModel, path: CartesianPath, planes: AxisPlanes) -> None:
-    """Raise if a path crosses joint axis 1 outside the planes through it."""
-    grid = path.grid
-    grid = grid[(grid >= planes.before) & (grid <= planes.after)]
-    if not len(grid):
-        return
-
-    def near(s: Array) -> tuple[Array, Array]:
-        squared, second_derivative = _two_sided(path, s, (0.0, 0.0, 0.0), slice(2))
-        return AXIS_CLEARANCE ** 2 - squared, second_derivative
-
-    excess, s = _peak(near, grid)
-    if excess > 0.0:
-        place, nearest = place_on_path(path, s)
-        distance = float(np.hypot(*path(s)[0][:2]))
-        passed, bound = format_distinct(distance, AXIS_CLEARANCE, digits=3)
-        raise LimitViolationError(
-            f'{place}: the tip would pass joint axis 1 (singularity) at {passed} m, where '
-            f'{model.joint_names[0]} would need unbounded velocity; least {bound} m',
-            model.joint_names[0], distance, AXIS_CLEARANCE, via_point=nearest)
+        s = np.sort(np.concatenate((s, 0.5 * (s[:-1] + s[1:])[open_])))
+    return replace(arm_path, s=s, q=q, rates=np.stack((leaving.dq, reaching.dq)))
 
 
 def _resolution(extreme: Array, end: Array) -> Array:
@@ -272,12 +150,12 @@ def _resolution(extreme: Array, end: Array) -> Array:
     return np.where(is_near, FINEST_ANGLE, COARSE_ANGLE)
 
 
-def _check_ranges(model: RobotModel, limits: JointLimits, path: CartesianPath,
-                  posture: Posture, s: Array, q: Array) -> None:
+def _check_ranges(arm_path: ArmPath, limits: JointLimits) -> None:
     """Raise if joint positions are out of range, reporting the largest violation."""
+    q = arm_path.q
     excess = np.maximum(limits.min_position - q, q - limits.max_position)
     if (excess <= JOINT_ROUNDING - FINEST_ANGLE).all():
         return
     i, j = (int(k) for k in np.unravel_index(excess.argmax(), excess.shape))
-    place, nearest = place_on_path(path, float(s[i]))
-    raise range_error(model, limits, place, j, float(q[i, j]), posture, nearest)
+    place, nearest = place_on_path(arm_path.path, float(arm_path.s[i]))
+    raise range_error(arm_path.model, limits, place, j, q[i], nearest)

@@ -15,19 +15,19 @@
 """
 The pieces into which a path is divided for its timing: short near singular positions of the arm.
 
-Near joint axis 1 and near the edges of the workspace, joint positions change over a length of the
-path as short as the distance to the singularity. They are analytic functions of the path length
-except there, so that splines and ramps approximate them well on pieces no longer than the distance
-to the singularity in the complex plane (Trefethen, Approximation Theory and Approximation
-Practice, 2013, chapter 8). Pieces are halved until they are: their number grows with the logarithm
-of the distance.
+Near a singular position joint positions change over a length of the path as short as the distance
+to it. They are analytic functions of the path length except there, so that splines and ramps
+approximate them well on pieces no longer than the distance to the singularity in the complex plane
+(Trefethen, Approximation Theory and Approximation Practice, 2013, chapter 8). Pieces are halved
+until they are: their number grows with the logarithm of the distance.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.kinematics.along_path import singular_distance
+from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 # Chosen: on 7 random paths half of PARTS makes motions 0.2 % slower in the mean, twice 0.05 %
@@ -55,46 +55,11 @@ def piece_ends(arm_path: ArmPath) -> Array:
     ends = _parted(np.concatenate(([0.0], path.joins, [path.length])))
     while True:
         middle, width = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends)
-        long = (width > NEAR * singular_distance(arm_path, middle)) & (width > TIP_ROUNDING)
+        distance = singular_distance(arm_path.regularity(middle))
+        long = (width > NEAR * distance) & (width > TIP_ROUNDING)
         if not long.any():
             return ends
         ends = np.sort(np.append(ends, middle[long]))
-
-
-def singular_distance(arm_path: ArmPath, s: Array) -> Array:
-    """
-    Return the distance to the nearest singular position along the path's tangent.
-
-    Parameters
-    ----------
-    arm_path : ArmPath
-        The path in joint space.
-    s : ndarray, shape (m,)
-        Path lengths [m].
-
-    Returns
-    -------
-    ndarray, shape (m,)
-        [m], in the complex plane of s: of the nearest root of r^2 = 0, with r the distance from
-        joint axis 1, and of W^2 = R^2, with W the distance from the shoulder and R the length of
-        the arm when it is stretched out or folded.
-
-    """
-    model = arm_path.model
-    points = arm_path.planes.points(arm_path.path, s)
-    p, u = points.p - (0.0, 0.0, model.d1), points.dp
-    axis = _nearest_root(p[:, :2], u[:, :2], 0.0)
-    if points.plane is not None:  # in which joint 1 stands still
-        axis = np.where(np.isfinite(points.plane), np.inf, axis)
-    return np.asarray(np.min([axis, *(_nearest_root(p, u, R) for R in model.reach)], axis=0))
-
-
-def _nearest_root(p: Array, u: Array, R: float) -> Array:
-    """Return the least |x|, x complex, with (p + x u)^2 = R^2; infinite where there is none."""
-    a, b, c = (u * u).sum(axis=1), (p * u).sum(axis=1), (p * p).sum(axis=1) - R * R
-    farther = np.abs(np.abs(b) + np.sqrt(b * b - a * c + 0j))  # a times the other root
-    with np.errstate(divide='ignore', invalid='ignore'):  # 0 / 0 on a line along the axis itself
-        return np.asarray(np.abs(c) / farther)
 
 
 def _parted(ends: Array) -> Array:

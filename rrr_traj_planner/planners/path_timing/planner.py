@@ -27,7 +27,7 @@ from rrr_traj_planner.core.errors import LimitViolationError, UnreachableError
 from rrr_traj_planner.core.path.axis_planes import zone_sides
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.path.largest_radii import paths_within
-from rrr_traj_planner.core.path.path_trajectory import ArmPath, PathTrajectory
+from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.deadline import part_of
 from rrr_traj_planner.planners.path_timing.least_time import fitted, nearly_fastest_along, Timed
@@ -35,6 +35,7 @@ from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.tasks import CartesianTask
+from rrr_traj_planner.planners.via_points import holding_failure
 
 Family = Callable[[Array, ArrayLike, ShouldStop, ArrayLike], CartesianPath]
 Design = Callable[[Array, ArrayLike], CartesianPath]  # of points and radii
@@ -80,7 +81,7 @@ def along(task: CartesianTask, family: Family) -> PathTrajectory:
 
     """
     early = part_of(task.should_stop, DESIGN)
-    side = zone_sides(task.tips, task.start is not None)
+    side = zone_sides(task.model, task.tips, task.start is not None)
 
     def design(points: Array, radii: ArrayLike) -> CartesianPath:
         return family(points, radii, early, side)
@@ -186,9 +187,11 @@ def _around(refusal: UnreachableError | LimitViolationError, radii: Array) -> Bo
 def _path_task(task: CartesianTask, path: CartesianPath) -> PathTask:
     """Return the timing task along a path, after a check that the arm can follow it."""
     with step('the check that the arm can follow the path'):
-        joints = check_workspace(
-            task.model, task.limits, path, task.posture, task.start, task.should_stop)
-    arm_path = ArmPath(task.model, task.limits, path, task.posture, joints.start)
+        arm_path = check_workspace(
+            task.model, task.limits, path, task.first, task.start, task.should_stop)
+    failure = holding_failure(task.model, task.limits, arm_path(path.via_s).q)
+    if failure is not None:
+        raise failure
     limits, fraction = limits_for_sampling(
         task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
     return PathTask(

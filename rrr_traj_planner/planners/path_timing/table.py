@@ -28,7 +28,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import path_torque_terms
-from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
 from rrr_traj_planner.planners.path_timing.pieces import piece_ends
 from scipy.interpolate import CubicSpline

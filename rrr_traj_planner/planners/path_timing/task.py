@@ -20,7 +20,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.path.arm_path import ArmPath
 
 
 class PathTask(NamedTuple):

@@ -21,7 +21,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.design import line_arc
-from rrr_traj_planner.core.path.path_trajectory import ArmPath
+from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.planners.path_timing.pieces import NEAR, piece_ends, singular_distance
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.planning import plan
