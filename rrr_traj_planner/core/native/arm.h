@@ -36,4 +36,8 @@ typedef struct {
 void torque_at(const Arm *arm, const double *z, double *x, double *gradient,
                const double *weights, double *second);
 
+/* tip.c: the tip's positions (n, 3) and Jacobians (n, 3, 3: coordinate, joint) at n states. */
+void arm_tip(const Arm *arm, int32_t n, const double *q, double *p);
+void arm_jacobian(const Arm *arm, int32_t n, const double *q, double *J);
+
 #endif
