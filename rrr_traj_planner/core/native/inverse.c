@@ -138,25 +138,33 @@ static bool before_in_order(const double *a, const double *b)
     return false;
 }
 
-/* Add what a start leads to, unless it misses the point or is there already; in order. */
+static void put(Found *found, int at, const double *q, double error)
+{
+    memcpy(found->q[at], q, sizeof *found->q);
+    found->error[at] = error;
+}
+
+/* Add what a start leads to, in order, unless it misses the point. Of solutions that are one, that
+ * with the smaller error remains. */
 static void add(const Arm *arm, const CommonNormal *g, int iterations, double *q, Found *found)
 {
     const double error = polish(arm, g->size, found->p, iterations, q);
-    int at = found->count;
+    int other = 0, at;
     found->miss = fmin(found->miss, error);
-    if (error > found->tolerance || found->count == MOST)
+    if (error > found->tolerance)
         return;
     for (int j = 0; j < 3; ++j)
         q[j] = wrapped(q[j]);
-    for (int i = 0; i < found->count; ++i)
-        if (same(arm, g->size, found, i, q, error))
-            return;
-    for (; at > 0 && before_in_order(q, found->q[at - 1]); --at) {
-        memcpy(found->q[at], found->q[at - 1], sizeof *found->q);
-        found->error[at] = found->error[at - 1];
-    }
-    memcpy(found->q[at], q, sizeof *found->q);
-    found->error[at] = error, ++found->count;
+    while (other < found->count && !same(arm, g->size, found, other, q, error))
+        ++other;
+    if (other == MOST || (other < found->count && found->error[other] <= error))
+        return;
+    found->count += other == found->count;
+    for (at = other; at + 1 < found->count; ++at)  /* close the gap of the other */
+        put(found, at, found->q[at + 1], found->error[at + 1]);
+    for (; at > 0 && before_in_order(q, found->q[at - 1]); --at)
+        put(found, at, found->q[at - 1], found->error[at - 1]);
+    put(found, at, q, error);
 }
 
 /* Try roots of a condition on q3: those that may be real, or the others. */

@@ -22,53 +22,57 @@
 
 static const double LEAST_DAMPING = 1e-15; /* of the squared size: rounding of J'J */
 static const double NOISE = 1e-14;         /* of the size, in the tip's position */
-static const double LEAST_STEP = 1e-13;    /* rad, that a search for a minimum ends with */
+static const double LEAST_STEP = 1e-9;     /* rad, that ends the iteration: errors are its square */
 
-/* The point less the tip's position; returns its length. */
-static double error_at(const Arm *arm, const double *p, const double *q, double *error)
+/* A state, and the point less the tip's position there. */
+typedef struct {
+    double q[3], error[3], length, J[3][3];
+} State;
+
+static void evaluate(const Arm *arm, const double *p, State *state)
 {
-    arm_tip(arm, 1, q, error);
+    double tip[3];
+    tip_and_jacobian(arm, state->q, tip, state->J);
     for (int i = 0; i < 3; ++i)
-        error[i] = p[i] - error[i];
-    return sqrt(dot(error, error));
+        state->error[i] = p[i] - tip[i];
+    state->length = sqrt(dot(state->error, state->error));
 }
 
-/* The step d of (J'J + damping) d = J' error. */
-static void damped_step(const Arm *arm, const double *q, const double *error, double damping,
-                        double *d)
+/* The step d of (J'J + damping) d = J' error; returns the largest of its parts. */
+static double damped_step(const State *state, double damping, double *d)
 {
-    double J[9], JJ[ELEMENTS], b[3];
-    arm_jacobian(arm, 1, q, J);
+    const double (*J)[3] = state->J, *e = state->error;
+    double JJ[ELEMENTS], b[3];
     for (int i = 0; i < 3; ++i) {
-        b[i] = J[i] * error[0] + J[3 + i] * error[1] + J[6 + i] * error[2];
+        b[i] = J[0][i] * e[0] + J[1][i] * e[1] + J[2][i] * e[2];
         for (int j = i; j < 3; ++j)
-            JJ[element[i][j]] = J[i] * J[j] + J[3 + i] * J[3 + j] + J[6 + i] * J[6 + j]
+            JJ[element[i][j]] = J[0][i] * J[0][j] + J[1][i] * J[1][j] + J[2][i] * J[2][j]
                 + (i == j ? damping : 0.0);
     }
     solve_symmetric(JJ, b, d);
+    return fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2])));
 }
 
 /* damping: in parts of the squared error, so that the iteration converges as Newton's. */
 double polish(const Arm *arm, double size, const double *p, int iterations, double *q)
 {
-    double error[3], relative = 1e-3, length = error_at(arm, p, q, error);
-    for (int n = 0; n < iterations && length > 2.0 * DBL_EPSILON * size; ++n) {
-        double d[3], next[3], next_error[3];
-        damped_step(arm, q, error, relative * length * length + LEAST_DAMPING * size * size, d);
+    State now, next;
+    double damping = 1e-3, d[3];
+    memcpy(now.q, q, sizeof now.q);
+    evaluate(arm, p, &now);
+    for (int n = 0; n < iterations && now.length > 2.0 * DBL_EPSILON * size; ++n) {
+        const double step = damped_step(
+            &now, damping * now.length * now.length + LEAST_DAMPING * size * size, d);
         for (int i = 0; i < 3; ++i)
-            next[i] = q[i] + d[i];
-        const double next_length = error_at(arm, p, next, next_error);
-        const bool small = fmax(fabs(d[0]), fmax(fabs(d[1]), fabs(d[2]))) <= LEAST_STEP;
-        if (next_length < length) {
-            memcpy(q, next, sizeof next), memcpy(error, next_error, sizeof next_error);
-            length = next_length, relative = fmax(0.1 * relative, 1e-6);
-        } else if (length <= NOISE * size) {
-            break;
-        } else {
-            relative = fmax(8.0 * relative, 1e-3);
-        }
-        if (small)
+            next.q[i] = now.q[i] + d[i];
+        evaluate(arm, p, &next);
+        const bool nearer = next.length < now.length;
+        if (nearer)
+            now = next;
+        damping = nearer ? fmax(0.1 * damping, 1e-6) : fmax(8.0 * damping, 1e-3);
+        if (step <= LEAST_STEP || (!nearer && now.length <= NOISE * size))
             break;
     }
-    return length;
+    memcpy(q, now.q, sizeof now.q);
+    return now.length;
 }
