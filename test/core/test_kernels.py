@@ -21,14 +21,15 @@ from helpers.places import ROOT
 import pytest
 from rrr_traj_planner.core.arm.compiled_arm import _Arm
 from rrr_traj_planner.core.kernels import declared, load, same_size_as
+from rrr_traj_planner.core.kinematics.common_normal import CommonNormal
 from rrr_traj_planner.core.simulation.time_step import Load
 from rrr_traj_planner.planners.solver.timing_problem import _Problem, _Step
 from rrr_traj_planner.planners.solver.via_barrier import _ViaProblem
 
 SOURCES = [path for layer in ('core', 'planners')
            for path in sorted((ROOT / 'rrr_traj_planner' / layer / 'native').glob('*.[ch]'))]
-REPEATED = {'arm': _Arm, 'load': Load, 'problem': _Problem, 'step': _Step,
-            'via_problem': _ViaProblem}
+REPEATED = {'arm': _Arm, 'common_normal': CommonNormal, 'load': Load, 'problem': _Problem,
+            'step': _Step, 'via_problem': _ViaProblem}
 C_TYPES = {'int32_t': 'c_int', 'double': 'c_double', 'Ramp': '_Ramp'}
 
 

@@ -47,13 +47,16 @@ static double dot(const double *a, const double *b)
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* Distance of the tip from a plane through joint axis 1 up to which it is in it: rounding [m]. */
+#define OFF_PLANE 1e-8
+
 /* The equations J x = b by the columns of J (Cramer's rule). */
 typedef struct {
     Vector column[3], cofactor[3];
     double determinant;
 } Linear;
 
-static void set_linear(Linear *J, const Vector *columns, const double *normal)
+static void set_linear(Linear *J, const double (*columns)[3], const double *normal)
 {
     memcpy(J->column, columns, sizeof J->column);
     if (normal)
@@ -80,13 +83,18 @@ static const double *plane_at(const Vector *normals, int n)
 /* Newton's method from q; whether it converges, near where it began. */
 static int newton(const Arm *arm, const double *p, const double *normal, double *q)
 {
-    Vector x[4], step, began;
+    Vector tip, rows[3], step, began;
     Linear J;
     memcpy(began, q, sizeof began);
     for (int k = 0; k < STEPS; ++k) {
-        tip_derivatives(arm, q, 1, x);
-        set_linear(&J, (const Vector *)x + 1, normal);
-        const Vector gap = {p[0] - x[0][0], p[1] - x[0][1], p[2] - x[0][2]};
+        tip_and_jacobian(arm, q, tip, rows);
+        const Vector columns[3] = {{rows[0][0], rows[1][0], rows[2][0]},
+                                   {rows[0][1], rows[1][1], rows[2][1]},
+                                   {rows[0][2], rows[1][2], rows[2][2]}};
+        set_linear(&J, columns, normal);
+        const Vector gap = {p[0] - tip[0], p[1] - tip[1], p[2] - tip[2]};
+        if (normal && fabs(dot(gap, normal)) > OFF_PLANE)
+            return 0;
         solve_linear(&J, gap, step, normal != NULL);
         double longest = 0.0, farthest = 0.0;
         for (int j = 0; j < 3; ++j) {

@@ -50,16 +50,28 @@ EXPORTED void arm_tip(const Arm *arm, int32_t n, const double *q, double *p)
         tip_derivatives(arm, q, 0, (Vector *)p);
 }
 
-/* Jacobians (n, 3, 3): coordinate, joint. */
-EXPORTED void arm_jacobian(const Arm *arm, int32_t n, const double *q, double *J)
+void tip_and_jacobian(const Arm *arm, const double *q, double *p, double (*J)[3])
 {
-    for (int s = 0; s < n; ++s, q += 3, J += 9) {
-        Vector x[4];
-        tip_derivatives(arm, q, 1, x);
-        for (int j = 0; j < 3; ++j)
-            for (int c = 0; c < 3; ++c)
-                J[3 * c + j] = x[first_by[j]][c];
+    Basis by[3];
+    bases(q, 1, by);
+    memset(p, 0, 3 * sizeof *p), memset(J, 0, 3 * sizeof *J);
+    for (int n = 0; n < arm->tip_count; ++n) {
+        const int32_t *at = arm->tip_at + 4 * n;
+        const double x = arm->tip[n], a = x * by[0].d[0][at[1]], b = by[1].d[0][at[2]];
+        const double c = by[2].d[0][at[3]];
+        p[at[0]] += a * b * c;
+        J[at[0]][0] += x * by[0].d[1][at[1]] * b * c;
+        J[at[0]][1] += a * by[1].d[1][at[2]] * c;
+        J[at[0]][2] += a * b * by[2].d[1][at[3]];
     }
+}
+
+/* Jacobians (n, 3, 3): coordinate, joint. */
+EXPORTED void arm_jacobian(const Arm *arm, int32_t n, const double *q, double (*J)[3])
+{
+    double p[3];
+    for (int s = 0; s < n; ++s, q += 3, J += 3)
+        tip_and_jacobian(arm, q, p, J);
 }
 
 /* Time derivatives of Jacobians (n, 3, 3) at joint velocities. */

@@ -1,0 +1,67 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Joint axes 1 and 2 with their common normal, and the tip relative to them."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import c_double
+from functools import lru_cache
+
+import numpy as np
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kernels import same_size_as
+
+
+@same_size_as('size_of_common_normal')
+class CommonNormal(ctypes.Structure):  # as in native/inverse.h, where the fields are explained
+    """The axes' common normal from c1 to c2, and the tip x as joint 3 alone turns."""
+
+    _fields_ = [*((name, c_double) for name in ('size', 'a', 'c', 's')),
+                *((name, c_double * 3) for name in ('c1', 'n', 'm', 'z', 'u', 'v', 'k', 'Q'))]
+
+
+@lru_cache(maxsize=16)
+def common_normal(model: RobotModel) -> CommonNormal:
+    """
+    Return an arm's common normal of joint axes 1 and 2, made once.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm; a model never changes. Of it, the chain and the tip's table are used.
+
+    Returns
+    -------
+    CommonNormal
+        For the kernels: a, c1, c2 = c1 + a n in metres; u, v, k [m] and Q = u^2 + v^2 + k^2
+        [m^2] by coefficients of 1, cos q3, sin q3.
+
+    """
+    (z1, z2, _), (p1, p2, _) = model.chain.axis, model.chain.point
+    across = np.cross(z1, z2)
+    s = float(np.linalg.norm(across))
+    n = across / s
+    c1 = p1 + z1 * (np.cross(p2 - p1, z2) @ n / s)
+    c2 = p2 + z2 * (np.cross(p2 - p1, z1) @ n / s)
+    at_zero = model.tables.tip[:, :2, :2].sum(axis=(1, 2))  # q1 = q2 = 0: coordinate, function
+    at_zero[:, 0] -= c2
+    of_1, of_cos, of_sin = at_zero.T
+    Q = (of_1 @ of_1 + 0.5 * (of_cos @ of_cos + of_sin @ of_sin), 2.0 * of_1 @ of_cos,
+         2.0 * of_1 @ of_sin)
+    return CommonNormal(
+        model.chain.size, (p2 - p1) @ n, z1 @ z2, s, *(
+            tuple(x) for x in (c1, n, np.cross(z1, n), z1, n @ at_zero,
+                               np.cross(z2, n) @ at_zero, z2 @ at_zero, Q)))
