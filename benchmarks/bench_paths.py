@@ -24,13 +24,11 @@ import math
 
 from measuring import compared, in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
-from path_tasks import path_task, PLANNERS, task_path
+from path_tasks import followed, path_task, PLANNERS, task_path
 from peers import both, GRID_POINTS, torque_of
 from rrr_traj_planner.core.cancellation import never
 from rrr_traj_planner.core.errors import RrrPlannerError
-from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.arm_path import ArmPath
-from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.path_timing.least_time import fastest_along
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.planning import plan
@@ -157,8 +155,7 @@ def _arm_path(task: Task) -> ArmPath:
         return plan(task.model, task.limits, task.request).trajectory.arm_path
     except RrrPlannerError:
         path = task_path(task, task.request.via_points)
-        joints = check_workspace(task.model, task.limits, path, Posture(task.request.elbow))
-        return ArmPath(task.model, task.limits, path, Posture(task.request.elbow), joints.start)
+        return followed(task, path)
 
 
 def _timed(task: Task, arm_path: ArmPath) -> float:

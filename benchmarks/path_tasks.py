@@ -28,11 +28,9 @@ from rrr_traj_planner.core.errors import (
 )
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
-from rrr_traj_planner.core.kinematics.joint_ranges import whole_turns
-from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, whole_turns
 from rrr_traj_planner.core.path import design as path_design
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
-from rrr_traj_planner.core.path.joint_path import joint_path
 from rrr_traj_planner.core.path.largest_radii import largest_radii
 from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.path.workspace_check import check_workspace
@@ -85,11 +83,16 @@ def gravity_share(task: Task, tips: np.ndarray) -> float:
     UnreachableError or LimitViolationError is raised where the arm cannot follow it.
     """
     path = task_path(task, tips)
-    joints = check_workspace(task.model, task.limits, path, Posture(task.request.elbow))
-    arm_path = ArmPath(task.model, task.limits, path, Posture(task.request.elbow), joints.start)
+    arm_path = followed(task, path)
     knots = np.concatenate((path.via_s, path.joins))
     q = arm_path(np.union1d(np.linspace(0.0, path.length, PLACES), knots)).q
     return float((np.abs(gravity_torque(task.model, q)) / task.limits.max_effort).max())
+
+
+def followed(task: Task, path: CartesianPath) -> ArmPath:
+    """Return a path as a task's arm follows it, checked against workspace and ranges."""
+    first = inverse_kinematics(task.model, path.points[0], task.request.elbow or 'up')
+    return check_workspace(task.model, task.limits, path, first)
 
 
 def task_path(task: Task, tips: np.ndarray) -> CartesianPath:
@@ -173,10 +176,10 @@ def _unit(v: np.ndarray) -> np.ndarray:
 def _is_free(task: Task, a: np.ndarray, b: np.ndarray) -> bool:
     """Return whether the arm can be held, within its ranges, on a straight line."""
     p = np.linspace(a, b, CHECKS)
-    rest = np.zeros_like(p)
     try:
-        q = joint_path(task.model, task.limits, (p, rest, rest, rest),
-                       Posture(task.request.elbow)).q
+        q = np.array([inverse_kinematics(task.model, x, task.request.elbow or 'up') for x in p])
+        outside = out_of_range(q + whole_turns(q, task.limits), task.limits).any()
     except (UnreachableError, LimitViolationError):
         return False
-    return bool((np.abs(gravity_torque(task.model, q)) <= HELD * task.limits.max_effort).all())
+    return not outside and bool(
+        (np.abs(gravity_torque(task.model, q)) <= HELD * task.limits.max_effort).all())

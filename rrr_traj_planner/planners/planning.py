@@ -43,7 +43,11 @@ from rrr_traj_planner.planners.answer_size import check_answer_size
 from rrr_traj_planner.planners.missed_via_points import miss_note, misses
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning_problem import planning_problem, PlanningProblem
-from rrr_traj_planner.planners.posture_choice import first_possible, joint_postures, path_beginnings
+from rrr_traj_planner.planners.posture_choice import (
+    first_possible,
+    joint_postures,
+    path_beginnings,
+)
 from rrr_traj_planner.planners.registration import CartesianPlanner, Registered
 from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner.planners.request import PlanningRequest

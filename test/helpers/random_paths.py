@@ -55,8 +55,7 @@ class PathCase:
         """Return the path that the planner is expected to design."""
         r = self.request
         path = largest_radii(getattr(path_design, r.planner_id), r.via_points, r.max_deviation)
-        start = check_workspace(self.model, self.limits, path, Posture(r.elbow)).start
-        return ArmPath(self.model, self.limits, path, Posture(r.elbow), start)
+        return arm_path_in(self.model, self.limits, path, r.elbow)
 
     @cached_property
     def q(self):

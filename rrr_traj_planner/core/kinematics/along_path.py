@@ -51,8 +51,8 @@ class PathPoints(NamedTuple):
     """
     Positions of the tip and their first three derivatives by arc length, shape (n, 3).
 
-    For a piece of the path in a plane through joint axis 1 the plane's normal is given too: joint 1
-    is constant there, also where the piece meets the axis.
+    For a piece of the path in a plane through joint axis 1 the plane's normal is given too: joint
+    1 is constant there, also where the piece meets the axis.
     """
 
     p: Array     # [m]

@@ -55,33 +55,6 @@ def forward_kinematics(model: RobotModel, q: ArrayLike) -> Array:
     return tip
 
 
-def radial_distance(model: RobotModel, q: ArrayLike) -> Array:
-    """
-    Return the tip's signed distance from joint axis 1, in the arm's vertical plane.
-
-    Parameters
-    ----------
-    model : RobotModel
-        The arm.
-    q : array_like, shape (..., 3)
-        Joint positions [rad].
-
-    Returns
-    -------
-    ndarray, shape (...)
-        Distance [m], negative where the arm reaches over its shoulder.
-
-    Raises
-    ------
-    InvalidInputError
-        If the shape is wrong, or a value not finite.
-
-    """
-    q = joint_values('q', q)
-    tip = forward_kinematics(model, q)
-    return np.asarray(np.cos(q[..., 0]) * tip[..., 0] + np.sin(q[..., 0]) * tip[..., 1])
-
-
 def jacobian(model: RobotModel, q: ArrayLike) -> Array:
     """
     Return the Jacobian of the tip's position (5.18).
@@ -138,20 +111,3 @@ def jacobian_rate(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
         x.ctypes.data for x in (q, qd, rate)))
     return rate
 
-
-def matrix(*rows: tuple[Array, Array, Array]) -> Array:
-    """
-    Return 3 x 3 matrices from their elements.
-
-    Parameters
-    ----------
-    *rows : tuple of three ndarrays, shape (...)
-        The elements of each row.
-
-    Returns
-    -------
-    ndarray, shape (..., 3, 3)
-        The matrices.
-
-    """
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

@@ -13,13 +13,13 @@
 # limitations under the License.
 
 """
-Inverse kinematics at consecutive via points: solutions, whole turns and free angles chosen jointly.
+Inverse kinematics at consecutive via points: solutions and whole turns chosen jointly.
 
 First one of the solutions at each point is chosen (`least_time_chain`), in one posture or in any.
-Then whole turns: the nearest solution at every point gives the least travel. If it leaves a joint's
-range, or if the other direction might avoid a reversal, the turns of all points are chosen together
-for the least estimated time (`least_time_turns`). On joint axis 1, where theta_1 is free, it is
-interpolated between the point before and the point after.
+Then whole turns: the nearest solution at every point gives the least travel. If it leaves a
+joint's range, or if the other direction might avoid a reversal, the turns of all points are chosen
+together for the least estimated time (`least_time_turns`). On joint axis 1, where theta_1 is free,
+it is interpolated between the point before and the point after.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def _chosen(limits: JointLimits, options: list[Array], start: Array | None,
     costs = []
     for q in options:
         outside = (out_of_range(q, limits) & ~wide).any(axis=1)
-        held = np.ones(len(q), dtype=bool) if can_hold is None else can_hold(q)
+        held = np.ones(len(q), dtype=bool) if can_hold is None else can_hold(np.nan_to_num(q))
         costs.append(IMPOSSIBLE * (2.0 * outside + ~held))
     if start is None:
         return np.array([q[k] for q, k in zip(options, least_time_chain(

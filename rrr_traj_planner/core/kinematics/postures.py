@@ -15,8 +15,8 @@
 """
 The named branches of the inverse kinematics: elbow up or down, shoulder front or back.
 
-They are the signs of the two factors of the Jacobian's determinant (`branch_factors`); an arm whose
-determinant has no such factors has no named postures. Thesis (5.8)-(5.12) for its arm.
+They are the signs of the two factors of the Jacobian's determinant (`branch_factors`); an arm
+whose determinant has no such factors has no named postures. Thesis (5.8)-(5.12) for its arm.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.compiled_arm import compiled
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, joint_values
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
 from rrr_traj_planner.core.kernels import declared
 from rrr_traj_planner.core.kinematics.common_normal import common_normal
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
@@ -124,6 +124,31 @@ def all_solutions(model: RobotModel, points: ArrayLike,
     """
     q, count, _ = _solved(model, finite_array('points', points, (-1, 3)), TIP_ROUNDING, previous)
     return q, count
+
+
+def misses(model: RobotModel, points: ArrayLike) -> Array:
+    """
+    Return by how far points are out of reach.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    points : array_like, shape (n, 3)
+        Tip positions in the base frame [m].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Distances to the nearest point that the tip reaches [m], 0 within `TIP_ROUNDING`.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is malformed.
+
+    """
+    return _solved(model, finite_array('points', points, (-1, 3)), TIP_ROUNDING, None)[2]
 
 
 def _solved(model: RobotModel, points: Array, tolerance: float,

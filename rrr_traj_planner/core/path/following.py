@@ -34,7 +34,7 @@ from rrr_traj_planner.core.kinematics.along_path import (
 from rrr_traj_planner.core.kinematics.axis_frame import axis_frame
 from rrr_traj_planner.core.kinematics.solutions import misses
 from rrr_traj_planner.core.path.arm_path import ArmPath
-from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
+from rrr_traj_planner.core.path.axis_planes import axis_planes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 from scipy import optimize
@@ -44,9 +44,8 @@ from scipy import optimize
 LEAST_REGULAR = 1e-6  # m/rad
 
 # Intervals of the path are halved until they are no longer than the distance to the nearest
-# singular position and predictions are as good as this; or until they are this short. Chosen: a
-# tenth and ten times the prediction give the same paths; shorter is less than the tip is told apart
-# by.
+# singular position and predictions are as good as this; or until they are this short, less than
+# the tip is told apart by. Chosen.
 PREDICTION = 0.02     # rad
 SHORTEST_STEP = 1e-9  # m
 

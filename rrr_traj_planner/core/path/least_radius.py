@@ -33,14 +33,14 @@ from rrr_traj_planner.core.dynamics.rigid_body import (
     inertia_matrix,
 )
 from rrr_traj_planner.core.errors import format_distinct, InvalidInputError, LimitViolationError
-from rrr_traj_planner.core.kinematics.forward import jacobian, jacobian_rate, radial_distance
+from rrr_traj_planner.core.kinematics.forward import jacobian, jacobian_rate
 from rrr_traj_planner.core.scalars import not_negative, positive
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
 
 # Chosen values, without unit: many times the rounding of the quantities, far below any effect.
 UNIT_TOLERANCE = 1e-9     # of the directions' lengths and of their right angle
-SINGULAR = 1e-9           # relative volume of the Jacobian below which a pose is singular
+SINGULAR = 1e-9           # of the Jacobian's least singular value, over the arm's size
 INTERVAL_ROUNDING = 1e-12  # relative, for a limit that is just met
 
 
@@ -214,13 +214,12 @@ def _checked(q: ArrayLike, tangent: ArrayLike, normal: ArrayLike) -> tuple[Array
 def _regular_jacobian(model: RobotModel, q: Array) -> Array:
     """Return the Jacobian of a pose that is not singular."""
     J = jacobian(model, q)
-    reach = model.reach[1]
-    radius = abs(float(radial_distance(model, q)))
-    for joint, size, why in ((0, radius / reach, 'the tip is on joint axis 1'),
-                             (2, abs(float(np.cos(q[2]))), 'the arm is stretched or folded')):
-        if size <= SINGULAR:
-            name = model.joint_names[joint]
-            raise LimitViolationError(
-                f'{why}: {name} at {q[joint]:.6g} rad cannot give the tip every velocity',
-                name, size, SINGULAR)
+    _, size, directions = np.linalg.svd(J)
+    least = float(size[2] / model.chain.size)
+    if least <= SINGULAR:
+        joint = int(np.abs(directions[2]).argmax())
+        name = model.joint_names[joint]
+        raise LimitViolationError(
+            f'the arm is singular: {name} at {q[joint]:.6g} rad cannot give the tip every velocity',
+            name, least, SINGULAR)
     return J

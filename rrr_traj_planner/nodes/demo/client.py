@@ -182,7 +182,9 @@ class Client(Node):
             return
         request = plan_request(replace(
             task, via_points=task.via_points[:1], segment_durations=np.array([])))
-        request.elbow = posture_of(config.model, q).elbow
+        posture = posture_of(config.model, q)
+        if posture is not None:
+            request.elbow, request.shoulder = posture.elbow or '', posture.shoulder or ''
         request.start_state.name = list(state.name)
         request.start_state.position = list(state.position)
         self._execute(self._planned(request).trajectory, 'moving to the first via point')

@@ -30,7 +30,7 @@ from rrr_traj_planner.core.errors import (
     RrrPlannerError,
     StartStateError,
 )
-from rrr_traj_planner.core.kinematics.postures import ELBOWS
+from rrr_traj_planner.core.kinematics.postures import ELBOWS, SHOULDERS
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.error_names import named
 from rrr_traj_planner.planners.request import PlanningRequest
@@ -85,9 +85,11 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
     _check_via_points(message, config)
     _check_range('sample_period', message.sample_period, MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD, 's')
     _check_range('max_deviation', message.max_deviation, MIN_DEVIATION, MAX_DEVIATION, 'm')
-    if message.elbow not in ('', *ELBOWS):
-        raise InvalidInputError(
-            f"elbow is {quoted(message.elbow)}, must be 'up', 'down' or empty")
+    for name, choices in (('elbow', ELBOWS), ('shoulder', SHOULDERS)):
+        if getattr(message, name) not in ('', *choices):
+            raise InvalidInputError(
+                f'{name} is {quoted(getattr(message, name))}, must be '
+                f"'{choices[0]}', '{choices[1]}' or empty")
     with named(FIELDS):
         return PlanningRequest(
             via_points=_tip_positions(message.via_points.poses),
@@ -98,7 +100,7 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
             velocity_scaling=_or_default(message.max_velocity_scaling_factor, 1.0),
             acceleration_scaling=_or_default(message.max_acceleration_scaling_factor, 1.0),
             sample_period=_or_default(message.sample_period, config.sample_period),
-            elbow=message.elbow or None,
+            elbow=message.elbow or None, shoulder=message.shoulder or None,
             max_deviation=_or_default(message.max_deviation, config.max_deviation),
             max_tip_speed=_or_default(config.max_tip_speed, inf),
             steady_zones=config.steady_zones, half_transition=config.half_transition,

@@ -15,15 +15,14 @@
 """Paths that leave the workspace or a joint's range between their via points."""
 
 from helpers import thesis_cases as thesis
+from helpers.arm_paths import arm_path_in
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import LimitViolationError, RrrPlannerError, UnreachableError
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
-from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.path.design import line_arc, line_polynomial
-from rrr_traj_planner.core.path.workspace_check import check_workspace
 
 MODEL = RobotModel()
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))
@@ -32,8 +31,8 @@ TABLE_6_3 = [thesis.POINTS[f'6.3 point {i}'][0] for i in (1, 2, 3)]
 
 @pytest.mark.parametrize('family', [line_arc, line_polynomial])
 def test_thesis_path_is_followed_and_begins_at_its_joint_positions(family):
-    found = check_workspace(MODEL, JointLimits(), family(TABLE_6_3, 0.1), Posture())
-    assert np.rad2deg(found.start) == pytest.approx(
+    found = arm_path_in(MODEL, JointLimits(), family(TABLE_6_3, 0.1))
+    assert np.rad2deg(found.q[0]) == pytest.approx(
         thesis.POINTS['6.3 point 1'][1], abs=thesis.ANGLE_TOLERANCE)
 
 
@@ -42,9 +41,8 @@ def test_line_that_passes_the_hole_is_refused_where_it_is_nearest():
     path = line_arc([[0.19, 0.3, 0.5], [0.19, -0.3, 0.5]], [])
     with pytest.raises(UnreachableError,
                        match=r'^at 0\.3 m along the path, between via points 0 and 1 \(nearest: '
-                             r'[01]\): the tip would be 0\.19 m from the shoulder, nearer than '
-                             r'the arm can fold, 0\.2 m$') as caught:
-        check_workspace(MODEL, FREE, path, Posture())
+                             r'[01]\): the tip would be out of reach, by 0\.01 m$') as caught:
+        arm_path_in(MODEL, FREE, path)
     assert caught.value.distance == pytest.approx(0.01, abs=1e-12)
 
 
@@ -54,8 +52,8 @@ def test_corner_cut_outward_beyond_the_reach_is_refused_near_its_via_point():
     points = [[0.2, 1.0, 0.5], [0.0, tip, 0.5], [-1.0, 0.2, 0.5]]
     for family in (line_arc, line_polynomial):
         path = family(points, 0.3)
-        with pytest.raises(UnreachableError, match=r'\(nearest: 1\).* beyond the arm') as caught:
-            check_workspace(MODEL, FREE, path, Posture())
+        with pytest.raises(UnreachableError, match=r'\(nearest: 1\).* out of reach') as caught:
+            arm_path_in(MODEL, FREE, path)
         assert caught.value.via_point == 1
         s = np.linspace(0.0, path.length, 100001)
         beyond = np.linalg.norm(path(s)[0] - (0.0, 0.0, 0.5), axis=1).max() - 1.6
@@ -68,14 +66,14 @@ def test_line_that_all_but_crosses_joint_axis_1_is_refused():
                        match=r'^at 1\.00499 m along the path, between via points 0 and 1 .*: the '
                              r'tip would pass joint axis 1 \(singularity\) at .* m, where '
                              r'joint_1') as caught:
-        check_workspace(MODEL, FREE, path, Posture())
+        arm_path_in(MODEL, FREE, path)
     assert caught.value.joint == 'joint_1'
 
 
 def test_line_past_joint_axis_1_at_a_millimetre_is_followed_half_a_turn():
-    found = check_workspace(
-        MODEL, FREE, line_arc([[0.001, 0.8, 1.0], [0.001, -0.8, 1.0]], []), Posture())
-    assert found.most[0] - found.least[0] == pytest.approx(
+    found = arm_path_in(
+        MODEL, FREE, line_arc([[0.001, 0.8, 1.0], [0.001, -0.8, 1.0]], []))
+    assert np.ptp(found.q[:, 0]) == pytest.approx(
         2.0 * np.arctan(800.0), abs=1e-9)
 
 
@@ -89,12 +87,12 @@ def test_joint_range_that_is_left_by_a_nanoradian_between_points_is_refused():
     def limits(lowest):
         return JointLimits(min_position=(-4.0, -4.0, lowest), max_position=(4.0, 4.0, 4.0))
 
-    found = check_workspace(MODEL, limits(nearest - 1e-7), path, Posture())
-    assert found.least[2] == pytest.approx(nearest, abs=1e-7)
+    found = arm_path_in(MODEL, limits(nearest - 1e-7), path)
+    assert found.q[:, 2].min() == pytest.approx(nearest, abs=1e-7)
     with pytest.raises(LimitViolationError,
                        match=r'^at 0\.5\d* m along the path, between via points 0 and 1 \(nearest:'
                              r' 0\): joint_3 would be at') as caught:
-        check_workspace(MODEL, limits(nearest + 1e-6), path, Posture())
+        arm_path_in(MODEL, limits(nearest + 1e-6), path)
     assert caught.value.value == pytest.approx(nearest, abs=1e-7)
     assert caught.value.via_point == 0
 
@@ -112,13 +110,13 @@ def test_verdict_is_that_of_a_dense_scan():
         except RrrPlannerError:
             margin = -1.0
         try:
-            found = check_workspace(MODEL, limits, path, Posture())
+            found = arm_path_in(MODEL, limits, path)
         except RrrPlannerError:
             verdicts.append(False)
             assert margin < 1e-3
         else:
             verdicts.append(True)
             assert margin >= -1e-9
-            assert (found.least <= q.min(axis=0) + 2e-8).all()
-            assert (found.most >= q.max(axis=0) - 2e-8).all()
+            assert (found.q.min(axis=0) <= q.min(axis=0) + 2e-8).all()
+            assert (found.q.max(axis=0) >= q.max(axis=0) - 2e-8).all()
     assert 10 < sum(verdicts) < 50

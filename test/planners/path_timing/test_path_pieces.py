@@ -14,20 +14,20 @@
 
 """Pieces of a path near singular positions, where joints turn within little of it."""
 
+from helpers.arm_paths import arm_path_in
 from helpers.path_terms import terms_at
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.kinematics.postures import Posture
+from rrr_traj_planner.core.kinematics.along_path import singular_distance
 from rrr_traj_planner.core.path.design import line_arc
-from rrr_traj_planner.core.path.arm_path import ArmPath
-from rrr_traj_planner.planners.path_timing.pieces import NEAR, piece_ends, singular_distance
+from rrr_traj_planner.planners.path_timing.pieces import NEAR, piece_ends
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
-ARM = RobotModel()
+ARM = ThesisArm()
 LIMITS = JointLimits(min_position=[-4.0, -1.0, -4.0], max_position=[4.0, 4.2, 4.0])
 REACH = ARM.a2 + ARM.d4
 V, A, J = 1.0, 1.0, 10.0       # joint_1's limits
@@ -50,7 +50,7 @@ def to_the_edge(distance):
 
 
 def arm_path(tips):
-    return ArmPath(ARM, LIMITS, line_arc(np.array(tips), 0.01), Posture('up'))
+    return arm_path_in(ARM, LIMITS, line_arc(np.array(tips), 0.01))
 
 
 def duration(tips, planner_id):
@@ -95,7 +95,7 @@ def test_no_piece_is_longer_than_its_distance_to_a_singularity_allows(tips):
                for k, R in ((2, 0.0), (3, REACH), (3, abs(ARM.a2 - ARM.d4)))]
     roots = np.concatenate([np.roots(np.trim_zeros(c, 'f')) for c in squares[int(p[1] == 0.0):]])
     nearest = np.abs(middle[:, np.newaxis] - roots).min(axis=1)
-    assert singular_distance(path, middle) == pytest.approx(nearest, rel=1e-3)
+    assert singular_distance(path.regularity(middle)) == pytest.approx(nearest, rel=1e-3)
     assert (np.diff(ends) <= NEAR * nearest * (1.0 + 1e-3)).all()
     assert len(ends) < 60
 
