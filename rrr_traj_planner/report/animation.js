@@ -9,8 +9,8 @@
   const view = {azimuth: -1.08, elevation: 0.42};
   let time = 0, running = false, last = 0;
 
-  const every = data.motions.flatMap((m) => [...m.elbow, ...m.tip]);
-  every.push([0, 0, 0], [0, 0, data.shoulder], ...data.via_points);
+  const every = data.motions.flatMap((m) => [...m.joints.flat(), ...m.tip]);
+  every.push([0, 0, 0], data.resting, ...data.via_points);
   const middle = [0, 1, 2].map((i) => 0.5 * (Math.min(...every.map((p) => p[i]))
     + Math.max(...every.map((p) => p[i]))));
   const reach = Math.max(...every.map((p) => Math.hypot(...p.map((x, i) => x - middle[i]))));
@@ -105,7 +105,7 @@
     const place = Math.min(time / motion.duration, 1) * (motion.tip.length - 1);
     const path = motion.tip.map(at), passed = Math.floor(place) + 1;
     line(pen, path, colour('grid'), 3);
-    const elbow = at(between(motion.elbow, place)), tip = at(between(motion.tip, place));
+    const tip = at(between(motion.tip, place));
     line(pen, [...path.slice(0, passed), tip], colour('tip'), 3);
     const vias = data.via_points.map(at), size = vias.length > 60 ? 2 : vias.length > 20 ? 3 : 5;
     vias.forEach((seen) => dot(pen, seen, size, colour('via'), size > 2 && colour('ink')));
@@ -113,9 +113,9 @@
     pen.textAlign = 'center';
     pen.textBaseline = 'middle';
     labels(vias).forEach(([place, i]) => pen.fillText(String(i), ...place));
-    const base = at([0, 0, 0]), shoulder = at([0, 0, data.shoulder]);
-    line(pen, [base, shoulder, elbow, tip], colour('ink'), 5);
-    [shoulder, elbow].forEach((p) => dot(pen, p, 5, colour('paper'), colour('ink')));
+    const joints = [at(data.resting), ...motion.joints.map((joint) => at(between(joint, place)))];
+    line(pen, [at([0, 0, 0]), ...joints, tip], colour('ink'), 5);
+    joints.forEach((p) => dot(pen, p, 5, colour('paper'), colour('ink')));
     dot(pen, tip, 4, colour('tip'));
     const frame = Math.min(Math.round(place), motion.use.length - 1);
     canvas.nextElementSibling.textContent = time >= motion.duration ? 'at rest' : 'now '

@@ -98,11 +98,12 @@ def frames(plans: Sequence[Planned]) -> dict[str, Any]:
     Returns
     -------
     dict
-        Via points; for each motion its duration and, at equal time steps, positions of elbow and
-        tip [m], the index of the limit that is used most, and its use, magnitude / limit.
+        Via points and the resting joint's position; for each motion its duration and, at equal
+        time steps, positions of the joints that move and of the tip [m], the index of the limit
+        that is used most, and its use, magnitude / limit.
 
     """
-    return {'shoulder': float(plans[0].task.model.d1),
+    return {'resting': plans[0].task.model.chain.point[0].round(DIGITS).tolist(),
             'via_points': plans[0].task.via_points.tolist(),
             'motions': [_motion(p) for p in plans]}
 
@@ -118,7 +119,7 @@ def _motion(of: Planned) -> dict[str, Any]:
     names = [f"{joint}'s {kind}" for kind in used for joint in model.joint_names]
     all_used = np.concatenate(list(used.values()), axis=1)
     return {'duration': float(trajectory.duration), 'via_times': of.plan.via_times.tolist(),
-            'elbow': points[:, 2].round(DIGITS).tolist(),
-            'tip': points[:, 3].round(DIGITS).tolist(), 'limits': names,
+            'joints': np.moveaxis(points[:, 2:-1], 1, 0).round(DIGITS).tolist(),
+            'tip': points[:, -1].round(DIGITS).tolist(), 'limits': names,
             'tightest': all_used.argmax(axis=1).tolist(),
             'use': all_used.max(axis=1).round(3).tolist()}

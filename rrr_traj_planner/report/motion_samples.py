@@ -156,7 +156,7 @@ def path_lengths(trajectory: PathTrajectory, t: Array) -> Array:
 
 def arm_points(model: RobotModel, q: Array) -> Array:
     """
-    Return the positions of the arm's joints and tip.
+    Return the positions of the arm's base, joints and tip.
 
     Parameters
     ----------
@@ -167,8 +167,8 @@ def arm_points(model: RobotModel, q: Array) -> Array:
 
     Returns
     -------
-    ndarray, shape (n, 4, 3)
-        Base, shoulder, elbow and tip [m].
+    ndarray, shape (n, m, 3)
+        The m points of `link_positions` [m].
 
     """
     return np.array([link_positions(model, one) for one in q.tolist()])

@@ -19,17 +19,17 @@ from functools import cache
 
 from helpers.pinocchio_arm import PinocchioArm
 from helpers.thesis_cases import POINTS
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner, planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
 
-ARM, LIMITS = RobotModel(), JointLimits()
+ARM, LIMITS = ThesisArm(), JointLimits()
 TORQUE = replace(LIMITS, max_acceleration=np.full(3, np.inf), max_jerk=np.full(3, 100.0))
 TABLE_6_1 = [POINTS[f'6.1 point {k}'][0] for k in (1, 2, 3)]
 CORNER = [(1.2308, 0.0, 1.3749), (0.2161, 1.1514, 0.8252), (1.1438, 0.0, 0.9368)]

@@ -12,11 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""
-Positions of the links' ends for one joint state, in floats: for drawing at a high rate.
-
-Thesis (5.3)-(5.7) corrected.
-"""
+"""Positions of an arm's joints and tip for one joint state, in floats: to draw at a high rate."""
 
 from __future__ import annotations
 
@@ -27,10 +23,14 @@ from rrr_traj_planner.core.arm.model import RobotModel
 
 Point = tuple[float, float, float]
 
+BASE: Point = (0.0, 0.0, 0.0)
 
-def link_positions(model: RobotModel, q: Sequence[float]) -> tuple[Point, Point, Point, Point]:
+
+def link_positions(model: RobotModel, q: Sequence[float]) -> tuple[Point, ...]:
     """
-    Return the positions of base, shoulder, elbow and tip for one joint state.
+    Return the points between which the arm is drawn, for one joint state.
+
+    The thesis's arm has four, of (5.3)-(5.7) corrected: base, shoulder, elbow and tip.
 
     Parameters
     ----------
@@ -41,12 +41,32 @@ def link_positions(model: RobotModel, q: Sequence[float]) -> tuple[Point, Point,
 
     Returns
     -------
-    tuple of 4 points
-        Base frame [m].
+    tuple of 3 to 5 points
+        Base frame [m]: the base's origin, the joints' points (one, where two joints have the same)
+        and the tip. Only the first two rest; the number is the same in every pose.
 
     """
-    c1, s1, q23 = cos(q[0]), sin(q[0]), q[1] + q[2]
-    r, h = model.a2 * cos(q[1]), model.d1 + model.a2 * sin(q[1])
-    r_tip, h_tip = r + model.d4 * sin(q23), h - model.d4 * cos(q23)
-    return ((0.0, 0.0, 0.0), (0.0, 0.0, model.d1), (c1 * r, s1 * r, h),
-            (c1 * r_tip, s1 * r_tip, h_tip))
+    chain = model.chain
+    points: list[Point] = [_point(chain.tip.tolist())]
+    for axis, point, angle in zip(chain.axis[::-1].tolist(), chain.point[::-1].tolist(),
+                                  reversed(q)):
+        c, s, at = cos(angle), sin(angle), _point(point)
+        points = [_turned(p, axis, at, c, s) for p in points]
+        if points[0] != at:
+            points.insert(0, at)
+    return (BASE, *points)
+
+
+def _point(values: Sequence[float]) -> Point:
+    x, y, z = values
+    return x, y, z
+
+
+def _turned(p: Point, axis: Sequence[float], at: Point, c: float, s: float) -> Point:
+    """Return a point turned about an axis through another point (Rodrigues)."""
+    x, y, z = p[0] - at[0], p[1] - at[1], p[2] - at[2]
+    a, b, d = axis
+    along = (a * x + b * y + d * z) * (1.0 - c)
+    return (at[0] + c * x + s * (b * z - d * y) + along * a,
+            at[1] + c * y + s * (d * x - a * z) + along * b,
+            at[2] + c * z + s * (a * y - b * x) + along * d)

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import dist
 from time import monotonic
 from typing import Any
@@ -34,9 +35,9 @@ from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
-TRAIL_STEP = 1.0 / 80.0  # distance of the trail's points, as a fraction of the arm's reach
+TRAIL_STEP = 1.0 / 80.0  # distance of the trail's points, as a fraction of the arm's size
 TRAIL_POINTS = 200       # largest number of the trail's points; rclpy takes some 10 us for each
-MOVED = 1e-6             # least motion that causes new markers, as a fraction of the arm's reach
+MOVED = 1e-6             # least motion that causes new markers, as a fraction of the arm's size
 STILL_PERIOD = 1.0       # s between markers while the arm does not move
 
 
@@ -56,7 +57,8 @@ def description(config: ArmConfig) -> str:
 
     """
     settings = config.settings
-    return urdf(settings.model, settings.limits, config.frames, settings.friction)
+    model = replace(settings.model, friction=settings.friction)
+    return urdf(model, settings.limits, config.frames)
 
 
 class ArmView:
@@ -81,9 +83,9 @@ class ArmView:
 
     def __init__(self, node: Node, config: ArmConfig, q: Sequence[float]) -> None:
         self._model, self._frame = config.settings.model, config.frames.base
-        reach = self._model.reach[1]
-        self._trail = Trail(TRAIL_STEP * reach, TRAIL_POINTS)
-        self._moved = MOVED * reach
+        size = self._model.chain.size
+        self._trail = Trail(TRAIL_STEP * size, TRAIL_POINTS)
+        self._moved = MOVED * size
         self._joints = link_positions(self._model, q)
         self._shown: Any = None  # the joints of the last message
         self._shown_at = 0.0     # steady time [s]

@@ -35,12 +35,11 @@ from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
 ARM, EXECUTED, PLANNED, VIA_POINTS = 'arm', 'executed_path', 'planned_path', 'via_points'
-RODS, JOINTS = (0, 1, 2), 3  # ids in the namespace of the arm
 
 # The colours of the demo's plot (Okabe and Ito's), which colour-blind people can distinguish.
 BLUE, RED, GREEN = (0.0, 0.45, 0.7, 1.0), (0.84, 0.37, 0.0, 1.0), (0.0, 0.62, 0.45, 1.0)
 
-# Width of lines and diameter of via points, as fractions of the arm's reach.
+# Width of lines and diameter of via points, as fractions of the arm's size.
 LINE_WIDTH, BALL = 1.0 / 320.0, 1.0 / 64.0
 
 MAX_POINTS = 1000  # largest number of via points drawn; RViz becomes slow with more
@@ -56,28 +55,29 @@ def arm_markers(model: RobotModel, frame: str, joints: Iterable[tuple[float, flo
     Parameters
     ----------
     model : RobotModel
-        Its reach scales the markers.
+        Its size scales the markers.
     frame : str
         The base frame.
-    joints : iterable of 4 points
-        Base, shoulder, elbow and tip [m].
+    joints : iterable of points
+        Base, joints and tip, as `link_positions` returns them [m].
     trail : iterable of points
         Past tip positions, oldest first [m].
 
     Returns
     -------
     MarkerArray
-        Three rods, balls at the joints, a line.
+        A rod from each point to the next, balls at the joints, a line.
 
     """
     points = list(joints)
-    reach = model.reach[1]
-    markers = [_rod_marker(frame, i, rod(*points[i:i + 2]), 2.0 * RADIUS * reach) for i in RODS]
-    balls = _marker(frame, ARM, JOINTS, Marker.SPHERE_LIST, COLOURS['dark'],
-                    (2.8 * RADIUS * reach,) * 3)
-    balls.points = [point(*p) for p in points[1:3]]
+    size = model.chain.size
+    markers = [_rod_marker(frame, i, rod(*ends), 2.0 * RADIUS * size)
+               for i, ends in enumerate(zip(points, points[1:]))]
+    balls = _marker(frame, ARM, len(markers), Marker.SPHERE_LIST, COLOURS['dark'],
+                    (2.8 * RADIUS * size,) * 3)
+    balls.points = [point(*p) for p in points[1:-1]]
     # The trail's last point may be up to a step behind the tip.
-    line = _line(frame, EXECUTED, GREEN, [point(*p) for p in (*trail, points[-1])], reach)
+    line = _line(frame, EXECUTED, GREEN, [point(*p) for p in (*trail, points[-1])], size)
     return MarkerArray(markers=[*markers, balls, line])
 
 
@@ -109,9 +109,9 @@ def plan_markers(points: TrajectoryPoints, via_times: Array, model: RobotModel,
     shown = picked(len(points.times), MAX_POINTS, via)
     path, passed = (_points(forward_kinematics(model, points.positions[i]))
                     for i in (shown, via))
-    balls = _marker(frame, VIA_POINTS, 0, Marker.SPHERE_LIST, RED, (BALL * model.reach[1],) * 3)
+    balls = _marker(frame, VIA_POINTS, 0, Marker.SPHERE_LIST, RED, (BALL * model.chain.size,) * 3)
     balls.points = passed
-    return MarkerArray(markers=[_line(frame, PLANNED, BLUE, path, model.reach[1]), balls])
+    return MarkerArray(markers=[_line(frame, PLANNED, BLUE, path, model.chain.size), balls])
 
 
 def no_plan_markers(frame: str) -> MarkerArray:
@@ -169,9 +169,9 @@ def _rod_marker(frame: str, number: int, shape: Rod, thickness: float) -> Marker
 
 
 def _line(frame: str, namespace: str, colour: tuple[float, ...], points: list[Point],
-          reach: float) -> Marker:
+          size: float) -> Marker:
     marker = _marker(frame, namespace, 0, Marker.LINE_STRIP, colour,
-                     (LINE_WIDTH * reach, 0.0, 0.0))
+                     (LINE_WIDTH * size, 0.0, 0.0))
     if len(points) < 2:  # not a line
         marker.action = Marker.DELETE
     else:

@@ -18,7 +18,11 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
+from helpers.other_arms import OTHER_ARMS
 from helpers.random_cases import ARMS, random_states
+from helpers.random_chains import random_arm
+from helpers.thesis_arm import ThesisArm
+from helpers.thesis_link_motion import link_motion
 import numpy as np
 import pinocchio
 import pytest
@@ -29,18 +33,20 @@ from rrr_traj_planner.core.arm.urdf import FrameNames, NO_EFFORT_LIMIT, NO_VELOC
 from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix, inverse_dynamics
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.kinematics.link_motion import link_motion
+from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from urdf_parser_py.urdf import URDF
 
 STATES = 50
 GEOMETRY = 1e-12  # m, of arms of a few metres: rounding
 RELATIVE = 1e-12  # of the largest torque or inertia: two orders to add the same numbers
+ANY_ARM = [*ARMS, *(random_arm(seed) for seed in range(20)), *OTHER_ARMS.values()]
 NAMES = FrameNames('floor', ('column', 'upper arm', 'fore<arm'), 'tool')
 
 
 def read(arm, **options):
     model = pinocchio.buildModelFromXML(urdf(arm, JointLimits(), **options))
-    model.gravity.linear = np.array([0.0, 0.0, -arm.gravity])
+    model.gravity.linear = arm.gravity
+    model.armature = arm.rotor_inertia
     return model, model.createData()
 
 
@@ -62,12 +68,39 @@ def test_tip_and_its_frame_are_where_the_model_has_them(arm):
         np.testing.assert_allclose(rotations[-1], R[i, 2], rtol=0.0, atol=GEOMETRY)
 
 
-@pytest.mark.parametrize('arm', ARMS)
+@pytest.mark.parametrize('arm', ANY_ARM)
+def test_tip_of_any_chain_is_where_the_model_has_it(arm):
+    model, data = read(arm, frames=NAMES)
+    q = random_states(np.random.default_rng(5), STATES)[0]
+    tips = forward_kinematics(arm, q)
+    for one, expected in zip(q, tips):
+        rotations, tip = rotations_and_tip(model, data, NAMES, one)
+        np.testing.assert_allclose(tip, expected, rtol=0.0, atol=RELATIVE * np.abs(tips).max())
+        forearm = expected - link_positions(arm, one.tolist())[-2]
+        np.testing.assert_allclose(rotations[-1][:, 2], forearm / np.linalg.norm(forearm),
+                                   rtol=0.0, atol=GEOMETRY)
+
+
+@pytest.mark.parametrize('arm', ANY_ARM)
+def test_links_frames_are_at_the_joints_with_z_along_their_axes(arm):
+    model, data = read(arm)
+    q = np.array((0.3, -1.1, 2.0))
+    pinocchio.forwardKinematics(model, data, q)
+    directions, points = arm.chain.axes_at(arm.chain.link_poses(q))
+    for i in range(3):
+        frame = data.oMi[i + 1]
+        np.testing.assert_allclose(frame.rotation[:, 2], directions[i], rtol=0.0, atol=GEOMETRY)
+        np.testing.assert_allclose(
+            np.cross(frame.translation - points[i], directions[i]), 0.0, atol=GEOMETRY)
+        if i > 0:
+            np.testing.assert_allclose(frame.translation, points[i], rtol=0.0, atol=GEOMETRY)
+
+
+@pytest.mark.parametrize('arm', ANY_ARM)
 def test_torques_and_inertia_matrix_are_the_model_s(arm):
     model, data = read(arm)
     states = random_states(np.random.default_rng(2), STATES)
     tau, M = inverse_dynamics(arm, *states), inertia_matrix(arm, states[0])
-    assert np.abs(tau).max() > 1.0
     for i in range(STATES):
         q, qd, qdd = (x[i] for x in states)
         np.testing.assert_allclose(pinocchio.rnea(model, data, q, qd, qdd), tau[i], rtol=0.0,
@@ -98,10 +131,11 @@ def test_masses_centres_and_inertias_are_the_model_s(arm):
 def test_limits_and_friction_are_read_back_to_the_last_bit():
     limits = JointLimits(max_velocity=(1.1, np.inf, 0.1 + 0.2), max_effort=(np.inf, 2e2, 1e-5))
     friction = Friction((0.1, 0.2, 0.3), (0.0, 1.0 / 3.0, 2.0))
-    model = pinocchio.buildModelFromXML(urdf(RobotModel(), limits, friction=friction))
+    text = urdf(RobotModel(friction=friction), limits)
+    model = pinocchio.buildModelFromXML(text)
     assert model.lowerPositionLimit.tolist() == limits.min_position.tolist()
     assert model.upperPositionLimit.tolist() == limits.max_position.tolist()
-    robot = URDF.from_xml_string(urdf(RobotModel(), limits, friction=friction).encode())
+    robot = URDF.from_xml_string(text.encode())
     joints = [robot.joint_map[name] for name in RobotModel().joint_names]
     assert [j.limit.velocity for j in joints] == [1.1, NO_VELOCITY_LIMIT, 0.1 + 0.2]
     assert [j.limit.effort for j in joints] == [NO_EFFORT_LIMIT, 2e2, 1e-5]
@@ -120,27 +154,39 @@ def test_parser_of_ros_finds_one_chain_from_base_to_tip(capfd):
     assert capfd.readouterr() == ('', '')  # it has nothing to complain of
 
 
-@pytest.mark.parametrize('arm', [*ARMS, RobotModel(d1=0.0), RobotModel(d1=-0.3)])
+def ends_in_base(text, data, model, shape):
+    """Return the cylinders' ends, or the balls' centres, as sets of rounded points."""
+    found = []
+    for link in ElementTree.fromstring(text).iter('link'):
+        for visual in link.iter('visual'):
+            drawn = visual.find(f'geometry/{shape}')
+            if drawn is None:
+                continue
+            xyz, rpy = (np.array(visual.find('origin').get(k).split(), dtype=float)
+                        for k in ('xyz', 'rpy'))
+            half = 0.5 * float(drawn.get('length', 0.0))
+            along = pinocchio.rpy.rpyToMatrix(rpy) @ (0.0, 0.0, half)
+            frame = data.oMf[model.getFrameId(link.get('name'))]
+            found.append({rounded(frame.act(xyz + side * along)) for side in (-1.0, 1.0)})
+    return found
+
+
+def rounded(point):
+    return tuple(np.round(point, 9) + 0.0)
+
+
+@pytest.mark.parametrize('arm', [*ANY_ARM, ThesisArm(d1=0.0), ThesisArm(d1=-0.3)])
 def test_what_is_drawn_reaches_from_joint_to_joint(arm):
-    """The ends of the cylinders, carried to the base by Pinocchio, are the frames' origins."""
+    """The ends of the cylinders, carried to the base by Pinocchio, are the links' points."""
     text = urdf(arm, JointLimits())
     model = pinocchio.buildModelFromXML(text)
     data = model.createData()
-    q = np.random.default_rng(4).uniform(-2.0, 2.0, (1, 3))
-    pinocchio.framesForwardKinematics(model, data, q[0])
-    frames = link_motion(arm, q, 0.0 * q, 0.0 * q).frame.position[0]
-    joints = [np.zeros(3), *frames]
-    for link in ElementTree.fromstring(text).iter('link'):
-        cylinder = link.find('visual/geometry/cylinder')
-        if cylinder is None:
-            continue
-        i = int(link.get('name')[-1])
-        xyz, rpy = (np.array(link.find('visual/origin').get(k).split(), dtype=float)
-                    for k in ('xyz', 'rpy'))
-        half = pinocchio.rpy.rpyToMatrix(rpy) @ (0.0, 0.0, 0.5 * float(cylinder.get('length')))
-        ends = {tuple(np.round(data.oMf[model.getFrameId(f'link_{i}')].act(xyz + side * half), 9))
-                for side in (-1.0, 1.0)}
-        assert ends == {tuple(np.round(joints[j] + 0.0, 9)) for j in (i - 1, i)}
+    q = np.random.default_rng(4).uniform(-2.0, 2.0, 3)
+    pinocchio.framesForwardKinematics(model, data, q)
+    points = [rounded(p) for p in link_positions(arm, q.tolist())]
+    lines = [{a, b} for a, b in zip(points, points[1:]) if a != b]
+    assert ends_in_base(text, data, model, 'cylinder') == lines
+    assert ends_in_base(text, data, model, 'sphere') == [{p} for p in points[1:-1]]
 
 
 @pytest.mark.parametrize('frames', [

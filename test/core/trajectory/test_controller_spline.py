@@ -17,10 +17,10 @@
 from dataclasses import replace
 
 from helpers.pinocchio_arm import PinocchioArm
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.trajectory.controller_spline import (
     RANGE_TOLERANCE,
     spline_excess,
@@ -29,7 +29,7 @@ from rrr_traj_planner.core.trajectory.controller_spline import (
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
-ARM = RobotModel()
+ARM = ThesisArm()
 NONE = np.full(3, np.inf)
 WIDE = JointLimits(min_position=-NONE, max_position=NONE, max_velocity=NONE,
                    max_acceleration=NONE, max_jerk=NONE, max_effort=NONE)
