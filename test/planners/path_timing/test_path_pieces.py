@@ -54,7 +54,7 @@ def arm_path(tips):
 
 
 def duration(tips, planner_id):
-    answer = plan(ARM, LIMITS, PlanningRequest(tips, planner_id=planner_id))
+    answer = plan(ARM, LIMITS, PlanningRequest(tips, planner_id=planner_id, elbow='up'))
     assert answer.note == ''
     return answer.trajectory.duration
 
@@ -95,8 +95,11 @@ def test_no_piece_is_longer_than_its_distance_to_a_singularity_allows(tips):
                for k, R in ((2, 0.0), (3, REACH), (3, abs(ARM.a2 - ARM.d4)))]
     roots = np.concatenate([np.roots(np.trim_zeros(c, 'f')) for c in squares[int(p[1] == 0.0):]])
     nearest = np.abs(middle[:, np.newaxis] - roots).min(axis=1)
-    assert singular_distance(path.regularity(middle)) == pytest.approx(nearest, rel=1e-3)
-    assert (np.diff(ends) <= NEAR * nearest * (1.0 + 1e-3)).all()
+    ours = singular_distance(path.regularity(middle))
+    assert (ours < 1.01 * nearest).all() and (ours > 0.5 * nearest).all()
+    near = nearest < 0.01
+    assert ours[near] == pytest.approx(nearest[near], rel=0.01)
+    assert (np.diff(ends) <= NEAR * nearest * 1.01).all()
     assert len(ends) < 60
 
 
