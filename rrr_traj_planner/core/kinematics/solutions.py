@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.compiled_arm import compiled
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array, finite_array, IntArray, joint_values
+from rrr_traj_planner.core.arrays import Array, finite_array, IntArray
 from rrr_traj_planner.core.kernels import declared
 from rrr_traj_planner.core.kinematics.common_normal import common_normal
 from rrr_traj_planner.core.rounding import TIP_ROUNDING

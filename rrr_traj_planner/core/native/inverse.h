@@ -21,7 +21,7 @@
 #include <math.h>
 
 /* Joint axes 1 and 2 with their common normal from c1 on axis 1 to c2 on axis 2, and the tip x as
- * joint 3 turns, the others at zero, by coefficients of 1, cos q3, sin q3. Signed distances [m]. */
+ * joint 3 turns, the others at zero, by coefficients of 1, cos q3, sin q3. Lengths in m. */
 typedef struct {
     double size;             /* no tip is further from axis 1 [m] */
     double a, c, s;          /* c2 - c1 = a n; cosine and sine (> 0) of the angle of the axes */
