@@ -155,7 +155,7 @@ static void add(const Arm *arm, const CommonNormal *g, int iterations, double *q
     const double error = polish(arm, g->size, found->p, iterations, q);
     int other = 0, at;
     found->miss = fmin(found->miss, error);
-    if (error > found->tolerance)
+    if (!(error <= found->tolerance))  /* nor where a huge point makes it NaN */
         return;
     for (int j = 0; j < 3; ++j)
         q[j] = wrapped(q[j]);
