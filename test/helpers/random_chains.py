@@ -44,6 +44,19 @@ def random_arm(seed):
     return RobotModel(random_chain(rng), rng.uniform(-10.0, 10.0, 3), rng.uniform(0.0, 0.5, 3))
 
 
+def with_axes(arm, distance=None, parallel=False):
+    """Return an arm's like, joint axes 1 and 2 at a distance [m], or 2 and 3 parallel."""
+    chain, axis, tip = arm.chain, arm.chain.axis.copy(), arm.chain.tip
+    if parallel:
+        axis[2] = axis[1]
+    n = np.cross(axis[0], axis[1])
+    n /= np.linalg.norm(n)
+    away = 0.0 if distance is None else (chain.point[1] - chain.point[0]) @ n - distance
+    point = chain.point - np.outer((0.0, 1.0, 1.0), away * n)
+    return AnyArm(Chain(axis, point, tip - away * n, chain.mass, chain.centre, chain.inertia),
+                  arm.gravity, arm.rotor_inertia)
+
+
 class PinocchioChain:
     """A chain as a Pinocchio model; joint frames have the base frame's axes at zero."""
 

@@ -36,7 +36,7 @@ typedef struct {
 void torque_at(const Arm *arm, const double *z, double *x, double *gradient,
                const double *weights, double *second);
 
-/* tip.c: the tip's positions (n, 3) at n states; and at one, with its Jacobian (coordinate, joint). */
+/* tip.c: the tip's positions (n, 3) at n states; at one, with its Jacobian (coordinate, joint). */
 void arm_tip(const Arm *arm, int32_t n, const double *q, double *p);
 void tip_and_jacobian(const Arm *arm, const double *q, double *p, double (*J)[3]);
 

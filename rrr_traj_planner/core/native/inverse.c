@@ -12,17 +12,19 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* All joint positions that bring the tip of an arm of three revolute joints to a point (Pieper 1968).
+/* All joint positions that bring the tip of any arm of three revolute joints to a point (Pieper,
+ * The kinematics of manipulators under computer control, 1968).
  *
- * Of the tip x turned about axis 3 alone, u, v, k are its components in the axes n, z2 x n, z2 at c2,
- * Q = u^2 + v^2 + k^2; of the point p, h is the height along axis 1 above c1, R its distance from c1.
- * Joint 2 turns u, v into u', v', and joint 1 turns (X, Y) = (a + u', c v' - s k) into the point's
- * components along n and m; so
+ * Of the tip x turned about axis 3 alone, u, v, k are the components along n, z2 x n and z2 from
+ * c2, and Q = u^2 + v^2 + k^2; of the point p, h is the height along axis 1 above c1 and R the
+ * distance from c1. Joint 2 turns u, v into u', v', and joint 1 turns X = a + u', Y = c v' - s k
+ * into the point's components along n and m; so
  *
  *     v' = (h - c k) / s,   2 a u' = R^2 - Q - a^2 = D,   u'^2 + v'^2 = Q - k^2
  *
- * and without u', v' a condition on q3: s^2 D^2 + 4 a^2 (h - c k)^2 = 4 a^2 s^2 (Q - k^2), of degree
- * 2 in cos q3, sin q3. Where the axes meet (a = 0) it is D = 0, and both signs of u' are right. */
+ * and without u', v' a condition on q3: s^2 D^2 + 4 a^2 (h - c k)^2 = 4 a^2 s^2 (Q - k^2), of
+ * degree 2 in cos q3, sin q3. Where the axes meet (a = 0) it is D = 0, and both signs of u' are
+ * right. */
 #include "inverse.h"
 
 #include "export.h"
@@ -39,10 +41,12 @@ enum { MOST = 4, ITERATIONS = 60, MORE_ITERATIONS = 300 };
 static const double PI = 3.14159265358979323846;
 static const double MEETING = 1e-10;  /* a in sizes, up to which the axes meet */
 static const double ALMOST_MEETING = 1e-4; /* and for a first attempt */
-static const double NEAR = 1e-2;      /* and up to which D / (2 a) does not tell the sign of u' */
+static const double NEAR = 1e-3;      /* and up to which D / (2 a) does not tell the sign of u' */
 static const double OFF_CIRCLE = 0.05; /* |r - 1| of roots that may be real but for rounding */
-static const double OUTSIDE = 0.01;   /* squared, in sizes: by which Y may exceed the radius then */
+static const double OUTSIDE = 0.01;   /* squared, in sizes: by which Y may exceed the radius */
 static const double ROUNDING = 1e-14; /* of a position, in sizes */
+static const double ON_AXIS_2 = 5e-8; /* distance in sizes, up to which q2 is arbitrary: that of a
+                                         double root, which is known to half the digits */
 static const double SAME = 1e-9;      /* rad, of solutions that are one */
 static const double SAME_ORDER = 1e-7; /* rad, of positions that do not decide on the order */
 
@@ -105,14 +109,14 @@ static bool start_at(const CommonNormal *g, const Point *t, double q3, int sign,
     const double X = sign ? sign * sqrt(fmax(0.0, t->radius2 - Y * Y))
         : g->a + (t->R2 - at_angle(g->Q, q3) - g->a * g->a) / (2.0 * g->a);
     q[0] = t->on_axis ? before[0] : atan2(t->along_m, t->along_n) - atan2(Y, X);
-    q[1] = hypot(u, v) <= ROUNDING * g->size ? before[1]
+    q[1] = hypot(u, v) <= ON_AXIS_2 * g->size ? before[1]
         : atan2(v_turned, X - g->a) - atan2(v, u);
     q[2] = q3;
     return Y * Y <= t->radius2 + OUTSIDE * g->size * g->size;
 }
 
-/* Whether two solutions are one: equal, or so near to each other at a singularity that between them
- * the tip stays at the point within their errors and rounding. */
+/* Whether two solutions are one: equal, or so near to each other at a singularity that between
+ * them the tip stays at the point within their errors and rounding. */
 static bool same(const Arm *arm, double size, const Found *found, int i, const double *q,
                  double error)
 {
@@ -151,7 +155,7 @@ static void add(const Arm *arm, const CommonNormal *g, int iterations, double *q
     const double error = polish(arm, g->size, found->p, iterations, q);
     int other = 0, at;
     found->miss = fmin(found->miss, error);
-    if (error > found->tolerance)
+    if (!(error <= found->tolerance))  /* nor where a huge point makes it NaN */
         return;
     for (int j = 0; j < 3; ++j)
         q[j] = wrapped(q[j]);
@@ -193,13 +197,13 @@ static void solve(const Arm *arm, const CommonNormal *g, const Point *t, const d
         condition(g, t, f);
         try_roots(arm, g, t, before, f, true, found);
     }
-    if (found->count % 2 || found->count == 0)  /* real solutions come in pairs, or one is double */
+    if (found->count % 2 || found->count == 0)  /* solutions come in pairs, or one is double */
         try_roots(arm, g, t, before, f, false, found);
 }
 
 /* Joint positions q (n, 4, 3), each in (-pi, pi], that bring the tip within tolerance [m] of the
  * points p (n, 3), count (n) of each; of the others miss (n): the tip's least distance found [m].
- * A point within on_axis [m] of axis 1 is taken as on it. before (3): angles for arbitrary ones. */
+ * A point within on_axis [m] of axis 1 is taken as on it. before (3): for arbitrary angles. */
 EXPORTED void arm_inverse(const Arm *arm, const CommonNormal *g, int32_t n, const double *p,
                           const double *before, double tolerance, double on_axis,
                           double (*q)[MOST][3], int32_t *count, double *miss)

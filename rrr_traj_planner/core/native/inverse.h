@@ -21,7 +21,7 @@
 #include <math.h>
 
 /* Joint axes 1 and 2 with their common normal from c1 on axis 1 to c2 on axis 2, and the tip x as
- * joint 3 turns, the others at zero, by coefficients of 1, cos q3, sin q3. Signed distances [m]. */
+ * joint 3 turns, the others at zero, by coefficients of 1, cos q3, sin q3. Lengths in m. */
 typedef struct {
     double size;             /* no tip is further from axis 1 [m] */
     double a, c, s;          /* c2 - c1 = a n; cosine and sine (> 0) of the angle of the axes */
@@ -37,9 +37,9 @@ static inline double at_angle(const double *f, double angle)
     return f[0] + f[1] * cos(angle) + f[2] * sin(angle);
 }
 
-/* circle_roots.c: angles (4) of the complex roots z = r exp(i angle) of a real trigonometric
- * polynomial f of degree 2 (coefficients of 1, cos, sin, cos 2, sin 2) and |r - 1|, or 1 / r for
- * r; their number. Roots off the circle come in pairs of one angle, of which one is left out. */
+/* circle_roots.c: of a real trigonometric polynomial f of degree 2 (coefficients of 1, cos, sin,
+ * cos 2, sin 2) the complex roots z = r exp(i angle): their number, angles (4) and off = |r - 1|
+ * (4), 0 for real roots. Others come in pairs r, 1 / r of one angle: those with r > 1 are given. */
 int circle_roots(const double *f, double *angle, double *off);
 
 /* polish.c: moves joint positions q to where the tip is nearest to p, a local minimum; returns its

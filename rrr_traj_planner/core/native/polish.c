@@ -22,7 +22,7 @@
 
 static const double LEAST_DAMPING = 1e-15; /* of the squared size: rounding of J'J */
 static const double NOISE = 1e-14;         /* of the size, in the tip's position */
-static const double LEAST_STEP = 1e-9;     /* rad, that ends the iteration: errors are its square */
+static const double LEAST_STEP = 1e-9;     /* rad, the last: errors are of its square */
 
 /* A state, and the point less the tip's position there. */
 typedef struct {
