@@ -29,7 +29,7 @@ from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_time, ViaPointBehaviour
 
 ARM, TURN = RobotModel(), 2.0 * np.pi
-UP = Posture()
+UP = Posture('up', 'front')
 
 
 def ranges(low, high, **limits):
