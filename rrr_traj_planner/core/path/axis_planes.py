@@ -46,6 +46,26 @@ class AxisPlanes(NamedTuple):
     before: float = -np.inf  # m along the path: what comes before lies in the first plane
     after: float = np.inf    # m along the path: what comes after lies in the last plane
 
+    def joint_1(self, near: float) -> float:
+        """
+        Return where joint 1 stands still at the beginning of the path.
+
+        Parameters
+        ----------
+        near : float
+            Its position but for where the tip is on its axis [rad].
+
+        Returns
+        -------
+        float
+            The nearest position with the arm in the first plane, to its front or back [rad]; the
+            same where the path does not begin in a plane.
+
+        """
+        if self.before <= 0.0:
+            return near
+        return self.first + np.pi * round((near - self.first) / np.pi)
+
     def points(self, path: CartesianPath, s: Array, left: bool | BoolArray = False) -> PathPoints:
         """
         Return a path's points, with the planes in which they lie.

@@ -24,7 +24,6 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import format_distinct, StartStateError
-from rrr_traj_planner.core.kinematics.axis_frame import axis_frame
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import (
     nearest_turns,
@@ -33,6 +32,7 @@ from rrr_traj_planner.core.kinematics.joint_ranges import (
     whole_turns,
 )
 from rrr_traj_planner.core.path.arm_path import ArmPath
+from rrr_traj_planner.core.path.axis_planes import axis_planes, AxisPlanes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.path.following import followed_path, place_on_path, SHORTEST_STEP
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
@@ -88,7 +88,7 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
 
     """
     if start is not None:
-        _check_direction(model, path, start)
+        _check_direction(axis_planes(model, path, float(start[0])), model, start)
     arm_path = followed_path(model, path, first, should_stop)
     arm_path = arm_path.turned(whole_turns(arm_path.q, limits, start))
     arm_path = _with_extremes(arm_path, limits, should_stop)
@@ -96,28 +96,17 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
     return arm_path
 
 
-def _check_direction(model: RobotModel, path: CartesianPath, start: Array) -> None:
+def _check_direction(planes: AxisPlanes, model: RobotModel, start: Array) -> None:
     """Raise if a path leaves joint axis 1 in a plane other than that in which the arm is."""
-    frame = axis_frame(model)
-    if not frame.swings_in_plane or np.hypot(
-            *frame.coordinates(forward_kinematics(model, start))[:2]) > TIP_ROUNDING:
+    tip = planes.frame.coordinates(forward_kinematics(model, start))
+    wanted = planes.joint_1(float(start[0]))
+    if np.hypot(tip[0], tip[1]) > TIP_ROUNDING or abs(wanted - start[0]) <= JOINT_ROUNDING:
         return
-    off_axis = frame.coordinates(path(path.grid)[0])
-    away = np.flatnonzero(np.hypot(*off_axis[:, :2].T) > TIP_ROUNDING)
-    if not len(away):
-        return
-    leaves = path(path.grid[max(away[0] - 1, 0)])
-    x, y, _ = frame.rotation @ leaves[1]
-    if np.hypot(x, y) <= TIP_ROUNDING:
-        x, y, _ = off_axis[away[0]]
-    wanted = float(np.arctan2(y, x))
-    wanted += 0.5 * TURN * float(np.round((start[0] - wanted) / (0.5 * TURN)))
-    if abs(wanted - start[0]) > JOINT_ROUNDING:
-        at, needed = format_distinct(float(start[0]), wanted)
-        raise StartStateError(
-            f'start state: {model.joint_names[0]} is at {at} rad with the tip on joint axis 1 '
-            f'(singularity): it would need unbounded velocity to reach {needed} rad, where the '
-            'path leaves the axis')
+    at, needed = format_distinct(float(start[0]), wanted)
+    raise StartStateError(
+        f'start state: {model.joint_names[0]} is at {at} rad with the tip on joint axis 1 '
+        f'(singularity): it would need unbounded velocity to reach {needed} rad, where the '
+        'path leaves the axis')
 
 
 def _with_extremes(arm_path: ArmPath, limits: JointLimits, should_stop: ShouldStop) -> ArmPath:

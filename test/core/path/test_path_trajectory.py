@@ -23,8 +23,8 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian
 from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
-from rrr_traj_planner.core.path.design import line_arc, line_polynomial
 from rrr_traj_planner.core.path.arm_path import ArmPath
+from rrr_traj_planner.core.path.design import line_arc, line_polynomial
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory.sampling import sample
