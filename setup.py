@@ -99,6 +99,7 @@ setup(
         (f'share/{NAME}/config', sorted(glob('config/*.yaml'))),
     ],
     python_requires='>=3.10',
+    # urdf_parser_py is not among them: PyPI and ROS call its distribution by different names
     install_requires=['numpy', 'PyYAML', 'scipy', 'setuptools'],
     extras_require={'figures': ['matplotlib'], 'record': ['mcap'], 'test': ['pytest']},
     zip_safe=False,
