@@ -59,7 +59,7 @@ def pose_after(joint: Joint, pose: Array, position: float = 0.0) -> Array:
     if joint.kind == 'prismatic':
         motion[:3, 3] = position * axis
     else:
-        K = np.cross(np.eye(3), -axis)
+        K = np.cross(np.eye(3), axis)
         motion[:3, :3] += np.sin(position) * K + (1.0 - np.cos(position)) * (K @ K)
     return np.asarray(pose @ motion)
 
