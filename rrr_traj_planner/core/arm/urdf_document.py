@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
 from typing import Any, NamedTuple
 from xml.etree import ElementTree as ET
 from xml.parsers.expat import ErrorString
@@ -27,6 +27,7 @@ from rrr_traj_planner.core.errors import InvalidInputError, quoted, shown
 
 KINDS = ('revolute', 'continuous', 'prismatic', 'fixed', 'floating', 'planar')
 BEFORE_XML = '\ufeff \t\r\n'  # a byte order mark, and white space
+LARGEST = 1e50  # magnitude of numbers, so that products of some are finite; limits may be larger
 XACRO = '{http://www.ros.org/wiki/xacro}'
 
 # Of the elements that are read: attributes that are texts, those that are numbers and how many
@@ -149,7 +150,8 @@ def _reduced(element: ET.Element, owner: str, warnings: list[str]) -> ET.Element
     numbers = _NUMBERS.get(tag, {})
     for name, value in element.items():
         if name in numbers:
-            _check_numbers(f'{owner}: {name} of <{tag}>', value, numbers[name])
+            _check_numbers(f'{owner}: {name} of <{tag}>', value, numbers[name],
+                           inf if tag == 'limit' else LARGEST)
         elif name == 'quat_xyzw':
             raise InvalidInputError(f'{owner}: <{tag}> has quat_xyzw, must have rpy')
         elif name not in _TEXTS.get(tag, ()):
@@ -180,15 +182,17 @@ def _check_needs(element: ET.Element, owner: str) -> None:
                                 f'{", ".join(KINDS[:-1])} or {KINDS[-1]}')
 
 
-def _check_numbers(name: str, value: str, count: int) -> None:
-    """Refuse text that is not so many finite numbers."""
+def _check_numbers(name: str, value: str, count: int, largest: float) -> None:
+    """Refuse text that is not so many finite numbers, or has one that is too large."""
     try:
-        numbers = [float(part) for part in value.split()]
+        numbers = [float(part) for part in value.replace('_', 'no digit').split()]
     except ValueError:
         numbers = []
     if len(numbers) != count or not all(map(isfinite, numbers)):
         wanted = 'a finite number' if count == 1 else f'{count} finite numbers'
         raise InvalidInputError(f'{name} is {shown(value)}, must be {wanted}')
+    if max(map(abs, numbers)) > largest:
+        raise InvalidInputError(f'{name} is {shown(value)}, must be at most {largest:g}')
 
 
 def _link(link: Any) -> Link:

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import pickle
 from xml.etree import ElementTree
 
 from helpers.pinocchio_urdf import PinocchioUrdf
@@ -206,6 +207,14 @@ def test_what_is_no_file_is_refused(tmp_path):
     binary = tmp_path / 'binary.urdf'
     binary.write_bytes(b'\xff\xfe\x00')
     assert 'utf-8' in refused(str(binary))
+
+
+def test_an_arm_is_pickled_read_only():
+    found = pickle.loads(pickle.dumps(read_urdf(arm())))
+    assert found.warnings == () and found.text == arm()
+    for array in (found.min_position, found.max_effort, found.chain.mass, found.friction.viscous):
+        with pytest.raises(ValueError, match='read-only'):
+            array[0] = 1.0
 
 
 @pytest.mark.parametrize('value', [None, 3, b'<robot/>', ['<robot/>']])

@@ -50,6 +50,7 @@ def test_limits_that_bind_are_kept_without_a_word():
     (limit(effort=1e5), (-2.0, 2.0, 3.0, inf), ': effort 100000 N m is taken for no limit'),
     ('<limit lower="-2" upper="2" velocity="3"/>', (-2.0, 2.0, 3.0, inf),
      ': effort 0 N m is taken for no limit'),
+    (limit(upper=1.7e308), (-2.0, inf, 3.0, 40.0), ': upper 1.7e+308 rad is taken for no limit'),
     (limit(lower=-1e16), (-inf, 2.0, 3.0, 40.0), ': lower -1e+16 rad is taken for no limit')])
 def test_what_stands_for_no_limit_is_none_and_named(inside, found, warning):
     assert read('revolute', inside) == (
