@@ -97,8 +97,10 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
         (f'share/{NAME}/config', sorted(glob('config/*.yaml'))),
+        (f'share/{NAME}/config/arms', sorted(glob('config/arms/*'))),
     ],
     python_requires='>=3.10',
+    # urdf_parser_py is not among them: PyPI and ROS call its distribution by different names
     install_requires=['numpy', 'PyYAML', 'scipy', 'setuptools'],
     extras_require={'figures': ['matplotlib'], 'record': ['mcap'], 'test': ['pytest']},
     zip_safe=False,

@@ -131,4 +131,5 @@ build rrr_traj_planner_interfaces 'about 30 s' \
     $(find rrr_traj_planner_interfaces scripts/cmake -type f | sort)
 build rrr_traj_planner 'about 5 s' \
     package.xml setup.py setup.cfg resource/* \
-    $(find config rrr_traj_planner/*/native -name '*.yaml' -o -name '*.[ch]' -o -name '*.inc' | sort)
+    $(find config rrr_traj_planner/*/native -name '*.yaml' -o -name '*.urdf' -o -name '*.[ch]' \
+        -o -name '*.inc' | sort)

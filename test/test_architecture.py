@@ -20,6 +20,7 @@ from graphlib import CycleError, TopologicalSorter
 from importlib import import_module
 from importlib.util import find_spec
 import re
+from subprocess import run
 import sys
 
 from helpers.package import FILES, imports_of, layer_of, LAYERS, MODULES, modules_of, PACKAGE
@@ -62,7 +63,14 @@ def test_imports_point_from_nodes_to_report_to_planners_to_core():
 
 
 def test_core_and_planners_need_numpy_scipy_and_the_standard_library_alone():
-    assert foreign(('core', 'planners'), NUMERICS) == []
+    urdf = (f'{PACKAGE}.core.arm.urdf_document', 'urdf_parser_py.urdf.URDF')
+    assert foreign(('core', 'planners'), NUMERICS) == [urdf]
+
+
+def test_the_core_loads_no_urdf_parser_before_it_reads_one():
+    code = ('import sys, rrr_traj_planner.core.arm.urdf_arm; '
+            'sys.exit("urdf_parser_py" in sys.modules)')
+    assert run([sys.executable, '-c', code], check=False).returncode == 0
 
 
 def test_report_needs_matplotlib_besides():

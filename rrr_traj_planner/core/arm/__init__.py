@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The arm's model: geometry, limits, payload, friction, its URDF."""
+"""The arm's model: geometry, limits, payload, friction, its URDF; arms read from URDFs."""

@@ -1,0 +1,172 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""MoveIt's joint_limits.yaml, as this package's parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from difflib import get_close_matches
+from math import radians
+import os
+from pathlib import Path
+import re
+from typing import Any
+
+from rrr_traj_planner.core.errors import InvalidInputError, quoted, shown
+from rrr_traj_planner.core.scalars import positive_fraction
+from rrr_traj_planner.nodes.parameters.table import check_value, PLANNER, Row, rows_of
+import yaml
+
+GROUP = 'joint_limits'
+SCALING = ('default_velocity_scaling_factor', 'default_acceleration_scaling_factor')
+
+# MoveIt's switch of a range; here a range is given or not.
+HAS_POSITION = Row('has_position_limits', True, 'whether the range is limited')
+
+
+def read_joint_limits(path_or_text: str | os.PathLike[str],
+                      joint_names: Collection[str] | None = None) -> dict[str, Any]:
+    """
+    Return the parameters that a joint_limits.yaml gives.
+
+    MoveIt's default scaling factors are checked, and have no parameter here: requests scale.
+
+    Parameters
+    ----------
+    path_or_text : str or path
+        The file, or its text: what has a line break.
+    joint_names : collection of str, optional
+        The arm's joints; others of the file are ignored, since it may describe a whole robot. If
+        left out, the limits of every joint are returned.
+
+    Returns
+    -------
+    dict
+        Values by names of parameters, such as joint_limits.JOINT.max_velocity [rad/s], for what
+        is given and not switched off by has_..._limits.
+
+    Raises
+    ------
+    InvalidInputError
+        If the file is missing or malformed, has an unknown or a repeated key, a value is wrong, or
+        it has joints and none is the arm's. Names file, joint, key, value and range.
+
+    """
+    given = os.fspath(path_or_text)
+    if '\n' in given:
+        return _parameters(_content(given), joint_names)
+    try:
+        return _parameters(_content(Path(given).read_text(encoding='utf-8-sig')), joint_names)
+    except (OSError, ValueError) as error:  # InvalidInputError is a ValueError
+        raise InvalidInputError(f'{given}: {" ".join(str(error).split())}') from None
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML with MoveIt's tags of angles and 1e3 for a number; without keys that repeat."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """Return a mapping; refuse a repeated key, of which YAML takes the last value."""
+        found: set[str] = set()
+        for key, _ in node.value:
+            if key.value in found:
+                raise yaml.constructor.ConstructorError(
+                    None, None, f'{key.value} is repeated', key.start_mark)
+            found.add(key.value)
+        return super().construct_mapping(node, deep)
+
+    def construct_angle(self, node: yaml.Node) -> float:
+        """Return the number behind !radians or !degrees [rad]."""
+        try:
+            number = float(self.construct_scalar(node))
+        except ValueError:
+            raise yaml.constructor.ConstructorError(
+                None, None, f'{quoted(node.value)} is not a number', node.start_mark) from None
+        return radians(number) if node.tag == '!degrees' else number
+
+
+_Loader.add_constructor('!radians', _Loader.construct_angle)
+_Loader.add_constructor('!degrees', _Loader.construct_angle)
+_Loader.add_implicit_resolver(
+    'tag:yaml.org,2002:float', re.compile(r'[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$'),
+    list('-+.0123456789'))
+
+
+def _content(text: str) -> Any:
+    try:
+        return yaml.load(text, _Loader)  # noqa: S506, a SafeLoader
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        raise InvalidInputError(
+            (f'line {mark.line + 1}: ' if mark else '')
+            + ', '.join(filter(None, (error.context, error.problem)))) from None
+    except yaml.YAMLError as error:
+        raise InvalidInputError(' '.join(str(error).split())) from None
+
+
+def _parameters(content: Any, joint_names: Collection[str] | None) -> dict[str, Any]:
+    content = _mapping('the file', content)
+    for name in content:
+        _check_known(str(name), (*SCALING, GROUP), '')
+    for name in SCALING:
+        if name in content:
+            positive_fraction(name, content[name])
+    joints = _mapping(GROUP, content.get(GROUP))
+    chosen = [joint for joint in joints if joint_names is None or joint in joint_names]
+    if joints and not chosen:
+        raise InvalidInputError(
+            f'{GROUP} are of {", ".join(map(shown, joints))}, must be of the arm\'s joints, '
+            f'{", ".join(map(shown, joint_names or ()))}')
+    found: dict[str, Any] = {}
+    for joint in chosen:
+        found.update(_limits(str(joint), _mapping(f'{GROUP}.{joint}', joints[joint])))
+    return found
+
+
+def _limits(joint: str, given: Mapping[Any, Any]) -> dict[str, Any]:
+    """Return the parameters of a joint."""
+    prefix = f'{GROUP}.{joint}.'
+    rows = {name.removeprefix(prefix): row for name, row in rows_of(PLANNER, [joint]).items()
+            if name.startswith(prefix)}
+    known = {**rows, HAS_POSITION.name: HAS_POSITION._replace(name=prefix + HAS_POSITION.name)}
+    for key in given:
+        _check_known(str(key), known, prefix)
+    values = {key: float(value) if type(value) is int else value for key, value in given.items()}
+    switches = {key: value for key, value in values.items() if key.startswith('has_')}
+    for key, value in switches.items():
+        check_value(known[key], value)
+    off = [key.split('_')[1] for key, value in switches.items() if not value]
+    limits = {key: value for key, value in values.items()
+              if key in rows and (key in switches or key.split('_')[1] not in off)}
+    for key, value in limits.items():
+        check_value(rows[key], value)
+    low, high = limits.get('min_position'), limits.get('max_position')
+    if low is not None and high is not None and low >= high:
+        raise InvalidInputError(f'{prefix}min_position is {low:g} rad, must be below '
+                                f'max_position, {high:g} rad')
+    return {prefix + key: value for key, value in limits.items()}
+
+
+def _mapping(name: str, value: Any) -> Mapping[Any, Any]:
+    if value is None:
+        return {}
+    if not isinstance(value, dict):
+        raise InvalidInputError(f'{name} is {shown(value)}, must have keys and values')
+    return value
+
+
+def _check_known(key: str, known: Collection[str], prefix: str) -> None:
+    if key not in known:
+        near, = get_close_matches(key, known, 1, 0.0)
+        raise InvalidInputError(f'{prefix}{key} is unknown, the nearest known key is {near}')

@@ -1,0 +1,223 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Arms read from URDFs are those that Pinocchio reads, and what is no such arm is refused."""
+
+from __future__ import annotations
+
+import pickle
+from xml.etree import ElementTree
+
+from helpers.pinocchio_urdf import PinocchioUrdf
+from helpers.places import ROOT
+from helpers.random_cases import ARMS, random_states
+from helpers.random_chains import AnyArm
+from helpers.urdf_texts import arm, axis, joint, limit, link, PARTS, RandomTree, Y, Z
+import numpy as np
+import pytest
+from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.limits import JointLimits, UNITS
+from rrr_traj_planner.core.arm.urdf import urdf
+from rrr_traj_planner.core.arm.urdf_arm import read_urdf
+from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix, inverse_dynamics
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+
+FILES = {path.stem: path for path in sorted((ROOT / 'test/data/arms').glob('*.urdf'))}
+READ = [name for name in FILES if name != 'planar_arm']
+STATES = 30
+GEOMETRY = 1e-12  # of the arm's size: rounding
+RELATIVE = 1e-10  # of the largest torque or inertia: rounding of sums in another order
+
+
+def agrees_with_pinocchio(found, locked=None):
+    """Compare tip, inertia matrix and torque at random states."""
+    reference = PinocchioUrdf(found.text, found.joint_names, found.base, found.tip, locked)
+    ours = AnyArm(found.chain, reference.gravity)
+    q, qd, qdd = states = random_states(np.random.default_rng(5), STATES)
+    tip = np.array([reference.tip_position(x) for x in q])
+    M = np.array([reference.inertia_matrix(x) for x in q])
+    tau = np.array([reference.inverse_dynamics(*x) for x in zip(q, qd, qdd)])
+    assert np.abs(forward_kinematics(ours, q) - tip).max() <= GEOMETRY * found.chain.size
+    assert np.abs(inertia_matrix(ours, q) - M).max() <= RELATIVE * np.abs(M).max()
+    assert np.abs(inverse_dynamics(ours, *states) - tau).max() <= RELATIVE * np.abs(tau).max()
+
+
+def refused(text, base='base', tip='tip'):
+    """Return why a URDF is refused."""
+    with pytest.raises(InvalidInputError) as error:
+        read_urdf(text, base, tip)
+    return str(error.value)
+
+
+@pytest.mark.parametrize('name', READ)
+def test_public_descriptions_are_read_as_pinocchio_reads_them(name):
+    found = read_urdf(FILES[name], 'base', 'tip')
+    agrees_with_pinocchio(found)
+    assert found.joint_names == ('joint_1', 'joint_2', 'joint_3')
+    assert found.link_names == ('link_1', 'link_2', 'link_3')
+    assert found.text == FILES[name].read_text()
+
+
+@pytest.mark.parametrize('name', READ)
+def test_limits_and_friction_are_those_of_the_file(name):
+    found = read_urdf(FILES[name])
+    joints = ElementTree.parse(FILES[name]).getroot().findall('joint')[:3]
+    for key, values in (('lower', found.min_position), ('upper', found.max_position),
+                        ('velocity', found.max_velocity), ('effort', found.max_effort)):
+        written = [float(j.find('limit').get(key)) for j in joints]
+        if key == 'velocity':
+            written = [np.inf if x == 1000.0 else x for x in written]
+        assert values.tolist() == written
+    dynamics = [j.find('dynamics') for j in joints]
+    for key, values in (('damping', found.friction.viscous), ('friction', found.friction.coulomb)):
+        assert values.tolist() == [0.0 if d is None else float(d.get(key)) for d in dynamics]
+
+
+def test_an_arm_whose_axes_are_all_parallel_is_refused_by_names():
+    assert refused(str(FILES['planar_arm'])) == (
+        f"{FILES['planar_arm']}: the axes of joints 'joint_1' and 'joint_2' are parallel: the tip "
+        'moves in a plane or on few spheres, and no such arm is planned for')
+
+
+@pytest.mark.parametrize('name', ['geomagic_touch', 'eezybotarm_mk2'])
+def test_an_arm_without_masses_is_read_with_a_warning(name):
+    found = read_urdf(FILES[name])
+    assert not found.has_masses
+    assert found.warnings[-1] == 'no link has a mass: torque is not checked'
+    assert read_urdf(FILES['go1_leg']).has_masses
+
+
+def test_an_ordinary_description_gives_no_warning_and_no_noise(capfd):
+    noise = ('<gazebo foo="1"><b/></gazebo><transmission name="t"/><material name="m"/>'
+             '<ros2_control name="x" type="system"/>')
+    found = read_urdf(arm(noise, a=link('a', '<visual/><sensor/>').replace('>', ' odd="1">', 1)))
+    assert found.warnings == ("1 link without mass: 'a'",)
+    assert read_urdf(arm()).warnings == ()
+    assert capfd.readouterr() == ('', '')
+
+
+@pytest.mark.parametrize('model', ARMS)
+def test_the_urdf_that_the_package_writes_is_read_back(model):
+    limits = JointLimits(max_velocity=(1.1, np.inf, 0.3), max_effort=(np.inf, 200.0, 1e-5))
+    friction = Friction((0.1, 0.2, 0.3), (0.0, 1.0 / 3.0, 2.0))
+    found = read_urdf(urdf(model, limits, friction=friction), 'base_link', 'tip')
+    agrees_with_pinocchio(found)
+    q = np.array((0.3, 0.4, 0.5))
+    ours = AnyArm(found.chain, (0.0, 0.0, -model.gravity))
+    assert forward_kinematics(ours, q) == pytest.approx(forward_kinematics(model, q), abs=1e-12)
+    assert inverse_dynamics(ours, q, q, q) == pytest.approx(inverse_dynamics(model, q, q, q))
+    for name in UNITS.keys() & vars(found).keys():
+        assert getattr(found, name).tolist() == getattr(limits, name).tolist()
+    assert found.friction.coulomb.tolist() == friction.coulomb.tolist()
+
+
+@pytest.mark.parametrize('seed', range(60))
+def test_random_trees_are_read_as_pinocchio_reads_them(seed):
+    tree = RandomTree(seed)
+    found = read_urdf(tree.text, tree.base, tree.tip)
+    assert found.joint_names == tuple(tree.names)
+    agrees_with_pinocchio(found, tree.locked)
+
+
+def test_the_base_may_be_in_the_middle_of_the_tree_behind_turned_links():
+    above = (link('world'), link('cart', '<inertial><mass value="9"/></inertial>'),
+             joint('rail', 'prismatic', 'world', 'cart', limit(), (1, 2, 3), (0.3, 0.2, 0.1)),
+             joint('stand', 'fixed', 'cart', 'base', '', (0.1, 0.2, 0.3), (1.0, 0.5, 0.2)))
+    found, alone = read_urdf(arm(*above), 'base', 'tip'), read_urdf(arm(), 'base', 'tip')
+    agrees_with_pinocchio(found)
+    for name in ('axis', 'point', 'tip', 'mass', 'centre', 'inertia'):
+        assert getattr(found.chain, name).tolist() == getattr(alone.chain, name).tolist()
+
+
+def test_fixed_offsets_between_base_and_joint_1_are_counted():
+    found = read_urdf(arm(link('foot'), joint('plate', 'fixed', 'foot', 'base', '', (1, 2, 3),
+                                              (0.0, 0.0, np.pi / 2.0))), 'foot', 'tip')
+    assert found.chain.point[0] == pytest.approx((1.0, 2.0, 3.3))
+    assert found.chain.tip == pytest.approx((1.0, 3.0, 3.6))
+    agrees_with_pinocchio(found)
+
+
+def test_empty_names_are_the_root_and_the_only_leaf():
+    found = read_urdf(arm())
+    assert (found.base, found.tip) == ('base', 'tip')
+    assert refused(arm(link('x'), joint('more', 'fixed', 'c', 'x')), '', '') == (
+        "no tip is named, and what hangs from link 'base' ends in 'tip', 'x': must end in one "
+        'link')
+
+
+@pytest.mark.parametrize(('changed', 'message'), [
+    ({'j3': joint('j3', 'fixed', 'b', 'c')},
+     "2 joints between base and tip can turn: 'j1', 'j2'; must be 3"),
+    ({'end': joint('j4', 'continuous', 'c', 'tip')},
+     "4 joints between base and tip can turn: 'j1', 'j2', 'j3', 'j4'; must be 3"),
+    *(({'j3': joint('j3', kind, 'b', 'c', Y)},
+       f"joint 'j3', between base and tip, is {kind}: must be revolute, continuous or fixed")
+      for kind in ('prismatic', 'planar', 'floating')),
+    ({'j2': joint('j2', 'revolute', 'a', 'b', Y + '<mimic joint="j1"/>')},
+     "joint 'j2', between base and tip, mimics 'j1': must move by itself"),
+    ({'j2': joint('j2', 'revolute', 'a', 'b', Z)},
+     "the axes of joints 'j1' and 'j2' are parallel: the tip moves in a plane or on few spheres, "
+     'and no such arm is planned for'),
+    ({'j2': joint('j2', 'revolute', 'a', 'b', axis(0, 0, 0) + limit())},
+     "joint 'j2': its axis is zero, must have a direction"),
+    ({'end': joint('end', 'fixed', 'c', 'tip', '', (0, 1, 0))},
+     "the tip is on the axis of joint 'j3', which does not move it"),
+    ({'end': joint('end', 'fixed', 'c', 'tip', '', (1e-9, 1, 0))},
+     "the tip is on the axis of joint 'j3', which does not move it"),
+    ({'j1': joint('j1', 'revolute', 'base', 'a', Z + '<dynamics damping="-1"/>')},
+     "joint 'j1': damping is -1 N m s/rad, must not be negative")])
+def test_what_is_no_arm_of_three_joints_is_refused_by_name(changed, message):
+    assert refused(arm(**changed)) == message
+
+
+def test_base_as_tip_is_refused():
+    assert refused(arm(), 'base', 'base') == '0 joints between base and tip can turn; must be 3'
+
+
+def test_damping_and_friction_are_the_arm_s():
+    found = read_urdf(arm(j2=joint('j2', 'revolute', 'a', 'b', Y + '<dynamics friction="2"/>')))
+    assert found.friction.coulomb.tolist() == [0.0, 2.0, 0.0]
+    assert found.friction.viscous.tolist() == [0.0, 0.0, 0.0]
+
+
+def test_a_file_is_read_as_its_text_is_and_named_in_errors(tmp_path):
+    file = tmp_path / 'arm.urdf'
+    file.write_text('\ufeff\n' + arm(), encoding='utf-8')
+    assert read_urdf(file).joint_names == read_urdf(f'\ufeff \n{arm()}').joint_names
+    file.write_text('<robot name="r">\n<link name="a"></robot>')
+    assert refused(str(file)).startswith(f'{file}: line 2, column ')
+
+
+def test_what_is_no_file_is_refused(tmp_path):
+    for path in ('no_such.urdf', str(tmp_path), '\0', 'x' * 5000):
+        assert "is neither a URDF, whose text begins with '<', nor a file" in refused(path)
+    assert refused(' ') == "the URDF is empty, must be its text or a file's path"
+    binary = tmp_path / 'binary.urdf'
+    binary.write_bytes(b'\xff\xfe\x00')
+    assert 'utf-8' in refused(str(binary))
+
+
+def test_an_arm_is_pickled_read_only():
+    found = pickle.loads(pickle.dumps(read_urdf(arm())))
+    assert found.warnings == () and found.text == arm()
+    for array in (found.min_position, found.max_effort, found.chain.mass, found.friction.viscous):
+        with pytest.raises(ValueError, match='read-only'):
+            array[0] = 1.0
+
+
+@pytest.mark.parametrize('value', [None, 3, b'<robot/>', ['<robot/>']])
+def test_what_is_no_text_is_refused(value):
+    assert refused(value) == f'text_or_path is {value!r}, must be a text'
+    assert refused(PARTS['base'], value) == f'base is {value!r}, must be a text'
