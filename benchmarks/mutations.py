@@ -50,8 +50,7 @@ FAULTS = {
         ('r, h = hypot(x, y), z - model.d1', 'r, h = hypot(x, y), z + model.d1'),
     ),
     'test/core/arm': (
-        ('l3 = (m3 * model.l3 + mass * model.d4) / (m3 + mass)',
-         'l3 = (m3 * model.l3 + mass * model.l3) / (m3 + mass)'),
+        ('reduced = chain.mass[2] * mass / both', 'reduced = mass'),
     ),
     'test/core/motion_laws': (
         ('self.velocity + T * (self.c * s - self.b / w * sine)',

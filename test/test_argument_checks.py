@@ -21,7 +21,9 @@ import warnings
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.chain import Chain
 from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.payload import Payload, with_payload
@@ -31,7 +33,6 @@ from rrr_traj_planner.core.dynamics import rigid_body as dynamics
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics import forward as kinematics
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics, nearest_solution
-from rrr_traj_planner.core.kinematics.link_motion import link_motion
 from rrr_traj_planner.core.motion_laws.gauss import gauss
 from rrr_traj_planner.core.path.design import line_arc, line_polynomial
 from rrr_traj_planner.core.path.least_radius import largest_speed, least_radius
@@ -53,9 +54,11 @@ ALONG = plan(MODEL, LIMITS, PlanningRequest(POINTS, planner_id='line_arc')).traj
 
 # What is called, and with which sound arguments: numbers and arrays of them are varied.
 CALLS = {
-    'RobotModel': (RobotModel, {
-        'd1': 0.5, 'a2': 0.9, 'd4': 0.7, 'l2': 0.5, 'l3': 0.5, 'mass': [40.0, 16.0, 12.0],
-        'inertia': MODEL.inertia, 'gravity': 9.81}),
+    'Chain': (Chain, vars(MODEL.chain)),
+    'ArmLengths': (ArmLengths, vars(ArmLengths())),
+    'RobotModel': (RobotModel, {'gravity': [0.0, 0.0, -9.81], 'rotor_inertia': [0.1, 0.2, 0.3]}),
+    'from_lengths': (lambda gravity: RobotModel.from_lengths(ArmLengths(), gravity),
+                     {'gravity': 9.81}),
     'JointLimits': (JointLimits, {
         name: getattr(LIMITS, name) for name in (
             'min_position', 'max_position', 'max_velocity', 'max_acceleration', 'max_jerk',
@@ -88,7 +91,7 @@ CALLS = {
             (dynamics.forward_dynamics, 'q qd tau'), (dynamics.kinetic_energy, 'q qd'),
             (dynamics.potential_energy, 'q'), (kinematics.forward_kinematics, 'q'),
             (kinematics.jacobian, 'q'), (kinematics.jacobian_rate, 'q qd'),
-            (kinematics.radial_distance, 'q'), (link_motion, 'q qd qdd'))},
+            (kinematics.radial_distance, 'q'))},
     'inverse_kinematics': (lambda **values: inverse_kinematics(MODEL, **values),
                            {'position': POINTS[0], 'previous': Q}),
     'nearest_solution': (lambda **values: nearest_solution(MODEL, **values),
@@ -197,7 +200,7 @@ def test_every_form_of_a_number_is_accepted(call, name):
     ('inverse_kinematics', 'elbow', None), ('inverse_kinematics', 'shoulder', 'left'),
     ('Payload', 'known_to_controller', 1), ('EncoderSettings', 'seed', 0.5),
     ('RobotModel', 'joint_names', 'abc'), ('RobotModel', 'joint_names', [1, 2, 3]),
-    ('RobotModel', 'joint_names', None), ('RobotModel', 'l2', 1e300)])
+    ('RobotModel', 'joint_names', None), ('ArmLengths', 'l2', 1e300)])
 def test_flags_choices_and_texts_are_checked_too(call, name, wrong):
     with pytest.raises(InvalidInputError, match=rf'^{name}\b'):
         called(call, **{name: wrong})

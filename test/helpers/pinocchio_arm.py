@@ -25,7 +25,7 @@ AXES_KEPT = np.eye(3)
 
 
 class PinocchioArm:
-    """A `RobotModel` converted to a Pinocchio model."""
+    """A `ThesisArm` converted to a Pinocchio model."""
 
     def __init__(self, arm, payload=0.0):
         """
@@ -34,7 +34,7 @@ class PinocchioArm:
         A payload is a body of its own: a point mass [kg] at the last frame's origin, the tip.
         """
         model = pinocchio.Model()
-        model.gravity.linear = np.array([0.0, 0.0, -arm.gravity])
+        model.gravity.linear = arm.gravity
         # Placements of frame i, and of the centre of mass of link i, relative to joint i: both in
         # the axes of frame i.
         frames = [_placement(RX_90, (0.0, 0.0, arm.d1)), _placement(AXES_KEPT, (arm.a2, 0.0, 0.0)),

@@ -16,8 +16,8 @@
 
 from __future__ import annotations
 
+from helpers.thesis_arm import ThesisArm
 import numpy as np
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.motion_laws.cycloid import (
     cruise,
     CycloidPiece,
@@ -31,14 +31,14 @@ from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTr
 def random_model(rng):
     """Return an arm with random geometry, masses and inertias."""
     a2, d4 = rng.uniform(0.2, 1.5, 2)
-    return RobotModel(
+    return ThesisArm(
         d1=rng.uniform(-0.5, 1.0), a2=a2, d4=d4, l2=rng.uniform(0.1, 1.0) * a2,
         l3=rng.uniform(0.1, 1.0) * d4, mass=rng.uniform(1.0, 50.0, 3),
-        inertia=rng.uniform(0.01, 2.0, (3, 3)), gravity=rng.uniform(1.0, 25.0))
+        inertia=rng.uniform(0.01, 2.0, (3, 3)), g=rng.uniform(1.0, 25.0))
 
 
 # The thesis's arm and four random ones, for properties of every arm.
-ARMS = [RobotModel(), *(random_model(np.random.default_rng(seed)) for seed in range(4))]
+ARMS = [ThesisArm(), *(random_model(np.random.default_rng(seed)) for seed in range(4))]
 
 
 def random_states(rng, n):

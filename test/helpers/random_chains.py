@@ -16,12 +16,10 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-
 import numpy as np
 import pinocchio
 from rrr_traj_planner.core.arm.chain import Chain
-from rrr_traj_planner.core.arm.tables import tables_of
+from rrr_traj_planner.core.arm.model import RobotModel
 
 
 def random_inertia(rng, mass):
@@ -40,30 +38,17 @@ def random_chain(rng):
                  np.array([random_inertia(rng, m) for m in mass]))
 
 
-class AnyArm:
-    """What the dynamics need of an arm: a chain, gravity, rotor inertia."""
-
-    def __init__(self, chain, gravity=(0.0, 0.0, -9.81), rotor_inertia=(0.0, 0.0, 0.0)):
-        self.chain, self.gravity = chain, np.array(gravity)
-        self.rotor_inertia = np.array(rotor_inertia)
-
-    @cached_property
-    def tables(self):
-        """Return the arm's tables."""
-        return tables_of(self.chain, self.gravity, self.rotor_inertia)
-
-
 def random_arm(seed):
     """Return a random chain under gravity of any direction, with rotor inertia."""
     rng = np.random.default_rng(seed)
-    return AnyArm(random_chain(rng), rng.uniform(-10.0, 10.0, 3), rng.uniform(0.0, 0.5, 3))
+    return RobotModel(random_chain(rng), rng.uniform(-10.0, 10.0, 3), rng.uniform(0.0, 0.5, 3))
 
 
 class PinocchioChain:
     """A chain as a Pinocchio model; joint frames have the base frame's axes at zero."""
 
-    def __init__(self, arm):
-        """Place each joint at its point, each body's inertia where it is."""
+    def __init__(self, arm, payload=0.0):
+        """Place joints at their points and bodies where they are, a payload [kg] at the tip."""
         chain, model, joint, at = arm.chain, pinocchio.Model(), 0, np.zeros(3)
         model.gravity.linear = arm.gravity
         for i in range(3):
@@ -74,6 +59,8 @@ class PinocchioChain:
                 chain.mass[i], chain.centre[i] - at, chain.inertia[i]), pinocchio.SE3.Identity())
         self.tip = model.addFrame(pinocchio.Frame(
             'tip', joint, pinocchio.SE3(np.eye(3), chain.tip - at), pinocchio.FrameType.OP_FRAME))
+        model.appendBodyToJoint(joint, pinocchio.Inertia(
+            payload, chain.tip - at, np.zeros((3, 3))), pinocchio.SE3.Identity())
         model.armature = arm.rotor_inertia
         self.model, self.data = model, model.createData()
 

@@ -24,6 +24,9 @@ class ThesisArm(RobotModel):
 
     def __init__(self, lengths=None, g=GRAVITY, joint_names=JOINT_NAMES, **values):
         """Make it from lengths, or from some of them, the thesis's else."""
+        if 'chain' in values:  # by `dataclasses.replace`: an arm with fields of its own
+            super().__init__(joint_names=joint_names, **values)
+            return
         lengths = lengths or ArmLengths(**values)
         model = RobotModel.from_lengths(lengths, g, joint_names)
         super().__init__(model.chain, model.gravity, joint_names=joint_names)

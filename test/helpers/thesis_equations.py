@@ -26,7 +26,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from rrr_traj_planner.core.arm.model import RobotModel
+from helpers.thesis_arm import ThesisArm
 
 
 class Constants(NamedTuple):
@@ -60,13 +60,13 @@ class Terms(NamedTuple):
 
 
 @lru_cache(maxsize=16)  # as costly as the rest of one evaluation; a model never changes
-def constants(model: RobotModel) -> Constants:
+def constants(model: ThesisArm) -> Constants:
     """
     Return the constants of an arm's equations of motion.
 
     Parameters
     ----------
-    model : RobotModel
+    model : ThesisArm
         The arm.
 
     Returns
@@ -76,7 +76,7 @@ def constants(model: RobotModel) -> Constants:
 
     """
     (_, m2, m3), (I1, I2, I3) = model.mass.tolist(), model.inertia.tolist()
-    a2, l2, l3, g = model.a2, model.l2, model.l3, model.gravity
+    a2, l2, l3, g = model.a2, model.l2, model.l3, model.g
     return Constants(
         a2=a2, l3=l3, m3=m3,
         base_inertia=I1[1] + I2[0] + I3[2],

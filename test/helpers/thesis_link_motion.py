@@ -15,16 +15,16 @@
 """
 Position, velocity and acceleration of every link's frame and centre of mass (5.13-5.28).
 
-Part of the library; no planner calls it: dynamics are evaluated from the arm's tables.
+The package evaluates kinematics and dynamics from the arm's tables.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 from numpy.typing import ArrayLike
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, joint_states
 from rrr_traj_planner.core.kinematics.forward import matrix
 
@@ -47,7 +47,7 @@ class LinkMotion(NamedTuple):
     centre_of_mass: PointMotion
 
 
-def link_motion(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> LinkMotion:
+def link_motion(model: ThesisArm, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> LinkMotion:
     """
     Return rotations, velocities and accelerations of all links: the outward recursion.
 
@@ -57,7 +57,7 @@ def link_motion(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) 
 
     Parameters
     ----------
-    model : RobotModel
+    model : ThesisArm
         The arm.
     q, qd, qdd : array_like, shape (..., 3)
         Joint positions [rad], velocities [rad/s] and accelerations [rad/s^2].

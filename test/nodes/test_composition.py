@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from helpers.thesis_arm import ThesisArm
 import signal
 from threading import Condition
 
@@ -48,7 +49,7 @@ OTHER = {
     **own_limits('turn', 'lift', 'bend'), 'link_names': ['post', 'upper', 'fore'],
     'base_frame': 'other_base', 'tip_frame': 'other_tip', 'arm.d1': 0.7, 'arm.a2': 0.8,
     'initial_positions': [0.2, 0.8, 0.3], 'joint_limits.turn.max_velocity': 0.5}
-OTHER_MODEL = RobotModel(d1=0.7, a2=0.8, joint_names=OTHER['joint_names'])
+OTHER_MODEL = ThesisArm(d1=0.7, a2=0.8, joint_names=OTHER['joint_names'])
 OTHER_START = forward_kinematics(OTHER_MODEL, OTHER['initial_positions'])
 OTHER_POINTS = (OTHER_START, OTHER_START + (0.02, 0.02, -0.01))
 
@@ -254,7 +255,7 @@ def test_two_bring_ups_share_a_machine(ros, tmp_path):
         for robot in (left, right):
             robot.states.wait_for()
         assert_executes(left, NEAR)
-        assert_executes(right, np.add(NEAR, (0.0, 0.0, 0.2)), RobotModel(d1=0.7))
+        assert_executes(right, np.add(NEAR, (0.0, 0.0, 0.2)), ThesisArm(d1=0.7))
         for bringup in (one, other):
             children = bringup.started(2)
             bringup.process.send_signal(signal.SIGTERM)

@@ -115,8 +115,9 @@ def test_tasks_are_those_of_the_shipped_files(file, task):
     for name in ('min_position', 'max_position', 'max_velocity', 'max_acceleration', 'max_jerk',
                  'max_effort'):
         assert getattr(config.limits, name).tolist() == getattr(task.limits, name).tolist(), name
-    assert config.model.inertia.tolist() == task.model.inertia.tolist()
-    assert config.model.mass.tolist() == task.model.mass.tolist()
+    for name in ('point', 'tip', 'mass', 'centre', 'inertia'):
+        assert getattr(config.model.chain, name).tolist() == getattr(
+            task.model.chain, name).tolist(), name
 
 
 def test_samples_show_both_sides_of_a_step(plans):

@@ -27,7 +27,7 @@ EQUATIONS = (ROOT / 'docs' / 'equations.md').read_text()
 DOCUMENTS = {'errata.md': ERRATA, 'equations.md': EQUATIONS}
 
 TEST = re.compile(r'`(test/[\w/]+\.py)::(\w+)`')
-FUNCTION = re.compile(r'`((?:core|planners|nodes)(?:\.\w+)+)`')
+FUNCTION = re.compile(r'`((?:core|planners|nodes|helpers)(?:\.\w+)+)`')
 NUMBER = re.compile(r'(\d|[AC])\.\d+(\.[ab]|-\1\.\d+)?')  # one, or several such as 5.41-5.43
 PLACE = re.compile(r'(planned|not built|not needed): .|.*' + FUNCTION.pattern)
 
@@ -59,7 +59,8 @@ def missing_tests(text):
 def missing_functions(text):
     missing = []
     for dotted in FUNCTION.findall(text):
-        parts, folder = dotted.split('.'), ROOT / 'rrr_traj_planner'
+        parts = dotted.split('.')
+        folder = ROOT / ('test' if parts[0] == 'helpers' else 'rrr_traj_planner')
         while parts and (folder / parts[0]).is_dir():
             folder /= parts.pop(0)
         module, *name = parts or ['']

@@ -95,13 +95,13 @@ def test_5_36_has_three_slips(arm, slip):
 @pytest.mark.parametrize('arm', ARMS)
 def test_5_37_needs_minus_c23(arm):
     reference, cases = PinocchioArm(arm), states(302)
-    shift = arm.mass.sum() * arm.gravity * arm.d1  # 5.37 counts from the shoulder
+    shift = arm.mass.sum() * arm.g * arm.d1  # 5.37 counts from the shoulder
     true = [reference.potential_energy(q) - shift for q, _, _ in cases]
     printed, corrected = [], []
     for q, _, _ in cases:
         p = pose(arm, q)
         for values, height in ((printed, arm.l3 * p.s23), (corrected, -arm.l3 * p.c23)):
-            values.append(arm.gravity * (arm.mass[1] * arm.l2 * p.s2
+            values.append(arm.g * (arm.mass[1] * arm.l2 * p.s2
                                          + arm.mass[2] * (height + arm.a2 * p.s2)))
     assert differ(printed, true)
     assert corrected == pytest.approx(true, abs=AGREEMENT)
@@ -242,8 +242,8 @@ def test_5_53_and_5_54_need_s23(arm, joint):
     for q, _, _ in states(310):
         p, (_, m2, m3) = pose(arm, q), arm.mass
         true = reference.gravity_torque(q)[joint]
-        upper = 0.0 if joint == 2 else (m2 * arm.l2 + m3 * arm.a2) * arm.gravity * p.c2
-        corrected = upper + m3 * arm.gravity * arm.l3 * p.s23
+        upper = 0.0 if joint == 2 else (m2 * arm.l2 + m3 * arm.a2) * arm.g * p.c2
+        corrected = upper + m3 * arm.g * arm.l3 * p.s23
         assert corrected == pytest.approx(true, abs=AGREEMENT)
-        assert differ(upper + m3 * arm.gravity * arm.l3 * p.c23, true)
+        assert differ(upper + m3 * arm.g * arm.l3 * p.c23, true)
         assert gravity_torque(arm, q)[joint] == pytest.approx(corrected, abs=AGREEMENT)

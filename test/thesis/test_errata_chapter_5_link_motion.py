@@ -19,11 +19,11 @@ from math import cos, sin
 from helpers import table_5_1
 from helpers.comparison import differ, DIFFERENCES, rate, ROUNDING
 from helpers.random_cases import ARMS, random_states
+from helpers.thesis_arm import ThesisArm
+from helpers.thesis_link_motion import link_motion
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import jacobian
-from rrr_traj_planner.core.kinematics.link_motion import link_motion
 
 K = np.array([0.0, 0.0, 1.0])
 
@@ -40,7 +40,7 @@ def inverse_rotation_1(theta, sign):
 
 def test_5_13_and_5_19_print_a_matrix_that_is_no_rotation():
     for q, _, _ in states(210):
-        true = table_5_1.rotation(RobotModel(), q, 1).T
+        true = table_5_1.rotation(ThesisArm(), q, 1).T
         assert inverse_rotation_1(q[0], 1.0) == pytest.approx(true, abs=ROUNDING)
         printed = inverse_rotation_1(q[0], -1.0)
         assert differ(printed, true)
@@ -51,18 +51,18 @@ def test_5_13_and_5_19_print_a_matrix_that_is_no_rotation():
 
 def test_5_14_s_first_row_is_s2():
     for q, qd, qdd in states(211):
-        true = table_5_1.angular_velocity(RobotModel(), q, qd, 2)
+        true = table_5_1.angular_velocity(ThesisArm(), q, qd, 2)
         printed, corrected = ((first * qd[0], cos(q[1]) * qd[0], qd[1])
                               for first in (cos(q[1]), sin(q[1])))
         assert differ(printed, true)
         assert corrected == pytest.approx(true, abs=ROUNDING)
-        motion = link_motion(RobotModel(), q, qd, qdd)
+        motion = link_motion(ThesisArm(), q, qd, qdd)
         assert motion.angular_velocity[1] == pytest.approx(corrected, abs=ROUNDING)
 
 
 def test_5_15_repeats_the_slip_of_5_14_but_its_result_holds():
     for q, qd, qdd in states(212):
-        true = table_5_1.angular_velocity(RobotModel(), q, qd, 3)
+        true = table_5_1.angular_velocity(ThesisArm(), q, qd, 3)
         c3, s3, q23 = cos(q[2]), sin(q[2]), q[1] + q[2]
         turn = np.array([[c3, s3, 0.0], [0.0, 0.0, 1.0], [s3, -c3, 0.0]])
         printed, corrected = (
@@ -72,7 +72,7 @@ def test_5_15_repeats_the_slip_of_5_14_but_its_result_holds():
         assert corrected == pytest.approx(true, abs=ROUNDING)
         result = (sin(q23) * qd[0], qd[1] + qd[2], -cos(q23) * qd[0])
         assert result == pytest.approx(true, abs=ROUNDING)
-        motion = link_motion(RobotModel(), q, qd, qdd)
+        motion = link_motion(ThesisArm(), q, qd, qdd)
         assert motion.angular_velocity[2] == pytest.approx(result, abs=ROUNDING)
 
 
@@ -91,7 +91,7 @@ def test_5_18_a_lacks_the_elbow_s_velocity(arm):
 def angular_acceleration(q, qd, qdd, link):
     """Return a link's angular acceleration in its own frame, by differentiation."""
     return table_5_1.second_rate(
-        lambda x, xd: table_5_1.angular_velocity(RobotModel(), x, xd, link), q, qd, qdd)
+        lambda x, xd: table_5_1.angular_velocity(ThesisArm(), x, xd, link), q, qd, qdd)
 
 
 def test_5_20_takes_joint_2_s_rate_and_acceleration():
@@ -103,13 +103,13 @@ def test_5_20_takes_joint_2_s_rate_and_acceleration():
                               for i in (0, 1))
         assert differ(printed, true)
         assert corrected == pytest.approx(true, abs=DIFFERENCES)
-        motion = link_motion(RobotModel(), q, qd, qdd)
+        motion = link_motion(ThesisArm(), q, qd, qdd)
         assert motion.angular_acceleration[1] == pytest.approx(corrected, abs=10 * ROUNDING)
 
 
 def test_5_22_is_link_3_s_acceleration_of_joint_3():
     for q, qd, qdd in states(215):
-        w2 = table_5_1.angular_velocity(RobotModel(), q, qd, 2)
+        w2 = table_5_1.angular_velocity(ThesisArm(), q, qd, 2)
         wd2, true = (angular_acceleration(q, qd, qdd, link) for link in (2, 3))
         c3, s3 = cos(q[2]), sin(q[2])
         turn = np.array([[c3, s3, 0.0], [0.0, 0.0, 1.0], [s3, -c3, 0.0]])
@@ -117,7 +117,7 @@ def test_5_22_is_link_3_s_acceleration_of_joint_3():
         assert differ(printed, wd2)  # as printed, it should be link 2's own
         assert differ(turn @ printed, true)
         assert turn @ corrected == pytest.approx(true, abs=10 * DIFFERENCES)
-        motion = link_motion(RobotModel(), q, qd, qdd)
+        motion = link_motion(ThesisArm(), q, qd, qdd)
         assert motion.angular_acceleration[2] == pytest.approx(true, abs=10 * DIFFERENCES)
 
 

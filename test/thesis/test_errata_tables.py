@@ -14,6 +14,7 @@
 
 """Tables 6.3, B.1 and B.3 as printed and as corrected, and what gravity says to them."""
 
+from helpers.thesis_arm import ThesisArm
 from helpers import table_5_1
 from helpers import thesis_cases as thesis
 from helpers.comparison import differ
@@ -30,7 +31,7 @@ POINTS = {name: point for name, (point, _, _) in thesis.POINTS.items()}
 
 
 def test_table_6_3_s_third_point_cannot_be_held():
-    arm, limit = RobotModel(), JointLimits().max_effort[1]
+    arm, limit = ThesisArm(), JointLimits().max_effort[1]
     assert limit == 200.0  # table B.3
     held = {}
     for name, point in POINTS.items():
@@ -41,11 +42,11 @@ def test_table_6_3_s_third_point_cannot_be_held():
 
 
 def test_table_6_3_s_third_point_seems_light_with_5_53_as_printed():
-    arm = RobotModel()
+    arm = ThesisArm()
     q = inverse_kinematics(arm, POINTS['6.3 point 3'])
     _, m2, m3 = arm.mass
     printed = (m2 * arm.l2 * np.cos(q[1]) + m3 * (
-        arm.a2 * np.cos(q[1]) + arm.l3 * np.cos(q[1] + q[2]))) * arm.gravity
+        arm.a2 * np.cos(q[1]) + arm.l3 * np.cos(q[1] + q[2]))) * arm.g
     true = PinocchioArm(arm).gravity_torque(q)[1]
     assert printed < 200.0 < true
     assert true == pytest.approx(218.9, abs=thesis.TORQUE_TOLERANCE)

@@ -20,11 +20,14 @@ from math import inf, nan
 
 from helpers.pinocchio_arm import PinocchioArm
 from helpers.random_cases import ARMS, random_states
+from helpers.random_chains import PinocchioChain, random_arm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.payload import Payload, with_payload
 from rrr_traj_planner.core.dynamics.rigid_body import (
     forward_dynamics,
+    inertia_matrix,
+    inverse_dynamics,
     kinetic_energy,
     potential_energy,
 )
@@ -34,6 +37,8 @@ MASSES = (0.0, 0.3, 8.0, 60.0)
 
 # Two algorithms that solve the same equations in another order.
 RELATIVE = 1e-10
+
+EXACT = 1e-12  # of the largest value: rounding
 
 
 @pytest.mark.parametrize('mass', MASSES)
@@ -46,6 +51,33 @@ def test_accelerations_equal_the_articulated_body_algorithm_s(arm, mass):
         expected = reference.forward_dynamics(q, qd, tau)
         error = np.abs(forward_dynamics(loaded, q, qd, tau) - expected).max()
         assert error <= RELATIVE * np.abs(expected).max()
+
+
+@pytest.mark.parametrize('mass', MASSES)
+@pytest.mark.parametrize('seed', range(10))
+def test_load_on_any_chain_is_a_body_of_its_own_at_the_tip(seed, mass):
+    rng, arm = np.random.default_rng(seed), random_arm(seed)
+    reference, loaded = PinocchioChain(arm, mass), with_payload(arm, mass)
+    states = random_states(rng, 40)
+    torque = np.array([reference.inverse_dynamics(*s) for s in zip(*states)])
+    M = np.array([reference.inertia_matrix(q) for q in states[0]])
+    for ours, theirs in ((inverse_dynamics(loaded, *states), torque),
+                         (inertia_matrix(loaded, states[0]), M)):
+        assert np.abs(ours - theirs).max() <= EXACT * np.abs(theirs).max()
+
+
+def test_load_changes_nothing_but_link_3():
+    arm = random_arm(3)
+    loaded = with_payload(arm, 2.0)
+    for name in ('gravity', 'rotor_inertia', 'friction', 'joint_names'):
+        assert getattr(loaded, name) is getattr(arm, name) or np.array_equal(
+            getattr(loaded, name), getattr(arm, name))
+    for name in ('axis', 'point', 'tip'):
+        assert getattr(loaded.chain, name).tolist() == getattr(arm.chain, name).tolist()
+    for name in ('mass', 'centre', 'inertia'):
+        ours, bare = getattr(loaded.chain, name), getattr(arm.chain, name)
+        assert ours[:2].tolist() == bare[:2].tolist()
+    assert loaded.chain.mass[2] == arm.chain.mass[2] + 2.0
 
 
 def test_energies_equal_pinocchio_s_but_for_the_height_that_counts_from_elsewhere():

@@ -16,10 +16,10 @@
 
 from helpers import thesis_equations
 from helpers.random_cases import ARMS, random_states
-from helpers.random_chains import AnyArm, PinocchioChain, random_arm
+from helpers.random_chains import PinocchioChain, random_arm
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.tables import tables_of
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import (
     forward_dynamics,
     gravity_torque,
@@ -90,8 +90,8 @@ def test_the_thesis_s_equations_are_what_the_tables_of_its_arm_give(arm):
 
 def test_rotor_inertia_is_added_to_the_diagonal():
     arm, rotors = random_arm(3), np.array((0.1, 0.2, 0.3))
-    bare = AnyArm(arm.chain, arm.gravity)
-    with_rotors = AnyArm(arm.chain, arm.gravity, rotors)
+    bare = RobotModel(arm.chain, arm.gravity)
+    with_rotors = RobotModel(arm.chain, arm.gravity, rotors)
     q = np.array((0.3, -0.4, 1.2))
     assert inertia_matrix(with_rotors, q) - inertia_matrix(bare, q) == pytest.approx(
         np.diag(rotors), abs=1e-12)
@@ -99,7 +99,5 @@ def test_rotor_inertia_is_added_to_the_diagonal():
 
 def test_tables_of_the_thesis_s_arm_are_short():
     # what the kernels' speed on that arm rests on: 10 of 81, 12 of 150 and 3 of 27 coefficients
-    arm = ARMS[0]
-    tables = tables_of(arm.chain, np.array((0.0, 0.0, -arm.gravity)), np.zeros(3))
-    counts = [np.count_nonzero(table) for table in tables]
+    counts = [np.count_nonzero(table) for table in RobotModel().tables]
     assert counts == [10, 12, 3]

@@ -141,7 +141,7 @@ def test_energies_agree_with_pinocchio(arm):
     expected = np.array([reference.kinetic_energy(a, b) for a, b in zip(q, qd)])
     assert kinetic_energy(arm, q, qd) == pytest.approx(expected, abs=AGREEMENT)
     # Ours is zero with the links level with the shoulder, which holds link 1's centre of mass.
-    shift = arm.mass.sum() * arm.gravity * arm.d1
+    shift = arm.mass.sum() * arm.g * arm.d1
     expected = np.array([reference.potential_energy(a) - shift for a in q])
     assert potential_energy(arm, q) == pytest.approx(expected, abs=AGREEMENT)
 

@@ -14,6 +14,7 @@
 
 """Joint positions from tip positions: branches, edges, joint axis 1, whole turns."""
 
+from helpers.thesis_arm import ThesisArm
 import re
 
 from helpers import thesis_cases as thesis
@@ -183,7 +184,7 @@ def test_off_joint_axis_1_the_previous_pose_changes_nothing():
 
 @pytest.mark.parametrize('elbow', ELBOWS)
 def test_arm_of_equal_links_folds_onto_its_shoulder(elbow):
-    arm = RobotModel(a2=0.8, d4=0.8)
+    arm = ThesisArm(a2=0.8, d4=0.8)
     assert distance_of_pose(arm, SHOULDER, elbow) <= ROUNDING
     for direction in random_directions(np.random.default_rng(36), 50):
         for distance in (1e-6, 1e-3):

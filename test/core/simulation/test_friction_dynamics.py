@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from helpers.thesis_arm import ThesisArm
 from math import exp, inf, log, pi
 
 import numpy as np
@@ -36,7 +37,7 @@ from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 from scipy.integrate import solve_ivp
 
 MODEL = RobotModel()
-WEIGHTLESS = RobotModel(gravity=0.0)
+WEIGHTLESS = ThesisArm(g=0.0)
 STEP = 1e-3
 LOW, HIGH = (0.0, 0.0, -pi), (pi / 2.0, pi, 2.0 * pi)
 FREE = ((-inf,) * 3, (inf,) * 3)

@@ -16,11 +16,11 @@
 
 from __future__ import annotations
 
+from helpers.thesis_arm import ThesisArm
 from math import inf, pi
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import (
     forward_dynamics,
     kinetic_energy,
@@ -30,13 +30,13 @@ from rrr_traj_planner.core.simulation.physics import ArmPhysics
 from rrr_traj_planner.core.simulation.time_step import Load, TimeStep
 from scipy.integrate import solve_ivp
 
-MODEL = RobotModel()
+MODEL = ThesisArm()
 NO_TORQUE = (0.0, 0.0, 0.0)
 STEP = 1e-3
 LOW, HIGH = (0.0, 0.0, -pi), (pi / 2.0, pi, 2.0 * pi)
 
 # Largest difference of potential energy between two poses [J]: what energies are measured by.
-ENERGY_SCALE = 2.0 * MODEL.gravity * float(
+ENERGY_SCALE = 2.0 * MODEL.g * float(
     MODEL.mass[1] * MODEL.l2 + MODEL.mass[2] * (MODEL.a2 + MODEL.l3))
 
 
@@ -87,7 +87,7 @@ def test_a_step_with_joints_held_is_the_step_of_the_rest_of_the_arm():
     state = (0.3, 0.5, -0.4, 1.0, 0.0, 1.5)
     after = TimeStep(MODEL)(state, Load(lock=(0, 1, 0)), STEP)
     assert (after[1], after[4]) == (0.5, 0.0)
-    heavy = RobotModel(inertia=MODEL.inertia + np.array([[0, 0, 0], [0, 0, 1e15], [0, 0, 0]]))
+    heavy = ThesisArm(inertia=MODEL.inertia + np.array([[0, 0, 0], [0, 0, 1e15], [0, 0, 0]]))
     expected = TimeStep(heavy)(state, Load(), STEP)  # joint 2 too heavy to be moved
     np.testing.assert_allclose(after, expected, atol=1e-12)
 
@@ -106,7 +106,7 @@ def test_falling_arm_stays_between_its_stops_and_gains_no_energy(seed):
 
 
 def test_impact_stops_the_joint_and_takes_its_share_of_energy():
-    physics = ArmPhysics(RobotModel(gravity=0.0), LOW, HIGH)
+    physics = ArmPhysics(ThesisArm(g=0.0), LOW, HIGH)
     state = (0.0005, 1.0, 1.0, -1.0, 0.0, 0.0)  # half a step before joint 1's lower stop
     state = advanced(physics, state, NO_TORQUE, 1)
     assert (state[0], state[3]) == (0.0, 0.0)

@@ -14,6 +14,7 @@
 
 """Torques over a whole motion: their peaks, and the slowing down that fits them in."""
 
+from helpers.thesis_arm import ThesisArm
 from helpers.random_cases import ARMS, dense_times, joined, random_trajectory
 import numpy as np
 import pytest
@@ -91,7 +92,7 @@ def test_resting_arm_s_peak_torque_is_its_gravity_torque():
 
 
 def test_weightless_resting_arm_needs_no_torque():
-    peak = peak_torque(RobotModel(gravity=0.0), at_rest((0.3, 0.2, 1.0)))
+    peak = peak_torque(ThesisArm(g=0.0), at_rest((0.3, 0.2, 1.0)))
     assert peak.value.tolist() == [0.0, 0.0, 0.0]
 
 
@@ -169,7 +170,7 @@ def test_time_scale_below_one_reports_how_much_faster_is_feasible():
 
 def test_factor_of_a_weightless_arm_is_the_root_of_the_excess():
     # Without gravity torque falls with the square of the factor.
-    arm, trajectory = RobotModel(gravity=0.0), trajectory_of(4)
+    arm, trajectory = ThesisArm(g=0.0), trajectory_of(4)
     effort = peak_torque(arm, trajectory).value / (4.0, 9.0, 0.25)
     factors = time_scale_for_torque(arm, limits_of(effort), trajectory).value
     assert factors == pytest.approx([2.0, 3.0, 0.5], rel=1e-9)

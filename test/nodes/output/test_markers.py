@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from helpers.thesis_arm import ThesisArm
 from helpers.arm_in_ros import Arm, at, GOAL, rest_to_rest, START
 from helpers.plan_requests import patient, plan_request, TABLE_6_1, TABLE_6_3
 import numpy as np
@@ -66,7 +67,7 @@ def shows(name, *points):
 def test_description_is_the_urdf_of_the_parameters_for_whoever_comes_late(ros):
     Arm(ros, base_frame='floor', tip_frame='tool', link_names=['a', 'b', 'c'], **{
         'arm.d1': 0.25, 'joint_limits.joint_2.max_effort': 123.0})
-    expected = urdf(RobotModel(d1=0.25), JointLimits(max_effort=(150.0, 123.0, 200.0)),
+    expected = urdf(ThesisArm(d1=0.25), JointLimits(max_effort=(150.0, 123.0, 200.0)),
                     FrameNames('floor', ('a', 'b', 'c'), 'tool'))
     for _ in range(2):
         assert ros.listen(String, 'robot_description', LATCHED).wait_for().data == expected

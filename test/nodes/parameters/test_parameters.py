@@ -94,7 +94,10 @@ def test_via_point_files_name_their_arm(name):
 
 def test_defaults_are_the_thesis_s_arm():
     config = ArmConfig.from_values(defaults(ARM))
-    for field in ('d1', 'a2', 'd4', 'l2', 'l3', 'mass', 'inertia', 'gravity', 'joint_names'):
+    for field in ('axis', 'point', 'tip', 'mass', 'centre', 'inertia'):
+        np.testing.assert_array_equal(
+            getattr(config.settings.model.chain, field), getattr(RobotModel().chain, field))
+    for field in ('gravity', 'joint_names'):
         np.testing.assert_array_equal(
             getattr(config.settings.model, field), getattr(RobotModel(), field))
     for field, value in vars(JointLimits()).items():

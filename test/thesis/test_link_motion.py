@@ -16,12 +16,12 @@
 
 from helpers.pinocchio_arm import PinocchioArm
 from helpers.random_cases import ARMS, central_difference, random_states
+from helpers.thesis_arm import ThesisArm
+from helpers.thesis_link_motion import link_motion
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.kinematics.link_motion import link_motion
 
 # Accelerations reach some hundred m/s^2 in the random states.
 ROUNDING = 1e-12
@@ -92,12 +92,12 @@ def test_velocities_and_accelerations_are_derivatives_in_time(arm):
 
 def test_angular_velocity_of_link_2_is_5_14_corrected():
     # First row s2, not the printed c2: at theta_2 = 30 deg they differ.
-    motion = link_motion(RobotModel(), (0.0, np.pi / 6, 0.0), (2.0, 3.0, 0.0), np.zeros(3))
+    motion = link_motion(ThesisArm(), (0.0, np.pi / 6, 0.0), (2.0, 3.0, 0.0), np.zeros(3))
     assert motion.angular_velocity[1] == pytest.approx((1.0, np.sqrt(3.0), 3.0), abs=1e-15)
 
 
 def test_shoulder_and_first_centre_of_mass_never_move():
-    motion = link_motion(RobotModel(), *random_states(np.random.default_rng(24), 10))
+    motion = link_motion(ThesisArm(), *random_states(np.random.default_rng(24), 10))
     for points in (motion.frame, motion.centre_of_mass):
         assert (points.position[:, 0] == (0.0, 0.0, 0.5)).all()
         assert (points.velocity[:, 0] == 0.0).all()
@@ -121,4 +121,4 @@ def test_many_states_at_once_equal_one_by_one():
 def test_wrong_shape_is_refused_by_name(name):
     values = {'q': np.zeros(3), 'qd': np.zeros(3), 'qdd': np.zeros(3), name: np.zeros(4)}
     with pytest.raises(InvalidInputError, match=rf'^{name} has shape \(4,\), must have'):
-        link_motion(RobotModel(), **values)
+        link_motion(ThesisArm(), **values)
