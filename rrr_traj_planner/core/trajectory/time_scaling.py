@@ -118,7 +118,7 @@ def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Arr
     return squared_scaling_if_held(limits.max_effort, torque_parts(model, q, qd, qdd))
 
 
-def squared_scaling(max_effort: Array, parts: TorqueParts) -> Array:
+def squared_scaling(max_effort: Array, parts: TorqueParts, all_slower: bool = False) -> Array:
     """
     Return the square of the least time-scaling factor at which torques are within their limits.
 
@@ -131,6 +131,8 @@ def squared_scaling(max_effort: Array, parts: TorqueParts) -> Array:
         Limits on magnitudes, infinite where there is none [N m].
     parts : TorqueParts
         Of the torques.
+    all_slower : bool
+        Return the least factor instead at which, and at every larger one, torques are within.
 
     Returns
     -------
@@ -141,15 +143,15 @@ def squared_scaling(max_effort: Array, parts: TorqueParts) -> Array:
     constant, viscous, inertial = parts
     if viscous.any():
         return np.asarray(np.maximum(
-            _least_factor(max_effort - constant, viscous, inertial),
-            _least_factor(max_effort + constant, -viscous, -inertial)) ** 2)
+            _least_factor(max_effort - constant, viscous, inertial, all_slower),
+            _least_factor(max_effort + constant, -viscous, -inertial, all_slower)) ** 2)
     # The torque is bounded in the direction of the only part that time scaling changes.
     margin = max_effort - np.sign(inertial) * constant
     with np.errstate(divide='ignore', invalid='ignore'):
         return np.where(margin > 0.0, np.abs(inertial) / margin, np.inf)
 
 
-def _least_factor(margin: Array, viscous: Array, inertial: Array) -> Array:
+def _least_factor(margin: Array, viscous: Array, inertial: Array, all_slower: bool) -> Array:
     """
     Return the least factor f, at an upper limit: margin f^2 - viscous f - inertial >= 0.
 
@@ -161,12 +163,12 @@ def _least_factor(margin: Array, viscous: Array, inertial: Array) -> Array:
         zero = np.where(viscous >= 0.0, (viscous + root) / (2.0 * margin),
                         2.0 * inertial / (root - viscous))
     satisfied = margin - viscous - inertial >= 0.0
-    needless = np.isnan(root) | (satisfied & (viscous > 2.0 * margin))
+    needless = np.isnan(root) | (satisfied & (viscous > 2.0 * margin) & (not all_slower))
     factor = np.where(needless, 0.0, np.maximum(np.nan_to_num(zero, nan=np.inf), 0.0))
     factor = np.where((viscous <= 0.0) & (inertial <= 0.0), 0.0, factor)
     factor = np.where(np.isinf(margin), 0.0, factor)
     beyond = margin < 0.0  # the constant part alone exceeds the limit
-    return np.where(beyond, np.where(satisfied, 0.0, np.inf), factor)
+    return np.where(beyond, np.where(satisfied & (not all_slower), 0.0, np.inf), factor)
 
 
 def squared_scaling_if_held(max_effort: Array, parts: TorqueParts) -> Array:

@@ -56,7 +56,7 @@ def description(config: ArmConfig) -> str:
 
     """
     settings = config.settings
-    return urdf(settings.model, settings.limits, config.frames, settings.friction)
+    return urdf(settings.model, settings.limits, config.frames, settings.model.friction)
 
 
 class ArmView:
