@@ -45,7 +45,8 @@ def rows(repetitions: int = REPETITIONS) -> list[Row]:
                               points.accelerations, every, every)
     plain = ArmSettings(ARM, task.limits, ControllerGains(), STEP)
     real = replace(
-        plain, payload=Payload(2.0), friction=Friction((5.0, 5.0, 5.0), (2.0, 2.0, 2.0)),
+        plain, payload=Payload(2.0),
+        model=replace(plain.model, friction=Friction((5.0, 5.0, 5.0), (2.0, 2.0, 2.0))),
         encoder=EncoderSettings(resolution=1e-5, noise=1e-5))
     steps = round(float(points.times[-1]) / STEP)
     simulated = STEP * steps

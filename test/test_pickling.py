@@ -16,7 +16,7 @@
 
 from concurrent.futures import ProcessPoolExecutor
 import copy
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from functools import cache
 from importlib import import_module
 import inspect
@@ -86,8 +86,8 @@ def values():
     zeros, flags = np.zeros((2, 3)), [True, False]
     task = JointTask(model, limits, q, None, 0.01)
     return (
-        ArmSettings(model, limits, ControllerGains(), friction=Friction(np.ones(3), np.ones(3)),
-                    tolerances=Tolerances(np.ones(3), np.ones(3))),
+        ArmSettings(replace(model, friction=Friction(np.ones(3), np.ones(3))), limits,
+                    ControllerGains(), tolerances=Tolerances(np.ones(3), np.ones(3))),
         PlanningRequest(POINTS, np.ones(3), 'septic', [1.0, np.nan, 2.0], elbow='up'),
         task, via_problem_of(task, SEPTIC),
         TrajectoryPoints([0, 1], q, zeros, zeros, flags, flags),

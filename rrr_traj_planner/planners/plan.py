@@ -22,7 +22,7 @@ from typing import TextIO
 
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.trajectory import Peaks, Trajectory
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
@@ -74,7 +74,7 @@ class Plan(ReadOnlyArrays):
 
         """
         p = self.points
-        torque = inverse_dynamics(self.model, p.positions, p.velocities, p.accelerations)
+        torque = motor_torque(self.model, p.positions, p.velocities, p.accelerations)
         found = {'time [s]': p.times}
         for quantity, values in (
                 ('position [rad]', p.positions), ('velocity [rad/s]', p.velocities),

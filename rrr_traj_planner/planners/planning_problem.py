@@ -27,6 +27,11 @@ from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
 from rrr_traj_planner.core.kinematics.postures import ANY, Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
+from rrr_traj_planner.planners.effort_limits import (
+    check_friction,
+    checked_limits,
+    torque_note,
+)
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.via_points import check_start, joint_via_points
 
@@ -47,6 +52,8 @@ class PlanningProblem(ReadOnlyArrays):
     start : ndarray, shape (3,), optional
         Joint positions [rad] where the motion starts, within the ranges; None: at the first via
         point.
+    note : str
+        On limits that cannot be checked, for the plan; mostly empty.
 
     """
 
@@ -54,6 +61,7 @@ class PlanningProblem(ReadOnlyArrays):
     limits: JointLimits
     request: PlanningRequest
     start: Array | None
+    note: str = ''
 
     @property
     def asked(self) -> Posture:
@@ -104,7 +112,7 @@ def planning_problem(model: RobotModel, limits: JointLimits,
     Returns
     -------
     PlanningProblem
-        With scaled limits.
+        With scaled limits; without those of effort for an arm that lacks inertia.
 
     Raises
     ------
@@ -112,13 +120,17 @@ def planning_problem(model: RobotModel, limits: JointLimits,
         If it names a posture, and the arm's have no names.
     StartStateError
         If the start state is out of its range or cannot be held.
+    LimitViolationError
+        If an effort limit leaves nothing beside Coulomb friction.
 
     """
     asked = Posture(request.elbow, request.shoulder)
     if asked != ANY and not has_named_postures(model):
         raise InvalidInputError(
             f'{asked} is asked for, but the postures of this arm have no names')
-    scaled = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
+    scaled = checked_limits(model, limits).scaled(
+        request.velocity_scaling, request.acceleration_scaling)
+    check_friction(model, scaled)
     start = None if request.start is None else check_start(
         model, scaled, request.start, request.start_state_tolerance)
-    return PlanningProblem(model, scaled, request, start)
+    return PlanningProblem(model, scaled, request, start, torque_note(model, limits))

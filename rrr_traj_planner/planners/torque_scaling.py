@@ -15,8 +15,9 @@
 """
 Time scaling of motions so that torque limits hold.
 
-Scaling time by z divides the torque beside gravity's by z^2 (Hollerbach, Dynamic scaling of
-manipulator trajectories, ASME J. Dynamic Systems, Measurement, and Control 106, 1984).
+Scaling time by z divides the torque of inertia by z^2 and that of viscous friction by z
+(Hollerbach, Dynamic scaling of manipulator trajectories, ASME J. Dynamic Systems, Measurement, and
+Control 106, 1984; `core.trajectory.time_scaling`).
 """
 
 from __future__ import annotations
@@ -27,12 +28,14 @@ from typing import Literal
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import LimitViolationError
+from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
 from rrr_traj_planner.core.trajectory.torque import (
     peak_holding_torque,
     time_scale_for_torque,
     torque_sweep,
 )
-from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.trajectory import MOST_FACTOR, Trajectory
+from rrr_traj_planner.planners.effort_limits import moving_error
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.via_points import holding_error
 
@@ -53,10 +56,18 @@ def torque_time_scale(task: JointTask, trajectory: Trajectory) -> float:
     Returns
     -------
     float
-        Infinite where gravity alone exceeds a limit.
+        Infinite where gravity and Coulomb friction alone exceed a limit.
 
     """
-    return float(time_scale_for_torque(task.model, task.limits, trajectory).value.max())
+    factor = float(time_scale_for_torque(task.model, task.limits, trajectory).value.max())
+    # With viscous friction a factor that one torque requires may be too large for another.
+    while task.model.friction.viscous.any() and 1.0 < factor < MOST_FACTOR:
+        slowed = trajectory.time_scaled(factor)
+        further = float(time_scale_for_torque(task.model, task.limits, slowed).value.max())
+        if further <= 1.0 + TORQUE_ROUNDING:
+            break
+        factor *= further
+    return factor
 
 
 def feasible_time_scale(task: JointTask, trajectory: Trajectory) -> float:
@@ -78,7 +89,7 @@ def feasible_time_scale(task: JointTask, trajectory: Trajectory) -> float:
     Raises
     ------
     LimitViolationError
-        If gravity alone exceeds an effort limit along the path.
+        If gravity and Coulomb friction alone exceed an effort limit along the path.
 
     """
     factor = torque_time_scale(task, trajectory)
@@ -144,7 +155,7 @@ def squared_time_scale_by_segment(task: JointTask, trajectory: Trajectory,
 
 def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:
     """
-    Return the error of a path along which gravity's torque exceeds an effort limit.
+    Return the error of a path along which gravity and friction exceed an effort limit.
 
     Parameters
     ----------
@@ -159,10 +170,20 @@ def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:
         With segment, joint, torque and limit.
 
     """
-    holding = peak_holding_torque(task.model, trajectory)
-    joint = int((holding.value / task.limits.max_effort).argmax())
-    needed, limit = float(holding.value[joint]), float(task.limits.max_effort[joint])
-    name = task.model.joint_names[joint]
-    segment = int(np.searchsorted(trajectory.via_times[1:-1], holding.time[joint]))
-    return holding_error(
-        f'segment {task.segment_number(segment)}: along the segment', name, needed, limit)
+    holding, limits = peak_holding_torque(task.model, trajectory), task.limits.max_effort
+    joint = int((holding.value / limits).argmax())
+    if holding.value[joint] > limits[joint]:
+        where = _along_segment(task, trajectory, float(holding.time[joint]))
+        return holding_error(where, task.model.joint_names[joint], float(holding.value[joint]),
+                             float(limits[joint]))
+    sweep = torque_sweep(task.model, trajectory)
+    constant = np.abs(sweep.parts.constant)
+    row, joint = map(int, np.unravel_index(int((constant / limits).argmax()), constant.shape))
+    return moving_error(_along_segment(task, trajectory, float(sweep.times[row])), task.model,
+                        joint, float(constant[row, joint]), float(limits[joint]))
+
+
+def _along_segment(task: JointTask, trajectory: Trajectory, time: float) -> str:
+    """Return where a motion is at a time, for an error."""
+    segment = int(np.searchsorted(trajectory.via_times[1:-1], time))
+    return f'segment {task.segment_number(segment)}: along the segment'

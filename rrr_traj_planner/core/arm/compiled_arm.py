@@ -62,7 +62,7 @@ class CompiledArm:
     """
 
     def __init__(self, model: RobotModel) -> None:
-        self._arm, viscous = _Arm(), np.zeros(3)
+        self._arm, viscous = _Arm(), np.array(model.friction.viscous)
         self._arrays: list[Any] = [viscous]
         self._arm.viscous = viscous.ctypes.data
         for name, table in model.tables._asdict().items():

@@ -22,6 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
+from rrr_traj_planner.core.scalars import truth
 
 UNITS = {'viscous': 'N m s/rad', 'coulomb': 'N m'}
 
@@ -40,16 +41,19 @@ class Friction(ReadOnlyArrays):
         [N m s/rad], not negative.
     coulomb : array_like, shape (3,)
         [N m], not negative.
+    known_to_controller : bool
+        Whether the controller adds the friction of the desired motion.
 
     Raises
     ------
     InvalidInputError
-        If a value is negative or not finite.
+        If a value is negative, not finite or of another kind.
 
     """
 
     viscous: Array = field(default_factory=lambda: np.zeros(3))
     coulomb: Array = field(default_factory=lambda: np.zeros(3))
+    known_to_controller: bool = False
 
     def __post_init__(self) -> None:
         """Check the values and make the arrays read-only."""
@@ -59,6 +63,8 @@ class Friction(ReadOnlyArrays):
             if (array < 0.0).any():
                 raise InvalidInputError(
                     f'{name} is {array.tolist()} {unit}, must not be negative')
+        object.__setattr__(self, 'known_to_controller', truth(
+            'known_to_controller', self.known_to_controller))
 
     @property
     def is_none(self) -> bool:

@@ -98,6 +98,32 @@ def computed_torque(t: Terms, stiffness: float, damping: float, state: State,
                    a3 + damping * (v3 - qd3) + stiffness * (p3 - q3))
 
 
+def with_friction(torque: Triple, friction: tuple[Triple, Triple], desired: Desired) -> Triple:
+    """
+    Return torques with those that overcome the friction of the desired motion.
+
+    Parameters
+    ----------
+    torque : tuple of 3 floats
+        Commanded without friction [N m].
+    friction : tuple of two tuples of 3 floats
+        Viscous [N m s/rad] and Coulomb friction [N m].
+    desired : tuple of 9 floats
+        As in `computed_torque`.
+
+    Returns
+    -------
+    tuple of 3 floats
+        With viscous qd_des + coulomb sign(qd_des) [N m].
+
+    """
+    (n1, n2, n3), ((b1, b2, b3), (c1, c2, c3)) = torque, friction
+    v1, v2, v3 = desired[3:6]
+    return (n1 + b1 * v1 + c1 * ((v1 > 0.0) - (v1 < 0.0)),
+            n2 + b2 * v2 + c2 * ((v2 > 0.0) - (v2 < 0.0)),
+            n3 + b3 * v3 + c3 * ((v3 > 0.0) - (v3 < 0.0)))
+
+
 def saturated(torque: Triple, limit: Triple) -> Triple:
     """
     Return torques saturated at the motors' limits.

@@ -33,7 +33,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.control.trajectory_limits import outside_ranges
-from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
 from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
@@ -212,7 +212,7 @@ def _within_limits(takeover: Takeover, T: Array, ends: tuple[Array, ...]) -> Boo
     # Torque is checked at 32 steps of time; chosen.
     times = np.linspace(0.0, 1.0, 33)[:, np.newaxis, np.newaxis] * T[i, np.newaxis]
     q, qd, qdd = (polynomial(np.moveaxis(c[i], -1, 0), times, order) for order in range(3))
-    torque = np.abs(inverse_dynamics(takeover.model, q, qd, qdd))
+    torque = np.abs(motor_torque(takeover.model, q, qd, qdd))
     allowed = np.maximum(torque[:1], torque[-1:])
     met[i] = (torque <= np.maximum(takeover.limits.max_effort, allowed)
               * (1.0 + TOLERANCE)).all(axis=(0, 2))

@@ -17,8 +17,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
-from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.payload import Payload, with_payload
@@ -34,7 +34,7 @@ from rrr_traj_planner.core.simulation.step_stability import check_step
 LONGEST_STEP = 1.0  # s, far beyond what any controller works with
 
 KINDS = {'model': RobotModel, 'limits': JointLimits, 'gains': ControllerGains,
-         'payload': Payload, 'friction': Friction, 'soft_stops': SoftStops,
+         'payload': Payload, 'soft_stops': SoftStops,
          'encoder': EncoderSettings, 'tolerances': Tolerances}
 
 
@@ -46,7 +46,7 @@ class ArmSettings:
     Parameters
     ----------
     model : RobotModel
-        The bare arm.
+        The bare arm, with the friction of its joints.
     limits : JointLimits
         Stops at the position limits, torques saturated at the effort limits; the others apply
         to motions that the arm generates itself (stopping, joining a trajectory).
@@ -56,8 +56,6 @@ class ArmSettings:
         Of the physics and of the controller [s], positive; taken to the nearest nanosecond.
     payload : Payload
         At the tip.
-    friction : Friction
-        In the joints; not in the controller's model.
     soft_stops : SoftStops
         Bumpers behind the position limits.
     encoder : EncoderSettings
@@ -69,7 +67,7 @@ class ArmSettings:
     ------
     InvalidInputError
         If a value is of another class, the step is not positive, or it is too long for the
-        friction or the bumpers.
+        friction or the bumpers; or if the arm lacks inertia.
 
     """
 
@@ -78,7 +76,6 @@ class ArmSettings:
     gains: ControllerGains
     step: float = 0.001
     payload: Payload = field(default_factory=Payload)
-    friction: Friction = field(default_factory=Friction)
     soft_stops: SoftStops = field(default_factory=SoftStops)
     encoder: EncoderSettings = field(default_factory=EncoderSettings)
     tolerances: Tolerances = field(default_factory=Tolerances)
@@ -92,16 +89,19 @@ class ArmSettings:
             raise InvalidInputError(f'step is {step} s, must be at most {LONGEST_STEP} s')
         object.__setattr__(self, 'step', step)
         object.__setattr__(self, 'step', max(self.step_ns, 1) / SECOND)
-        check_step(self.loaded_model, self.friction, self.soft_stops, self.step)
+        if self.loaded_model.lacking_inertia:
+            raise InvalidInputError(
+                f'{self.loaded_model.lacking_inertia}: give masses or rotor_inertia')
+        check_step(self.loaded_model, self.soft_stops, self.step)
 
     @property
     def step_ns(self) -> int:
         """Return the step in nanoseconds."""
         return nanoseconds(self.step)
 
-    @property
+    @cached_property
     def loaded_model(self) -> RobotModel:
-        """Return the arm with its payload."""
+        """The arm with its payload."""
         return with_payload(self.model, self.payload.mass)
 
     @property

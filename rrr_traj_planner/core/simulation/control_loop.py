@@ -18,7 +18,12 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, finite_array
-from rrr_traj_planner.core.control.computed_torque import computed_torque, saturated
+from rrr_traj_planner.core.control.computed_torque import (
+    computed_torque,
+    saturated,
+    with_friction,
+)
+from rrr_traj_planner.core.dynamics.arm_dynamics import ArmDynamics
 from rrr_traj_planner.core.dynamics.rigid_body import kinetic_energy, potential_energy
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
@@ -126,9 +131,12 @@ class ControlLoop:
         self.settings = settings
         low, high = (_triple(x) for x in (
             settings.limits.min_position, settings.limits.max_position))
-        self._physics = ArmPhysics(settings.loaded_model, low, high, settings.friction,
-                                   settings.soft_stops, self.ledger, self.monitor)
-        self._controller_dynamics = ArmPhysics(settings.controller_model, low, high)
+        self._physics = ArmPhysics(settings.loaded_model, low, high, settings.soft_stops,
+                                   self.ledger, self.monitor)
+        self._controller_dynamics = ArmDynamics(settings.controller_model)
+        friction = settings.model.friction
+        self._known_friction = None if not friction.known_to_controller or friction.is_none else (
+            _triple(friction.viscous), _triple(friction.coulomb))
         self._max_effort = self.monitor.max_effort = _triple(settings.limits.max_effort)
         self._ideal = settings.encoder.is_ideal and (
             settings.payload.known_to_controller or settings.payload.mass == 0.0)
@@ -150,12 +158,14 @@ class ControlLoop:
         h, gains = self.settings.step, self.settings.gains
         stiffness, damping, record = gains.stiffness, gains.damping, self.monitor.record_saturation
         state, torque, motors, (m1, m2, m3) = self.state, self.torque, 0.0, limit
-        step_ns = self._step_ns
+        step_ns, friction = self._step_ns, self._known_friction
         first = self.steps * step_ns - motion.origin_ns
         for n in range(first, first + steps * step_ns, step_ns):
-            t = physics.terms(state)
-            torque = n1, n2, n3 = computed_torque(
-                t, stiffness, damping, state, desired(n, n / 1e9))
+            t, wanted = physics.terms(state), desired(n, n / 1e9)
+            torque = computed_torque(t, stiffness, damping, state, wanted)
+            if friction is not None:
+                torque = with_friction(torque, friction, wanted)
+            n1, n2, n3 = torque
             if not (-m1 <= n1 <= m1 and -m2 <= n2 <= m2 and -m3 <= n3 <= m3):
                 record(torque)
                 torque = saturated(torque, limit)
@@ -204,8 +214,10 @@ class ControlLoop:
 
         """
         gains, measured = self.settings.gains, self.measured
-        t = self._controller_dynamics.terms(measured)
+        t = self._controller_dynamics(measured)
         wanted = computed_torque(t, gains.stiffness, gains.damping, measured, desired)
+        if self._known_friction is not None:
+            wanted = with_friction(wanted, self._known_friction, desired)
         torque = saturated(wanted, self._max_effort)
         if torque is not wanted:
             self.monitor.record_saturation(wanted)

@@ -23,7 +23,6 @@ from __future__ import annotations
 
 from math import copysign
 
-from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.arm_dynamics import (
     accelerations,
@@ -56,11 +55,9 @@ class ArmPhysics:
     Parameters
     ----------
     model : RobotModel
-        The arm.
+        The arm, with the friction of its joints.
     low, high : tuple of 3 floats
         Positions of the stops [rad]; infinite for none.
-    friction : Friction, optional
-        Of the joints; none by default.
     soft_stops : SoftStops, optional
         Bumpers, from low and high on outwards; none by default.
     ledger : EnergyLedger, optional
@@ -78,13 +75,12 @@ class ArmPhysics:
     """
 
     def __init__(self, model: RobotModel, low: Triple, high: Triple,
-                 friction: Friction | None = None, soft_stops: SoftStops | None = None,
-                 ledger: EnergyLedger | None = None,
+                 soft_stops: SoftStops | None = None, ledger: EnergyLedger | None = None,
                  monitor: SaturationAndContactMonitor | None = None) -> None:
         self.low, self.high, self._monitor = low, high, monitor or SaturationAndContactMonitor()
         self.ledger = EnergyLedger() if ledger is None else ledger
         self.terms, self._advanced, self._load = ArmDynamics(model), TimeStep(model), Load()
-        self._bumper, friction = soft_stops or SoftStops(), friction or Friction()
+        self._bumper, friction = soft_stops or SoftStops(), model.friction
         self._viscous, self._coulomb = friction.viscous.tolist(), friction.coulomb.tolist()
         self._with_friction = None if friction.is_none and not self._bumper.width else (
             FrictionDynamics(self.terms, self._advanced, Bounds(low, high), friction,

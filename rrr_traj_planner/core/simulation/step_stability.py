@@ -21,7 +21,7 @@ Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.2.
 from __future__ import annotations
 
 import numpy as np
-from rrr_traj_planner.core.arm.friction import Friction
+from rrr_traj_planner.core.arm.inertia_check import ANGLES
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix
@@ -33,17 +33,14 @@ from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 LARGEST = 1.0
 
 
-def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
-               step: float) -> None:
+def check_step(model: RobotModel, soft_stops: SoftStops, step: float) -> None:
     """
     Refuse friction or bumpers that are too stiff for a time step.
 
     Parameters
     ----------
     model : RobotModel
-        The arm with its payload.
-    friction : Friction
-        Of its joints.
+        The arm with its payload, its inertia matrix regular in every pose.
     soft_stops : SoftStops
         Of all joints.
     step : float
@@ -56,6 +53,7 @@ def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
         than a step in some pose.
 
     """
+    friction = model.friction
     bumper = soft_stops.stiffness if soft_stops.width else 0.0
     if not friction.viscous.any() and not bumper:
         return
@@ -77,7 +75,5 @@ def check_step(model: RobotModel, friction: Friction, soft_stops: SoftStops,
 
 def _poses() -> Array:
     """Return a grid of the joints on which inertia depends, shape (n, 3)."""
-    # Positions of joints 2 and 3 each, over a full turn; chosen
-    angles = np.linspace(-np.pi, np.pi, 24, endpoint=False)
-    q2, q3 = (x.ravel() for x in np.meshgrid(angles, angles))
+    q2, q3 = (x.ravel() for x in np.meshgrid(ANGLES, ANGLES))
     return np.column_stack((np.zeros_like(q2), q2, q3))

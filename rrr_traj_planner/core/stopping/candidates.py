@@ -27,7 +27,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.stopping.joint_brake import joint_brake, JointBrake
 from rrr_traj_planner.core.stopping.task import StopTask
@@ -96,7 +96,7 @@ class JointBrakes:
             0.0, 1.0, samples)[:, np.newaxis]
         displacement, qd, qdd, _ = brakes.at(t)
         moved = q + displacement
-        at_first = np.abs(inverse_dynamics(task.model, q, qd[:, :1], self.qdd[chosen, np.newaxis]))
+        at_first = np.abs(motor_torque(task.model, q, qd[:, :1], self.qdd[chosen, np.newaxis]))
         ratio = np.maximum(
             task.torque_ratio(moved, qd, qdd, at_first),
             np.abs(qd) / np.maximum(task.limits.max_velocity, np.abs(qd[:, :1])))
@@ -184,7 +184,7 @@ class Slowdowns:
         limits = self.task.limits
         t = self.durations[chosen, np.newaxis] * np.linspace(0.0, 1.0, samples)
         (q, p, pp, ppp), (qd, qdd, qddd) = self._states(chosen, t)
-        at_pace = np.abs(inverse_dynamics(self.task.model, q, p, pp))
+        at_pace = np.abs(motor_torque(self.task.model, q, p, pp))
         ratios = [self.task.torque_ratio(q, qd, qdd, at_pace),
                   np.abs(qdd) / np.maximum(limits.max_acceleration, np.abs(pp)),
                   np.abs(qddd) / limits.max_jerk]

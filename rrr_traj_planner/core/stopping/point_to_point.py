@@ -26,7 +26,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
 from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
 from rrr_traj_planner.core.trajectory.quintic_spline import hermite
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
@@ -121,7 +121,7 @@ def _duration(start: Array, target: Array, limits: JointLimits,
     qd = 30.0 * (s * (1.0 - s)) ** 2 * (target - start) / T[:, np.newaxis, np.newaxis]
     qdd = 60.0 * s * (1.0 - s) * (1.0 - 2.0 * s) * (target - start) / (
         T[:, np.newaxis, np.newaxis] ** 2)
-    torque = np.abs(inverse_dynamics(model, np.broadcast_to(q, qd.shape), qd, qdd))
+    torque = np.abs(motor_torque(model, np.broadcast_to(q, qd.shape), qd, qdd))
     ratio = (torque / limits.max_effort).max(axis=(1, 2))
     i = quickest(ratio)
     return float(T[i]), torque[i].max(axis=0)

@@ -21,7 +21,8 @@ from math import inf
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.stopping.task import (
     FINE,
     LIMIT_TOLERANCE,
@@ -83,7 +84,7 @@ def torque_warnings(task: StopTask, motion: ReferenceTrajectory) -> list[str]:
 
     """
     q, qd, qdd, _ = motion.at(np.linspace(task.now, motion.end, FINE))
-    peak = np.maximum(np.abs(inverse_dynamics(task.model, q, qd, qdd)).max(axis=0),
+    peak = np.maximum(np.abs(motor_torque(task.model, q, qd, qdd)).max(axis=0),
                       np.abs(gravity_torque(task.model, motion.final)))
     return [f'stopping requires {peak[i]:.1f} N m at {name}, limit '
             f'{task.limits.max_effort[i]:.1f} N m'

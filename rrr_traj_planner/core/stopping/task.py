@@ -23,7 +23,8 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.states import Desired, State
 from rrr_traj_planner.core.trajectory.reference_trajectory import ReferenceTrajectory
@@ -82,7 +83,7 @@ class StopTask:
             Not negative.
 
         """
-        torque = np.abs(inverse_dynamics(self.model, q, qd, qdd))
+        torque = np.abs(motor_torque(self.model, q, qd, qdd))
         return np.asarray(torque / np.maximum(self.limits.max_effort, allowed))
 
     def holding_torque_ratio(self, q: Array) -> Array:

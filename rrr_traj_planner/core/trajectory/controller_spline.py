@@ -29,6 +29,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
+from rrr_traj_planner.core.dynamics.motor_torque import direction_of
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, through_samples
 from rrr_traj_planner.core.trajectory.quintic_spline import QuinticSpline
@@ -92,12 +93,12 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
     fractions = np.linspace(0.0, 1.0, COARSE_STEPS + 1)
     q, qd, qdd = spline.within(fractions)
     should_stop()
-    tau = inverse_dynamics(model, q, qd, qdd)
-    effort = np.abs(tau).max(axis=(0, 1))
+    tau, push = _torque_and_push(model, q, qd, qdd)
+    effort = np.abs(tau + push).max(axis=(0, 1))
     should_stop()
     forms = bernstein_forms(spline.coefficients, np.diff(spline.knots))
     bounds = [np.abs(form).max(axis=2) for form in forms[1:]]
-    bounds.append(np.abs(through_samples(tau)).max(axis=0))
+    bounds.append(np.abs(through_samples(tau)).max(axis=0) + model.friction.coulomb)
     doubtful = np.zeros(q.shape[1], dtype=bool)
     for most, limit in zip(bounds, (
             limits.max_velocity, limits.max_acceleration, np.minimum(limits.max_effort, effort))):
@@ -121,19 +122,28 @@ def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
     """Return time scale, distance outside, place and effort of some intervals, checked densely."""
     fractions = np.linspace(0.0, 1.0, FINE_STEPS + 1)
     q, qd, qdd = spline.within(fractions, index)
-    tau = inverse_dynamics(model, q, qd, qdd)
+    tau, push = _torque_and_push(model, q, qd, qdd)
     ratios = np.stack([
         np.abs(qd) / limits.max_velocity, np.abs(qdd) / limits.max_acceleration,
-        np.abs(tau) / limits.max_effort])
+        np.abs(tau + push) / limits.max_effort])
     factors = np.stack([ratios[0], np.sqrt(ratios[1]), np.sqrt(
         squared_time_scale(model, limits, q, qd, qdd))])
-    peaks = _between(ratios)
+    # Friction steps between samples where a joint turns: peaks are those of the smooth torque.
+    effort = np.maximum(_between(tau) + push, _between(-tau) - push)
+    peaks = np.concatenate((_between(ratios[:2]), effort[np.newaxis] / limits.max_effort))
     factors = np.where(ratios > 1.0 + SPLINE_TOLERANCE, factors, np.where(
         peaks > 1.0 + SPLINE_TOLERANCE, np.sqrt(peaks), 1.0)).max(axis=(0, 3))
     q = _at_reversals(q, qd, qdd, np.diff(spline.knots)[index] / FINE_STEPS)
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max(axis=(0, 2))
     return (factors.max(axis=0), np.where(outside > RANGE_TOLERANCE, outside, 0.0),
-            fractions[factors.argmax(axis=0)], _between(np.abs(tau)).max(axis=(0, 1)))
+            fractions[factors.argmax(axis=0)], effort.max(axis=(0, 1)))
+
+
+def _torque_and_push(model: RobotModel, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array]:
+    """Return the motors' torques without Coulomb friction, and for Coulomb friction [N m]."""
+    friction = model.friction
+    return (inverse_dynamics(model, q, qd, qdd) + friction.viscous * qd,
+            friction.coulomb * direction_of(qd))
 
 
 def _at_reversals(q: Array, qd: Array, qdd: Array, step: Array) -> Array:

@@ -22,16 +22,18 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
+from rrr_traj_planner.core.trajectory.directions import Directions, directions
 from rrr_traj_planner.core.trajectory.maximum import Extreme, maximum_over_time, SAME_TIME
 from rrr_traj_planner.core.trajectory.time_scaling import (
-    gravity_and_torque,
     squared_scaling_if_held,
+    torque_parts,
     TORQUE_ROUNDING,
+    TorqueParts,
 )
 from rrr_traj_planner.core.trajectory.trajectory import ONE_SIDED, times_within, Trajectory
 
-# Torque is analytic between knots. With this many steps there, none longer than LONGEST_STEP
+# Torque is analytic between knots and turning points, where Coulomb friction steps. With this many steps there, none longer than LONGEST_STEP
 # unless MOST_STEPS are reached (slow motions), high peaks have brackets of their own. Chosen: none
 # of 265 random motions then has a peak too low by 1e-6; with four times the steps' length 18 have.
 STEPS_PER_INTERVAL = 10
@@ -64,13 +66,16 @@ class TorqueSweep:
         The arm.
     times : ndarray, shape (n,)
         Increasing; dense enough to resolve every high peak [s].
-    gravity, torque : ndarray, shape (n, 3)
-        Of gravity alone, and of the whole motion (5.39) [N m].
+    parts : TorqueParts
+        Of the motors' torques, shape (n, 3) each [N m].
+    moving : Directions, optional
+        Directions of motion; not needed without Coulomb friction.
 
     """
 
-    def __init__(self, model: RobotModel, times: Array, gravity: Array, torque: Array) -> None:
-        self.model, self.times, self.gravity, self.torque = model, times, gravity, torque
+    def __init__(self, model: RobotModel, times: Array, parts: TorqueParts,
+                 moving: Directions | None = None) -> None:
+        self.model, self.times, self.parts, self._moving = model, times, parts, moving
         self._peaks: dict[bytes, TorquePeaks] = {}
         self._before: dict[bytes, TorquePeaks] = {}  # of the motion before a slight time scaling
         self._factor = 1.0                           # of that scaling
@@ -92,8 +97,8 @@ class TorqueSweep:
         """
         if factor == 1.0:
             return self
-        found = TorqueSweep(self.model, self.times * factor, self.gravity,
-                            self.gravity + (self.torque - self.gravity) / factor ** 2)
+        found = TorqueSweep(self.model, self.times * factor, self.parts.scaled(factor),
+                            self._moving and self._moving.scaled(factor))
         if abs(factor - 1.0) <= SLIGHT:
             found._before, found._factor = self._peaks, factor
         return found
@@ -113,7 +118,7 @@ class TorqueSweep:
             As `squared_time_scale`.
 
         """
-        return squared_scaling_if_held(limits.max_effort, self.gravity, self.torque)
+        return squared_scaling_if_held(limits.max_effort, self.parts)
 
     def peaks(self, limits: JointLimits, trajectory: Trajectory) -> TorquePeaks:
         """
@@ -136,7 +141,7 @@ class TorqueSweep:
         if key not in self._peaks:
             moved = self._moved(self._before[key], trajectory) if key in self._before else None
             # Another peak may be the largest after the scaling.
-            if moved is None or (np.abs(self.torque)
+            if moved is None or (np.abs(self.parts.torque)
                                  > moved.effort.value * (1.0 + TORQUE_ROUNDING)).any():
                 moved = self._refined(limits, trajectory)
             self._peaks[key] = moved
@@ -161,25 +166,29 @@ class TorqueSweep:
 
     def _efforts(self, trajectory: Trajectory, times: Array) -> Array:
         """Return magnitudes of torque, each joint's at times of its own, (n, 3) [N m]."""
-        torque = inverse_dynamics(self.model, *trajectory(times.ravel())[:3])
+        torque = self._parts_at(trajectory, times.ravel()).torque
         return np.abs(torque.reshape(-1, 3, 3).diagonal(axis1=1, axis2=2))
+
+    def _parts_at(self, trajectory: Trajectory, times: Array) -> TorqueParts:
+        """Return the parts of torques at times (n,); at a turning point, those after it."""
+        direction = None if self._moving is None else self._moving.at(times)
+        return torque_parts(self.model, *trajectory(times)[:3], direction)
 
     def _refined(self, limits: JointLimits, trajectory: Trajectory) -> TorquePeaks:
         """Return the extremes, refined between the times of the grid."""
         squared = self.squared_scaling(limits)
         limited = bool(np.isfinite(limits.max_effort).any()) and bool(np.isfinite(squared).all())
 
-        def both(gravity: Array, torque: Array) -> Array:
-            magnitude = np.abs(torque)
+        def both(parts: TorqueParts) -> Array:
+            magnitude = np.abs(parts.torque)
             if not limited:
                 return magnitude
-            scaling = squared_scaling_if_held(limits.max_effort, gravity, torque)
+            scaling = squared_scaling_if_held(limits.max_effort, parts)
             return np.concatenate((magnitude, scaling), axis=1)
 
         value, time = maximum_over_time(
-            lambda t: both(*gravity_and_torque(self.model, *trajectory(t)[:3])), self.times,
-            both(self.gravity, self.torque))
-        if not limited:  # none, or gravity alone exceeds one
+            lambda t: both(self._parts_at(trajectory, t)), self.times, both(self.parts))
+        if not limited:  # none, or the constant torque alone exceeds one
             worst = squared.argmax(axis=0)
             return TorquePeaks(Extreme(value, time), Extreme(
                 np.sqrt(squared[worst, range(3)]), self.times[worst]))
@@ -205,16 +214,23 @@ def torque_sweep(model: RobotModel, trajectory: Trajectory) -> TorqueSweep:
     """
     found = trajectory.cache.get('torque_sweep')
     if not isinstance(found, TorqueSweep) or found.model is not model:
-        times = _torque_grid(trajectory)
-        found = trajectory.cache['torque_sweep'] = TorqueSweep(
-            model, times, *gravity_and_torque(model, *trajectory(times)[:3]))
+        times, moving = _torque_grid(trajectory), None
+        if model.friction.coulomb.any():
+            moving = directions(trajectory, times)
+            turning = np.concatenate(moving.times)
+            times = np.union1d(times, np.concatenate((turning, turning - ONE_SIDED)))
+        parts = torque_parts(model, *trajectory(times)[:3],
+                             None if moving is None else moving.at(times))
+        found = trajectory.cache['torque_sweep'] = TorqueSweep(model, times, parts, moving)
     return found
 
 
 def peak_torque(model: RobotModel, trajectory: Trajectory,
                 limits: JointLimits | None = None) -> Extreme:
     """
-    Return the largest magnitude of each joint's torque over the continuous motion (5.39).
+    Return the largest magnitude of each motor's torque over the continuous motion.
+
+    Torque of the motion (5.39) and friction, on either side of turning points.
 
     Parameters
     ----------
@@ -236,7 +252,7 @@ def peak_torque(model: RobotModel, trajectory: Trajectory,
 
 def peak_holding_torque(model: RobotModel, trajectory: Trajectory) -> Extreme:
     """
-    Return the largest gravity torque of each joint along a path.
+    Return the largest gravity torque of each joint along a path, which needs no friction.
 
     Parameters
     ----------
@@ -283,7 +299,7 @@ def time_scale_for_torque(model: RobotModel, limits: JointLimits,
 
 def _torque_grid(trajectory: Trajectory) -> Array:
     """
-    Return times dense enough to resolve every high peak of the torque.
+    Return times dense enough to resolve every high peak of the torque but for friction's steps.
 
     Parameters
     ----------

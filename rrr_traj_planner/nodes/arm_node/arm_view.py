@@ -57,8 +57,7 @@ def description(config: ArmConfig) -> str:
 
     """
     settings = config.settings
-    model = replace(settings.model, friction=settings.friction)
-    return urdf(model, settings.limits, config.frames)
+    return urdf(settings.model, settings.limits, config.frames)
 
 
 class ArmView:

@@ -41,7 +41,7 @@ STABILITY_MARGIN = 2.0
 
 def physical_options(values: Values) -> dict[str, Any]:
     """
-    Return payload, friction, soft stops and tolerances.
+    Return payload, soft stops and tolerances.
 
     Parameters
     ----------
@@ -56,9 +56,27 @@ def physical_options(values: Values) -> dict[str, Any]:
     """
     return {
         'payload': from_group(Payload, 'payload', values),
-        'friction': from_group(Friction, 'friction', values),
         'soft_stops': from_group(SoftStops, 'soft_stops', values),
         'tolerances': tolerances(values)}
+
+
+def friction(values: Values) -> Friction:
+    """
+    Return the friction of the arm's joints.
+
+    Parameters
+    ----------
+    values : mapping
+        Each parameter's value by name.
+
+    Returns
+    -------
+    Friction
+        Not known to the controller.
+
+    """
+    with named({name: f'friction.{name}' for name in ('viscous', 'coulomb')}):
+        return Friction(values['friction.viscous'], values['friction.coulomb'])
 
 
 def tolerances(values: Values) -> Tolerances:

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
 
@@ -35,6 +35,7 @@ from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.nodes.parameters.arm_options import (
     encoder,
     frame_names,
+    friction,
     physical_options,
     trajectory_rules,
 )
@@ -147,7 +148,8 @@ class ArmConfig:
                 f'with controller.damping_ratio {gains.damping_ratio:g} and physics_step '
                 f'{step:g} s')
         with named({'step': 'physics_step'}):
-            settings = ArmSettings(_robot_model(values), limits, gains, step,
+            model = replace(_robot_model(values), friction=friction(values))
+            settings = ArmSettings(model, limits, gains, step,
                                    encoder=encoder(values, gains), **physical_options(values))
         return cls(settings, values['publish_rate'], _initial_positions(values, limits),
                    trajectory_rules(values), values['publish_clock'], values['real_time_factor'],

@@ -23,6 +23,7 @@ from rrr_traj_planner.core.arm.compiled_arm import compiled
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.solver.limits import FAR, Limits
 from rrr_traj_planner.planners.solver.ramps import Grid
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
@@ -60,7 +61,7 @@ class JointConstraints:
     Attributes
     ----------
     effort : ndarray, shape (N, 2 n, 3)
-        Bounds of the torques, less margins, at all points but a segment's first [N m].
+        Bounds of the torques, less Coulomb friction and margins, at all points but a segment's first [N m].
     with_torque : bool
         Whether torque is limited; without it the joints are coupled through the durations only.
 
@@ -71,7 +72,8 @@ class JointConstraints:
                  least_T: Array | None = None, workspace: Workspace | None = None) -> None:
         self.grid, self.points, self.limits, self.least_T = grid, points, limits, least_T
         self.with_torque = bool(np.isfinite(limits.max_effort).any())
-        self.effort = (np.minimum(limits.max_effort, FAR) - effort_margins)[:, 1:]
+        effort = effort_less_friction(model, limits)
+        self.effort = (np.minimum(effort, FAR) - effort_margins)[:, 1:]
         self._workspace = workspace
         self._model, self._margins, self._velocity_margins = model, margins, velocity_margins
 

@@ -26,7 +26,8 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
-from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
+from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, TorqueParts
+from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.solver.excess import excess_near_points, rise_between_samples
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.tasks import JointTask
@@ -58,24 +59,26 @@ class JointCheck:
     """
 
     def __init__(self, task: JointTask, grid: Grid, m: Variables) -> None:
-        self._task = task
+        self._task, self._effort = task, effort_less_friction(task.model, task.limits)
         self.q, self.qd, self.qdd, jerk = np.moveaxis(
             grid.samples(task.points, m, 2 * CHECKS), 2, 0)
         self._peak_jerk = np.abs(jerk).max(axis=(0, 1))  # a ramp's is sampled at its middle
 
     @cached_property
     def tau(self) -> Array | None:
-        """Return torques [N m], None where they are not limited."""
+        """Return torques without Coulomb friction [N m], None where they are not limited."""
         if np.isinf(self._task.limits.max_effort).all():
             return None
-        return inverse_dynamics(self._task.model, self.q, self.qd, self.qdd)
+        model = self._task.model
+        return (inverse_dynamics(model, self.q, self.qd, self.qdd)
+                + model.friction.viscous * self.qd)
 
     def time_scale(self) -> float:
         """
         Return the least factor on all times with which limits other than positions hold.
 
-        Velocity falls with the factor, acceleration and the torque beside gravity's with its
-        square, jerk with its cube.
+        Velocity and viscous friction fall with the factor, acceleration and the torque of inertia
+        with its square, jerk with its cube.
 
         Returns
         -------
@@ -85,10 +88,12 @@ class JointCheck:
         """
         limits, tau = self._task.limits, self.tau
         factor = limits.time_scale(np.abs(self.qd), np.abs(self.qdd), self._peak_jerk)
-        if tau is None or (np.abs(tau) <= limits.max_effort * (1.0 + LIMIT_ROUNDING)).all():
+        if tau is None or (np.abs(tau) <= self._effort * (1.0 + LIMIT_ROUNDING)).all():
             return factor
         gravity = gravity_torque(self._task.model, self.q)
-        return float(max(factor, np.sqrt(squared_scaling(limits.max_effort, gravity, tau).max())))
+        friction = self._task.model.friction.viscous * self.qd
+        parts = TorqueParts(gravity, friction, tau - friction - gravity)
+        return float(max(factor, np.sqrt(squared_scaling(self._effort, parts).max())))
 
     @cached_property
     def beyond_range(self) -> Array:
@@ -118,7 +123,7 @@ class JointCheck:
         velocity = _near_points(self.qd, self._task.limits.max_velocity)
         if self.tau is None:
             return velocity, np.zeros_like(velocity)
-        return velocity, _near_points(self.tau, self._task.limits.max_effort)
+        return velocity, _near_points(self.tau, self._effort)
 
 
 def _near_points(x: Array, limit: Array) -> Array:

@@ -15,20 +15,23 @@
 """
 A statically feasible path in joint space: the motors can hold the arm everywhere along it.
 
-Gravity's torques depend on joints 2 and 3 alone. The path is the shortest one on a grid in their
-plane (Dijkstra; Cormen et al., Introduction to Algorithms, chapter on single-source shortest
-paths), with lengths weighted by the torque that gravity leaves, then shortened by leaving out
+The path is the shortest one on a grid of the joints on which gravity's torques depend: joints 2
+and 3 where joint axis 1 is vertical, else all (Dijkstra; Cormen et al., Introduction to Algorithms, chapter on single-source shortest
+paths), with lengths weighted by the torque that is left, then shortened by leaving out
 corners (shortcuts: Geraerts & Overmars, Creating high-quality paths for motion planning, IJRR 26,
 2007). A feasible path that is wider than a cell of the grid is found.
 """
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
+from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN
 from scipy import sparse
@@ -36,13 +39,16 @@ from scipy.sparse import csgraph
 
 RANGE_MARGIN = 4e-10  # rad, for the rounding of points at the end of a range: less than EDGE
 # Chosen values.
-CELLS = (48, 400)     # of each of the two joints; the finer grid where the coarser has no path
+# By the number of joints on which gravity depends, cells of each of them: the finer grid where the
+# coarser has no path. Of three joints, as many as take a second.
+CELLS = {2: (48, 400), 3: (20, 40)}
+BEYOND = np.pi        # rad, reach of the grid beyond start and end where a joint has no range
 SAMPLES = 40          # of a leg, at which gravity's torque is checked
 
 
 def gravity_ratio(model: RobotModel, limits: JointLimits, q: Array) -> Array:
     """
-    Return the largest ratio of gravity's torque to its effort limit.
+    Return the largest ratio of gravity's torque to its effort limit less Coulomb friction.
 
     Parameters
     ----------
@@ -59,7 +65,7 @@ def gravity_ratio(model: RobotModel, limits: JointLimits, q: Array) -> Array:
         Infinite outside the joints' ranges.
 
     """
-    ratio = (np.abs(gravity_torque(model, q)) / limits.max_effort).max(axis=-1)
+    ratio = (np.abs(gravity_torque(model, q)) / effort_less_friction(model, limits)).max(axis=-1)
     inside = ((q >= limits.min_position - RANGE_MARGIN)
               & (q <= limits.max_position + RANGE_MARGIN)).all(axis=-1)
     return np.where(inside, ratio, np.inf)
@@ -85,7 +91,7 @@ def statically_feasible_path(task: JointTask, start: Array, end: Array,
         From start to end; None where no such path is found.
 
     """
-    for cells in CELLS:
+    for cells in CELLS[len(_joints_of_gravity(task.model))]:
         path = _grid_path(task, start, end, cells)
         if path is None:
             continue
@@ -96,20 +102,22 @@ def statically_feasible_path(task: JointTask, start: Array, end: Array,
     return None
 
 
+def _joints_of_gravity(model: RobotModel) -> list[int]:
+    """Return the indices of the joints on which gravity's torques depend."""
+    return [0, 1, 2] if model.tables.potential[1:].any() else [1, 2]
+
+
 def _grid_path(task: JointTask, start: Array, end: Array, cells: int) -> Array | None:
     """Return the shortest path on a grid that has both poses as nodes, (m, 3)."""
-    if (start[1:] == end[1:]).all():
-        return np.stack((start, end))  # gravity's torque does not depend on joint 1
-    limits = task.limits
-    axes = [np.unique(np.concatenate((np.linspace(
-        limits.min_position[j], limits.max_position[j], cells), [start[j], end[j]])))
-        for j in (1, 2)]
-    shape = (len(axes[0]), len(axes[1]))
-    q = np.full((*shape, 3), start[0])
-    q[..., 1], q[..., 2] = np.meshgrid(*axes, indexing='ij')
-    ratio = gravity_ratio(task.model, limits, q)
+    joints = _joints_of_gravity(task.model)
+    if (start[joints] == end[joints]).all():
+        return np.stack((start, end))
+    axes = [_axis(task.limits, start[j], end[j], cells, j) for j in joints]
+    q = np.tile(start, (*map(len, axes), 1))
+    q[..., joints] = np.stack(np.meshgrid(*axes, indexing='ij'), axis=-1)
+    ratio = gravity_ratio(task.model, task.limits, q)
     first, last = (int(np.ravel_multi_index(
-        [int(np.searchsorted(axis, pose[j])) for j, axis in zip((1, 2), axes)], shape))
+        [int(np.searchsorted(axis, pose[j])) for j, axis in zip(joints, axes)], ratio.shape))
         for pose in (start, end))
     _, before = csgraph.dijkstra(
         _graph(q, ratio), directed=False, indices=first, return_predecessors=True)
@@ -121,9 +129,18 @@ def _grid_path(task: JointTask, start: Array, end: Array, cells: int) -> Array |
     path = q.reshape(-1, 3)[nodes[::-1]]
     length = np.concatenate(([0.0], np.cumsum(np.abs(np.diff(path, axis=0)).max(axis=1))))
     part = length / length[-1] if length[-1] > 0.0 else np.linspace(0.0, 1.0, len(path))
-    path[:, 0] = start[0] + part * (end[0] - start[0])
+    for j in {0, 1, 2} - set(joints):
+        path[:, j] = start[j] + part * (end[j] - start[j])
     path[0], path[-1] = start, end
     return path
+
+
+def _axis(limits: JointLimits, start: float, end: float, cells: int, joint: int) -> Array:
+    """Return the grid's positions of a joint, start and end among them [rad]."""
+    least, most = limits.min_position[joint], limits.max_position[joint]
+    least = least if np.isfinite(least) else min(start, end) - BEYOND
+    most = most if np.isfinite(most) else max(start, end) + BEYOND
+    return np.unique(np.concatenate((np.linspace(least, most, cells), [start, end])))
 
 
 def _graph(q: Array, ratio: Array) -> sparse.csr_array:
@@ -132,25 +149,24 @@ def _graph(q: Array, ratio: Array) -> sparse.csr_array:
     weight = 1.0 / np.sqrt(np.maximum(1.0 - ratio, HOLDING_MARGIN))
     open_ = ratio < 1.0 - HOLDING_MARGIN
     ends, lengths = [], []
-    # Half of a cell's eight neighbours, by rows and columns: the others have it as theirs.
-    for rows, columns in ((1, 0), (0, 1), (1, 1), (1, -1)):
-        here, there = _pairs(ratio.shape, rows, columns)
+    # Half of a node's neighbours: the others have it as theirs.
+    offsets = list(product((1, 0, -1), repeat=ratio.ndim))
+    for offset in offsets[:len(offsets) // 2]:
+        here, there = _pairs(offset)
         both = open_[here] & open_[there]
-        step = np.hypot(*np.moveaxis((q[there] - q[here])[..., 1:], -1, 0))
+        step = np.linalg.norm(q[there] - q[here], axis=-1)
         ends.append(np.stack((number[here][both], number[there][both])))
         lengths.append((step * (weight[here] + weight[there]))[both])
     i, j = np.concatenate(ends, axis=1)
     return sparse.csr_array((np.concatenate(lengths), (i, j)), shape=(ratio.size, ratio.size))
 
 
-def _pairs(shape: tuple[int, ...], rows: int, columns: int) -> tuple[
-        tuple[slice, slice], tuple[slice, slice]]:
+def _pairs(offset: tuple[int, ...]) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
     """Return the slices of a grid with the first and the second nodes of neighbours."""
-    n, m = shape
-    down, up = slice(0, n - rows), slice(rows, n)
-    if columns < 0:
-        return (down, slice(-columns, m)), (up, slice(0, m + columns))
-    return (down, slice(0, m - columns)), (up, slice(columns, m))
+    slices = {0: (slice(None), slice(None)), 1: (slice(None, -1), slice(1, None)),
+              -1: (slice(1, None), slice(None, -1))}
+    here, there = zip(*(slices[k] for k in offset))
+    return here, there
 
 
 def _shortcut(task: JointTask, path: Array, retained: float) -> IntArray | None:

@@ -27,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
+from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.tasks import JointTask
@@ -41,7 +42,7 @@ class Margins(NamedTuple):
     positions: Array   # upper and lower [rad], (2, N, 2 n + 1, 3)
     velocities: Array  # [rad/s], (N, 2 n + 1, 3)
     efforts: Array     # [N m], (N, 2 n + 1, 3)
-    gravity_margins: Array  # half the torque that gravity leaves to a slow motion [N m], likewise
+    gravity_margins: Array  # half the torque that is left to a slow motion [N m], likewise
     at_rest: BoolArray  # whether a via velocity is fixed to zero, (N - 1, 3)
 
     @classmethod
@@ -107,7 +108,7 @@ class Margins(NamedTuple):
         Returns
         -------
         Margins
-            Those of efforts are at most half of what gravity's torque leaves of the limits.
+            Those of efforts are at most half of what gravity and Coulomb friction leave of the limits.
 
         """
         return self._replace(efforts=np.minimum(self.efforts, self.gravity_margins))
@@ -136,7 +137,8 @@ class Margins(NamedTuple):
         """
         q = grid.states(task.points, slow).q
         positions, at_rest = self._positions(task, q, check.beyond_range)
-        gravity_margins = task.limits.max_effort - np.abs(gravity_torque(task.model, q))
+        gravity_margins = (effort_less_friction(task.model, task.limits)
+                           - np.abs(gravity_torque(task.model, q)))
         velocity, effort = check.excess()
         return Margins(
             positions, np.minimum(self.velocities + LARGER * velocity,

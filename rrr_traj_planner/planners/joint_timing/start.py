@@ -18,8 +18,9 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import LimitViolationError
+from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, torque_parts
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.feasible_path import (
     gravity_ratio,
@@ -101,14 +102,12 @@ def _least_durations(task: JointTask, constraints: JointConstraints,
         T = np.maximum(T, START_SCALING * constraints.least_T)
     if not constraints.with_torque:
         return T, T
-    gravity = gravity_torque(task.model, at.q)
-    moving = inverse_dynamics(task.model, at.q, at.qd, at.qdd) - gravity
-    margin = constraints.effort - (np.sign(moving) * gravity)[:, 1:]
-    with np.errstate(divide='ignore', invalid='ignore'):
-        by_torque = np.sqrt((np.abs(moving[:, 1:]) / margin).max(axis=(1, 2)))
+    parts = torque_parts(task.model, *(f[:, 1:] for f in (at.q, at.qd, at.qdd)),
+                         direction=np.zeros(3))  # Coulomb friction is off the limits already
+    by_torque = np.sqrt(squared_scaling(constraints.effort, parts, all_slower=True).max(
+        axis=(1, 2)))
     blocked = (gravity_ratio(task.model, limits, at.q) >= 1.0 - HOLDING_MARGIN)[:, 1:-1]
-    blocked_by_margin = (margin <= 0.0).any(axis=(1, 2))
-    by_torque[blocked.any(axis=1) | blocked_by_margin] = np.inf
+    by_torque[blocked.any(axis=1)] = np.inf
     return np.maximum(T, START_SCALING * by_torque), T
 
 
@@ -182,7 +181,7 @@ def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
     """
     ends = zip(task.points[:-1], task.points[1:])
     straight = np.array([np.linspace(start, end, 100) for start, end in ends])
-    needs = np.abs(gravity_torque(task.model, straight)).max(axis=1)
+    needs = np.abs(gravity_torque(task.model, straight)).max(axis=1) + task.model.friction.coulomb
     blocked = (k for k, (start, end) in enumerate(zip(task.points[:-1], task.points[1:]))
                if statically_feasible_path(task, start, end, grid.n // LEAST_RAMPS) is None)
     k = next(blocked, int((needs / task.limits.max_effort).max(axis=1).argmax()))

@@ -66,6 +66,10 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
     if not may_scale:
         return None
     slowed = trajectory.time_scaled(factor)
+    if not dynamic and task.model.friction.viscous.any():
+        # A factor that another limit requires may be too large for a torque.
+        further = torque_time_scale(task, slowed)
+        return slowed.time_scaled(further) if further > 1.0 + LIMIT_ROUNDING else slowed
     return None if dynamic and not torque_fits(task, slowed) else slowed
 
 

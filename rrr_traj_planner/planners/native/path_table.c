@@ -47,8 +47,8 @@ static void table_at(const Problem *p, int segment, int point, double s, int ord
 }
 
 /* Gradients of a joint's velocity, acceleration, jerk and torque by the state, each 12 apart. */
-static void joint_gradients(const double (*d)[3], const double (*s)[3], int j, const double *z,
-                            double *g)
+static void joint_gradients(const double (*d)[3], const double (*s)[3], int j, double viscous,
+                            const double *z, double *g)
 {
     const double v = z[1], a = z[2], jerk = z[3];
     g[0] = s[DQ][j] * v, g[1] = d[DQ][j], g[2] = 0.0, g[3] = 0.0;
@@ -60,20 +60,22 @@ static void joint_gradients(const double (*d)[3], const double (*s)[3], int j, c
     g[1] = 3.0 * d[DDDQ][j] * v * v + 3.0 * d[DDQ][j] * a, g[2] = 3.0 * d[DDQ][j] * v;
     g[3] = d[DQ][j];
     g += 12;
-    g[0] = s[M][j] * a + s[C][j] * v * v + s[G][j], g[1] = 2.0 * d[C][j] * v;
+    g[0] = s[M][j] * a + s[C][j] * v * v + s[G][j] + viscous * s[DQ][j] * v;
+    g[1] = 2.0 * d[C][j] * v + viscous * d[DQ][j];
     g[2] = d[M][j], g[3] = 0.0;
 }
 
 /* Add the Hessian (4, 4) of the weighted sum of a joint's four quantities. */
 static void add_joint_hessian(const double (*d)[3], const double (*s)[3], const double (*ss)[3],
-                              int j, const double *z, const double *weights, double *second)
+                              int j, double viscous, const double *z, const double *weights,
+                              double *second)
 {
     const double v = z[1], a = z[2], jerk = z[3];
     const double lv = weights[j], la = weights[3 + j], lj = weights[6 + j], lt = weights[9 + j];
     const double H00 = lv * ss[DQ][j] * v + la * (ss[DDQ][j] * v * v + ss[DQ][j] * a)
         + lj * (ss[DDDQ][j] * v * v * v + 3.0 * ss[DDQ][j] * v * a + ss[DQ][j] * jerk)
-        + lt * (ss[M][j] * a + ss[C][j] * v * v + ss[G][j]);
-    const double H01 = lv * s[DQ][j] + 2.0 * v * (la * s[DDQ][j] + lt * s[C][j])
+        + lt * (ss[M][j] * a + ss[C][j] * v * v + ss[G][j] + viscous * ss[DQ][j] * v);
+    const double H01 = (lv + lt * viscous) * s[DQ][j] + 2.0 * v * (la * s[DDQ][j] + lt * s[C][j])
         + 3.0 * lj * (s[DDDQ][j] * v * v + s[DDQ][j] * a);
     const double H02 = la * s[DQ][j] + 3.0 * lj * s[DDQ][j] * v + lt * s[M][j];
     const double H03 = lj * s[DQ][j];
@@ -94,11 +96,11 @@ void path_at(const Problem *p, int segment, int point, const double *z, double *
     const double (*d)[3] = (const double (*)[3])found[0], (*s)[3] = (const double (*)[3])found[1],
         (*ss)[3] = (const double (*)[3])found[2];
     if (x)
-        joint_quantities(d, z[1], z[2], z[3], x);
+        joint_quantities(d, p->viscous, z[1], z[2], z[3], x);
     for (int j = 0; gradient && j < 3; ++j)
-        joint_gradients(d, s, j, z, gradient + 4 * j);
+        joint_gradients(d, s, j, p->viscous[j], z, gradient + 4 * j);
     for (int j = 0; second && j < 3; ++j)
-        add_joint_hessian(d, s, ss, j, z, weights, second);
+        add_joint_hessian(d, s, ss, j, p->viscous[j], z, weights, second);
 }
 
 /* The limited quantities x (N, samples, QUANTITIES), and gravity's torque (N, samples, 3), at
@@ -112,7 +114,7 @@ EXPORTED void path_quantities(const Problem *p, int32_t samples, int32_t at_poin
             double found[3][KINDS][3];
             const double (*d)[3] = (const double (*)[3])found[0];
             table_at(p, k, at_points ? i : -1, z[0], 0, found);
-            joint_quantities(d, z[1], z[2], z[3], x);
+            joint_quantities(d, p->viscous, z[1], z[2], z[3], x);
             x[SPEED] = z[1], x[ALONG] = z[2];
             for (int j = 0; j < 3; ++j)
                 gravity[j] = d[G][j];

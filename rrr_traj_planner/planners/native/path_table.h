@@ -13,7 +13,8 @@
 // limitations under the License.
 
 /* A path's table (path_timing/table.py): along s, dq/ds and further derivatives, and the dynamics
- * along the path, torque = M sdd + C sd^2 + G (Bobrow, Dubowsky & Gibson 1985). */
+ * along the path, torque = M sdd + C sd^2 + G (Bobrow, Dubowsky & Gibson 1985), and viscous friction
+ * of the joints, viscous dq/ds sd. */
 #ifndef RRR_TRAJ_PLANNER_PATH_TABLE_H
 #define RRR_TRAJ_PLANNER_PATH_TABLE_H
 
@@ -45,14 +46,14 @@ static inline void path_columns(const double *c3, size_t stride, double x, doubl
 
 /* The 12 quantities of the joints: velocity, acceleration, jerk and torque, of three joints each.
  */
-static inline void joint_quantities(const double d[KINDS][3], double v, double a, double jerk,
-                                    double *x)
+static inline void joint_quantities(const double d[KINDS][3], const double *viscous, double v,
+                                    double a, double jerk, double *x)
 {
     for (int j = 0; j < 3; ++j) {
         x[j] = d[DQ][j] * v;
         x[3 + j] = d[DDQ][j] * v * v + d[DQ][j] * a;
         x[6 + j] = d[DDDQ][j] * v * v * v + 3.0 * d[DDQ][j] * v * a + d[DQ][j] * jerk;
-        x[9 + j] = d[M][j] * a + d[C][j] * v * v + d[G][j];
+        x[9 + j] = d[M][j] * a + d[C][j] * v * v + d[G][j] + viscous[j] * d[DQ][j] * v;
     }
 }
 

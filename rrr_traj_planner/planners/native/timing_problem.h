@@ -58,6 +58,7 @@ typedef struct {
     const Arm *arm;
     const double *table;    /* (N, 4, intervals, COLUMNS), cubic coefficients */
     const double *overshoot;  /* (N, 2, 3), added to ddq and to c at the segments' ends */
+    const double *viscous;  /* (3), friction of the joints along a path [N m s/rad] */
 
     double *variables;      /* the iterate; see Variables */
     double *states;         /* (N, P, Z) */

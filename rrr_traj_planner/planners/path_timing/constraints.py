@@ -26,7 +26,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits, kinematic_time_scale
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.kernels import contiguous
-from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling
+from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, TorqueParts
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import FAR, Limits
@@ -119,14 +119,16 @@ class PathConstraints:
         return TimingProblem(self.grid, self.points, Limits(
             lower, upper, bounded, self._lower[..., :SPEED], self._upper[..., :SPEED],
             np.tile(self._limited[:SPEED], (P, 1)), table=self.table.coefficients,
-            overshoot=self.table.overshoot), self._workspace)
+            overshoot=self.table.overshoot, viscous=self.table.friction.viscous),
+            self._workspace)
 
 
 def limited_quantities(problem: TimingProblem, z: Array, at_points: bool) -> tuple[Array, Array]:
     """
     Return the limited quantities of a motion along a path.
 
-    Torques are those of Bobrow, Dubowsky & Gibson (1985): m sdd + c sd^2 + g.
+    Torques are those of Bobrow, Dubowsky & Gibson (1985), m sdd + c sd^2 + g, and of viscous
+    friction.
 
     Parameters
     ----------
@@ -152,7 +154,8 @@ def limited_quantities(problem: TimingProblem, z: Array, at_points: bool) -> tup
     return x, gravity
 
 
-def least_time_scale(x: Array, gravity: Array, bounds: Array) -> float:
+def least_time_scale(x: Array, gravity: Array, viscous: Array, bounds: Array,
+                     all_slower: bool = False) -> float:
     """
     Return the least factor on all times with which limits hold at given points.
 
@@ -160,9 +163,13 @@ def least_time_scale(x: Array, gravity: Array, bounds: Array) -> float:
     ----------
     x, gravity : ndarray
         As returned by `limited_quantities`.
+    viscous : ndarray, shape (3,)
+        Friction of the joints [N m s/rad].
     bounds : ndarray, shape (..., QUANTITIES)
         On magnitudes, infinite where there is none; that on acceleration along the path is left
         out.
+    all_slower : bool
+        Whether torques must keep their limits at every larger factor too.
 
     Returns
     -------
@@ -171,6 +178,8 @@ def least_time_scale(x: Array, gravity: Array, bounds: Array) -> float:
 
     """
     ratio = (np.abs(x) / bounds).reshape(-1, QUANTITIES).max(axis=0)
-    by_torque = squared_scaling(bounds[..., TORQUE], gravity, x[..., TORQUE])
+    friction = viscous * x[..., VELOCITY]
+    by_torque = squared_scaling(bounds[..., TORQUE], TorqueParts(
+        gravity, friction, x[..., TORQUE] - friction - gravity), all_slower)
     kinematic = kinematic_time_scale(ratio[VELOCITY], ratio[ACCELERATION], ratio[JERK])
     return float(max(kinematic, ratio[SPEED], np.sqrt(by_torque.max())))

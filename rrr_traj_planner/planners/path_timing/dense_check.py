@@ -65,8 +65,10 @@ def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> PathChec
         With CHECKS samples between two points.
 
     """
+    viscous = problem.limits.viscous
+    assert viscous is not None  # there is one along a path
     z = problem.grid.samples(problem.points, m, 2 * CHECKS)[..., 0]
     x, gravity = limited_quantities(problem, z, at_points=False)
     return PathCheck(excess_near_points(x, bounds, CHECKS, reach=CHECKS),
-                     least_time_scale(x, gravity, bounds),
+                     least_time_scale(x, gravity, viscous, bounds),
                      float(z[:, :, 1].min()), float(z[:, :, 1].max()))

@@ -29,7 +29,9 @@ import numpy as np
 from rrr_traj_planner.core.arrays import BoolArray
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import place_on_path
+from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
+from rrr_traj_planner.planners.effort_limits import effort_less_friction, moving_error
 from rrr_traj_planner.planners.path_timing.problem import PathProblem
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
@@ -131,9 +133,15 @@ def fitted(task: PathTask, timed: Timed) -> Timed:
 
     """
     task.should_stop()
-    factor = _exact_time_scale(task, timed.trajectory)
-    return timed if factor <= 1.0 else timed._replace(
-        trajectory=timed.trajectory.time_scaled(factor))
+    trajectory, factor = timed.trajectory, _exact_time_scale(task, timed.trajectory)
+    if factor <= 1.0:
+        return timed
+    trajectory = trajectory.time_scaled(factor)
+    # With viscous friction a factor that one torque requires may be too large for another.
+    while task.arm_path.model.friction.viscous.any() and (
+            factor := _exact_time_scale(task, trajectory)) > 1.0 + TORQUE_ROUNDING:
+        trajectory = trajectory.time_scaled(factor)
+    return timed._replace(trajectory=trajectory)
 
 
 def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
@@ -146,16 +154,20 @@ def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
 
 
 def _check_held(task: PathTask, table: PathTable) -> None:
-    """Raise an error if gravity's torque exceeds an effort limit along the path."""
-    ratio = np.abs(table.values.g) / task.limits.max_effort
+    """Raise an error if gravity and Coulomb friction exceed an effort limit along the path."""
+    model = task.arm_path.model
+    coulomb, most = model.friction.coulomb, effort_less_friction(model, task.limits)
+    ratio = np.abs(table.values.g) / most
     piece, place, joint = map(int, np.unravel_index(int(ratio.argmax()), ratio.shape))
     if ratio.max() < 1.0 - HOLDING_MARGIN:
         return
     needed, limit = (float(f) for f in (
         abs(table.values.g[piece, place, joint]), task.limits.max_effort[joint]))
     where, nearest = place_on_path(task.arm_path.path, float(table.places[piece, place]))
-    name = task.arm_path.model.joint_names[joint]
-    raise holding_error(f'{where}:', name, needed, limit, nearest)
+    if coulomb[joint] and needed <= limit:
+        raise moving_error(f'{where}:', model, joint, needed + float(coulomb[joint]), limit,
+                           nearest)
+    raise holding_error(f'{where}:', model.joint_names[joint], needed, limit, nearest)
 
 
 def _exact_time_scale(task: PathTask, trajectory: PathTrajectory) -> float:

@@ -16,11 +16,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
+from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.path_timing.constraints import all_bounds, PathConstraints
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
@@ -53,9 +55,15 @@ class PathProblem(ReadOnlyArrays):
     _workspace: Workspace = field(default_factory=Workspace)
 
     @cached_property
+    def limits(self) -> JointLimits:
+        """Return the joints' limits, those of effort less Coulomb friction."""
+        limits = self.task.limits
+        return replace(limits, max_effort=effort_less_friction(self.task.arm_path.model, limits))
+
+    @cached_property
     def bounds(self) -> Array:
         """Return bounds on the magnitudes of all limited quantities, see `all_bounds`."""
-        return all_bounds(self.task.limits, self.task.max_tip_speed)
+        return all_bounds(self.limits, self.task.max_tip_speed)
 
     def constraints(self, margins: Array) -> PathConstraints:
         """
@@ -72,5 +80,5 @@ class PathProblem(ReadOnlyArrays):
             As the solver takes them.
 
         """
-        return PathConstraints(self.table, self.task.limits, self.task.max_tip_speed, self.grid,
+        return PathConstraints(self.table, self.limits, self.task.max_tip_speed, self.grid,
                                margins, self.steady, self._workspace)

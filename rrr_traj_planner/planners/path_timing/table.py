@@ -16,7 +16,7 @@
 Joint derivatives and dynamics along a path, tabulated in smooth pieces.
 
 Torque along a path is m sdd + c sd^2 + g (Bobrow, Dubowsky & Gibson, Time-optimal control of
-robotic manipulators along specified paths, IJRR 4, 1985). Between the table's positions all terms
+robotic manipulators along specified paths, IJRR 4, 1985) and viscous friction times dq sd. Between the table's positions all terms
 are cubic splines (de Boor, A Practical Guide to Splines).
 """
 
@@ -43,7 +43,7 @@ class PathTerms(NamedTuple):
     The joints' derivatives by path length and the dynamics' terms, shape (..., 3) each.
 
     Velocity is dq sd; acceleration ddq sd^2 + dq sdd; jerk dddq sd^3 + 3 ddq sd sdd + dq sddd;
-    torque m sdd + c sd^2 + g.
+    torque m sdd + c sd^2 + g + viscous dq sd.
     """
 
     dq: Array    # [rad/m]
@@ -71,6 +71,8 @@ class PathTable:
         Path lengths of the table's values [m].
     values : PathTerms
         The terms there, one-sided at the pieces' ends, shape (N, INTERVALS + 1, 3) each.
+    friction : Friction
+        Of the joints.
     coefficients : ndarray, shape (N, 4, INTERVALS, 18)
         Of the cubic splines of all terms, highest power first, by the part of a piece.
     overshoot : ndarray, shape (N, 2, 3)
@@ -80,7 +82,7 @@ class PathTable:
     """
 
     def __init__(self, arm_path: ArmPath) -> None:
-        path = arm_path.path
+        path, self.friction = arm_path.path, arm_path.model.friction
         self.ends = piece_ends(arm_path)
         self._lengths = np.diff(self.ends)
         u = np.linspace(0.0, 1.0, INTERVALS + 1)

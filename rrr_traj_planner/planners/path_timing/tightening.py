@@ -157,4 +157,4 @@ def _slow_start(problem: PathProblem, constraints: PathConstraints) -> Variables
     z = np.concatenate(grid.states(constraints.points, m), axis=-1)
     x, gravity = limited_quantities(constraints.problem, z, at_points=True)
     return time_scaled(m, START_SCALING * least_time_scale(
-        x, gravity, bounds - constraints.margins))
+        x, gravity, table.friction.viscous, bounds - constraints.margins, all_slower=True))

@@ -44,6 +44,7 @@ class Limits(NamedTuple):
     arm: CompiledArm | None = None
     table: Array | None = None    # (N, 4, intervals, 18), cubic coefficients of a path's terms
     overshoot: Array | None = None  # (N, 2, 3), added to ddq and to c at its segments' ends
+    viscous: Array | None = None    # (3,), friction along it [N m s/rad]; as table
 
     @property
     def bounds_alone(self) -> bool:

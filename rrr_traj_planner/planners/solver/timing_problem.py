@@ -54,7 +54,7 @@ class _Problem(ctypes.Structure):  # as in native/timing_problem.h
         ('longest', ctypes.c_double),
         *((name, ctypes.c_void_p) for name in (
             'free', 'proportions', 'weights', 'fixed_velocity', 'arm', 'table', 'overshoot',
-            'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual', 'shift',
+            'viscous', 'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual', 'shift',
             'hessian', 'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables',
             'trial_states', 'trial_values', 'trial_slack', 'trial_gradient', 'trial_gradient_T',
             'step_states', 'newton')),
@@ -147,7 +147,8 @@ class TimingProblem:
                 ('points', points), ('restore', grid.restore), ('lower', limits.lower),
                 ('upper', limits.upper), ('general_lower', limits.general_lower),
                 ('general_upper', limits.general_upper), ('least_T', limits.least_T),
-                ('table', limits.table), ('overshoot', limits.overshoot)):
+                ('table', limits.table), ('overshoot', limits.overshoot),
+                ('viscous', limits.viscous)):
             if values is not None:
                 self._bind(name, contiguous(values))
         self._problem.arm = limits.arm and limits.arm.address

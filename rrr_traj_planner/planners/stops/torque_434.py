@@ -134,7 +134,9 @@ def _torque_ratios(segment: Segment, law: Lin434, T: Array) -> Array:
     s, sd, sdd = (np.concatenate(each, axis=1)[..., np.newaxis] for each in zip(*(
         piece.at(POINTS)[:3] for piece in columns.pieces(T[:, np.newaxis], 0.0, 1.0))))
     D = segment.displacement
+    friction = segment.model.friction
     torque = inverse_dynamics(segment.model, *(v.reshape(-1, 3) for v in (
         segment.start + s * D, sd * D, sdd * D)))
+    torque += (friction.viscous * (sd * D) + friction.coulomb * np.sign(D)).reshape(-1, 3)
     limit_ratios = torque[:, limited] / segment.limits.max_effort[limited]
     return limit_ratios.reshape(len(T), -1).T

@@ -143,8 +143,8 @@ def test_instants_between_two_calls_come_as_one():
 
 
 def test_friction_that_a_step_can_follow_passes():
-    check_step(RobotModel(), Friction([50.0] * 3), SoftStops(0.1, 1e4, 0.2), 1e-3)
-    check_step(RobotModel(), Friction(), SoftStops(0.0, 1e9), 1e-3)  # no width, no bumper
+    check_step(RobotModel(friction=Friction([50.0] * 3)), SoftStops(0.1, 1e4, 0.2), 1e-3)
+    check_step(RobotModel(), SoftStops(0.0, 1e9), 1e-3)  # no width, no bumper
 
 
 @pytest.mark.parametrize(('friction', 'soft', 'text'), [
@@ -152,4 +152,4 @@ def test_friction_that_a_step_can_follow_passes():
     (Friction(), SoftStops(0.1, 1e8), r'soft_stops.stiffness is 1e\+08 N m/rad, must be at most')])
 def test_friction_and_bumpers_that_are_too_hard_for_the_step_are_refused(friction, soft, text):
     with pytest.raises(InvalidInputError, match=text):
-        check_step(RobotModel(), friction, soft, 1e-3)
+        check_step(RobotModel(friction=friction), soft, 1e-3)

@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+from helpers.thesis_arm import ThesisArm
+from dataclasses import replace
 from math import exp, inf, log, pi
 
 from helpers.thesis_arm import ThesisArm
@@ -48,6 +50,10 @@ Q2, Q3 = 0.7, 0.3
 INERTIA = float(inertia_matrix(WEIGHTLESS, (0.0, Q2, Q3))[0, 0])
 
 
+def rubbing(friction):
+    return replace(MODEL, friction=friction)
+
+
 def advanced(physics, state, torque, steps, h=STEP):
     for _ in range(steps):
         state = physics.step(physics.terms(state), state, torque, h)
@@ -57,7 +63,7 @@ def advanced(physics, state, torque, steps, h=STEP):
 def one_body(viscous=0.0, coulomb=0.0, w=0.0, q=0.0, bounds=FREE, soft=None):
     friction = Friction(viscous * np.array([1.0, 0.0, 0.0]),
                         ONE_BODY + coulomb * np.array([1.0, 0.0, 0.0]))
-    return ArmPhysics(WEIGHTLESS, *bounds, friction, soft), (q, Q2, Q3, w, 0.0, 0.0)
+    return ArmPhysics(replace(WEIGHTLESS, friction=friction), *bounds, soft), (q, Q2, Q3, w, 0.0, 0.0)
 
 
 def energy(state, soft, model=MODEL):
@@ -105,7 +111,7 @@ def test_result_with_viscous_friction_equals_an_independent_integration():
             x[3:], forward_dynamics(MODEL, x[:3], x[3:], torque - viscous * x[3:])))
 
     reference = solve_ivp(rate, (0.0, 0.5), start, method='DOP853', rtol=1e-12, atol=1e-12)
-    physics = ArmPhysics(MODEL, *FREE, Friction(viscous))
+    physics = ArmPhysics(rubbing(Friction(viscous)), *FREE)
     np.testing.assert_allclose(advanced(physics, start, torque, 500), reference.y[:, -1],
                                atol=1e-8)
 
@@ -121,7 +127,7 @@ def test_sliding_arm_equals_an_independent_integration_until_a_joint_turns():
     reference = solve_ivp(rate, (0.0, 0.1), start, method='DOP853', rtol=1e-12, atol=1e-12)
     assert (np.sign(reference.y[3:, -1]) == (1.0, -1.0, 1.0)).all()
     np.testing.assert_allclose(
-        advanced(ArmPhysics(MODEL, *FREE, friction), start, torque, 100), reference.y[:, -1],
+        advanced(ArmPhysics(rubbing(friction), *FREE), start, torque, 100), reference.y[:, -1],
         atol=1e-9)
 
 
@@ -132,7 +138,7 @@ def test_sliding_arm_equals_an_independent_integration_until_a_joint_turns():
 def test_arm_with_less_load_than_friction_stays_exactly_at_rest(seed):
     rng = np.random.default_rng(seed)
     q, coulomb = rng.uniform(LOW, HIGH), rng.uniform(1.0, 40.0, 3)
-    physics = ArmPhysics(MODEL, LOW, HIGH, Friction(np.zeros(3), coulomb))
+    physics = ArmPhysics(rubbing(Friction(np.zeros(3), coulomb)), LOW, HIGH)
     state = start = (*q.tolist(), 0.0, 0.0, 0.0)
     for _ in range(500):
         load = rng.uniform(-0.999, 0.999, 3) * coulomb
@@ -144,7 +150,7 @@ def test_arm_with_less_load_than_friction_stays_exactly_at_rest(seed):
 @pytest.mark.parametrize('joint', range(3))
 def test_joint_breaks_loose_just_above_its_friction(joint, sign):
     q, coulomb = (0.5, 1.1, 0.2), np.array([10.0, 20.0, 15.0])
-    physics = ArmPhysics(MODEL, LOW, HIGH, Friction(np.zeros(3), coulomb))
+    physics = ArmPhysics(rubbing(Friction(np.zeros(3), coulomb)), LOW, HIGH)
     torque = gravity_torque(MODEL, q)
     torque[joint] += sign * 1.001 * coulomb[joint]
     after = advanced(physics, (*q, 0.0, 0.0, 0.0), tuple(torque.tolist()), 50)
@@ -194,7 +200,7 @@ def test_joint_that_only_its_neighbour_s_stop_presses_into_its_own_rests_there(m
     # Alone, joint 3 would leave its stop; joint 2, pressed into its own, throws it back.
     # What a chattering step ends with.
     monkeypatch.setattr(FrictionDynamics, '_step_with_joints_locked', None)
-    physics = ArmPhysics(MODEL, LOW, HIGH, Friction([1.0] * 3, [1.0] * 3))
+    physics = ArmPhysics(rubbing(Friction([1.0] * 3, [1.0] * 3)), LOW, HIGH)
     state, found = (0.5, HIGH[1], HIGH[2], 0.1, 0.0, 0.0), 0
     for tau_2, tau_3 in np.random.default_rng(1).uniform(
             -300.0, 300.0, (300, 2)).tolist():
@@ -209,7 +215,7 @@ def test_joint_that_only_its_neighbour_s_stop_presses_into_its_own_rests_there(m
 def test_next_to_no_friction_is_no_friction():
     rng = np.random.default_rng(3)
     plain = ArmPhysics(MODEL, LOW, HIGH)
-    slick = ArmPhysics(MODEL, LOW, HIGH, Friction([1e-12] * 3))
+    slick = ArmPhysics(rubbing(Friction([1e-12] * 3)), LOW, HIGH)
     for _ in range(5):
         state = (*rng.uniform(LOW, HIGH).tolist(), *rng.uniform(-2.0, 2.0, 3).tolist())
         np.testing.assert_allclose(
@@ -226,7 +232,7 @@ def test_next_to_no_friction_is_no_friction():
 def test_work_is_energy_and_losses_for_ten_seconds(seed, width):
     rng = np.random.default_rng(seed)
     soft = SoftStops(width, 3000.0, 0.3)
-    physics = ArmPhysics(MODEL, LOW, HIGH, random_friction(rng), soft)
+    physics = ArmPhysics(rubbing(random_friction(rng)), LOW, HIGH, soft)
     state = (*rng.uniform(LOW, HIGH).tolist(), *rng.uniform(-3.0, 3.0, 3).tolist())
     before, supplied = energy(state, soft), 0.0
     for _ in range(50):
@@ -243,7 +249,7 @@ def test_work_is_energy_and_losses_for_ten_seconds(seed, width):
 def test_falling_arm_with_friction_never_gains_energy(seed):
     rng = np.random.default_rng(seed)
     soft = SoftStops(0.1 * (seed % 2), 5000.0, 0.2)
-    physics = ArmPhysics(MODEL, LOW, HIGH, random_friction(rng), soft)
+    physics = ArmPhysics(rubbing(random_friction(rng)), LOW, HIGH, soft)
     state = (*rng.uniform(LOW, HIGH).tolist(), *rng.uniform(-3.0, 3.0, 3).tolist())
     for _ in range(3000):
         before = energy(state, soft)
@@ -257,7 +263,7 @@ def test_falling_arm_with_friction_never_gains_energy(seed):
 @pytest.mark.parametrize('seed', range(3))
 def test_a_huge_disturbance_leaves_finite_states_between_the_stops(seed):
     rng = np.random.default_rng(seed)
-    physics = ArmPhysics(MODEL, LOW, HIGH, random_friction(rng))
+    physics = ArmPhysics(rubbing(random_friction(rng)), LOW, HIGH)
     state = (*rng.uniform(LOW, HIGH).tolist(), 0.0, 0.0, 0.0)
     for _ in range(100):
         state = advanced(physics, state, tuple(rng.choice([-1e5, 1e5], 3).tolist()), 3)

@@ -70,7 +70,8 @@ def test_saturated_steps_are_counted_with_what_was_wanted(friction):
     """Gravity asks of joint_2 more than its motor has: the arm falls, the error grows."""
     needed = gravity_torque(MODEL, Q)[1]
     limits = JointLimits(max_effort=[150.0, 0.9 * needed, 200.0])
-    arm = ControlledArm(replace(SETTINGS, limits=limits, friction=friction), Q)
+    arm = ControlledArm(replace(
+        SETTINGS, limits=limits, model=replace(SETTINGS.model, friction=friction)), Q)
     arm.monitor.read_and_clear()
     arm.advance(1)
     first = arm.monitor.read_and_clear()

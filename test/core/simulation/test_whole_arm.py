@@ -92,7 +92,7 @@ def test_payload_changes_while_the_arm_moves_and_its_energy_is_entered():
 
 def test_friction_holds_the_arm_within_the_error_that_it_leaves():
     coulomb = np.array([10.0, 20.0, 15.0])
-    arm = arm_with(friction=Friction(np.zeros(3), coulomb))
+    arm = arm_with(model=replace(MODEL, friction=Friction(np.zeros(3), coulomb)))
     arm.follow(line(Q + 0.3, 1.0), 0)
     arm.advance(3000)
     rest = arm.state
@@ -218,10 +218,10 @@ def test_features_that_are_off_change_no_bit():
 @pytest.mark.parametrize('seed', range(4))
 def test_energy_balance_closes_over_ten_seconds_with_everything_on(seed, width):
     rng = np.random.default_rng(seed)
+    friction = Friction(rng.uniform(0.5, 5.0, 3), rng.uniform(1.0, 15.0, 3))
     settings = ArmSettings(
-        MODEL, JointLimits(max_effort=np.array([90.0, 190.0, 80.0])), ControllerGains(),
+        replace(MODEL, friction=friction), JointLimits(max_effort=np.array([90.0, 190.0, 80.0])), ControllerGains(),
         payload=Payload(rng.uniform(1.0, 4.0)), soft_stops=SoftStops(width, 5000.0, 0.3),
-        friction=Friction(rng.uniform(0.5, 5.0, 3), rng.uniform(1.0, 15.0, 3)),
         encoder=EncoderSettings(2.0 ** -14, 1e-4, seed))
     arm = ControlledArm(settings, Q)
     before, saturated = arm.energy, False
@@ -244,7 +244,7 @@ def test_energy_balance_closes_over_ten_seconds_with_everything_on(seed, width):
 
 
 def test_reset_opens_a_new_account():
-    arm = arm_with(friction=Friction([1.0] * 3, [1.0] * 3))
+    arm = arm_with(model=replace(MODEL, friction=Friction([1.0] * 3, [1.0] * 3)))
     arm.follow(line(Q + 0.3, 1.0), 0)
     arm.advance(500)
     assert arm.ledger.dissipated > 0.0
@@ -259,4 +259,4 @@ def test_reset_opens_a_new_account():
 
 def test_friction_too_hard_for_the_step_is_refused():
     with pytest.raises(InvalidInputError, match='too much for a physics step of 0.001 s'):
-        arm_with(friction=Friction([1e5] * 3))
+        arm_with(model=replace(MODEL, friction=Friction([1e5] * 3)))

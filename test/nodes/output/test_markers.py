@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from helpers.thesis_arm import ThesisArm
 from helpers.arm_in_ros import Arm, at, GOAL, rest_to_rest, START
 from helpers.plan_requests import patient, plan_request, TABLE_6_1, TABLE_6_3
 from helpers.thesis_arm import ThesisArm

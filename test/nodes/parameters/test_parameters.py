@@ -192,8 +192,8 @@ def test_options_of_the_arm_reach_its_settings_by_joint():
         'constraints.goal_time': 0.4, 'cmd_timeout': 0.5, 'allow_partial_joints_goal': True})
     settings, tolerances = config.settings, config.settings.tolerances
     assert (settings.payload.mass, settings.payload.known_to_controller) == (2.0, True)
-    assert settings.friction.viscous.tolist() == [1.0, 2.0, 3.0]
-    assert settings.friction.coulomb.tolist() == [4.0, 5.0, 6.0]
+    assert settings.model.friction.viscous.tolist() == [1.0, 2.0, 3.0]
+    assert settings.model.friction.coulomb.tolist() == [4.0, 5.0, 6.0]
     assert (settings.soft_stops.width, settings.soft_stops.stiffness) == (0.1, 1e4)
     assert (settings.encoder.resolution, settings.encoder.seed) == (1e-4, 5)
     assert tolerances.trajectory.tolist() == [0.0, 0.2, 0.0]

@@ -1,0 +1,167 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+When joints move in which direction, for Coulomb friction.
+
+Where a joint turns, Coulomb friction steps from one side to the other; a turning point is found as
+a zero of velocity (safeguarded Newton iteration: Press et al., Numerical Recipes, section 9.4).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics.motor_torque import direction_of
+from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+
+MOST_STEPS = 60          # of the iteration; chosen: bisections alone would reach rounding
+ZERO_TOLERANCE = 1e-12   # s; chosen: a thousandth of ONE_SIDED
+
+
+class Directions(NamedTuple):
+    """
+    The directions of motion, for each joint constant between its turning points.
+
+    A joint that rests over an interval has direction 0 there.
+    """
+
+    times: tuple[Array, Array, Array]  # of each joint's changes of direction [s], increasing
+    signs: tuple[Array, Array, Array]  # 1, -1 or 0 before, between and after them
+
+    def at(self, t: Array) -> Array:
+        """
+        Return the directions at given times; at a change, that which begins.
+
+        Parameters
+        ----------
+        t : ndarray, shape (n,)
+            Times [s].
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            1, -1 or 0.
+
+        """
+        return np.stack([signs[np.searchsorted(times, t, side='right')]
+                         for times, signs in zip(self.times, self.signs)], axis=1)
+
+    def scaled(self, factor: float) -> Directions:
+        """
+        Return the directions of the motion with time scaled by a factor.
+
+        Parameters
+        ----------
+        factor : float
+            New over old duration.
+
+        Returns
+        -------
+        Directions
+            Converted, not searched again.
+
+        """
+        first, second, third = (times * factor for times in self.times)
+        return Directions((first, second, third), self.signs)
+
+
+def directions(trajectory: Trajectory, grid: Array) -> Directions:
+    """
+    Return the directions of a motion, cached with it (`Trajectory.cache`).
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        The motion.
+    grid : ndarray, shape (n,)
+        Increasing times [s] that meet every knot, between which a joint's acceleration changes
+        sign at most once.
+
+    Returns
+    -------
+    Directions
+        Of all joints.
+
+    """
+    found = trajectory.cache.get('directions')
+    if not isinstance(found, Directions):
+        velocity, slowest = _functions(trajectory)
+        each = [_of_joint(velocity, slowest, grid, direction, j)
+                for j, direction in enumerate(direction_of(trajectory(grid)[1]).T)]
+        (t1, s1), (t2, s2), (t3, s3) = each
+        found = trajectory.cache['directions'] = Directions((t1, t2, t3), (s1, s2, s3))
+    return found
+
+
+_Function = Callable[[Array, int], tuple[Array, Array]]
+
+
+def _functions(trajectory: Trajectory) -> tuple[_Function, _Function]:
+    """Return a joint's velocity and acceleration with their derivatives, as functions of time."""
+    def velocity(t: Array, joint: int) -> tuple[Array, Array]:
+        _, qd, qdd, _ = trajectory(t)
+        return qd[:, joint], qdd[:, joint]
+
+    def acceleration(t: Array, joint: int) -> tuple[Array, Array]:
+        _, _, qdd, qddd = trajectory(t)
+        return qdd[:, joint], qddd[:, joint]
+
+    return velocity, acceleration
+
+
+def _of_joint(velocity: _Function, acceleration: _Function, grid: Array, direction: Array,
+              joint: int) -> tuple[Array, Array]:
+    """Return the times at which a joint changes direction, and the directions between them."""
+    if not direction.any():
+        return np.zeros(0), np.zeros(1)
+    qd, qdd = velocity(grid, joint)
+    # Between two points it may turn twice where its speed has a minimum.
+    slowest = np.flatnonzero((direction[:-1] * direction[1:] > 0.0)
+                             & (qd[:-1] * qdd[:-1] < 0.0) & (qd[1:] * qdd[1:] > 0.0))
+    if len(slowest):
+        times = _zeros(acceleration, joint, grid[slowest], grid[slowest + 1])
+        through = np.sign(velocity(times, joint)[0]) == -direction[slowest]
+        grid = np.insert(grid, slowest[through] + 1, times[through])
+        direction = np.insert(direction, slowest[through] + 1, -direction[slowest[through]])
+    before, after = direction[:-1], direction[1:]
+    turning = np.flatnonzero(before * after < 0.0)
+    zeros = _zeros(velocity, joint, grid[turning], grid[turning + 1])
+    of_intervals = np.where(before != 0.0, before, after)
+    # An interval that the joint turns in counts as two.
+    starts = np.insert(grid[:-1], turning + 1, zeros)
+    signs = np.insert(of_intervals, turning + 1, after[turning])
+    changes = np.flatnonzero(np.diff(signs)) + 1
+    return starts[changes], signs[np.concatenate(([0], changes))]
+
+
+def _zeros(function: _Function, joint: int, low: Array, high: Array) -> Array:
+    """Return zeros of a function that changes sign between low and high, shape (n,)."""
+    if not len(low):
+        return low
+    sign_low, t = np.sign(function(low, joint)[0]), 0.5 * (low + high)
+    for _ in range(MOST_STEPS):
+        value, slope = function(t, joint)
+        same = np.sign(value) == sign_low
+        low, high = np.where(same, t, low), np.where(same, high, t)
+        with np.errstate(divide='ignore', invalid='ignore'):
+            found = t - value / slope
+        found = np.where((found >= low) & (found <= high), found, 0.5 * (low + high))
+        moved, t = float(np.abs(found - t).max()), found
+        if moved < ZERO_TOLERANCE:
+            break
+    return t

@@ -1,0 +1,152 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Effort limits as planners take them: of arms without masses, and less Coulomb friction."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import format_distinct, LimitViolationError
+
+
+def torque_note(model: RobotModel, limits: JointLimits) -> str:
+    """
+    Return the note on limits that `checked_limits` leaves out; mostly empty.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits.
+
+    Returns
+    -------
+    str
+        For the plan.
+
+    """
+    if not model.lacking_inertia or np.isinf(limits.max_effort).all():
+        return ''
+    reason = 'the arm has no masses' if not model.chain.mass.any() else model.lacking_inertia
+    return f'torque is not checked: {reason}'
+
+
+def checked_limits(model: RobotModel, limits: JointLimits) -> JointLimits:
+    """
+    Return the limits that can be checked: without those of effort where the arm lacks inertia.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits.
+
+    Returns
+    -------
+    JointLimits
+        The same object where the arm has masses or rotor inertia.
+
+    """
+    return replace(limits, max_effort=np.full(3, np.inf)) if model.lacking_inertia else limits
+
+
+def check_friction(model: RobotModel, limits: JointLimits) -> None:
+    """
+    Refuse effort limits that leave nothing beside Coulomb friction: the joint could not move.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits.
+
+    Raises
+    ------
+    LimitViolationError
+        With joint, limit and friction.
+
+    """
+    coulomb = model.friction.coulomb
+    for j in np.flatnonzero(coulomb >= limits.max_effort).tolist():
+        least, most = format_distinct(float(coulomb[j]), float(limits.max_effort[j]))
+        raise LimitViolationError(
+            f'{model.joint_names[j]} has a Coulomb friction of {least} N m, limit {most} N m, '
+            'which leaves no torque for motion', model.joint_names[j], float(coulomb[j]),
+            float(limits.max_effort[j]))
+
+
+def effort_less_friction(model: RobotModel, limits: JointLimits) -> Array:
+    """
+    Return effort limits less Coulomb friction, for optimisation: smooth, and safe on both sides.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Its limits.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Positive [N m], infinite where there is none.
+
+    Raises
+    ------
+    LimitViolationError
+        If one would not be positive; with joint, limit and friction.
+
+    """
+    check_friction(model, limits)
+    return np.asarray(limits.max_effort - model.friction.coulomb)
+
+
+def moving_error(where: str, model: RobotModel, joint: int, torque: float, limit: float,
+                 via_point: int = -1) -> LimitViolationError:
+    """
+    Return the error of a pose through which a motor cannot move its joint, however slowly.
+
+    Parameters
+    ----------
+    where : str
+        The position, for the message.
+    model : RobotModel
+        The arm.
+    joint : int
+        Index of the joint.
+    torque, limit : float
+        Torque of gravity and Coulomb friction, and its limit [N m].
+    via_point : int
+        Index of the via point, -1 where it is none.
+
+    Returns
+    -------
+    LimitViolationError
+        To be raised.
+
+    """
+    name = model.joint_names[joint]
+    needed, most = format_distinct(torque, limit)
+    left = '' if torque > limit else ', which leaves no torque for acceleration'
+    return LimitViolationError(
+        f'{where} {name} needs {needed} N m to move against gravity and friction, limit {most} '
+        f'N m{left}', name, torque, limit, via_point)
