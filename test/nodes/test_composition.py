@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-from helpers.thesis_arm import ThesisArm
 import signal
 from threading import Condition
 
@@ -25,6 +24,7 @@ from helpers.own_limits import own_limits
 from helpers.places import CONFIG
 from helpers.plan_requests import NEAR, patient, plan_request
 from helpers.scripts import Script, script
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rclpy.qos import DurabilityPolicy, QoSProfile

@@ -18,8 +18,8 @@ from dataclasses import replace
 from functools import cache
 
 from helpers.pinocchio_arm import PinocchioArm
-from helpers.thesis_cases import POINTS
 from helpers.thesis_arm import ThesisArm
+from helpers.thesis_cases import POINTS
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits

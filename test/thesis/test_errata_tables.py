@@ -14,11 +14,11 @@
 
 """Tables 6.3, B.1 and B.3 as printed and as corrected, and what gravity says to them."""
 
-from helpers.thesis_arm import ThesisArm
 from helpers import table_5_1
 from helpers import thesis_cases as thesis
 from helpers.comparison import differ
 from helpers.pinocchio_arm import PinocchioArm
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits

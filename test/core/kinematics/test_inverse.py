@@ -14,11 +14,11 @@
 
 """Joint positions from tip positions: branches, edges, joint axis 1, whole turns."""
 
-from helpers.thesis_arm import ThesisArm
 import re
 
 from helpers import thesis_cases as thesis
 from helpers.random_cases import ARMS
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
