@@ -14,6 +14,8 @@
   const middle = [0, 1, 2].map((i) => 0.5 * (Math.min(...every.map((p) => p[i]))
     + Math.max(...every.map((p) => p[i]))));
   const reach = Math.max(...every.map((p) => Math.hypot(...p.map((x, i) => x - middle[i]))));
+  const tens = 10 ** Math.floor(Math.log10(reach / 1.6));  // of the floor's squares: 0.5 m, say
+  const square = [5 * tens, 2 * tens].find((length) => length <= reach / 1.6) || tens;
 
   function colour(role) {
     return getComputedStyle(document.documentElement).getPropertyValue('--' + role).trim();
@@ -78,13 +80,14 @@
   }
 
   function floor(pen, at) {
-    const far = Math.ceil(2 * reach) / 2;
-    for (let k = -far; k <= far + 1e-9; k += 0.5) {
+    const most = Math.ceil(reach / square), far = most * square;
+    for (let i = -most; i <= most; i += 1) {
+      const k = i * square;
       line(pen, [at([k, -far, 0]), at([k, far, 0])], colour('grid'), 1);
       line(pen, [at([-far, k, 0]), at([far, k, 0])], colour('grid'), 1);
     }
     pen.font = '12px sans-serif';
-    [['x', [0.55, 0, 0]], ['y', [0, 0.55, 0]]].forEach(([name, p]) => {
+    [['x', [1.1 * square, 0, 0]], ['y', [0, 1.1 * square, 0]]].forEach(([name, p]) => {
       line(pen, [at([0, 0, 0]), at(p.map((v) => v / 1.1))], colour('muted'), 1.5);
       pen.fillStyle = colour('muted');
       pen.fillText(name, ...at(p));

@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-from helpers.thesis_arm import ThesisArm
 import signal
 from threading import Condition
 

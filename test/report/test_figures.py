@@ -17,11 +17,13 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from hashlib import sha256
 import json
 from math import pi, sqrt
 from xml.etree import ElementTree
 
+from helpers.other_arms import OTHER_ARMS
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -47,7 +49,7 @@ from rrr_traj_planner.report.motion_samples import (
     tightest,
 )
 from rrr_traj_planner.report.page import paragraphs, Section, write_page
-from rrr_traj_planner.report.path_figures import label_directions, legible
+from rrr_traj_planner.report.path_figures import label_directions, legible, path_in_space
 from rrr_traj_planner.report.picture import embedded, Picture
 from rrr_traj_planner.report.plan_report import unique_names
 from rrr_traj_planner.report.tables import Table
@@ -68,6 +70,13 @@ def a_picture(name='some', data=None):
         axes.set(xlabel='time [s]', ylabel='a & b')
 
     return Picture(name, 'a "title" & more', 'a caption', draw, data=data or {})
+
+
+def moved_by(of, model):
+    """Return the same motion of the joints, of another arm."""
+    points = forward_kinematics(model, of.plan.trajectory(of.plan.via_times)[0])
+    task = replace(of.task, model=model, request=PlanningRequest(points))
+    return replace(of, task=task, plan=replace(of.plan, model=model))
 
 
 def test_gauss_function_is_the_thesis_s():
@@ -167,8 +176,31 @@ def test_frames_go_from_the_first_via_point_to_the_last(plans):
     for motion in found['motions']:
         assert motion['tip'][0] == pytest.approx(found['via_points'][0], abs=1e-4)
         assert motion['tip'][-1] == pytest.approx(found['via_points'][-1], abs=1e-4)
-        assert len(motion['tip']) == len(motion['elbow']) == len(motion['use'])
+        assert len(motion['tip']) == len(motion['joints'][0]) == len(motion['use'])
         assert max(motion['use']) <= 1.001
+
+
+@pytest.mark.parametrize(('name', 'moving'), [('kr16', 2), ('leg', 2), ('finger', 1)])
+def test_frames_of_other_arms_are_their_joints(plans, name, moving):
+    of = moved_by(plans.on_table_6_1('cycloid'), OTHER_ARMS[name])
+    found, chain = frames([of]), of.task.model.chain
+    motion, = found['motions']
+    assert found['resting'] == chain.point[0].tolist()
+    assert len(motion['joints']) == moving
+    t = np.linspace(0.0, of.plan.trajectory.duration, len(motion['tip']))
+    points = arm_points(of.task.model, of.plan.trajectory(t)[0])
+    assert points[:, 1] == pytest.approx(np.tile(chain.point[0], (len(t), 1)))
+    for i, joint in enumerate([*motion['joints'], motion['tip']]):
+        assert np.array(joint) == pytest.approx(points[:, 2 + i], abs=1e-4)
+    assert points[:, -1] == pytest.approx(
+        forward_kinematics(of.task.model, of.plan.trajectory(t)[0]), abs=1e-12)
+
+
+@pytest.mark.parametrize('name', OTHER_ARMS)
+def test_path_of_other_arms_is_drawn(plans, tmp_path, name):
+    of = moved_by(plans.on_table_6_1('cycloid'), OTHER_ARMS[name])
+    path_in_space(of, 'path', 'Path', '').written(tmp_path)
+    assert (tmp_path / 'path.png').read_bytes().startswith(PNG)
 
 
 def test_picture_writes_png_and_csv_and_an_svg_without_fixed_colours(tmp_path):

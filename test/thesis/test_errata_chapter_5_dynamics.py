@@ -102,7 +102,7 @@ def test_5_37_needs_minus_c23(arm):
         p = pose(arm, q)
         for values, height in ((printed, arm.l3 * p.s23), (corrected, -arm.l3 * p.c23)):
             values.append(arm.g * (arm.mass[1] * arm.l2 * p.s2
-                                         + arm.mass[2] * (height + arm.a2 * p.s2)))
+                                   + arm.mass[2] * (height + arm.a2 * p.s2)))
     assert differ(printed, true)
     assert corrected == pytest.approx(true, abs=AGREEMENT)
     ours = [potential_energy(arm, q) for q, _, _ in cases]

@@ -14,7 +14,6 @@
 
 """Tables 6.3, B.1 and B.3 as printed and as corrected, and what gravity says to them."""
 
-from helpers.thesis_arm import ThesisArm
 from helpers import table_5_1
 from helpers import thesis_cases as thesis
 from helpers.comparison import differ

@@ -36,7 +36,20 @@ class Frame(NamedTuple):
     at: Array  # its origin [m], (3,)
 
     def inside(self, point: Array) -> Array:
-        """Return a point of the base frame in this frame [m]."""
+        """
+        Return a point's coordinates in this frame.
+
+        Parameters
+        ----------
+        point : ndarray, shape (3,)
+            In the base frame [m].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In this frame [m].
+
+        """
         return np.asarray(self.R.T @ (point - self.at))
 
 

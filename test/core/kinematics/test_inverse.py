@@ -14,7 +14,6 @@
 
 """Joint positions from tip positions: branches, edges, joint axis 1, whole turns."""
 
-from helpers.thesis_arm import ThesisArm
 import re
 
 from helpers import thesis_cases as thesis

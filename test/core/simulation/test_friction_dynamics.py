@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-from helpers.thesis_arm import ThesisArm
 from dataclasses import replace
 from math import exp, inf, log, pi
 

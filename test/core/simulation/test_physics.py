@@ -16,7 +16,6 @@
 
 from __future__ import annotations
 
-from helpers.thesis_arm import ThesisArm
 from math import inf, pi
 
 from helpers.thesis_arm import ThesisArm

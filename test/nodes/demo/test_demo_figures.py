@@ -18,11 +18,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from helpers.other_arms import OTHER_ARMS
 from matplotlib.image import imread
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.demo.client import Run
@@ -113,6 +115,17 @@ def test_plot_is_a_picture(task, tmp_path):
         draw(executed(task), tmp_path / name)
         assert (tmp_path / name).stat().st_size > 20_000
     assert imread(tmp_path / 'run.png').shape[:2] == (1200, 1500)
+
+
+@pytest.mark.filterwarnings('error')
+@pytest.mark.parametrize('name', OTHER_ARMS)
+def test_plot_takes_other_arms(task, tmp_path, name):
+    run, model = executed(task), OTHER_ARMS[name]
+    points = forward_kinematics(model, spline_through(run.planned).at(
+        np.array(run.response.via_times))[0])
+    draw(replace(run, task=replace(task, via_points=points),
+                 config=replace(run.config, model=model)), tmp_path / 'run.png')
+    assert (tmp_path / 'run.png').stat().st_size > 20_000
 
 
 @pytest.mark.filterwarnings('error')

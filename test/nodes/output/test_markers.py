@@ -16,8 +16,8 @@
 
 from __future__ import annotations
 
-from helpers.thesis_arm import ThesisArm
 from helpers.arm_in_ros import Arm, at, GOAL, rest_to_rest, START
+from helpers.other_arms import OTHER_ARMS
 from helpers.plan_requests import patient, plan_request, TABLE_6_1, TABLE_6_3
 from helpers.thesis_arm import ThesisArm
 import numpy as np
@@ -30,7 +30,11 @@ from rrr_traj_planner.core.arm.urdf import FrameNames, urdf
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
-from rrr_traj_planner.nodes.output.marker_messages import MAX_POINTS, plan_markers
+from rrr_traj_planner.nodes.output.marker_messages import (
+    arm_markers,
+    MAX_POINTS,
+    plan_markers,
+)
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from std_msgs.msg import String
@@ -80,7 +84,7 @@ def test_description_follows_the_parameters_that_are_in_it_and_no_others(ros):
     description.wait_for()
     assert arm.set_parameter('payload.mass', 1.0).successful
     assert arm.set_parameter('friction.coulomb', [1.0, 2.0, 3.0]).successful
-    expected = urdf(MODEL, JointLimits(), friction=Friction(coulomb=(1.0, 2.0, 3.0)))
+    expected = urdf(RobotModel(friction=Friction(coulomb=(1.0, 2.0, 3.0))), JointLimits())
     description.wait_for(lambda m: m.data == expected)
     assert len(description.messages) == 2
 
@@ -120,6 +124,25 @@ def test_markers_show_the_arm_where_it_is_and_where_it_has_been(ros):
     np.testing.assert_allclose([m.scale.z for m in rods], [0.5, 0.9, 0.7], rtol=0.0, atol=1e-12)
     np.testing.assert_allclose(places([rods[1].pose.position]), [(shoulder + elbow) / 2],
                                rtol=0.0, atol=1e-3)
+
+
+@pytest.mark.parametrize('name', OTHER_ARMS)
+def test_markers_show_other_arms_from_joint_to_joint(name):
+    model, q = OTHER_ARMS[name], (0.4, 0.5, -0.6)
+    points = np.array(link_positions(model, q))
+    found = by_name(arm_markers(model, 'base_link', link_positions(model, q), [points[-1]]))
+    rods = [found['arm', i] for i in range(len(points) - 1)]
+    assert set(found) == {('arm', i) for i in range(len(points))} | {('executed_path', 0)}
+    assert {m.type for m in rods} == {Marker.CYLINDER}
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    np.testing.assert_allclose([m.scale.z for m in rods], lengths, rtol=0.0, atol=1e-12)
+    assert [m.action == Marker.DELETE for m in rods] == (lengths == 0.0).tolist()
+    np.testing.assert_allclose(places([m.pose.position for m in rods]),
+                               (points[1:] + points[:-1]) / 2, rtol=0.0, atol=1e-12)
+    balls = found['arm', len(rods)]
+    assert balls.type == Marker.SPHERE_LIST
+    np.testing.assert_allclose(places(balls.points), points[1:-1], rtol=0.0, atol=1e-12)
+    assert rods[-1].scale.x == pytest.approx(model.chain.size / 16.0)  # as thick as in the URDF
 
 
 def test_markers_rest_while_the_arm_does_and_reset_clears_the_trail(ros):

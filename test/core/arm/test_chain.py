@@ -1,0 +1,72 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Chains of three joints: what is refused, and where links are."""
+
+from dataclasses import replace
+
+from helpers.other_arms import OTHER_ARMS
+from helpers.random_cases import random_states
+from helpers.random_chains import random_chain
+import numpy as np
+import pytest
+from rrr_traj_planner.core.errors import InvalidInputError
+
+ROUNDING = 1e-12
+CHAIN = random_chain(np.random.default_rng(0))
+SKEW = np.array([[1.0, 0.1, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+
+
+@pytest.mark.parametrize(('changes', 'text'), [
+    ({'axis': np.eye(2)}, r'^axis has shape \(2, 2\), must have \(3, 3\)$'),
+    ({'axis': [(1, 0, 0), (0, 0, 0), (0, 1, 0)]}, '^axis of joint 2 is zero$'),
+    ({'axis': [(0, 0, 1), (0, 1e-4, -1), (0, 1, 0)]}, '^joint axes 1 and 2 are parallel: the tip'),
+    ({'tip': CHAIN.point[2]}, '^the tip is on joint axis 3, which does not move it$'),
+    ({'tip': (0.0, np.nan, 0.0)}, r'^tip\[1\] is nan, must be finite$'),
+    ({'mass': (1.0, -2.0, 3.0)}, r'^mass is \[1\.0, -2\.0, 3\.0\] kg, must not be negative$'),
+    ({'inertia': [np.eye(3), SKEW, np.eye(3)]}, '^inertia of link 2 is not symmetric$'),
+    ({'inertia': [np.eye(3), np.eye(3), np.diag((1.0, 1.0, -0.1))]},
+     '^inertia of link 3 has a negative principal moment$'),
+])
+def test_what_is_no_arm_is_refused(changes, text):
+    with pytest.raises(InvalidInputError, match=text):
+        replace(CHAIN, **changes)
+
+
+def test_axes_have_length_one():
+    chain = replace(CHAIN, axis=5.0 * CHAIN.axis)
+    np.testing.assert_allclose(chain.axis, CHAIN.axis, rtol=0.0, atol=ROUNDING)
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_links_move_about_their_joints_and_no_farther_than_the_chain_s_size(seed):
+    chain = random_chain(np.random.default_rng(seed))
+    q = random_states(np.random.default_rng(seed), 50)[0]
+    poses = chain.link_poses(q)
+    directions, points = chain.axes_at(poses)
+    for i, (R, t) in enumerate(poses):
+        assert R @ R.swapaxes(1, 2) == pytest.approx(np.tile(np.eye(3), (50, 1, 1)), abs=ROUNDING)
+        # a joint's axis moves with the links on both of its sides
+        assert R @ chain.axis[i] == pytest.approx(directions[:, i], abs=ROUNDING)
+        assert R @ chain.point[i] + t == pytest.approx(points[:, i], abs=ROUNDING)
+    R, t = poses[2]
+    from_axis_1 = np.cross(R @ chain.tip + t - chain.point[0], chain.axis[0])
+    assert np.linalg.norm(from_axis_1, axis=1).max() <= chain.size
+
+
+@pytest.mark.parametrize(('name', 'size'), [
+    ('kr16', np.hypot(0.26, 0.675) + 0.68 + np.hypot(0.67, 0.035)), ('leg', 0.08 + 0.42),
+    ('finger', 0.09)])
+def test_size_is_the_way_from_the_first_joint_to_the_tip(name, size):
+    assert OTHER_ARMS[name].chain.size == pytest.approx(size, abs=ROUNDING)
