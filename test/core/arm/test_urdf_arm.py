@@ -22,12 +22,12 @@ from xml.etree import ElementTree
 from helpers.pinocchio_urdf import PinocchioUrdf
 from helpers.places import ROOT
 from helpers.random_cases import ARMS, random_states
-from helpers.random_chains import AnyArm
 from helpers.urdf_texts import arm, axis, joint, limit, link, PARTS, RandomTree, Y, Z
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits, UNITS
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.urdf import urdf
 from rrr_traj_planner.core.arm.urdf_arm import read_urdf
 from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix, inverse_dynamics
@@ -44,7 +44,7 @@ RELATIVE = 1e-10  # of the largest torque or inertia: rounding of sums in anothe
 def agrees_with_pinocchio(found, locked=None):
     """Compare tip, inertia matrix and torque at random states."""
     reference = PinocchioUrdf(found.text, found.joint_names, found.base, found.tip, locked)
-    ours = AnyArm(found.chain, reference.gravity)
+    ours = RobotModel(found.chain, reference.gravity)
     q, qd, qdd = states = random_states(np.random.default_rng(5), STATES)
     tip = np.array([reference.tip_position(x) for x in q])
     M = np.array([reference.inertia_matrix(x) for x in q])
@@ -115,7 +115,7 @@ def test_the_urdf_that_the_package_writes_is_read_back(model):
     found = read_urdf(urdf(model, limits, friction=friction), 'base_link', 'tip')
     agrees_with_pinocchio(found)
     q = np.array((0.3, 0.4, 0.5))
-    ours = AnyArm(found.chain, (0.0, 0.0, -model.gravity))
+    ours = RobotModel(found.chain, (0.0, 0.0, -model.gravity))
     assert forward_kinematics(ours, q) == pytest.approx(forward_kinematics(model, q), abs=1e-12)
     assert inverse_dynamics(ours, q, q, q) == pytest.approx(inverse_dynamics(model, q, q, q))
     for name in UNITS.keys() & vars(found).keys():
