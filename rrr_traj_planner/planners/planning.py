@@ -195,8 +195,9 @@ def _planned_path(method: CartesianPlanner, problem: PlanningProblem) -> Plan:
             request.max_tip_speed, request.steady_zones, _spacing(request), request.should_stop))
         return _checked(problem, trajectory, _via_times(request, trajectory, same))
 
+    beginnings = path_beginnings(problem)
     try:
-        return first_possible(path_beginnings(problem), attempt)
+        return first_possible(beginnings, attempt)
     except RrrPlannerError as error:
         raise _renumbered(error, same, start is not None) from error
 

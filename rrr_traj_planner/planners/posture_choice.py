@@ -107,8 +107,8 @@ def path_beginnings(problem: PlanningProblem) -> list[Array]:
         own = postures_of(model, start, JOINT_ROUNDING)
         if own and not any(map(asked.includes, own)):
             raise StartStateError(
-                f'the start state is in another posture ({posture_of(model, start)}) than '
-                f'requested ({asked}): along a path of the tip the arm cannot change it')
+                f'the start state has {posture_of(model, start)}: along a path of the tip the arm '
+                f'cannot change to {asked}')
         return [start]
     first = problem.request.via_points[0]
     found = _away_from_axis(problem, reachable(model, first))

@@ -21,6 +21,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.postures import posture_of
 from rrr_traj_planner.planners.request import PlanningRequest
 
 NONE = np.full(3, np.inf)  # no limits
@@ -35,5 +36,8 @@ def table(name, **request):
 
 
 def through(q, **request):
-    """Return a request for the tip positions at joint positions."""
-    return PlanningRequest(forward_kinematics(ARM, np.asarray(q, dtype=float)), **request)
+    """Return a request for the tip positions at joint positions, in the posture of the first."""
+    q = np.asarray(q, dtype=float)
+    elbow, shoulder = posture_of(ARM, q[0])
+    return PlanningRequest(
+        forward_kinematics(ARM, q), **{'elbow': elbow, 'shoulder': shoulder, **request})

@@ -71,7 +71,7 @@ def random_task(seed):
     tips = forward_kinematics(model, q)
     start = q[0] if kind == 'start state' else None
     request = PlanningRequest(
-        tips if start is None else tips[1:], start=start,
+        tips if start is None else tips[1:], start=start, elbow='up', shoulder='front',
         sample_period=float(rng.choice([0.005, 0.01, 0.01, 0.01, 0.02, 0.05])))
     return Task(seed, kind, model, limits, q, request)
 

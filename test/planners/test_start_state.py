@@ -23,7 +23,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import JointRangeError, RrrPlannerError, StartStateError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.kinematics.postures import Posture, posture_of
+from rrr_traj_planner.core.kinematics.postures import ELBOWS, Posture, posture_of, SHOULDERS
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
@@ -130,7 +130,7 @@ def test_the_start_s_elbow_branch_stays_where_it_is_feasible():
 
 
 @pytest.mark.parametrize('posture', [
-    Posture('up'), Posture('down'), Posture('up', 'back'), Posture('down', 'back')])
+    Posture(e, s) for s in SHOULDERS for e in ELBOWS])
 def test_nearby_points_are_reached_in_the_start_s_posture_and_further_ones_in_another(posture):
     limits = JointLimits([-3.0] * 3, [7.0] * 3, max_effort=STRONG)
     rng = np.random.default_rng(5)

@@ -55,7 +55,8 @@ def test_random_points_come_back_from_their_tips(seed):
 
 @pytest.mark.parametrize('elbow', ['up', 'down'])
 def test_requested_elbow_branch_holds_for_every_point(elbow):
-    q = joint_via_points(ARM, WIDE, tips('6.1 point 1', '6.3 point 1'), None, Posture(elbow))
+    q = joint_via_points(ARM, WIDE, tips('6.1 point 1', '6.3 point 1'), None,
+                         Posture(elbow, 'front'))
     assert forward_kinematics(ARM, q) == pytest.approx(tips('6.1 point 1', '6.3 point 1'))
     assert ((q[:, 2] < np.pi / 2) == (elbow == 'up')).all()
 
@@ -71,12 +72,13 @@ def test_point_out_of_range_is_refused_by_joint_value_and_range():
     with pytest.raises(LimitViolationError, match=(
             r'^via point 1: joint_1 would be at 0\.874[\d]* rad \(elbow up\), '
             r'limits -3\.14159 to 0\.6 rad$')) as no:
-        joint_via_points(ARM, narrow, tips('6.1 point 1', '6.1 point 2'), None, Posture('up'))
+        joint_via_points(ARM, narrow, tips('6.1 point 1', '6.1 point 2'), None,
+                         Posture('up', 'front'))
     assert (no.value.via_point, no.value.joint, no.value.limit) == (1, 'joint_1', 0.6)
 
 
 def test_unreachable_point_is_refused_with_its_distance_and_index():
-    with pytest.raises(UnreachableError, match='^via point 1: .*misses by 0.4 m$') as no:
+    with pytest.raises(UnreachableError, match='^via point 1: .*misses the workspace by 0.4 m$') as no:
         joint_via_points(
             ARM, WIDE, np.array([[1.0, 0.0, 0.5], [2.0, 0.0, 0.5]]), None, Posture())
     assert no.value.via_point == 1
