@@ -217,8 +217,8 @@ def torque_sweep(model: RobotModel, trajectory: Trajectory) -> TorqueSweep:
         times, moving = _torque_grid(trajectory), None
         if model.friction.coulomb.any():
             moving = directions(trajectory, times)
-            turning = np.concatenate(moving.times)
-            times = np.union1d(times, np.concatenate((turning, turning - ONE_SIDED)))
+            steps = moving.steps()
+            times = np.union1d(times, steps[(steps > 0.0) & (steps < trajectory.duration)])
         parts = torque_parts(model, *trajectory(times)[:3],
                              None if moving is None else moving.at(times))
         found = trajectory.cache['torque_sweep'] = TorqueSweep(model, times, parts, moving)
