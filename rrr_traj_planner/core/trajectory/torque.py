@@ -33,9 +33,10 @@ from rrr_traj_planner.core.trajectory.time_scaling import (
 )
 from rrr_traj_planner.core.trajectory.trajectory import ONE_SIDED, times_within, Trajectory
 
-# Torque is analytic between knots and turning points, where Coulomb friction steps. With this many steps there, none longer than LONGEST_STEP
-# unless MOST_STEPS are reached (slow motions), high peaks have brackets of their own. Chosen: none
-# of 265 random motions then has a peak too low by 1e-6; with four times the steps' length 18 have.
+# Torque is analytic between knots and turning points, where Coulomb friction steps. With this many
+# steps there, none longer than LONGEST_STEP unless MOST_STEPS are reached (slow motions), high
+# peaks have brackets of their own. Chosen: none of 265 random motions then has a peak too low by
+# 1e-6; with four times the steps' length 18 have.
 STEPS_PER_INTERVAL = 10
 MOST_STEPS = 400
 LONGEST_STEP = 0.012  # s

@@ -16,8 +16,8 @@
 Joint derivatives and dynamics along a path, tabulated in smooth pieces.
 
 Torque along a path is m sdd + c sd^2 + g (Bobrow, Dubowsky & Gibson, Time-optimal control of
-robotic manipulators along specified paths, IJRR 4, 1985) and viscous friction times dq sd. Between the table's positions all terms
-are cubic splines (de Boor, A Practical Guide to Splines).
+robotic manipulators along specified paths, IJRR 4, 1985), and viscous friction dq sd. Between the
+table's positions all terms are cubic splines (de Boor, A Practical Guide to Splines).
 """
 
 from __future__ import annotations

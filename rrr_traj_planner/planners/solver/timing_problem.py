@@ -54,8 +54,8 @@ class _Problem(ctypes.Structure):  # as in native/timing_problem.h
         ('longest', ctypes.c_double),
         *((name, ctypes.c_void_p) for name in (
             'free', 'proportions', 'weights', 'fixed_velocity', 'arm', 'table', 'overshoot',
-            'viscous', 'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual', 'shift',
-            'hessian', 'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables',
+            'viscous', 'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual',
+            'shift', 'hessian', 'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables',
             'trial_states', 'trial_values', 'trial_slack', 'trial_gradient', 'trial_gradient_T',
             'step_states', 'newton')),
         ('shifted', ctypes.c_int32)]
