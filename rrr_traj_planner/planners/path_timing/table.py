@@ -109,7 +109,6 @@ class PathTable:
         m, c, g = path_torque_terms(arm_path.model, q, dq, ddq)
         return PathTerms(dq, ddq, dddq, m, c, g)
 
-
     def _with_friction(self, terms: PathTerms) -> tuple[Array, PathTerms]:
         """Return the friction that is left out, and terms with that of joints that do not turn."""
         direction, coulomb = direction_of(terms.dq), self.friction.coulomb

@@ -147,8 +147,7 @@ class TimingProblem:
                 ('points', points), ('restore', grid.restore), ('lower', limits.lower),
                 ('upper', limits.upper), ('general_lower', limits.general_lower),
                 ('general_upper', limits.general_upper), ('least_T', limits.least_T),
-                ('table', limits.table), ('overshoot', limits.overshoot),
-                ('viscous', limits.viscous)):
+                *zip(('table', 'overshoot', 'viscous'), limits[-3:])):
             if values is not None:
                 self._bind(name, contiguous(values))
         self._problem.arm = limits.arm and limits.arm.address

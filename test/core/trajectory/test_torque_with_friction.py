@@ -31,11 +31,8 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dy
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, TorqueParts
-from rrr_traj_planner.core.trajectory.torque import (
-    peak_torque,
-    time_scale_for_torque,
-    torque_sweep,
-)
+from rrr_traj_planner.core.trajectory.torque import peak_torque, time_scale_for_torque
+from rrr_traj_planner.core.trajectory.torque_sweep import torque_sweep
 
 SEEDS = range(12)
 PEAK = 1e-6  # relative, what the package promises
