@@ -273,4 +273,4 @@ def _checked(problem: PlanningProblem, trajectory: Trajectory, via_times: Array)
     # The points keep limits to a tolerance: within it their torque counts as at the limit.
     effort = np.maximum(effort, np.minimum(found.effort, limits.max_effort))
     return Plan(trajectory, found.points, via_times * found.time_scale, peaks, effort, model,
-                '; '.join(filter(None, (trajectory.note, found.note))))
+                '; '.join(filter(None, (problem.note, trajectory.note, found.note))))

@@ -29,11 +29,8 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
-from rrr_traj_planner.core.trajectory.torque import (
-    peak_holding_torque,
-    time_scale_for_torque,
-    torque_sweep,
-)
+from rrr_traj_planner.core.trajectory.torque import peak_holding_torque, time_scale_for_torque
+from rrr_traj_planner.core.trajectory.torque_sweep import torque_sweep
 from rrr_traj_planner.core.trajectory.trajectory import MOST_FACTOR, Trajectory
 from rrr_traj_planner.planners.effort_limits import moving_error
 from rrr_traj_planner.planners.tasks import JointTask

@@ -31,7 +31,7 @@ def with_friction(arm, seed, viscous=4.0, coulomb=6.0):
 
 
 def torques(arm, q, qd, qdd):
-    """Return torques (n, 3) by Pinocchio, and friction opposed to each joint's motion."""
+    """Return torques by Pinocchio, (n, 3), and friction opposed to each joint's motion."""
     chain = PinocchioChain(arm)
     rigid = np.array([chain.inverse_dynamics(*state) for state in zip(q, qd, qdd)])
     friction = arm.friction

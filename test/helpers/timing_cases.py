@@ -20,6 +20,7 @@ from helpers.ramp_cases import bounds, FREE, LIMITS, nodes_of, random_motion, sl
 from helpers.random_cases import central_difference
 from helpers.random_paths import random_case
 import numpy as np
+from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.planners.path_timing.constraints import PathConstraints, QUANTITIES
 from rrr_traj_planner.planners.path_timing.start import motion_with_speeds
 from rrr_traj_planner.planners.path_timing.table import PathTable
@@ -36,8 +37,9 @@ class Case:
 
     def __init__(self, kind, seed, segments=None, durations=None, least_T=False):
         rng = np.random.default_rng(seed)
-        self.problem, self.motion = (path_problem(seed) if kind == 'path' else joint_problem(
-            FREE if kind == 'bounds' else LIMITS, seed, segments, least_T))
+        self.problem, self.motion = (
+            path_problem(seed, rubbing='friction' in kind) if kind.startswith('path')
+            else joint_problem(FREE if kind == 'bounds' else LIMITS, seed, segments, least_T))
         N, J = len(self.motion.T), self.motion.inner.shape[-1]
         self.durations = (durations or DurationConstraints.all_free(N, J))._replace(
             weights=rng.uniform(0.5, 2.0, N))
@@ -118,9 +120,13 @@ def joint_problem(limits, seed, segments=None, least_T=False):
     return constraints.problem, m
 
 
-def path_problem(seed):
+def path_problem(seed, rubbing=False):
     case = random_case(seed, points=3)
-    table, grid = PathTable(case.arm_path), Grid(6, (0.0, 0.6)[seed % 2])
+    arm_path = case.arm_path
+    if rubbing:
+        arm_path = replace(arm_path, model=replace(
+            arm_path.model, friction=Friction([60.0, 90.0, 40.0])))
+    table, grid = PathTable(arm_path), Grid(6, (0.0, 0.6)[seed % 2])
     N = len(table.ends) - 1
     constraints = PathConstraints(
         table, replace(case.limits, max_jerk=[30.0] * 3), 0.7, grid,

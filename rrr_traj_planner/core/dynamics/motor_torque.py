@@ -52,11 +52,11 @@ def motor_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike)
         If a shape is wrong, or a value not finite.
 
     """
-    torque = inverse_dynamics(model, q, qd, qdd)
-    friction = model.friction
-    if friction.is_none:
-        return torque
-    return torque + friction.viscous * qd + friction.coulomb * np.sign(qd)
+    torque, friction = inverse_dynamics(model, q, qd, qdd), model.friction
+    if not friction.is_none:
+        velocity = np.asarray(qd, dtype=float)
+        torque += friction.viscous * velocity + friction.coulomb * np.sign(velocity)
+    return torque
 
 
 def direction_of(qd: Array) -> Array:

@@ -115,13 +115,13 @@ class FrictionDynamics:
                 break
         if left > 0.0:
             state = self._step_with_joints_locked(state, torque, left, hard)
-        qd = self._velocities_after_impact(self._arm(state), state[3:], contact(state, *hard))
+        qd, at = state[3:], contact(state, *hard)
+        if at != FREE:
+            qd = self._velocities_after_impact(self._arm(state), qd, at)
         return state[:3] + _at_rest(qd, self._coulomb)
 
     def _velocities_after_impact(self, t: Terms, qd: Triple, at: Contact) -> Triple:
         """Return the velocities after impacts on hard stops, and record the energy lost."""
-        if at == FREE:
-            return qd
         after = permitted(t, qd, at)
         self._ledger.stops += kinetic_energy(t, qd) - kinetic_energy(t, after)
         return after
@@ -129,8 +129,13 @@ class FrictionDynamics:
     def _after_impacts(self, state: State, torque: Triple, hard: Bounds,
                        shortest: float) -> tuple[State, Load, Contact]:
         """Return the state after impacts, the load from there on, and the sliding directions."""
-        t, at = self._arm(state), contact(state, *hard)
-        qd = _at_rest(self._velocities_after_impact(t, state[3:], at), self._coulomb)
+        at, qd = contact(state, *hard), _at_rest(state[3:], self._coulomb)
+        if at == FREE and 0.0 not in qd:
+            slip = _signs(qd, self._coulomb)
+            return state[:3] + qd, self._load(state, torque, slip), slip
+        t = self._arm(state)
+        if at != FREE:
+            qd = _at_rest(self._velocities_after_impact(t, state[3:], at), self._coulomb)
         (qd1, qd2, qd3), (c1, c2, c3) = qd, self._coulomb
         q, lock = state[:3], FREE
         slip = _signs(qd, self._coulomb)

@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.motor_torque import direction_of
-from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+from rrr_traj_planner.core.trajectory.trajectory import ONE_SIDED, Trajectory
 
 MOST_STEPS = 60          # of the iteration; chosen: bisections alone would reach rounding
 ZERO_TOLERANCE = 1e-12   # s; chosen: a thousandth of ONE_SIDED
@@ -37,15 +37,16 @@ class Directions(NamedTuple):
     """
     The directions of motion, for each joint constant between its turning points.
 
-    A joint that rests over an interval has direction 0 there.
+    A joint that rests over an interval has direction 0 there, and at the instants of stops.
     """
 
     times: tuple[Array, Array, Array]  # of each joint's changes of direction [s], increasing
     signs: tuple[Array, Array, Array]  # 1, -1 or 0 before, between and after them
+    stops: tuple[Array, Array, Array]  # instants at which it rests: the start, the end, others [s]
 
     def at(self, t: Array) -> Array:
         """
-        Return the directions at given times; at a change, that which begins.
+        Return the directions at given times; at a change, that which begins; 0 at a stop.
 
         Parameters
         ----------
@@ -58,8 +59,23 @@ class Directions(NamedTuple):
             1, -1 or 0.
 
         """
-        return np.stack([signs[np.searchsorted(times, t, side='right')]
-                         for times, signs in zip(self.times, self.signs)], axis=1)
+        return np.stack([np.where(
+            np.isin(t, stops), 0.0, signs[np.searchsorted(times, t, side='right')])
+            for times, signs, stops in zip(*self)], axis=1)
+
+    def steps(self) -> Array:
+        """
+        Return the times on either side of which friction differs, and those sides.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Increasing [s]; some before the start or after the end.
+
+        """
+        turning, stops = np.concatenate(self.times), np.concatenate(self.stops)
+        return np.unique(np.concatenate((
+            turning, turning - ONE_SIDED, stops, stops - ONE_SIDED, stops + ONE_SIDED)))
 
     def scaled(self, factor: float) -> Directions:
         """
@@ -76,8 +92,9 @@ class Directions(NamedTuple):
             Converted, not searched again.
 
         """
-        first, second, third = (times * factor for times in self.times)
-        return Directions((first, second, third), self.signs)
+        (t1, t2, t3), (s1, s2, s3) = self.times, self.stops
+        return Directions((t1 * factor, t2 * factor, t3 * factor), self.signs,
+                          (s1 * factor, s2 * factor, s3 * factor))
 
 
 def directions(trajectory: Trajectory, grid: Array) -> Directions:
@@ -101,10 +118,12 @@ def directions(trajectory: Trajectory, grid: Array) -> Directions:
     found = trajectory.cache.get('directions')
     if not isinstance(found, Directions):
         velocity, slowest = _functions(trajectory)
-        each = [_of_joint(velocity, slowest, grid, direction, j)
-                for j, direction in enumerate(direction_of(trajectory(grid)[1]).T)]
-        (t1, s1), (t2, s2), (t3, s3) = each
-        found = trajectory.cache['directions'] = Directions((t1, t2, t3), (s1, s2, s3))
+        at_grid = direction_of(trajectory(grid)[1]).T
+        (t1, s1), (t2, s2), (t3, s3) = (
+            _of_joint(velocity, slowest, grid, direction, j)
+            for j, direction in enumerate(at_grid))
+        stops = grid[at_grid[0] == 0.0], grid[at_grid[1] == 0.0], grid[at_grid[2] == 0.0]
+        found = trajectory.cache['directions'] = Directions((t1, t2, t3), (s1, s2, s3), stops)
     return found
 
 

@@ -61,7 +61,8 @@ class JointConstraints:
     Attributes
     ----------
     effort : ndarray, shape (N, 2 n, 3)
-        Bounds of the torques, less Coulomb friction and margins, at all points but a segment's first [N m].
+        Bounds of the torques, less Coulomb friction and margins, at all points but a segment's
+        first [N m].
     with_torque : bool
         Whether torque is limited; without it the joints are coupled through the durations only.
 

@@ -70,8 +70,8 @@ class JointCheck:
         if np.isinf(self._task.limits.max_effort).all():
             return None
         model = self._task.model
-        return (inverse_dynamics(model, self.q, self.qd, self.qdd)
-                + model.friction.viscous * self.qd)
+        torque = inverse_dynamics(model, self.q, self.qd, self.qdd)
+        return np.asarray(torque + model.friction.viscous * self.qd)
 
     def time_scale(self) -> float:
         """

@@ -16,10 +16,11 @@
 A statically feasible path in joint space: the motors can hold the arm everywhere along it.
 
 The path is the shortest one on a grid of the joints on which gravity's torques depend: joints 2
-and 3 where joint axis 1 is vertical, else all (Dijkstra; Cormen et al., Introduction to Algorithms, chapter on single-source shortest
-paths), with lengths weighted by the torque that is left, then shortened by leaving out
-corners (shortcuts: Geraerts & Overmars, Creating high-quality paths for motion planning, IJRR 26,
-2007). A feasible path that is wider than a cell of the grid is found.
+and 3 where joint axis 1 is vertical, else all (Dijkstra; Cormen et al., Introduction to
+Algorithms, chapter on single-source shortest paths), with lengths weighted by the torque that is
+left, then shortened by leaving out corners (shortcuts: Geraerts & Overmars, Creating high-quality
+paths for motion planning, IJRR 26, 2007). A feasible path that is wider than a cell of the grid is
+found.
 """
 
 from __future__ import annotations

@@ -108,7 +108,8 @@ class Margins(NamedTuple):
         Returns
         -------
         Margins
-            Those of efforts are at most half of what gravity and Coulomb friction leave of the limits.
+            Those of efforts are at most half of what gravity and Coulomb friction leave of the
+            limits.
 
         """
         return self._replace(efforts=np.minimum(self.efforts, self.gravity_margins))

@@ -100,6 +100,7 @@ class PathConstraints:
         self.margins, self._workspace = margins, workspace
         bounds = all_bounds(limits, max_tip_speed)
         upper = np.minimum(bounds, FAR) - margins
+        upper[..., TORQUE] -= table.reserve
         upper[steady, :, ALONG] = STEADY
         lower = -upper
         lower[..., SPEED] = 0.0  # the tip moves forward; it rests at the start and the end
@@ -144,7 +145,8 @@ def limited_quantities(problem: TimingProblem, z: Array, at_points: bool) -> tup
     -------
     tuple of ndarray
         Velocity, acceleration, jerk, torque of each joint, the tip's speed and acceleration,
-        (N, p, QUANTITIES), and gravity's torque, (N, p, 3).
+        (N, p, QUANTITIES), and the torque of gravity and Coulomb friction, (N, p, 3); without the
+        friction that the table leaves as a reserve.
 
     """
     z = contiguous(z)

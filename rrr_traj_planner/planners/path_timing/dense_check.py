@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.path_timing.constraints import least_time_scale, limited_quantities
 from rrr_traj_planner.planners.solver.excess import excess_near_points
@@ -45,7 +46,8 @@ class PathCheck(NamedTuple):
         return self.slowest >= -BACKWARD * self.fastest
 
 
-def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> PathCheck:
+def dense_check(problem: TimingProblem, m: Variables, bounds: Array,
+                reserve: Array | float = 0.0) -> PathCheck:
     """
     Return by how much a motion exceeds its limits between the points, by the path's table.
 
@@ -58,6 +60,8 @@ def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> PathChec
     bounds : ndarray, shape (QUANTITIES,)
         On magnitudes, infinite where there is none; that on acceleration along the path is not
         checked.
+    reserve : ndarray, shape (N, 1, QUANTITIES), or float
+        Taken off the bounds.
 
     Returns
     -------
@@ -69,6 +73,7 @@ def dense_check(problem: TimingProblem, m: Variables, bounds: Array) -> PathChec
     assert viscous is not None  # there is one along a path
     z = problem.grid.samples(problem.points, m, 2 * CHECKS)[..., 0]
     x, gravity = limited_quantities(problem, z, at_points=False)
-    return PathCheck(excess_near_points(x, bounds, CHECKS, reach=CHECKS),
-                     least_time_scale(x, gravity, viscous, bounds),
+    reserved = x + np.sign(x) * reserve
+    return PathCheck(excess_near_points(reserved, bounds, CHECKS, reach=CHECKS),
+                     least_time_scale(x, gravity, viscous, bounds - reserve),
                      float(z[:, :, 1].min()), float(z[:, :, 1].max()))

@@ -31,7 +31,7 @@ from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import place_on_path
 from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
-from rrr_traj_planner.planners.effort_limits import effort_less_friction, moving_error
+from rrr_traj_planner.planners.effort_limits import check_friction, moving_error
 from rrr_traj_planner.planners.path_timing.problem import PathProblem
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
@@ -156,17 +156,17 @@ def _in_zones(task: PathTask, table: PathTable) -> BoolArray:
 def _check_held(task: PathTask, table: PathTable) -> None:
     """Raise an error if gravity and Coulomb friction exceed an effort limit along the path."""
     model = task.arm_path.model
-    coulomb, most = model.friction.coulomb, effort_less_friction(model, task.limits)
-    ratio = np.abs(table.values.g) / most
+    check_friction(model, task.limits)
+    constant = np.abs(table.values.g) + table.reserve
+    ratio = constant / task.limits.max_effort
     piece, place, joint = map(int, np.unravel_index(int(ratio.argmax()), ratio.shape))
     if ratio.max() < 1.0 - HOLDING_MARGIN:
         return
     needed, limit = (float(f) for f in (
-        abs(table.values.g[piece, place, joint]), task.limits.max_effort[joint]))
+        constant[piece, place, joint], task.limits.max_effort[joint]))
     where, nearest = place_on_path(task.arm_path.path, float(table.places[piece, place]))
-    if coulomb[joint] and needed <= limit:
-        raise moving_error(f'{where}:', model, joint, needed + float(coulomb[joint]), limit,
-                           nearest)
+    if model.friction.coulomb[joint]:
+        raise moving_error(f'{where}:', model, joint, needed, limit, nearest)
     raise holding_error(f'{where}:', model.joint_names[joint], needed, limit, nearest)
 
 

@@ -16,14 +16,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
-from rrr_traj_planner.core.arm.limits import JointLimits
+import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
-from rrr_traj_planner.planners.effort_limits import effort_less_friction
-from rrr_traj_planner.planners.path_timing.constraints import all_bounds, PathConstraints
+from rrr_traj_planner.planners.path_timing.constraints import (
+    all_bounds,
+    PathConstraints,
+    QUANTITIES,
+    TORQUE,
+)
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.solver.ramps import Grid
@@ -55,15 +59,16 @@ class PathProblem(ReadOnlyArrays):
     _workspace: Workspace = field(default_factory=Workspace)
 
     @cached_property
-    def limits(self) -> JointLimits:
-        """Return the joints' limits, those of effort less Coulomb friction."""
-        limits = self.task.limits
-        return replace(limits, max_effort=effort_less_friction(self.task.arm_path.model, limits))
-
-    @cached_property
     def bounds(self) -> Array:
         """Return bounds on the magnitudes of all limited quantities, see `all_bounds`."""
-        return all_bounds(self.limits, self.task.max_tip_speed)
+        return all_bounds(self.task.limits, self.task.max_tip_speed)
+
+    @cached_property
+    def reserve(self) -> Array:
+        """Return what is taken off the bounds on each piece, (N, 1, QUANTITIES)."""
+        found = np.zeros((len(self.steady), 1, QUANTITIES))
+        found[..., TORQUE] = self.table.reserve
+        return found
 
     def constraints(self, margins: Array) -> PathConstraints:
         """
@@ -80,5 +85,5 @@ class PathProblem(ReadOnlyArrays):
             As the solver takes them.
 
         """
-        return PathConstraints(self.table, self.limits, self.task.max_tip_speed, self.grid,
+        return PathConstraints(self.table, self.task.limits, self.task.max_tip_speed, self.grid,
                                margins, self.steady, self._workspace)

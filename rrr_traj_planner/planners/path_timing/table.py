@@ -16,8 +16,8 @@
 Joint derivatives and dynamics along a path, tabulated in smooth pieces.
 
 Torque along a path is m sdd + c sd^2 + g (Bobrow, Dubowsky & Gibson, Time-optimal control of
-robotic manipulators along specified paths, IJRR 4, 1985) and viscous friction times dq sd. Between the table's positions all terms
-are cubic splines (de Boor, A Practical Guide to Splines).
+robotic manipulators along specified paths, IJRR 4, 1985), and viscous friction dq sd. Between the
+table's positions all terms are cubic splines (de Boor, A Practical Guide to Splines).
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics.motor_torque import direction_of
 from rrr_traj_planner.core.dynamics.rigid_body import path_torque_terms
 from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
@@ -51,7 +52,7 @@ class PathTerms(NamedTuple):
     dddq: Array  # [rad/m^3]
     m: Array     # [N m s^2/m]
     c: Array     # [N m s^2/m^2]
-    g: Array     # [N m]
+    g: Array     # [N m], with Coulomb friction where the joint moves in one direction
 
 
 class PathTable:
@@ -73,6 +74,9 @@ class PathTable:
         The terms there, one-sided at the pieces' ends, shape (N, INTERVALS + 1, 3) each.
     friction : Friction
         Of the joints.
+    reserve : ndarray, shape (N, 1, 3)
+        Coulomb friction of joints that turn on a piece, which is not in g: to be taken off both
+        limits there [N m].
     coefficients : ndarray, shape (N, 4, INTERVALS, 18)
         Of the cubic splines of all terms, highest power first, by the part of a piece.
     overshoot : ndarray, shape (N, 2, 3)
@@ -88,7 +92,7 @@ class PathTable:
         u = np.linspace(0.0, 1.0, INTERVALS + 1)
         self.places = self.ends[:-1, np.newaxis] + self._lengths[:, np.newaxis] * u
         self.places[:, -1] = self.ends[1:]
-        self.values = self._terms(arm_path)
+        self.reserve, self.values = self._with_friction(self._terms(arm_path))
         stepping = np.stack((self.values.ddq, self.values.c), axis=2)
         steps = np.where(np.isin(self.ends[1:-1], path.joins)[:, np.newaxis, np.newaxis],
                          stepping[1:, 0] - stepping[:-1, -1], 0.0)
@@ -104,6 +108,14 @@ class PathTable:
             self.places.ravel(), left=ending.ravel()))
         m, c, g = path_torque_terms(arm_path.model, q, dq, ddq)
         return PathTerms(dq, ddq, dddq, m, c, g)
+
+    def _with_friction(self, terms: PathTerms) -> tuple[Array, PathTerms]:
+        """Return the friction that is left out, and terms with that of joints that do not turn."""
+        direction, coulomb = direction_of(terms.dq), self.friction.coulomb
+        least, most = direction.min(axis=1, keepdims=True), direction.max(axis=1, keepdims=True)
+        turns = least * most < 0.0
+        one_way = np.where(turns, 0.0, np.sign(least + most))
+        return coulomb * turns, terms._replace(g=terms.g + coulomb * one_way)
 
 
 @cache

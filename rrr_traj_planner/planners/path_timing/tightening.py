@@ -23,7 +23,6 @@ central path of the one before, and its constraints are shifted from those limit
 from __future__ import annotations
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.planners.path_timing.constraints import (
     least_time_scale,
     limited_quantities,
@@ -113,7 +112,7 @@ class _Rounds:
 
     def accept(self, outcome: Outcome, tolerance: float) -> bool:
         self._last = outcome, check = _last_forward(
-            outcome, self._start, self._constraints.problem, self._problem.bounds)
+            outcome, self._start, self._constraints.problem, self._problem)
         self.found.append(_slowed(outcome, check.time_scale))
         fits = self._previous is not None and check.time_scale <= 1.0 + tolerance
         return fits or self._problem.task.should_stop()
@@ -129,12 +128,12 @@ class _Rounds:
         return True
 
 
-def _last_forward(outcome: Outcome, start: CentralPathPoint, problem: TimingProblem,
-                  bounds: Array) -> tuple[Outcome, PathCheck]:
+def _last_forward(outcome: Outcome, start: CentralPathPoint, timing: TimingProblem,
+                  problem: PathProblem) -> tuple[Outcome, PathCheck]:
     """Return the last motion on which the tip never moves backward, as when cancelled it may."""
     passed = (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start.motion)
     for motion in passed:
-        check = dense_check(problem, motion, bounds)
+        check = dense_check(timing, motion, problem.bounds, problem.reserve)
         if check.is_forward:
             break
     lost = float(motion.T.sum() - outcome.motion.T.sum())
@@ -157,4 +156,5 @@ def _slow_start(problem: PathProblem, constraints: PathConstraints) -> Variables
     z = np.concatenate(grid.states(constraints.points, m), axis=-1)
     x, gravity = limited_quantities(constraints.problem, z, at_points=True)
     return time_scaled(m, START_SCALING * least_time_scale(
-        x, gravity, table.friction.viscous, bounds - constraints.margins, all_slower=True))
+        x, gravity, table.friction.viscous, bounds - constraints.margins - problem.reserve,
+        all_slower=True))

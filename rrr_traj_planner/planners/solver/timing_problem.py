@@ -54,8 +54,8 @@ class _Problem(ctypes.Structure):  # as in native/timing_problem.h
         ('longest', ctypes.c_double),
         *((name, ctypes.c_void_p) for name in (
             'free', 'proportions', 'weights', 'fixed_velocity', 'arm', 'table', 'overshoot',
-            'viscous', 'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual', 'shift',
-            'hessian', 'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables',
+            'viscous', 'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual',
+            'shift', 'hessian', 'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables',
             'trial_states', 'trial_values', 'trial_slack', 'trial_gradient', 'trial_gradient_T',
             'step_states', 'newton')),
         ('shifted', ctypes.c_int32)]
@@ -147,8 +147,7 @@ class TimingProblem:
                 ('points', points), ('restore', grid.restore), ('lower', limits.lower),
                 ('upper', limits.upper), ('general_lower', limits.general_lower),
                 ('general_upper', limits.general_upper), ('least_T', limits.least_T),
-                ('table', limits.table), ('overshoot', limits.overshoot),
-                ('viscous', limits.viscous)):
+                *zip(('table', 'overshoot', 'viscous'), limits[-3:])):
             if values is not None:
                 self._bind(name, contiguous(values))
         self._problem.arm = limits.arm and limits.arm.address

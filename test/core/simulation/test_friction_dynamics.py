@@ -62,7 +62,8 @@ def advanced(physics, state, torque, steps, h=STEP):
 def one_body(viscous=0.0, coulomb=0.0, w=0.0, q=0.0, bounds=FREE, soft=None):
     friction = Friction(viscous * np.array([1.0, 0.0, 0.0]),
                         ONE_BODY + coulomb * np.array([1.0, 0.0, 0.0]))
-    return ArmPhysics(replace(WEIGHTLESS, friction=friction), *bounds, soft), (q, Q2, Q3, w, 0.0, 0.0)
+    arm = replace(WEIGHTLESS, friction=friction)
+    return ArmPhysics(arm, *bounds, soft), (q, Q2, Q3, w, 0.0, 0.0)
 
 
 def energy(state, soft, model=MODEL):

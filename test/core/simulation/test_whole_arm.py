@@ -220,7 +220,8 @@ def test_energy_balance_closes_over_ten_seconds_with_everything_on(seed, width):
     rng = np.random.default_rng(seed)
     friction = Friction(rng.uniform(0.5, 5.0, 3), rng.uniform(1.0, 15.0, 3))
     settings = ArmSettings(
-        replace(MODEL, friction=friction), JointLimits(max_effort=np.array([90.0, 190.0, 80.0])), ControllerGains(),
+        replace(MODEL, friction=friction),
+        JointLimits(max_effort=np.array([90.0, 190.0, 80.0])), ControllerGains(),
         payload=Payload(rng.uniform(1.0, 4.0)), soft_stops=SoftStops(width, 5000.0, 0.3),
         encoder=EncoderSettings(2.0 ** -14, 1e-4, seed))
     arm = ControlledArm(settings, Q)

@@ -49,7 +49,7 @@ def test_newton_step_is_that_of_a_dense_solve_of_all_conditions(kind, seed):
         expected, promised = case.dense(exact)
         if np.abs(case.by_unknowns(case.ends) @ expected).max() > 1e-6:
             continue  # least squares found no solution: the exact Hessian may have none
-        agree(direction, expected, 1e-4 if kind == 'path' else SOLVED)
+        agree(direction, expected, 1e-4 if kind.startswith('path') else SOLVED)
         assert gain == pytest.approx(promised, rel=1e-5)
 
 
@@ -70,7 +70,7 @@ def test_durations_tied_fixed_or_with_floors_and_stops_are_those_of_a_dense_solv
     assert gain > 0.0
 
 
-@pytest.mark.parametrize('kind', ['bounds', 'torque', 'path'])
+@pytest.mark.parametrize('kind', ['bounds', 'torque', 'path', 'path with friction'])
 @pytest.mark.parametrize('seed', SEEDS)
 def test_rates_and_gain_are_differences_along_the_followed_step(kind, seed):
     case = Case(kind, seed, least_T=kind == 'bounds')
@@ -93,7 +93,7 @@ def test_rates_and_gain_are_differences_along_the_followed_step(kind, seed):
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-@pytest.mark.parametrize('kind', ['torque', 'path'])
+@pytest.mark.parametrize('kind', ['torque', 'path', 'path with friction'])
 def test_curvature_is_the_difference_of_the_weighted_gradients(kind, seed):
     case = Case(kind, seed)
     arrays, problem = case.arrays, case.problem
