@@ -86,7 +86,7 @@ def followed_path(model: RobotModel, path: CartesianPath, first: Array,
     """
     planes = axis_planes(model, path, float(first[0]))
     first = np.array((planes.joint_1(float(first[0])), *first[1:]))
-    s = path.grid
+    s = np.unique(path.grid)
     for attempt in range(100):
         should_stop()
         found = follow_points(
