@@ -119,7 +119,7 @@ def random_chain(seed: int) -> Arm:
     friction = Friction(rng.uniform(0.0, 3.0, 3), rng.uniform(0.0, 5.0, 3))
     model = RobotModel(chain, rng.uniform(-10.0, 10.0, 3), rng.uniform(0.0, 0.5, 3), friction)
     q = rng.uniform(-np.pi, np.pi, (500, 3))
-    effort = 1.6 * np.abs(gravity_torque(model, q)).max(axis=0) + friction.coulomb + 2.0 * (
+    effort = 1.6 * (np.abs(gravity_torque(model, q)).max(axis=0) + friction.coulomb) + 2.0 * (
         np.abs(inertia_matrix(model, q)).sum(axis=2).max(axis=0))
     middle, half = rng.uniform(-1.0, 1.0, 3), rng.uniform(1.0, 3.5, 3)
     return Arm(f'chain {seed}', model, JointLimits(
