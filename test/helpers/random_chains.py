@@ -53,8 +53,8 @@ def with_axes(arm, distance=None, parallel=False):
     n /= np.linalg.norm(n)
     away = 0.0 if distance is None else (chain.point[1] - chain.point[0]) @ n - distance
     point = chain.point - np.outer((0.0, 1.0, 1.0), away * n)
-    return AnyArm(Chain(axis, point, tip - away * n, chain.mass, chain.centre, chain.inertia),
-                  arm.gravity, arm.rotor_inertia)
+    return RobotModel(Chain(axis, point, tip - away * n, chain.mass, chain.centre, chain.inertia),
+                      arm.gravity, arm.rotor_inertia)
 
 
 class PinocchioChain:

@@ -19,6 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from helpers.arm_paths import arm_path_in
 from helpers.random_cases import random_model
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -26,11 +27,9 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.cancellation import never
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
-from rrr_traj_planner.core.kinematics.postures import ELBOWS, Posture
+from rrr_traj_planner.core.kinematics.postures import ELBOWS
 from rrr_traj_planner.core.path import design as path_design
 from rrr_traj_planner.core.path.largest_radii import largest_radii
-from rrr_traj_planner.core.path.arm_path import ArmPath
-from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.path_timing.least_time import fastest_along
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.planning import plan

@@ -26,7 +26,6 @@ from helpers.thesis_arm import ThesisArm
 import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, joint_states
-from rrr_traj_planner.core.kinematics.forward import matrix
 
 
 class PointMotion(NamedTuple):
@@ -89,6 +88,11 @@ def link_motion(model: ThesisArm, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -
         R, w, wd,
         _stacked(at_shoulder, at_elbow, _added(at_elbow, forearm)),
         _stacked(at_shoulder, _added(at_shoulder, upper_com), _added(at_elbow, fore_com)))
+
+
+def matrix(*rows: tuple[Array, Array, Array]) -> Array:
+    """Return 3 x 3 matrices, shape (..., 3, 3), from the elements of each row."""
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
 def _rotations(q: Array) -> Array:
