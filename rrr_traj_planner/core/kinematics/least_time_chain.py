@@ -14,8 +14,10 @@
 """
 One inverse solution at each of consecutive via points, for the least estimated time.
 
-A shortest path through a graph with one stage for each point, by dynamic programming over pairs of
-solutions at consecutive points (Bellman, Dynamic Programming, 1957).
+A shortest path through a graph with one stage for each point, by dynamic programming (Bellman,
+Dynamic Programming, 1957). Its state is a pair of solutions at consecutive points, and which of
+the joints rest at the former: whether a joint reverses depends on three points, and a segment's
+time on the reversals at both of its ends.
 """
 
 from __future__ import annotations
@@ -24,13 +26,15 @@ from collections.abc import Sequence
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.kinematics.least_time_turns import TRAVEL
 from rrr_traj_planner.core.kinematics.travel_time import (
     joint_travel_time,
     motion_ends,
     ViaPointBehaviour,
 )
+
+RESTS = 8  # sets of joints: joint j, from 0, belongs to the sets whose bit j is 1
 
 
 def least_time_chain(limits: JointLimits, options: Sequence[Array], costs: Sequence[Array],
@@ -59,28 +63,55 @@ def least_time_chain(limits: JointLimits, options: Sequence[Array], costs: Seque
         return [int(costs[0].argmin())]
     ends = motion_ends(len(options) - 1)
     travel = [np.nan_to_num(b - a[:, np.newaxis]) for a, b in zip(options, options[1:])]
-    best = costs[0][:, np.newaxis] + _time(limits, travel[0], ends[0], 0, passing) + costs[1]
+    # Axes of the cost: option at the point before, option at this point, rests at the former.
+    best = np.full((*travel[0].shape[:2], RESTS), np.inf)
+    best[..., 0] = costs[0][:, np.newaxis] + costs[1]
     came = []
-    for i in range(1, len(travel)):
-        reverses = np.sign(travel[i - 1])[:, :, np.newaxis] * np.sign(travel[i]) <= 0.0
-        total = best[..., np.newaxis]
-        for part, end in ((travel[i - 1][:, :, np.newaxis], ends[i - 1]), (travel[i], ends[i])):
-            total = total + (_time(limits, part, end, reverses.astype(int), passing)
-                             - _time(limits, part, end, 0, passing))
-        origin = total.argmin(axis=0)
+    for i in range(len(travel) - 1):
+        times = _times(limits, travel[i], ends[i], passing)
+        best, origin = _step(best, times, _rests(travel[i], travel[i + 1]), costs[i + 2])
         came.append(origin)
-        best = (np.take_along_axis(total, origin[np.newaxis], axis=0)[0]
-                + _time(limits, travel[i], ends[i], 0, passing) + costs[i + 1])
-    before, last = (int(k) for k in np.unravel_index(best.argmin(), best.shape))
+    best = best + _times(limits, travel[-1], ends[-1], passing)[..., 0]
+    before, last, rest = (int(k) for k in np.unravel_index(best.argmin(), best.shape))
     chosen = [last, before]
     for origin in reversed(came):
-        chosen.append(int(origin[chosen[-1], chosen[-2]]))
+        former, rest = divmod(int(origin[chosen[-1], chosen[-2], rest]), RESTS)
+        chosen.append(former)
     return chosen[::-1]
 
 
-def _time(limits: JointLimits, travel: Array, ends: int, reversals: Array | int,
-          passing: ViaPointBehaviour) -> Array:
-    """Return the slowest joint's time over the last axis, with a tie-breaker for travel."""
+def _rests(before: Array, after: Array) -> IntArray:
+    """Return the number of the set of joints that reverse between travels, shape (m, m', m'')."""
+    reverses = np.sign(before)[:, :, np.newaxis] * np.sign(after) <= 0.0
+    return np.asarray(reverses @ (1 << np.arange(3)))
+
+
+def _times(limits: JointLimits, travel: Array, ends: int, passing: ViaPointBehaviour) -> Array:
+    """
+    Return the slowest joint's times by the joints that rest at both ends of a segment.
+
+    With a tie-breaker for travel. Shape (m, m', 8, 8).
+    """
     length = np.abs(travel)
-    times = joint_travel_time(limits, slice(None), length, ends, reversals, passing)
-    return np.asarray(times.max(axis=-1) + TRAVEL * length.sum(axis=-1))
+    by_count = np.stack([joint_travel_time(limits, slice(None), length, ends, n, passing)
+                         for n in range(3)])
+    rests = (np.arange(RESTS)[:, np.newaxis] >> np.arange(3)) & 1
+    counts = rests[:, np.newaxis] + rests  # of each joint, by the sets at both ends
+    slowest = np.maximum.reduce([by_count[counts[..., j], :, :, j] for j in range(3)])
+    return np.asarray(np.moveaxis(slowest, (0, 1), (2, 3))
+                      + TRAVEL * length.sum(axis=-1)[..., np.newaxis, np.newaxis])
+
+
+def _step(best: Array, times: Array, rests: IntArray, cost: Array) -> tuple[Array, IntArray]:
+    """Return least costs at the next stage, and the predecessors that attain them."""
+    a, b = np.ogrid[:rests.shape[0], :rests.shape[1]]
+    total = best[:, :, np.newaxis] + np.swapaxes(times, 2, 3)[
+        a[..., np.newaxis], b[..., np.newaxis], rests]  # option before, this, next; rests before
+    former, least = total.argmin(axis=-1), total.min(axis=-1)
+    reached, origin = [], []
+    for rest in range(RESTS):  # at this point
+        of_rest = np.where(rests == rest, least, np.inf)
+        from_option = of_rest.argmin(axis=0)[np.newaxis]
+        reached.append(np.take_along_axis(of_rest, from_option, axis=0)[0] + cost)
+        origin.append((RESTS * from_option + np.take_along_axis(former, from_option, axis=0))[0])
+    return np.stack(reached, axis=-1), np.stack(origin, axis=-1)

@@ -49,6 +49,9 @@ LEAST_REGULAR = 1e-6  # m/rad
 PREDICTION = 0.02     # rad
 SHORTEST_STEP = 1e-9  # m
 
+# Rounds of halving: from any length of path up to 10^18 m, as short as that. Chosen.
+MOST_ROUNDS = 90
+
 # Distance from joint axis 1 up to which a singular position is one of that axis, over the arm's
 # size: far above LEAST_REGULAR, far below any link. Chosen.
 NEAR_AXIS = 1e-4
@@ -86,7 +89,7 @@ def followed_path(model: RobotModel, path: CartesianPath, first: Array,
     """
     planes = axis_planes(model, path, float(first[0]))
     s = path.grid
-    for attempt in range(100):
+    for attempt in range(MOST_ROUNDS):
         should_stop()
         found = follow_points(
             model, s, planes.points(path, s), planes.points(path, s, left=True), first)
