@@ -11,7 +11,8 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
-"""Paths of the tip as an arm follows them: in a named posture, of any chain, and by small steps."""
+
+"""Paths of the tip as an arm follows them: in a named posture, and of any chain."""
 
 from __future__ import annotations
 
@@ -50,7 +51,7 @@ def least_singular_values(model, q):
 
 
 def regular_path(model, rng, points=4):
-    """Return a path of either kind far from singular positions, and joint positions to begin in."""
+    """Return a path far from singular positions, and the joint positions to begin in."""
     size = model.chain.size
     while True:
         first = rng.uniform(-np.pi, np.pi, 3)

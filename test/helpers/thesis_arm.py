@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """An arm of the thesis's kind with its lengths, masses and inertias at hand for its equations."""
 
 from __future__ import annotations

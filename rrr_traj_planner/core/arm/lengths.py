@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """The thesis's kind of arm by its lengths, masses and inertias (section 5.2, appendix B)."""
 
 from __future__ import annotations

@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """An arm: its chain of joints and links, gravity, the motors' inertia, friction, joint names."""
 
 from __future__ import annotations

@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """The frame of joint axis 1 in which the tip's distance from that axis is measured."""
 
 from __future__ import annotations

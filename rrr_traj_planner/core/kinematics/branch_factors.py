@@ -35,8 +35,8 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, joint_values
 from rrr_traj_planner.core.kinematics.common_normal import common_normal, front_sign
 
-# Part of the cube of the arm's size up to which the rest of the determinant counts as zero. Chosen,
-# above the rounding of descriptions with seven digits.
+# Part of the cube of the arm's size up to which the rest of the determinant counts as zero.
+# Chosen, above the rounding of descriptions with seven digits.
 REST = 1e-6
 
 # Cosine of the angle of joint axes 2 and 3 up to which it counts as a right one: descriptions from

@@ -24,8 +24,8 @@ import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kernels import same_size_as
 
-# Part of the arm's size up to which the tip counts as above or below joint axis 1, so that it is on
-# neither side: descriptions from CAD are rounded to 1e-4 rad at worst.
+# Part of the arm's size up to which the tip counts as on joint axis 1, so that it is on neither
+# side: descriptions from CAD are rounded to 1e-4 rad at worst.
 ON_AXIS = 1e-4
 
 

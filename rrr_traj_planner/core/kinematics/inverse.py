@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Inverse kinematics for one point: of a posture, or nearest to a joint state."""
 
 from __future__ import annotations

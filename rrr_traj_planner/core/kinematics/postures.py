@@ -108,9 +108,9 @@ def posture_of(model: RobotModel, q: Array) -> Posture | None:
     """
     if not has_named_postures(model):
         return None
-    elbow, shoulder = (f >= -none for f, none in zip(_relative_factors(model, q),
-                                                     _rounding(model, q)))
-    return Posture(ELBOWS[0 if elbow else 1], SHOULDERS[0 if shoulder else 1])
+    (elbow, shoulder), (no_elbow, no_shoulder) = _relative_factors(model, q), _rounding(model, q)
+    return Posture(ELBOWS[0 if elbow >= -no_elbow else 1],
+                   SHOULDERS[0 if shoulder >= -no_shoulder else 1])
 
 
 def in_posture(model: RobotModel, q: Array, posture: Posture) -> BoolArray:
@@ -182,7 +182,7 @@ def _relative_factors(model: RobotModel, q: Array) -> tuple[Array, Array]:
     return elbow / (0.5 * size) ** 2, shoulder / size
 
 
-def _rounding(model: RobotModel, q: Array) -> tuple[float, Array]:
+def _rounding(model: RobotModel, q: Array) -> tuple[Array, Array]:
     """
     Return up to which size the relative factors are none.
 
@@ -192,4 +192,4 @@ def _rounding(model: RobotModel, q: Array) -> tuple[float, Array]:
     frame, size = axis_frame(model), model.chain.size
     x, y, _ = np.moveaxis(frame.coordinates(forward_kinematics(model, q)), -1, 0)
     beside = np.sqrt(np.maximum(x * x + y * y - branch_factors(model, q)[1] ** 2, 0.0)) / size
-    return DOUBLE, np.asarray(np.maximum(ROUNDING, DOUBLE * np.sqrt(beside)))
+    return np.array(DOUBLE), np.asarray(np.maximum(ROUNDING, DOUBLE * np.sqrt(beside)))

@@ -11,13 +11,14 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Following a path of the tip from given joint positions, and why an arm cannot."""
 
 from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import (
     format_distinct,
@@ -105,7 +106,7 @@ def followed_path(model: RobotModel, path: CartesianPath, first: Array,
             break
         s = np.sort(np.concatenate((s, 0.5 * (s[:-1] + s[1:])[split])))
     if ended:
-        raise _refusal(model, path, s, float(s[len(found.q) - 1]))
+        raise _refusal(model, path, s, float(s[max(len(found.q) - 1, 0)]))
     return ArmPath(model, path, planes, s, found.q, found.rates)
 
 
@@ -133,7 +134,7 @@ def place_on_path(path: CartesianPath, s: float) -> tuple[str, int]:
             f'(nearest: {nearest})', nearest)
 
 
-def _too_long(found: FollowedPoints, h: Array) -> Array:
+def _too_long(found: FollowedPoints, h: Array) -> BoolArray:
     """Return which intervals are too long to be sure of the branch."""
     reached = len(found.q)
     too_long = np.zeros(len(h), dtype=bool)

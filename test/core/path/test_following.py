@@ -106,6 +106,16 @@ def test_verdict_is_that_of_the_least_singular_value_along_small_steps(name):
     assert refused
 
 
+@pytest.mark.parametrize('points', [
+    [(1.6, 0.0, 0.5), (1.0, 0.3, 0.6)], [(1.0, 0.3, 0.6), (1.6, 0.0, 0.5)]])
+def test_path_that_begins_or_ends_at_the_edge_of_the_workspace_is_refused_there(points):
+    path = line_arc(points, [])
+    edge = int(points[1][0] == 1.6)
+    with pytest.raises(UnreachableError, match='end of its reach in this posture') as caught:
+        followed_path(ARM, path, inverse_kinematics(ARM, points[0]))
+    assert caught.value.via_point == edge
+
+
 @pytest.mark.parametrize('distance', [1e-3, 1e-4, 1e-5, 2e-6])
 @pytest.mark.parametrize('seed', range(4))
 def test_rotated_base_changes_nothing_on_a_path_past_joint_axis_1(seed, distance):

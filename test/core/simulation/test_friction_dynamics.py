@@ -16,9 +16,9 @@
 
 from __future__ import annotations
 
-from helpers.thesis_arm import ThesisArm
 from math import exp, inf, log, pi
 
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.friction import Friction

@@ -16,9 +16,9 @@
 
 from __future__ import annotations
 
-from helpers.thesis_arm import ThesisArm
 from math import inf, pi
 
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.dynamics.rigid_body import (

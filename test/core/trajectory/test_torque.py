@@ -14,8 +14,8 @@
 
 """Torques over a whole motion: their peaks, and the slowing down that fits them in."""
 
-from helpers.thesis_arm import ThesisArm
 from helpers.random_cases import ARMS, dense_times, joined, random_trajectory
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
