@@ -45,6 +45,7 @@ RADIUS = 1.0 / 32.0  # of the drawn rods, over the arm's size; chosen
 # Of links, alternating; red, green, blue and opacity, chosen.
 COLOURS = {'light': (0.75, 0.75, 0.78, 1.0), 'dark': (0.35, 0.37, 0.42, 1.0)}
 
+
 class FrameNames(NamedTuple):
     """Names of the arm's links, which are frames of TF, from the base to the tip."""
 
