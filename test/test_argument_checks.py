@@ -14,6 +14,7 @@
 
 """Arguments of the library that are no such value are refused, by the argument's name."""
 
+from dataclasses import fields
 from decimal import Decimal
 from fractions import Fraction
 from math import inf, nan
@@ -54,7 +55,7 @@ ALONG = plan(MODEL, LIMITS, PlanningRequest(POINTS, planner_id='line_arc')).traj
 
 # What is called, and with which sound arguments: numbers and arrays of them are varied.
 CALLS = {
-    'Chain': (Chain, vars(MODEL.chain)),
+    'Chain': (Chain, {f.name: getattr(MODEL.chain, f.name) for f in fields(Chain)}),
     'ArmLengths': (ArmLengths, vars(ArmLengths())),
     'RobotModel': (RobotModel, {'gravity': [0.0, 0.0, -9.81], 'rotor_inertia': [0.1, 0.2, 0.3]}),
     'from_lengths': (lambda gravity: RobotModel.from_lengths(ArmLengths(), gravity),
@@ -90,8 +91,7 @@ CALLS = {
             (dynamics.gravity_torque, 'q'), (dynamics.inverse_dynamics, 'q qd qdd'),
             (dynamics.forward_dynamics, 'q qd tau'), (dynamics.kinetic_energy, 'q qd'),
             (dynamics.potential_energy, 'q'), (kinematics.forward_kinematics, 'q'),
-            (kinematics.jacobian, 'q'), (kinematics.jacobian_rate, 'q qd'),
-            (kinematics.radial_distance, 'q'))},
+            (kinematics.jacobian, 'q'), (kinematics.jacobian_rate, 'q qd'))},
     'inverse_kinematics': (lambda **values: inverse_kinematics(MODEL, **values),
                            {'position': POINTS[0], 'previous': Q}),
     'nearest_solution': (lambda **values: nearest_solution(MODEL, **values),

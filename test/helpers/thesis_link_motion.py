@@ -90,6 +90,11 @@ def link_motion(model: ThesisArm, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -
         _stacked(at_shoulder, _added(at_shoulder, upper_com), _added(at_elbow, fore_com)))
 
 
+def matrix(*rows: tuple[Array, Array, Array]) -> Array:
+    """Return 3 x 3 matrices, shape (..., 3, 3), from the elements of each row."""
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
 def _rotations(q: Array) -> Array:
     """Return the rotations of frames 1 to 3 in the base frame (products of 5.2)."""
     c1, s1 = np.cos(q[..., 0]), np.sin(q[..., 0])

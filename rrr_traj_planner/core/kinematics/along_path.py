@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """
 Inverse kinematics along a path: joint positions and three derivatives by arc length.
 
@@ -88,10 +89,15 @@ def joint_path_near(model: RobotModel, points: PathPoints,
     Returns
     -------
     JointPath
-        Joint positions and derivatives; NaN where there is no solution near the guess.
+        Joint positions and derivatives.
     ndarray, shape (n, 4)
         Determinant of the Jacobian and two derivatives by arc length [m^3, m^2, m], and its least
         gain, a lower bound on its least singular value [m/rad].
+
+    Raises
+    ------
+    RuntimeError
+        If there is no solution near a guess: guesses between known positions are near enough.
 
     """
     n, arm = len(guess), compiled(model)

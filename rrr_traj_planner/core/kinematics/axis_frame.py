@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """The frame of joint axis 1 in which the tip's distance from that axis is measured."""
 
 from __future__ import annotations
@@ -21,9 +22,11 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.common_normal import common_normal, front_sign
 
-# Part of the arm's size up to which a length is rounding of a description. Chosen.
-ROUNDING = 1e-9
+# Part of the arm's size up to which a lateral offset is rounding of a description: with one, the
+# tip would leave the plane in which native/joint_path.c keeps it. Chosen.
+OFFSET = 1e-9
 
 
 class AxisFrame(NamedTuple):
@@ -31,8 +34,8 @@ class AxisFrame(NamedTuple):
     A frame on joint axis 1, which is its z axis.
 
     Its x axis is the common normal of joint axes 1 and 2, on the side where the tip is with all
-    joints at zero; so an arm whose tip stays in a plane through joint axis 1 is in the plane of x
-    and z with joint 1 at zero.
+    joints at zero (`front_sign`); so an arm whose tip stays in a plane through joint axis 1 is in
+    the plane of x and z with joint 1 at zero.
     """
 
     rotation: Array      # shape (3, 3): x, y and z axis in the base frame, in rows
@@ -90,14 +93,9 @@ def axis_frame(model: RobotModel) -> AxisFrame:
         The frame.
 
     """
-    chain = model.chain
-    z, x = chain.axis[0], np.cross(chain.axis[0], chain.axis[1])
-    x = x / np.linalg.norm(x)
-    if (chain.tip - chain.point[0]) @ x < -ROUNDING * chain.size:
-        x = -x
-    y = np.cross(z, x)
-    at_zero = model.tables.tip[:, 0] + model.tables.tip[:, 1]  # of functions of q2 and q3
-    across = np.einsum('x,xbc->bc', y, at_zero)
-    across[0, 0] -= y @ chain.point[0]
-    return AxisFrame(np.stack((x, y, z)), chain.point[0],
-                     bool(np.abs(across).max() <= ROUNDING * chain.size))
+    g, front = common_normal(model), front_sign(model)
+    x, y, z = front * np.array(g.n), front * np.array(g.m), np.array(g.z)
+    # At q1 = 0 the tip's component across the plane is c (v cos q2 + u sin q2) - s k.
+    across = np.array((*(g.c * f for f in (*g.u, *g.v)), *(g.s * f for f in g.k)))
+    return AxisFrame(np.stack((x, y, z)), model.chain.point[0],
+                     bool(np.abs(across).max() <= OFFSET * g.size))

@@ -33,13 +33,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, joint_values
-from rrr_traj_planner.core.kinematics.common_normal import common_normal
+from rrr_traj_planner.core.kinematics.common_normal import common_normal, front_sign
 
-# Part of the cube of the arm's size up to which the rest of the determinant counts as zero; and a
-# cosine, and part of the size of a length, up to which they do. Descriptions from CAD are rounded
-# to 1e-4 rad at worst.
+# Part of the cube of the arm's size up to which the rest of the determinant counts as zero.
+# Chosen, above the rounding of descriptions with seven digits.
 REST = 1e-6
-ROUNDING = 1e-4
+
+# Cosine of the angle of joint axes 2 and 3 up to which it counts as a right one: descriptions from
+# CAD are rounded to 1e-4 rad at worst.
+RIGHT_ANGLE = 1e-4
 
 
 def branch_factors(model: RobotModel, q: ArrayLike) -> tuple[Array, Array]:
@@ -61,7 +63,8 @@ def branch_factors(model: RobotModel, q: ArrayLike) -> tuple[Array, Array]:
         Q' / 2 [m^2], its sign reversed where joint axes 2 and 3 point into opposite half-spaces:
         up where it is positive.
     shoulder : ndarray, shape (...)
-        r [m], or -r if r is negative with all joints at zero: front where it is positive.
+        r [m], or -r if r is negative with all joints at zero (`front_sign`): front where it is
+        positive.
 
     Raises
     ------
@@ -73,9 +76,8 @@ def branch_factors(model: RobotModel, q: ArrayLike) -> tuple[Array, Array]:
     c3, s3 = np.cos(q[..., 2]), np.sin(q[..., 2])
     u, v = (f[0] + f[1] * c3 + f[2] * s3 for f in (g.u, g.v))
     r = g.a + u * np.cos(q[..., 1]) - v * np.sin(q[..., 1])
-    up = -1.0 if model.chain.axis[1] @ model.chain.axis[2] < -ROUNDING else 1.0
-    front = -1.0 if g.a + g.u[0] + g.u[1] < -ROUNDING * g.size else 1.0
-    return np.asarray(0.5 * up * (g.Q[2] * c3 - g.Q[1] * s3)), np.asarray(front * r)
+    up = -1.0 if model.chain.axis[1] @ model.chain.axis[2] < -RIGHT_ANGLE else 1.0
+    return np.asarray(0.5 * up * (g.Q[2] * c3 - g.Q[1] * s3)), np.asarray(front_sign(model) * r)
 
 
 def has_named_postures(model: RobotModel) -> bool:

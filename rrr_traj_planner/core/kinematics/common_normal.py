@@ -24,6 +24,10 @@ import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kernels import same_size_as
 
+# Part of the arm's size up to which the tip counts as on joint axis 1, so that it is on neither
+# side: descriptions from CAD are rounded to 1e-4 rad at worst.
+ON_AXIS = 1e-4
+
 
 @same_size_as('size_of_common_normal')
 class CommonNormal(ctypes.Structure):  # as in native/inverse.h, where the fields are explained
@@ -65,3 +69,22 @@ def common_normal(model: RobotModel) -> CommonNormal:
         model.chain.size, (p2 - p1) @ n, z1 @ z2, s, *(
             tuple(x) for x in (c1, n, np.cross(z1, n), z1, n @ at_zero,
                                np.cross(z2, n) @ at_zero, z2 @ at_zero, Q)))
+
+
+def front_sign(model: RobotModel) -> float:
+    """
+    Return on which side of joint axis 1 the tip is with all joints at zero.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+
+    Returns
+    -------
+    float
+        1 on the side to which the common normal n points, or on neither; else -1.
+
+    """
+    g = common_normal(model)
+    return -1.0 if g.a + g.u[0] + g.u[1] < -ON_AXIS * g.size else 1.0

@@ -110,4 +110,3 @@ def jacobian_rate(model: RobotModel, q: ArrayLike, qd: ArrayLike) -> Array:
     KERNELS.arm_jacobian_rate(arm.address, q.size // 3, *(
         x.ctypes.data for x in (q, qd, rate)))
     return rate
-

@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Inverse kinematics for one point: of a posture, or nearest to a joint state."""
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'u
     """
     one_of('elbow', elbow, ELBOWS)
     one_of('shoulder', shoulder, SHOULDERS)
-    q = reachable(model, position, previous)
+    q = reachable(model, finite_array('position', position, (3,)), previous)
     posture = Posture(elbow, shoulder)
     fits = in_posture(model, q, posture)
     if not fits.any():
@@ -107,7 +108,7 @@ def nearest_solution(model: RobotModel, position: ArrayLike, q: ArrayLike) -> Ar
 
     """
     near = finite_array('q', q, (3,))
-    found = reachable(model, position, near)
+    found = reachable(model, finite_array('position', position, (3,)), near)
     turned = found + TURN * nearest_turns(near - found)
     return np.asarray(turned[np.abs(turned - near).max(axis=1).argmin()])
 

@@ -44,15 +44,11 @@ from rrr_traj_planner.core.kinematics.least_time_turns import least_time_turns, 
 from rrr_traj_planner.core.kinematics.postures import ANY, in_posture, Posture
 from rrr_traj_planner.core.kinematics.solutions import all_solutions
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_times, ViaPointBehaviour
-from rrr_traj_planner.core.rounding import TIP_ROUNDING
+from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 
 # Cost of a solution that is out of a range or cannot be held, far above any motion's time; so the
 # fewest of them are taken. Chosen.
 IMPOSSIBLE = 1e9  # s
-
-# Range of a joint from which on the turns of its solutions are not listed one by one: they are
-# chosen afterwards. Chosen: up to then a solution has at most two.
-WIDE = 2.0 * TURN  # rad
 
 
 def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, posture: Posture = ANY,
@@ -125,7 +121,7 @@ def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Pos
         fits = q[:n][in_posture(model, q[:n], posture)]
         if not len(fits):
             raise _unreachable(model, points[i], posture, i)
-        options.append(_with_turns(fits, limits, free[i]))
+        options.append(_within_ranges(fits, limits))
         if free[i]:
             options[-1][:, 0] = np.nan
     return options
@@ -134,18 +130,22 @@ def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Pos
 def _chosen(limits: JointLimits, options: list[Array], start: Array | None,
             passing: ViaPointBehaviour, can_hold: Callable[[Array], BoolArray] | None) -> Array:
     """Return one of the solutions at each point, up to whole turns."""
-    wide = limits.max_position - limits.min_position > WIDE
+    turning = _turning(limits)
     costs = []
     for q in options:
-        outside = (out_of_range(q, limits) & ~wide).any(axis=1)
+        outside = (out_of_range(q, limits) & ~turning).any(axis=1)
         held = np.ones(len(q), dtype=bool) if can_hold is None else can_hold(np.nan_to_num(q))
         costs.append(IMPOSSIBLE * (2.0 * outside + ~held))
-    if start is None:
-        return np.array([q[k] for q, k in zip(options, least_time_chain(
-            limits, options, costs, passing))])
-    chosen = least_time_chain(
-        limits, [start[np.newaxis], *options], [np.zeros(1), *costs], passing)
-    return np.array([q[k] for q, k in zip(options, chosen[1:])])
+    if start is not None:
+        options, costs = [start[np.newaxis], *options], [np.zeros(1), *costs]
+    chosen = least_time_chain(limits, options, costs, passing, turning)
+    found = np.array([q[k] for q, k in zip(options, chosen)])
+    return found if start is None else found[1:]
+
+
+def _turning(limits: JointLimits) -> BoolArray:
+    """Return which joints can be in any position, whole turns aside: these are chosen later."""
+    return np.asarray(limits.max_position - limits.min_position >= TURN)
 
 
 def _unreachable(model: RobotModel, point: Array, posture: Posture, i: int) -> UnreachableError:
@@ -158,22 +158,14 @@ def _unreachable(model: RobotModel, point: Array, posture: Posture, i: int) -> U
         f'via point {i}: {point_text(point)} is out of reach with {posture}', 0.0, i)
 
 
-def _with_turns(q: Array, limits: JointLimits, free: bool) -> Array:
-    """Return solutions with every whole turn within the ranges, or as they are outside all."""
-    for j in range(1 if free else 0, 3):
-        low, high = limits.min_position[j], limits.max_position[j]
-        if high - low > WIDE:
-            continue
-        first = np.ceil((low - q[:, j]) / TURN)
-        turned = []
-        for turns in (first, first + 1.0, first + 2.0):
-            inside = q.copy()
-            inside[:, j] += TURN * turns
-            turned.append(inside[inside[:, j] <= high])
-        none = q[q[:, j] + TURN * first > high]
-        none[:, j] += TURN * np.round((0.5 * (low + high) - none[:, j]) / TURN)
-        q = np.concatenate((*turned, none))
-    return q
+def _within_ranges(q: Array, limits: JointLimits) -> Array:
+    """Return solutions with the whole turns that bring joints into their ranges, or near them."""
+    with np.errstate(invalid='ignore'):  # infinite ends
+        low, high = limits.min_position, limits.max_position
+        inside = q + TURN * np.ceil((low - JOINT_ROUNDING - q) / TURN)
+        middle = q + TURN * np.round((0.5 * (low + high) - q) / TURN)
+    found = np.where(inside <= high + JOINT_ROUNDING, inside, middle)
+    return np.where(_turning(limits), q, found)
 
 
 def _needs_search(limits: JointLimits, q: Array, passing: ViaPointBehaviour) -> BoolArray:

@@ -11,11 +11,14 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """
 One inverse solution at each of consecutive via points, for the least estimated time.
 
-A shortest path through a graph with one stage for each point, by dynamic programming over pairs of
-solutions at consecutive points (Bellman, Dynamic Programming, 1957).
+A shortest path through a graph with one stage for each point, by dynamic programming (Bellman,
+Dynamic Programming, 1957). Its state is a pair of solutions at consecutive points, and which of
+the joints rest at the former: whether a joint reverses depends on three points, and a segment's
+time on the reversals at both of its ends.
 """
 
 from __future__ import annotations
@@ -24,7 +27,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray
+from rrr_traj_planner.core.kinematics.joint_ranges import TURN
 from rrr_traj_planner.core.kinematics.least_time_turns import TRAVEL
 from rrr_traj_planner.core.kinematics.travel_time import (
     joint_travel_time,
@@ -32,9 +36,11 @@ from rrr_traj_planner.core.kinematics.travel_time import (
     ViaPointBehaviour,
 )
 
+RESTS = 8  # sets of joints: joint j, from 0, belongs to the sets whose bit j is 1
+
 
 def least_time_chain(limits: JointLimits, options: Sequence[Array], costs: Sequence[Array],
-                     passing: ViaPointBehaviour) -> list[int]:
+                     passing: ViaPointBehaviour, turning: BoolArray) -> list[int]:
     """
     Return which of its options each point has in the motion of least estimated time.
 
@@ -48,6 +54,8 @@ def least_time_chain(limits: JointLimits, options: Sequence[Array], costs: Seque
         Of the options themselves [s].
     passing : ViaPointBehaviour
         How the motion passes via points.
+    turning : ndarray of bool, shape (3,)
+        Joints whose positions are given up to whole turns: they take the shorter way.
 
     Returns
     -------
@@ -55,32 +63,73 @@ def least_time_chain(limits: JointLimits, options: Sequence[Array], costs: Seque
         An index into each of the options. The first of several that are equally good.
 
     """
+    if all(len(q) == 1 for q in options):
+        return [0] * len(options)
     if len(options) == 1:
         return [int(costs[0].argmin())]
-    ends = motion_ends(len(options) - 1)
-    travel = [np.nan_to_num(b - a[:, np.newaxis]) for a, b in zip(options, options[1:])]
-    best = costs[0][:, np.newaxis] + _time(limits, travel[0], ends[0], 0, passing) + costs[1]
+    q, cost = _padded(options, costs)
+    travel = np.nan_to_num(q[1:, np.newaxis] - q[:-1, :, np.newaxis])
+    travel = np.where(turning, travel - TURN * np.round(travel / TURN), travel)
+    times = _times(limits, travel, motion_ends(len(travel)), passing)
+    # Axes of the cost: option at the point before, option at this point, rests at the former.
+    best = np.full((*travel.shape[1:3], RESTS), np.inf)
+    best[..., 0] = cost[0][:, np.newaxis] + cost[1]
     came = []
-    for i in range(1, len(travel)):
-        reverses = np.sign(travel[i - 1])[:, :, np.newaxis] * np.sign(travel[i]) <= 0.0
-        total = best[..., np.newaxis]
-        for part, end in ((travel[i - 1][:, :, np.newaxis], ends[i - 1]), (travel[i], ends[i])):
-            total = total + (_time(limits, part, end, reverses.astype(int), passing)
-                             - _time(limits, part, end, 0, passing))
-        origin = total.argmin(axis=0)
+    for i in range(len(travel) - 1):
+        best, origin = _step(best, times[i], _rests(travel[i], travel[i + 1]), cost[i + 2])
         came.append(origin)
-        best = (np.take_along_axis(total, origin[np.newaxis], axis=0)[0]
-                + _time(limits, travel[i], ends[i], 0, passing) + costs[i + 1])
-    before, last = (int(k) for k in np.unravel_index(best.argmin(), best.shape))
+    best = best + times[-1][..., 0]
+    before, last, rest = (int(k) for k in np.unravel_index(best.argmin(), best.shape))
     chosen = [last, before]
     for origin in reversed(came):
-        chosen.append(int(origin[chosen[-1], chosen[-2]]))
+        former, rest = divmod(int(origin[chosen[-1], chosen[-2], rest]), RESTS)
+        chosen.append(former)
     return chosen[::-1]
 
 
-def _time(limits: JointLimits, travel: Array, ends: int, reversals: Array | int,
-          passing: ViaPointBehaviour) -> Array:
-    """Return the slowest joint's time over the last axis, with a tie-breaker for travel."""
+def _padded(options: Sequence[Array], costs: Sequence[Array]) -> tuple[Array, Array]:
+    """Return options (n, m, 3) and their costs (n, m), infinite where a point has fewer."""
+    most = max(map(len, options))
+    q, cost = np.zeros((len(options), most, 3)), np.full((len(options), most), np.inf)
+    for i, (of_point, of_options) in enumerate(zip(options, costs)):
+        q[i, :len(of_point)], cost[i, :len(of_point)] = of_point, of_options
+    return q, cost
+
+
+def _rests(before: Array, after: Array) -> IntArray:
+    """Return the number of the set of joints that reverse between travels, shape (m, m', m'')."""
+    reverses = np.sign(before)[:, :, np.newaxis] * np.sign(after) <= 0.0
+    return np.asarray(reverses @ (1 << np.arange(3)))
+
+
+def _times(limits: JointLimits, travel: Array, ends: IntArray,
+           passing: ViaPointBehaviour) -> Array:
+    """
+    Return the slowest joint's times by the joints that rest at both ends of each segment.
+
+    With a tie-breaker for travel. Shape (n, m, m, 8, 8).
+    """
     length = np.abs(travel)
-    times = joint_travel_time(limits, slice(None), length, ends, reversals, passing)
-    return np.asarray(times.max(axis=-1) + TRAVEL * length.sum(axis=-1))
+    by_count = np.stack([joint_travel_time(
+        limits, slice(None), length, ends[:, np.newaxis, np.newaxis, np.newaxis], n, passing)
+        for n in range(3)])
+    rests = (np.arange(RESTS)[:, np.newaxis] >> np.arange(3)) & 1
+    counts = rests[:, np.newaxis] + rests  # of each joint, by the sets at both ends
+    slowest = np.maximum.reduce([by_count[counts[..., j], ..., j] for j in range(3)])
+    return np.asarray(np.moveaxis(slowest, (0, 1), (3, 4))
+                      + TRAVEL * length.sum(axis=-1)[..., np.newaxis, np.newaxis])
+
+
+def _step(best: Array, times: Array, rests: IntArray, cost: Array) -> tuple[Array, IntArray]:
+    """Return least costs at the next stage, and the predecessors that attain them."""
+    a, b = np.ogrid[:rests.shape[0], :rests.shape[1]]
+    total = best[:, :, np.newaxis] + np.swapaxes(times, 2, 3)[
+        a[..., np.newaxis], b[..., np.newaxis], rests]  # option before, this, next; rests before
+    former, least = total.argmin(axis=-1), total.min(axis=-1)
+    reached, origin = [], []
+    for rest in range(RESTS):  # at this point
+        of_rest = np.where(rests == rest, least, np.inf)
+        from_option = of_rest.argmin(axis=0)[np.newaxis]
+        reached.append(np.take_along_axis(of_rest, from_option, axis=0)[0] + cost)
+        origin.append((RESTS * from_option + np.take_along_axis(former, from_option, axis=0))[0])
+    return np.stack(reached, axis=-1), np.stack(origin, axis=-1)

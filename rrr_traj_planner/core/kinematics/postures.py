@@ -26,9 +26,15 @@ from typing import Literal, NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.kinematics.axis_frame import axis_frame
 from rrr_traj_planner.core.kinematics.branch_factors import branch_factors, has_named_postures
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 
 ROUNDING = 1e-9  # part of a factor's scale up to which it is none; chosen
+
+# The same where two solutions coincide, which are known to half the digits: for positions known to
+# 1e-14 of the arm's size, 5e-7. Chosen.
+DOUBLE = 1e-6
 
 Elbow = Literal['up', 'down']
 Shoulder = Literal['front', 'back']
@@ -102,9 +108,9 @@ def posture_of(model: RobotModel, q: Array) -> Posture | None:
     """
     if not has_named_postures(model):
         return None
-    elbow, shoulder = _relative_factors(model, q)
-    return Posture(ELBOWS[0 if elbow >= -ROUNDING else 1],
-                   SHOULDERS[0 if shoulder >= -ROUNDING else 1])
+    (elbow, shoulder), (no_elbow, no_shoulder) = _relative_factors(model, q), _rounding(model, q)
+    return Posture(ELBOWS[0 if elbow >= -no_elbow else 1],
+                   SHOULDERS[0 if shoulder >= -no_shoulder else 1])
 
 
 def in_posture(model: RobotModel, q: Array, posture: Posture) -> BoolArray:
@@ -132,9 +138,10 @@ def in_posture(model: RobotModel, q: Array, posture: Posture) -> BoolArray:
     if not has_named_postures(model):
         return np.zeros(len(q), dtype=bool)
     fits = np.ones(len(q), dtype=bool)
-    for factor, asked, names in zip(_relative_factors(model, q), posture, (ELBOWS, SHOULDERS)):
+    for factor, none, asked, names in zip(_relative_factors(model, q), _rounding(model, q),
+                                          posture, (ELBOWS, SHOULDERS)):
         if asked is not None:
-            fits &= (factor if asked == names[0] else -factor) >= -ROUNDING
+            fits &= (factor if asked == names[0] else -factor) >= -none
     return fits
 
 
@@ -173,3 +180,16 @@ def _relative_factors(model: RobotModel, q: Array) -> tuple[Array, Array]:
     elbow, shoulder = branch_factors(model, q)
     size = model.chain.size
     return elbow / (0.5 * size) ** 2, shoulder / size
+
+
+def _rounding(model: RobotModel, q: Array) -> tuple[Array, Array]:
+    """
+    Return up to which size the relative factors are none.
+
+    Two solutions coincide where the elbow's factor is none; where the shoulder's is, only if the
+    tip is beside joint axis 1. On the axis they are half a turn apart.
+    """
+    frame, size = axis_frame(model), model.chain.size
+    x, y, _ = np.moveaxis(frame.coordinates(forward_kinematics(model, q)), -1, 0)
+    beside = np.sqrt(np.maximum(x * x + y * y - branch_factors(model, q)[1] ** 2, 0.0)) / size
+    return np.array(DOUBLE), np.asarray(np.maximum(ROUNDING, DOUBLE * np.sqrt(beside)))

@@ -11,6 +11,7 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """A path of the tip as an arm follows it: joint positions and derivatives along it."""
 
 from __future__ import annotations

@@ -11,13 +11,14 @@
 # WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
 # See the License for the specific language governing permissions and
 # limitations under the License.
+
 """Following a path of the tip from given joint positions, and why an arm cannot."""
 
 from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import (
     format_distinct,
@@ -48,6 +49,9 @@ LEAST_REGULAR = 1e-6  # m/rad
 # the tip is told apart by. Chosen.
 PREDICTION = 0.02     # rad
 SHORTEST_STEP = 1e-9  # m
+
+# Rounds of halving: from any length of path up to 10^18 m, as short as that. Chosen.
+MOST_ROUNDS = 90
 
 # Distance from joint axis 1 up to which a singular position is one of that axis, over the arm's
 # size: far above LEAST_REGULAR, far below any link. Chosen.
@@ -87,7 +91,7 @@ def followed_path(model: RobotModel, path: CartesianPath, first: Array,
     planes = axis_planes(model, path, float(first[0]))
     first = np.array((planes.joint_1(float(first[0])), *first[1:]))
     s = np.unique(path.grid)
-    for attempt in range(100):
+    for attempt in range(MOST_ROUNDS):
         should_stop()
         found = follow_points(
             model, s, planes.points(path, s), planes.points(path, s, left=True), first)
@@ -103,7 +107,7 @@ def followed_path(model: RobotModel, path: CartesianPath, first: Array,
             break
         s = np.sort(np.concatenate((s, 0.5 * (s[:-1] + s[1:])[split])))
     if ended:
-        raise _refusal(model, path, s, float(s[len(found.q) - 1]))
+        raise _refusal(model, path, s, float(s[max(len(found.q) - 1, 0)]))
     return ArmPath(model, path, planes, s, found.q, found.rates)
 
 
@@ -131,7 +135,7 @@ def place_on_path(path: CartesianPath, s: float) -> tuple[str, int]:
             f'(nearest: {nearest})', nearest)
 
 
-def _too_long(found: FollowedPoints, h: Array) -> Array:
+def _too_long(found: FollowedPoints, h: Array) -> BoolArray:
     """Return which intervals are too long to be sure of the branch."""
     reached = len(found.q)
     too_long = np.zeros(len(h), dtype=bool)

@@ -217,9 +217,9 @@ def _regular_jacobian(model: RobotModel, q: Array) -> Array:
     _, size, directions = np.linalg.svd(J)
     least = float(size[2] / model.chain.size)
     if least <= SINGULAR:
-        joint = int(np.abs(directions[2]).argmax())
-        name = model.joint_names[joint]
+        name = model.joint_names[int(np.abs(directions[2]).argmax())]
+        pose = ', '.join(f'{x:.6g}' for x in q.tolist())
         raise LimitViolationError(
-            f'the arm is singular: {name} at {q[joint]:.6g} rad cannot give the tip every velocity',
+            f'the arm is singular at ({pose}) rad, where {name} would need unbounded velocity',
             name, least, SINGULAR)
     return J

@@ -20,7 +20,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.branch_factors import branch_factors, has_named_postures
-from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian, radial_distance
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian
 from rrr_traj_planner.core.kinematics.postures import posture_of
 from rrr_traj_planner.core.kinematics.solutions import all_solutions
 
@@ -64,7 +64,8 @@ def test_signs_are_the_postures_of_the_thesis_s_kind_of_arm(arm):
     q = states()
     elbow, shoulder = branch_factors(arm, q)
     assert elbow == pytest.approx(arm.a2 * arm.d4 * np.cos(q[:, 2]), abs=EXACT)
-    assert shoulder == pytest.approx(radial_distance(arm, q), abs=EXACT)
+    radial = arm.a2 * np.cos(q[:, 1]) + arm.d4 * np.sin(q[:, 1] + q[:, 2])  # (5.8)
+    assert shoulder == pytest.approx(radial, abs=EXACT)
     for x, up, front in zip(q, elbow >= 0.0, shoulder >= 0.0):
         assert tuple(posture_of(arm, x)) == ('up' if up else 'down', 'front' if front else 'back')
 

@@ -19,7 +19,6 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error, whole_turns
-from rrr_traj_planner.core.kinematics.postures import Posture
 
 TURN = 2.0 * np.pi
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))
@@ -81,8 +80,9 @@ def test_only_rounding_is_tolerated_at_the_end_of_a_range():
 
 
 def test_error_has_digits_enough_to_tell_value_from_limit():
-    error = range_error(RobotModel(), JointLimits(), 'via point 3', 0, np.pi / 2 + 1e-8,
-                        Posture('down', 'back'), 3)
+    # Elbow down, the tip behind joint axis 1: a2 cos q2 + d4 sin(q2 + q3) = -0.9 m - 0.7 sin 2 m.
+    q = np.array((np.pi / 2 + 1e-8, np.pi, 2.0))
+    error = range_error(RobotModel(), JointLimits(), 'via point 3', 0, q, 3)
     assert str(error) == (
         'via point 3: joint_1 would be at 1.57079634 rad (elbow down, shoulder back), '
         'limits 0 to 1.57079633 rad')

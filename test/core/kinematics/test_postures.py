@@ -82,4 +82,4 @@ def test_a_stretched_arm_and_one_on_the_axis_have_the_postures_that_meet_there()
     assert set(postures_of(arm, upright + [0.0, 1e-3, 1e-3], 0.01)) == set(ALL)
     assert len(postures_of(arm, upright + [0.0, 1e-3, 1e-3], 1e-4)) == 1
     level = np.array([0.3, 0.0, np.pi / 2])
-    assert postures_of(arm, level, 0.01) == [Posture('up'), Posture('down')]
+    assert postures_of(arm, level, 0.01) == [Posture('up', 'front'), Posture('down', 'front')]

@@ -16,6 +16,7 @@
 
 from helpers.random_cases import ARMS
 from helpers.random_chains import random_arm, with_axes
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import RobotModel
@@ -175,7 +176,7 @@ def test_joint_1_keeps_its_position_where_the_tip_is_on_its_axis(off):
 
 def test_joint_2_keeps_its_position_where_the_tip_is_on_its_axis():
     # forearm and upper arm of one length and the arm folded: theta_3 = -90 deg
-    arm, before = RobotModel(a2=0.7, d4=0.7), (0.3, 0.4, 0.0)
+    arm, before = ThesisArm(a2=0.7, d4=0.7), (0.3, 0.4, 0.0)
     q = solutions(arm, (0.0, 0.0, arm.d1), previous=before).q
     assert distance(q, np.array((0.3, 0.4, -0.5 * np.pi))).min() <= 1e-9
 

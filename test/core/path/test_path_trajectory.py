@@ -16,14 +16,13 @@
 
 from functools import cache
 
+from helpers.arm_paths import arm_path_in
 from helpers.random_cases import ARMS, central_difference, dense_times, joined
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian
-from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
-from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.path.design import line_arc, line_polynomial
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile
@@ -48,7 +47,7 @@ def random_motion(seed):
         points.append(d / np.linalg.norm(d) * rng.uniform(0.5 * (least + most), 0.9 * most)
                       + (0.0, 0.0, model.d1))
     path = (line_arc, line_polynomial)[seed % 2](points, 0.1 * most)
-    arm_path = ArmPath(model, FREE, path, Posture(('up', 'down')[seed // 2 % 2]))
+    arm_path = arm_path_in(model, FREE, path, ('up', 'down')[seed // 2 % 2])
     # No join is passed while the speed changes: between its knots the motion is smooth.
     ends = np.unique(np.concatenate((path.via_s, path.joins)))
     v, first, last = rng.uniform(0.2, 1.0), 0.9 * ends[1], 0.9 * (path.length - ends[-2])
@@ -125,7 +124,7 @@ def test_whole_turns_are_kept_along_the_path():
     angle = np.linspace(0.5, 4.0, 8)
     points = np.stack((np.cos(angle), np.sin(angle), np.full(8, 0.7)), axis=1)
     limits = JointLimits(min_position=(6.0, -4.0, -4.0), max_position=(12.0, 4.0, 4.0))
-    arm_path = ArmPath(ARMS[0], limits, line_arc(points, 0.2), Posture('up'))
+    arm_path = arm_path_in(ARMS[0], limits, line_arc(points, 0.2), 'up')
     q = arm_path(np.linspace(0.0, arm_path.path.length, 500)).q[:, 0]
     assert q[[0, -1]] == pytest.approx(2.0 * np.pi + angle[[0, -1]], abs=1e-12)
     assert np.abs(np.diff(q)).max() < 0.05

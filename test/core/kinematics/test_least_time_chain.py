@@ -1,0 +1,77 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The solutions chosen at via points, beside trial of all chains."""
+
+from itertools import product
+
+from helpers.random_chains import random_arm
+import numpy as np
+import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.least_time_chain import least_time_chain
+from rrr_traj_planner.core.kinematics.solutions import all_solutions
+from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_time, ViaPointBehaviour
+
+TIE = 1e-4  # s: what the tie-breakers of travel add
+PASSINGS = [THROUGH, ViaPointBehaviour('stop', 2.0 / 3.0), ViaPointBehaviour('blend')]
+
+
+def random_case(seed):
+    """Return limits and the solutions at 2 to 5 points."""
+    rng, arm = np.random.default_rng(seed), random_arm(seed)
+    q = rng.uniform(-np.pi, np.pi, (int(rng.integers(2, 6)), 3))
+    found, count = all_solutions(arm, forward_kinematics(arm, q))
+    return JointLimits(max_velocity=rng.uniform(0.3, 2.0, 3),
+                       max_acceleration=rng.uniform(0.3, 4.0, 3)), [
+        x[:n] for x, n in zip(found, count)]
+
+
+def all_times(limits, options, costs, passing):
+    """Return every chain with its time."""
+    times = {}
+    for chain in product(*(range(len(q)) for q in options)):
+        q = np.array([x[k] for x, k in zip(options, chain)])
+        times[chain] = travel_time(limits, q, passing) + sum(
+            c[k] for c, k in zip(costs, chain))
+    return times
+
+
+@pytest.mark.parametrize('passing', PASSINGS)
+@pytest.mark.parametrize('with_costs', [False, True])
+def test_chain_is_that_of_least_time_of_all(passing, with_costs):
+    for seed in range(40):
+        limits, options = random_case(seed)
+        rng = np.random.default_rng(seed)
+        costs = [rng.uniform(0.0, 3.0 * with_costs, len(q)) for q in options]
+        times = all_times(limits, options, costs, passing)
+        found = times[tuple(least_time_chain(limits, options, costs, passing))]
+        assert found <= min(times.values()) + TIE
+
+
+def test_one_point_has_the_cheapest_option_and_equal_ones_the_first():
+    limits, options = JointLimits(), [np.zeros((3, 3))]
+    assert least_time_chain(limits, options, [np.array((2.0, 1.0, 1.0))], THROUGH) == [1]
+    same = [np.zeros((2, 3)), np.ones((2, 3)), np.zeros((2, 3))]
+    assert least_time_chain(limits, same, [np.zeros(2)] * 3, THROUGH) == [0, 0, 0]
+
+
+def test_an_arbitrary_position_takes_no_time():
+    limits = JointLimits(max_velocity=[1.0] * 3, max_acceleration=[1.0] * 3)
+    # At the middle point joint 1 is arbitrary; joint 2 decides.
+    middle = np.array([(np.nan, 2.0, 0.0), (np.nan, 0.6, 0.0)])
+    options = [np.zeros((1, 3)), middle, np.array([(3.0, 1.0, 0.0)])]
+    assert least_time_chain(limits, options, [np.zeros(1), np.zeros(2), np.zeros(1)],
+                            THROUGH) == [0, 1, 0]
