@@ -141,8 +141,3 @@ def _added(a: tuple[Array, Array, Array],
 def _stacked(*points: tuple[Array, Array, Array]) -> PointMotion:
     position, velocity, acceleration = (np.stack(v, axis=-2) for v in zip(*points))
     return PointMotion(position, velocity, acceleration)
-
-
-def matrix(*rows):
-    """Return 3 x 3 matrices from their elements, which are arrays of any shape."""
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

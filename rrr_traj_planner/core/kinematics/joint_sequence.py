@@ -25,6 +25,7 @@ it is interpolated between the point before and the point after.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -50,10 +51,12 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 # fewest of them are taken. Chosen.
 IMPOSSIBLE = 1e9  # s
 
+CanHold: TypeAlias = Callable[[Array], BoolArray]
+
 
 def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, posture: Posture = ANY,
                    start: Array | None = None, passing: ViaPointBehaviour = THROUGH,
-                   can_hold: Callable[[Array], BoolArray] | None = None) -> Array:
+                   can_hold: CanHold | None = None) -> Array:
     """
     Return joint positions at consecutive via points.
 
@@ -88,8 +91,8 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
     """
     frame = axis_frame(model)
     free = np.hypot(*frame.coordinates(points)[:, :2].T) <= TIP_ROUNDING
-    options = _options(model, limits, points, posture, free)
-    q = _chosen(limits, options, start, passing, can_hold)
+    options, costs = _options(model, limits, points, posture, free, can_hold)
+    q = _chosen(limits, options, costs, start, passing)
     if start is not None:
         q, free = np.vstack((start, q)), np.concatenate(([False], free))
     if free.all():
@@ -113,32 +116,36 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
 
 
 def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Posture,
-             free: BoolArray) -> list[Array]:
-    """Return the solutions at each point; NaN where joint 1 is free."""
+             free: BoolArray, can_hold: CanHold | None) -> tuple[list[Array], list[Array]]:
+    """Return the solutions at each point, NaN where joint 1 is free, and their costs."""
     found, count = all_solutions(model, points)
-    options = []
-    for i, (q, n) in enumerate(zip(found, count)):
-        fits = q[:n][in_posture(model, q[:n], posture)]
-        if not len(fits):
-            raise _unreachable(model, points[i], posture, i)
-        options.append(_within_ranges(fits, limits))
-        if free[i]:
-            options[-1][:, 0] = np.nan
-    return options
+    of_point = np.repeat(np.arange(len(points)), count)
+    q = found[np.arange(found.shape[1]) < count[:, np.newaxis]]
+    fits = in_posture(model, q, posture)
+    q, of_point = _within_ranges(q[fits], limits), of_point[fits]
+    numbers = np.bincount(of_point, minlength=len(points))
+    if (numbers == 0).any():
+        i = int(numbers.argmin())
+        raise _unreachable(model, points[i], posture, i)
+    outside = out_of_range(q, limits) & ~_turning(limits)
+    outside[free[of_point], 0] = False
+    cost = IMPOSSIBLE * 2.0 * outside.any(axis=1)
+    if can_hold is not None:
+        cost = cost + IMPOSSIBLE * ~can_hold(q)
+    q[free[of_point], 0] = np.nan
+    least = np.full(len(points), np.inf)
+    np.minimum.at(least, of_point, cost)
+    kept = cost == least[of_point]
+    ends = np.cumsum(np.bincount(of_point[kept], minlength=len(points)))[:-1]
+    return np.split(q[kept], ends), np.split(cost[kept], ends)
 
 
-def _chosen(limits: JointLimits, options: list[Array], start: Array | None,
-            passing: ViaPointBehaviour, can_hold: Callable[[Array], BoolArray] | None) -> Array:
+def _chosen(limits: JointLimits, options: list[Array], costs: list[Array], start: Array | None,
+            passing: ViaPointBehaviour) -> Array:
     """Return one of the solutions at each point, up to whole turns."""
-    turning = _turning(limits)
-    costs = []
-    for q in options:
-        outside = (out_of_range(q, limits) & ~turning).any(axis=1)
-        held = np.ones(len(q), dtype=bool) if can_hold is None else can_hold(np.nan_to_num(q))
-        costs.append(IMPOSSIBLE * (2.0 * outside + ~held))
     if start is not None:
         options, costs = [start[np.newaxis], *options], [np.zeros(1), *costs]
-    chosen = least_time_chain(limits, options, costs, passing, turning)
+    chosen = least_time_chain(limits, options, costs, passing, _turning(limits))
     found = np.array([q[k] for q, k in zip(options, chosen)])
     return found if start is None else found[1:]
 

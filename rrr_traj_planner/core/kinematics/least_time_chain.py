@@ -126,10 +126,8 @@ def _step(best: Array, times: Array, rests: IntArray, cost: Array) -> tuple[Arra
     total = best[:, :, np.newaxis] + np.swapaxes(times, 2, 3)[
         a[..., np.newaxis], b[..., np.newaxis], rests]  # option before, this, next; rests before
     former, least = total.argmin(axis=-1), total.min(axis=-1)
-    reached, origin = [], []
-    for rest in range(RESTS):  # at this point
-        of_rest = np.where(rests == rest, least, np.inf)
-        from_option = of_rest.argmin(axis=0)[np.newaxis]
-        reached.append(np.take_along_axis(of_rest, from_option, axis=0)[0] + cost)
-        origin.append((RESTS * from_option + np.take_along_axis(former, from_option, axis=0))[0])
-    return np.stack(reached, axis=-1), np.stack(origin, axis=-1)
+    of_rest = np.where(rests[..., np.newaxis] == np.arange(RESTS), least[..., np.newaxis], np.inf)
+    from_option = of_rest.argmin(axis=0)  # option at this point, next, rests at this point
+    this, following, _ = np.ogrid[tuple(map(slice, from_option.shape))]
+    origin = RESTS * from_option + former[from_option, this, following]
+    return of_rest.min(axis=0) + cost[:, np.newaxis], origin

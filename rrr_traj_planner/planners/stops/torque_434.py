@@ -94,7 +94,8 @@ def law_for_torque(segment: Segment, start: Lin434, duration: float,
     def at(x: Array) -> tuple[Array, Array]:
         key = x.tobytes()
         if key not in cache:  # SLSQP calls for values and gradients one after the other
-            around = _margins(segment, duration, x + steps)
+            # After a law without a cruise it may try no number at all: its result is refused.
+            around = _margins(segment, duration, np.where(np.isfinite(x), x, x0) + steps)
             cache.clear()
             cache[key] = (around[:, 0],
                           (around[:, 1:6] - around[:, 6:]) / (2.0 * DIFFERENCE))

@@ -25,6 +25,7 @@ from rrr_traj_planner.core.kinematics.least_time_chain import least_time_chain
 from rrr_traj_planner.core.kinematics.solutions import all_solutions
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_time, ViaPointBehaviour
 
+STILL = np.zeros(3, dtype=bool)  # no joint is given up to whole turns
 TIE = 1e-4  # s: what the tie-breakers of travel add
 PASSINGS = [THROUGH, ViaPointBehaviour('stop', 2.0 / 3.0), ViaPointBehaviour('blend')]
 
@@ -57,15 +58,15 @@ def test_chain_is_that_of_least_time_of_all(passing, with_costs):
         rng = np.random.default_rng(seed)
         costs = [rng.uniform(0.0, 3.0 * with_costs, len(q)) for q in options]
         times = all_times(limits, options, costs, passing)
-        found = times[tuple(least_time_chain(limits, options, costs, passing))]
+        found = times[tuple(least_time_chain(limits, options, costs, passing, STILL))]
         assert found <= min(times.values()) + TIE
 
 
 def test_one_point_has_the_cheapest_option_and_equal_ones_the_first():
     limits, options = JointLimits(), [np.zeros((3, 3))]
-    assert least_time_chain(limits, options, [np.array((2.0, 1.0, 1.0))], THROUGH) == [1]
+    assert least_time_chain(limits, options, [np.array((2.0, 1.0, 1.0))], THROUGH, STILL) == [1]
     same = [np.zeros((2, 3)), np.ones((2, 3)), np.zeros((2, 3))]
-    assert least_time_chain(limits, same, [np.zeros(2)] * 3, THROUGH) == [0, 0, 0]
+    assert least_time_chain(limits, same, [np.zeros(2)] * 3, THROUGH, STILL) == [0, 0, 0]
 
 
 def test_an_arbitrary_position_takes_no_time():
@@ -74,4 +75,13 @@ def test_an_arbitrary_position_takes_no_time():
     middle = np.array([(np.nan, 2.0, 0.0), (np.nan, 0.6, 0.0)])
     options = [np.zeros((1, 3)), middle, np.array([(3.0, 1.0, 0.0)])]
     assert least_time_chain(limits, options, [np.zeros(1), np.zeros(2), np.zeros(1)],
-                            THROUGH) == [0, 1, 0]
+                            THROUGH, STILL) == [0, 1, 0]
+
+
+def test_a_joint_given_up_to_whole_turns_takes_the_shorter_way():
+    limits = JointLimits(max_velocity=[1.0] * 3, max_acceleration=[1.0] * 3)
+    options = [np.array([(3.1, 0.0, 0.0)]), np.array([(2.0, 0.0, 0.0), (-3.1, 0.0, 0.0)])]
+    costs = [np.zeros(1), np.zeros(2)]
+    assert least_time_chain(limits, options, costs, THROUGH, STILL) == [0, 0]
+    assert least_time_chain(limits, options, costs, THROUGH, np.array([True, False, False])) == [
+        0, 1]
