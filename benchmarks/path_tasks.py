@@ -30,9 +30,9 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, whole_turns
 from rrr_traj_planner.core.path import design as path_design
+from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
 from rrr_traj_planner.core.path.largest_radii import largest_radii
-from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.request import PlanningRequest
 from soak_tasks import random_arm, random_limits

@@ -40,7 +40,7 @@ from rrr_traj_planner.core.arm.model import RobotModel  # noqa: E402
 from rrr_traj_planner.core.arm.urdf_arm import read_urdf  # noqa: E402
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inertia_matrix  # noqa: E402
 from rrr_traj_planner.core.errors import ConvergenceError, RrrPlannerError  # noqa: E402
-from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian  # noqa: E402
+from rrr_traj_planner.core.kinematics.forward import jacobian  # noqa: E402
 from rrr_traj_planner.planners.planning import plan  # noqa: E402
 from rrr_traj_planner.planners.registry import planner, planner_ids  # noqa: E402
 from rrr_traj_planner.planners.request import PlanningRequest  # noqa: E402

@@ -94,8 +94,7 @@ def law_for_torque(segment: Segment, start: Lin434, duration: float,
     def at(x: Array) -> tuple[Array, Array]:
         key = x.tobytes()
         if key not in cache:  # SLSQP calls for values and gradients one after the other
-            # After a law without a cruise it may try no number at all: its result is refused.
-            around = _margins(segment, duration, np.where(np.isfinite(x), x, x0) + steps)
+            around = _margins(segment, duration, x + steps)
             cache.clear()
             cache[key] = (around[:, 0],
                           (around[:, 1:6] - around[:, 6:]) / (2.0 * DIFFERENCE))
@@ -136,8 +135,10 @@ def _torque_ratios(segment: Segment, law: Lin434, T: Array) -> Array:
         piece.at(POINTS)[:3] for piece in columns.pieces(T[:, np.newaxis], 0.0, 1.0))))
     D = segment.displacement
     friction = segment.model.friction
-    torque = inverse_dynamics(segment.model, *(v.reshape(-1, 3) for v in (
-        segment.start + s * D, sd * D, sdd * D)))
-    torque += (friction.viscous * (sd * D) + friction.coulomb * np.sign(D)).reshape(-1, 3)
+    q, qd, qdd = (v.reshape(-1, 3) for v in (segment.start + s * D, sd * D, sdd * D))
+    exists = np.isfinite(q + qd + qdd).all(axis=1)  # not so for a law without a cruise
+    torque = np.full(q.shape, np.nan)
+    torque[exists] = inverse_dynamics(segment.model, q[exists], qd[exists], qdd[exists])
+    torque += friction.viscous * qd + friction.coulomb * np.sign(D)
     limit_ratios = torque[:, limited] / segment.limits.max_effort[limited]
     return limit_ratios.reshape(len(T), -1).T
