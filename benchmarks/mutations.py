@@ -45,9 +45,11 @@ FAULTS = {
         ('g->first[2] += a[0] * b[0] * c[1];', 'g->first[2] -= a[0] * b[0] * c[1];'),
     ),
     'test/core/kinematics': (
-        ('second[i < j ? i : j][i < j ? j : i][x] * qd[j];',
-         'second[i < j ? i : j][i < j ? j : i][x];'),
-        ('r, h = hypot(x, y), z - model.d1', 'r, h = hypot(x, y), z + model.d1'),
+        ('rate[3 * c + i] += x[second_by[i][j]][c] * qd[j];',
+         'rate[3 * c + i] += x[second_by[i][j]][c];'),
+        ('to[SECOND] = volume(b[0], c[1], c[2])', 'to[SECOND] = volume(a[0], c[1], c[2])'),
+        ('right[c] = path->dddp[n][c] - 3.0 * h[c];', 'right[c] = path->dddp[n][c] - h[c];'),
+        ('rests[..., np.newaxis] == np.arange(RESTS)', 'rests[..., np.newaxis] >= np.arange(RESTS)'),
     ),
     'test/core/arm': (
         ('reduced = chain.mass[2] * mass / both', 'reduced = mass'),

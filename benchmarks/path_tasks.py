@@ -19,6 +19,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from rrr_traj_planner.core.arm.chain import Chain
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import (
     ConvergenceError,
@@ -148,10 +149,17 @@ def _tips(rng: np.random.Generator, kind: str, task: Task, n: int) -> np.ndarray
     return np.array(tips)
 
 
+def _shell(chain: Chain) -> tuple[np.ndarray, float, float]:
+    """Return the shoulder of an arm of the thesis's kind, and what the tip reaches from there."""
+    upper = float(np.linalg.norm(chain.point[2] - chain.point[1]))
+    fore = float(np.linalg.norm(chain.tip - chain.point[2]))
+    return chain.point[1], abs(upper - fore), upper + fore
+
+
 def _next_tip(rng: np.random.Generator, kind: str, task: Task,
               tips: list[np.ndarray]) -> np.ndarray:
     """Return a point at a random distance and in a random direction, or as its kind asks."""
-    least, most = task.model.reach
+    shoulder, least, most = _shell(task.model.chain)
     u = _unit(rng.normal(size=3))
     length = most * _between(rng, SMALL if kind == 'small' else LEGS)
     if kind == 'close pair':
@@ -162,7 +170,6 @@ def _next_tip(rng: np.random.Generator, kind: str, task: Task,
         before, turn = _unit(tips[-1] - tips[-2]), rng.uniform(*SHARP)
         u = np.cos(turn) * before + np.sin(turn) * _unit(u - (u @ before) * before)
     elif kind == 'near an edge':
-        shoulder = np.array((0.0, 0.0, task.model.d1))
         margin = most * _between(rng, EDGE)
         W = most - margin if rng.random() < 0.7 else least + margin
         return shoulder + W * _unit(tips[-1] + length * u - shoulder)

@@ -29,6 +29,7 @@ from collections import Counter
 import sys
 
 import numpy as np
+from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import ConvergenceError, RrrPlannerError
@@ -52,7 +53,7 @@ def random_request(rng: np.random.Generator) -> tuple[JointLimits, PlanningReque
         joint = rng.integers(3)
         start[joint] = (low, high)[rng.integers(2)][joint]
     if rng.random() < 0.1:  # the tip on joint axis 1
-        sine = -ARM.a2 * np.cos(start[1]) / ARM.d4
+        sine = -ArmLengths().a2 * np.cos(start[1]) / ArmLengths().d4
         start[2] = np.clip(np.arcsin(np.clip(sine, -1.0, 1.0)) - start[1], low[2], high[2])
     effort = np.full(3, np.inf) if rng.random() < 0.7 else JointLimits().max_effort
     request = PlanningRequest(

@@ -34,3 +34,8 @@ class ThesisArm(RobotModel):
         for name in ('d1', 'a2', 'd4', 'l2', 'l3', 'mass', 'inertia'):
             vars(self)[name] = getattr(lengths, name)
         vars(self)['g'] = g
+
+    @property
+    def reach(self):
+        """Return the least and the largest distance of the tip from the shoulder [m]."""
+        return abs(self.a2 - self.d4), self.a2 + self.d4

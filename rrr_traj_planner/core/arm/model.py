@@ -129,24 +129,3 @@ class RobotModel(ReadOnlyArrays):
     def lacking_inertia(self) -> str:
         """Which joints a torque could accelerate without bound in some pose; empty: none."""
         return lacking_inertia(self.tables.inertia)
-
-    # Until the inverse kinematics no longer need them.
-    @property
-    def d1(self) -> float:
-        """Height of joint axis 2 [m]."""
-        return float(self.chain.point[1][2])
-
-    @property
-    def a2(self) -> float:
-        """Length of link 2 [m]."""
-        return float(np.linalg.norm(self.chain.point[2] - self.chain.point[1]))
-
-    @property
-    def d4(self) -> float:
-        """Length of link 3 [m]."""
-        return float(np.linalg.norm(self.chain.tip - self.chain.point[2]))
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Least and largest distance of the tip from the shoulder [m]."""
-        return abs(self.a2 - self.d4), self.a2 + self.d4

@@ -65,12 +65,6 @@ def test_lengths_lay_the_arm_along_x_and_its_forearm_down():
         [0, 2, 1], [3, 5, 4], [6, 7, 8]]
 
 
-def test_reach_is_the_sum_and_the_difference_of_the_two_arms():
-    assert RobotModel().reach == pytest.approx((0.2, 1.6), abs=1e-15)
-    arm = RobotModel.from_lengths(ArmLengths(a2=0.4, d4=0.7))
-    assert arm.reach == pytest.approx((0.3, 1.1), abs=1e-15)
-
-
 def test_model_cannot_be_changed():
     masses = np.array([1.0, 2.0, 3.0])
     lengths = ArmLengths(mass=masses)
