@@ -49,7 +49,8 @@ FAULTS = {
          'rate[3 * c + i] += x[second_by[i][j]][c];'),
         ('to[SECOND] = volume(b[0], c[1], c[2])', 'to[SECOND] = volume(a[0], c[1], c[2])'),
         ('right[c] = path->dddp[n][c] - 3.0 * h[c];', 'right[c] = path->dddp[n][c] - h[c];'),
-        ('rests[..., np.newaxis] == np.arange(RESTS)', 'rests[..., np.newaxis] >= np.arange(RESTS)'),
+        ('rests[..., np.newaxis] == np.arange(RESTS)',
+         'rests[..., np.newaxis] >= np.arange(RESTS)'),
     ),
     'test/core/arm': (
         ('reduced = chain.mass[2] * mass / both', 'reduced = mass'),

@@ -16,16 +16,16 @@
 
 from dataclasses import replace
 
+from helpers.thesis_arm import ThesisArm
 from helpers.thesis_cases import POINTS
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.postures import posture_of
 from rrr_traj_planner.planners.request import PlanningRequest
 
 NONE = np.full(3, np.inf)  # no limits
-ARM, LIMITS = RobotModel(), JointLimits()
+ARM, LIMITS = ThesisArm(), JointLimits()
 STRONG = replace(LIMITS, max_effort=[150.0, 250.0, 200.0])  # joint 2 as table 6.3 needs it
 FREE = replace(LIMITS, max_effort=NONE)
 

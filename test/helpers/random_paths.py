@@ -21,6 +21,7 @@ from functools import cached_property
 
 from helpers.arm_paths import arm_path_in
 from helpers.random_cases import random_model
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
@@ -83,7 +84,7 @@ class PathCase:
 def random_case(seed, points=None):
     """Return a path of 2 to 6 points; the seed determines planner and elbow."""
     rng = np.random.default_rng(90_000 + seed)
-    model = RobotModel() if rng.random() < 0.5 else random_model(rng)
+    model = ThesisArm() if rng.random() < 0.5 else random_model(rng)
     request = PlanningRequest(
         _tips(rng, model, points or int(rng.integers(2, 7))), planner_id=PLANNERS[seed % 2],
         elbow=ELBOWS[seed // 2 % 2],

@@ -19,6 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from helpers.random_cases import random_model
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
@@ -54,7 +55,7 @@ def random_task(seed):
     """Return a task of 2 to 8 points; the seed determines its kind."""
     rng = np.random.default_rng(50_000 + seed)
     kind = KINDS[seed % len(KINDS)]
-    model = RobotModel() if rng.random() < 0.6 else random_model(rng)
+    model = ThesisArm() if rng.random() < 0.6 else random_model(rng)
     limits = random_limits(rng, model)
     n = int(rng.choice(np.arange(2, 9), p=[0.28, 0.3, 0.2, 0.1, 0.04, 0.04, 0.04]))
     if kind in ('reversal', 'at a limit'):

@@ -36,7 +36,7 @@ MISS = 1e-6           # m, of the nearest point that is reached
 
 # Every kind of chain: skew, axes 1 and 2 meeting, all but meeting, axes 2 and 3 parallel.
 CHAINS = {
-    'thesis': RobotModel(), **{f'random {seed}': random_arm(seed) for seed in range(6)},
+    'thesis': ThesisArm(), **{f'random {seed}': random_arm(seed) for seed in range(6)},
     **{f'meeting {seed}': with_axes(random_arm(seed), 0.0) for seed in range(2)},
     **{f'axes at {d} m': with_axes(random_arm(1), d) for d in (1e-9, 1e-6, 3e-5, 1e-3, 1e-2)},
     'parallel': with_axes(random_arm(2), parallel=True),
@@ -123,7 +123,7 @@ def test_solutions_are_in_ascending_order():
 
 @pytest.mark.parametrize('beyond', [0.0, 1e-12, 5e-10, 1e-6, 1e-3, 0.5])
 def test_edges_of_the_workspace_are_found_and_misses_beyond_them_told(beyond):
-    arm, rng = RobotModel(), np.random.default_rng(6)
+    arm, rng = ThesisArm(), np.random.default_rng(6)
     least, most = arm.reach
     for W in (most + beyond, least - min(beyond, 0.9 * least)):
         direction = rng.normal(size=3)
