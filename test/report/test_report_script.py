@@ -96,7 +96,7 @@ def test_one_refusal_does_not_hide_the_other_plan(tmp_path):
     (('--plan', 'table_6_1.yaml', '--output', '/proc/report'), 1,
      'report: cannot write the page: '),
     ((), 2, 'one of the arguments --thesis --plan is required'),
-    (('--thesis', 'a', '--planner', 'cycloid'), 2, '--planner and --output go with --plan'),
+    (('--thesis', 'a', '--planner', 'cycloid'), 2, '--planner, --output and --joint-limits go with --plan'),
     (('--thesis', 'a', '--plan', 'b'), 2, 'not allowed with argument')])
 def test_wrong_arguments_are_reported(tmp_path, arguments, code, text):
     found, _, errors = ended(report(*arguments, cwd=tmp_path))

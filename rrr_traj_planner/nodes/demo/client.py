@@ -116,7 +116,7 @@ class Client(Node):
         self.check_alone()
         if bag is not None:
             self._wait(demo_recorder(self, bag).is_connected, 'the topics to record')
-        config = self._planner_config()
+        config = self._planner_config(task)
         response = self._planned(plan_request(task))
         print(f'planned {counted(len(task.via_points), "via point")} with '
               f"'{task.planner_id or config.default_planner_id}' in "
@@ -166,10 +166,11 @@ class Client(Node):
         names = [f'{prefix}/{node}' for node in NODES]
         return [name for name in names if is_claimed(domain, name)]
 
-    def _planner_config(self) -> PlannerConfig:
-        """Return the planner's configuration, read from the running node."""
+    def _planner_config(self, task: Task) -> PlannerConfig:
+        """Return the planner's configuration for a task, read from the running node."""
         names = self._parameter_values(['joint_names'])['joint_names']
-        return PlannerConfig.from_values(self._parameter_values(list(rows_of(PLANNER, names))))
+        config = PlannerConfig.from_values(self._parameter_values(list(rows_of(PLANNER, names))))
+        return replace(config, limits=config.limits_for(task.planner_id))
 
     def _parameter_values(self, names: list[str]) -> dict[str, Any]:
         answer = self._answer(self._get_parameters, GetParameters.Request(names=names))

@@ -19,6 +19,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from pathlib import Path as FilePath
+import sys
 from time import perf_counter
 import traceback
 from typing import Any, NamedTuple
@@ -45,7 +47,7 @@ from rrr_traj_planner.nodes.planner_node.request_statistics import RequestStatis
 from rrr_traj_planner.nodes.planner_node.scheduler import Job
 from rrr_traj_planner.nodes.planner_node.worker_pool import WorkerPool
 from rrr_traj_planner.nodes.process.node_construction import destroyed_on_error
-from rrr_traj_planner.nodes.process.node_start import NodeStart
+from rrr_traj_planner.nodes.process.node_start import NodeStart, parameter_files
 from rrr_traj_planner.nodes.process.service_node import ServiceNode
 from rrr_traj_planner.planners.deadline import Deadline
 from rrr_traj_planner.planners.plan import Plan
@@ -104,7 +106,8 @@ class TrajectoryPlanner(ServiceNode):
 
     def _set_up(self, arguments: Sequence[str] | None) -> None:
         self._parameters_declared = DeclaredParameters(
-            self, PLANNER, PlannerConfig.from_values, lambda config: None)
+            self, PLANNER, PlannerConfig.from_values, lambda config: None,
+            [FilePath(file) for file in parameter_files([*sys.argv, *(arguments or ())])])
         self._trajectory = self.create_publisher(JointTrajectory, 'planned_trajectory', LATCHED)
         self._path = self.create_publisher(Path, 'planned_path', LATCHED)
         self._markers = self.create_publisher(MarkerArray, 'markers', LATCHED)
@@ -195,7 +198,8 @@ def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
     found, trace = None, ''
     deadline = Deadline(config.planning_time_limit, job.checkpoint, is_ending)
     try:
-        found = plan(config.model, config.limits, planning_request(request, config, deadline))
+        wanted = planning_request(request, config, deadline)
+        found = plan(config.model, config.limits_for(wanted.planner_id), wanted)
         planning_time = job.run_time()
         with step('conversion to the response message'):
             response = success(found, config, deadline)

@@ -79,7 +79,8 @@ class NodeStart:
         log, given = self._node.get_logger(), self._parameters.given
         log.info(self._text)
         undeclared = [name for name in given if not self._node.has_parameter(name)]
-        for text in unused_warnings(undeclared, self._parameters.joint_names):
+        for text in (*self._parameters.warnings,
+                     *unused_warnings(undeclared, self._parameters.joint_names)):
             log.warning(text)
         for file in self._unused:
             log.warning(f'parameter file {file} has no parameters for this node, {self._name}')

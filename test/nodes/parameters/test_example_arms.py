@@ -17,10 +17,10 @@
 from __future__ import annotations
 
 from helpers.places import CONFIG, ROOT
-from helpers.random_chains import AnyArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits, UNITS
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.urdf_arm import read_urdf
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.nodes.parameters.configuration_files import shipped_folder
@@ -70,7 +70,7 @@ def test_torque_suffices_for_full_acceleration_at_full_speed_nearly_everywhere(n
                for limit in (limits.max_velocity, limits.max_acceleration))
     friction = arm.friction.viscous * qd + arm.friction.coulomb * np.sign(qd)
     still = np.zeros_like(q)
-    model = AnyArm(arm.chain)
+    model = RobotModel(arm.chain)
     tau, holding = inverse_dynamics(model, q, qd, qdd) + friction, inverse_dynamics(
         model, q, still, still)
     assert (np.abs(holding) <= 0.7 * limits.max_effort).all()
