@@ -123,7 +123,10 @@ class Client(Node):
               f'{1e3 * response.planning_time:.0f} ms: {response.via_times[-1]:.3f} s, '
               f'{counted(len(response.trajectory.points), "point")}', flush=True)
         planned = trajectory_points(response.trajectory)
-        self._go_to(planned.positions[0], task, config)
+        rest = self._go_to(planned.positions[0], task, config)
+        if np.abs(rest - planned.positions[0]).max() > AT_START:
+            response = self._planned_from(rest, task, config)
+            planned = trajectory_points(response.trajectory)
         start = self._execute(response.trajectory, 'executing')
         recorded, torque = _recorded(list(self._states), config, start)
         return Run(task, config, response, planned, recorded, torque)
@@ -176,11 +179,16 @@ class Client(Node):
         answer = self._answer(self._get_parameters, GetParameters.Request(names=names))
         return dict(zip(names, map(parameter_value_to_python, answer.values)))
 
-    def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
-        """Move the arm to the start of the motion, if it is elsewhere."""
+    def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> Array:
+        """
+        Move the arm to the first via point, if it is elsewhere, and return where it rests [rad].
+
+        That is not the start of the motion if the arm comes there in another posture, which
+        happens if its postures have no names to ask for.
+        """
         state = self._states[-1]
         if np.abs(_in_order([state], config, 'position')[0] - q).max() <= AT_START:
-            return
+            return q
         request = plan_request(replace(
             task, via_points=task.via_points[:1], segment_durations=np.array([])))
         posture = posture_of(config.model, q)
@@ -188,7 +196,18 @@ class Client(Node):
             request.elbow, request.shoulder = posture.elbow or '', posture.shoulder or ''
         request.start_state.name = list(state.name)
         request.start_state.position = list(state.position)
-        self._execute(self._planned(request).trajectory, 'moving to the first via point')
+        way = self._planned(request).trajectory
+        self._execute(way, 'moving to the first via point')
+        return np.array(way.points[-1].positions)
+
+    def _planned_from(self, q: Array, task: Task, config: PlannerConfig) -> Any:
+        """Return the plan that begins at the first via point in the posture of q [rad]."""
+        request = plan_request(replace(task, via_points=task.via_points[1:]))
+        request.start_state.name = list(config.model.joint_names)
+        request.start_state.position = q.tolist()
+        response = self._planned(request)
+        response.via_times = [0.0, *response.via_times]
+        return response
 
     def _planned(self, request: PlanTrajectory.Request) -> Any:
         response = self._answer(self._plan, request)

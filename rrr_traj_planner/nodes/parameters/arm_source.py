@@ -131,7 +131,9 @@ def arm_source(given: Values, folder_of: Callable[[str, str], Path] = in_working
         **used, **limits, 'friction.viscous': arm.friction.viscous.tolist(),
         'friction.coulomb': arm.friction.coulomb.tolist(),
         'initial_positions': _start({**limits, **given}, names)}
-    return ArmSource(names, values, (*arm.warnings, *_lacking(limits, given, names)))
+    warnings = [text for text in arm.warnings
+                if not text.startswith(tuple(_of_replaced({**in_file, **given}, arm)))]
+    return ArmSource(names, values, (*warnings, *_lacking(limits, given, names)))
 
 
 def _check(prefix: str, row: Any, value: Any) -> None:
@@ -207,6 +209,14 @@ def _bounds(arm: UrdfArm) -> Iterator[tuple[str, str, float]]:
         for kind in KINDS:
             values = getattr(arm, f'max_{kind}', None)
             yield joint, kind, float('inf') if values is None else float(values[i])
+
+
+def _of_replaced(limits: Values, arm: UrdfArm) -> Iterator[str]:
+    """Yield how warnings of `urdf_limits` begin of limits that are given elsewhere."""
+    for joint, kind, _ in _bounds(arm):
+        if f'joint_limits.{joint}.max_{kind}' in limits:
+            yield f'joint {quoted(joint)}: {kind} '
+            yield f'joint {quoted(joint)} has no limit on {kind}'
 
 
 def _limits(given: Values, in_file: Values, arm: UrdfArm) -> dict[str, Any]:

@@ -77,6 +77,7 @@ class PlannerConfig:
     planning_time_limit: float
     max_points: int
     max_via_points: int
+    urdf: str  # empty: the thesis's kind of arm
 
     @classmethod
     def from_values(cls, values: Values) -> PlannerConfig:
@@ -109,7 +110,7 @@ class PlannerConfig:
             model, joint_limits(values),
             default_max_acceleration=(
                 values['default_max_acceleration'] if values['robot_description'] else inf),
-            half_transition=values['poly_414.t_acc'],
+            half_transition=values['poly_414.t_acc'], urdf=values['robot_description'],
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
                 'max_deviation', 'start_state_tolerance', 'max_tip_speed', 'steady_zones',

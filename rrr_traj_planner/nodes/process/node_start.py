@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 from pathlib import Path
 import sys
 from typing import Any
@@ -145,7 +146,11 @@ def _limits_text(limits: JointLimits, joint_names: Sequence[str]) -> str:
     units = (('max_velocity', 'rad/s'), ('max_acceleration', 'rad/s^2'), ('max_jerk', 'rad/s^3'),
              ('max_effort', 'N m'))
     return '; '.join(
-        f'{joint} {limits.min_position[i]:.4g} to {limits.max_position[i]:.4g} rad' + ''.join(
+        f'{joint} {_range_text(limits.min_position[i], limits.max_position[i])}' + ''.join(
             f', {value:.4g} {unit}' for name, unit in units
-            if (value := getattr(limits, name)[i]) < float('inf'))
+            if (value := getattr(limits, name)[i]) < inf)
         for i, joint in enumerate(joint_names))
+
+
+def _range_text(low: float, high: float) -> str:
+    return 'without range' if low == -inf and high == inf else f'{low:.4g} to {high:.4g} rad'
