@@ -41,7 +41,8 @@ def limits_of(name):
 
 def test_all_are_installed():
     files = {path.name for path in (CONFIG / 'arms').iterdir()}
-    assert files == {f'{name}{end}' for name in ARMS for end in ('.urdf', '_limits.yaml')}
+    assert files == {f'{name}{end}' for name in ARMS for end in (
+        '.urdf', '.yaml', '_arm.yaml', '_limits.yaml')}
     assert files <= {path.name for path in (shipped_folder() / 'arms').iterdir()}
     assert len(ARMS) == 6
 
