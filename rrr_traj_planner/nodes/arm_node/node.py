@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 import sys
 from time import monotonic_ns
 from typing import Any
@@ -45,9 +44,10 @@ from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, OwnClock, QU
 from rrr_traj_planner.nodes.arm_node.arm_view import ArmView
 from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
+from rrr_traj_planner.nodes.parameters.parameter_files import files_given
 from rrr_traj_planner.nodes.parameters.table import ARM
 from rrr_traj_planner.nodes.process.node_construction import destroyed_on_error
-from rrr_traj_planner.nodes.process.node_start import NodeStart, parameter_files
+from rrr_traj_planner.nodes.process.node_start import NodeStart
 from rrr_traj_planner.nodes.process.service_node import ServiceNode
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
@@ -93,7 +93,7 @@ class SimulatedArm(ServiceNode):
     def _set_up(self, arguments: Sequence[str] | None) -> None:
         self._parameters_declared = DeclaredParameters(
             self, ARM, ArmConfig.from_values, self._configure,
-            [Path(file) for file in parameter_files([*sys.argv, *(arguments or ())])])
+            files_given([*sys.argv, *(arguments or ())]))
         config = self._parameters_declared.config
         self._joint_names = config.settings.model.joint_names
         self._arm = ControlledArm(config.settings, config.initial_positions)

@@ -192,9 +192,9 @@ def _faults(given: Values, in_file: Values, arm: UrdfArm) -> Iterator[str]:
     """Yield what contradicts a URDF: another arm's description, and limits that nothing gives."""
     both = [name for name in given if name in rows_of(ARM, ()) and name.startswith('arm.')]
     if both:
-        more = len(both) - MAX_SHOWN
-        yield (f'{URDF} and {", ".join(both[:MAX_SHOWN])}' + (f' and {more} more' if more > 0
-               else '') + ' are given: lengths, masses and inertias are the URDF\'s'
+        more = f' and {len(both) - MAX_SHOWN} more' if len(both) > MAX_SHOWN else ''
+        yield (f'{URDF} and {", ".join(both[:MAX_SHOWN])}{more} are given: lengths, masses and '
+               "inertias are the URDF's"
                + (', and gravity is a parameter of that name' if 'arm.gravity' in both else ''))
     for joint, kind, bound in _bounds(arm):
         has, most = (f'joint_limits.{joint}.{x}' for x in (f'has_{kind}_limits', f'max_{kind}'))

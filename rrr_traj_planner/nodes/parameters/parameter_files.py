@@ -30,6 +30,8 @@ import yaml
 # Sections that apply to the planner node; values of later ones take precedence.
 NODES = ('/**', 'trajectory_planner', '/trajectory_planner')
 
+BOTH = ('/trajectory_planner', '/simulated_arm')
+
 
 def planner_config(file: Path, limits: Path | None = None) -> PlannerConfig:
     """
@@ -83,6 +85,49 @@ def has_section_for(file: Path, node: str) -> bool:
         return any(True for _ in _sections(file, node))
     except (OSError, UnicodeDecodeError, yaml.YAMLError):
         return True
+
+
+def files_given(arguments: Sequence[str]) -> list[Path]:
+    """
+    Return the parameter files on a command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        The command line.
+
+    Returns
+    -------
+    list of Path
+        In order.
+
+    """
+    return [Path(file) for option, file in zip(arguments, arguments[1:])
+            if option == '--params-file']
+
+
+def gives(file: Path, name: str) -> bool:
+    """
+    Return whether a parameter file gives one of the two nodes a value.
+
+    Parameters
+    ----------
+    file : Path
+        A ROS parameter file.
+    name : str
+        The parameter, at the top of a section.
+
+    Returns
+    -------
+    bool
+        False also if the file cannot be read: ROS reports that itself.
+
+    """
+    try:
+        return any(isinstance(values, dict) and bool(values.get(name)) for node in BOTH
+                   for values in _sections(file, node))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError):
+        return False
 
 
 def folder_of_value(files: Sequence[Path], node: str, name: str, value: Any) -> Path:

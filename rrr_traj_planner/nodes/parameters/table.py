@@ -86,10 +86,10 @@ TABLE: tuple[Row, ...] = (
     Row('tip_frame', 'tip', "frame at the arm's tip", read_only=True),
     Row('link_names', ['link_1', 'link_2', 'link_3'], "the links' frames, in robot_description",
         read_only=True, nodes=(ARM,)),
-    Row('robot_description', '', "the arm as a URDF: its text, or the path of its file; empty: the "
-        'arm of arm.*', read_only=True),
-    Row('joint_limits_file', '', "path of a MoveIt joint_limits.yaml, for limits that joint_limits "
-        'does not give; empty: none', read_only=True),
+    Row('robot_description', '', 'the arm as a URDF: its text, or the path of its file; empty: '
+        'the arm of arm.*', read_only=True),
+    Row('joint_limits_file', '', 'path of a MoveIt joint_limits.yaml, for limits that '
+        'joint_limits does not give; empty: none', read_only=True),
     Row('arm.d1', 0.5, 'height of joint axis 2 above the base', 'm', -100.0, 100.0, True),
     Row('arm.a2', 0.9, 'length of the upper arm', 'm', 1e-3, 100.0, True),
     Row('arm.d4', 0.7, 'length of the forearm', 'm', 1e-3, 100.0, True),

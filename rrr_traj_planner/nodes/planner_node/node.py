@@ -19,7 +19,6 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from pathlib import Path as FilePath
 import sys
 from time import perf_counter
 import traceback
@@ -40,6 +39,7 @@ from rrr_traj_planner.nodes.output.marker_messages import no_plan_markers, plan_
 from rrr_traj_planner.nodes.output.message_times import seconds
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
+from rrr_traj_planner.nodes.parameters.parameter_files import files_given
 from rrr_traj_planner.nodes.parameters.table import PLANNER
 from rrr_traj_planner.nodes.planner_node.planning_answer import failure, refusal, success, tip_path
 from rrr_traj_planner.nodes.planner_node.planning_request import planning_request
@@ -47,7 +47,7 @@ from rrr_traj_planner.nodes.planner_node.request_statistics import RequestStatis
 from rrr_traj_planner.nodes.planner_node.scheduler import Job
 from rrr_traj_planner.nodes.planner_node.worker_pool import WorkerPool
 from rrr_traj_planner.nodes.process.node_construction import destroyed_on_error
-from rrr_traj_planner.nodes.process.node_start import NodeStart, parameter_files
+from rrr_traj_planner.nodes.process.node_start import NodeStart
 from rrr_traj_planner.nodes.process.service_node import ServiceNode
 from rrr_traj_planner.planners.deadline import Deadline
 from rrr_traj_planner.planners.plan import Plan
@@ -107,7 +107,7 @@ class TrajectoryPlanner(ServiceNode):
     def _set_up(self, arguments: Sequence[str] | None) -> None:
         self._parameters_declared = DeclaredParameters(
             self, PLANNER, PlannerConfig.from_values, lambda config: None,
-            [FilePath(file) for file in parameter_files([*sys.argv, *(arguments or ())])])
+            files_given([*sys.argv, *(arguments or ())]))
         self._trajectory = self.create_publisher(JointTrajectory, 'planned_trajectory', LATCHED)
         self._path = self.create_publisher(Path, 'planned_path', LATCHED)
         self._markers = self.create_publisher(MarkerArray, 'markers', LATCHED)

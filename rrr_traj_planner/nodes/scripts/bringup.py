@@ -93,10 +93,13 @@ def describes_an_arm(ros_arguments: Sequence[str]) -> bool:
     Returns
     -------
     bool
-        True for `-p [NODE:]robot_description:=...`.
+        True for `-p [NODE:]robot_description:=...`, and for a parameter file that has it.
 
     """
-    return any(re.match(r'([^:]*:)?robot_description:=', a) for a in ros_arguments)
+    from rrr_traj_planner.nodes.parameters.parameter_files import files_given, gives
+
+    return any(re.match(r'([^:]*:)?robot_description:=', a) for a in ros_arguments) or any(
+        gives(file, 'robot_description') for file in files_given(ros_arguments))
 
 
 def node_arguments(parameters: Path | None, ros_arguments: Sequence[str]) -> list[str]:

@@ -60,12 +60,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--check', metavar='URDF',
-                        help="print what a URDF is understood to say: a file, or one of the "
+                        help='print what a URDF is understood to say: a file, or one of the '
                              "package's config/arms/")
     parser.add_argument('--base-frame', metavar='LINK',
-                        help='of --check: the link at the base (default: base_link, else the root)')
+                        help='of --check: link at the base (default: base_link, else the root)')
     parser.add_argument('--tip-frame', metavar='LINK',
-                        help='of --check: the link at the tip (default: tip, else the only leaf)')
+                        help='of --check: link at the tip (default: tip, else the only leaf)')
 
 
 def _instead(options: argparse.Namespace, _: list[str]) -> int | None:

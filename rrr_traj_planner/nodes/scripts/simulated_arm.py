@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rrr_traj_planner.nodes.process.node_runner import create_node, end_ros, run_node, start_ros
@@ -72,8 +71,8 @@ def _print_urdf(ros_arguments: list[str]) -> int:
     from rclpy.node import Node
     from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
     from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
+    from rrr_traj_planner.nodes.parameters.parameter_files import files_given
     from rrr_traj_planner.nodes.parameters.table import ARM
-    from rrr_traj_planner.nodes.process.node_start import parameter_files
 
     node = None
     try:
@@ -82,7 +81,7 @@ def _print_urdf(ros_arguments: list[str]) -> int:
             'simulated_arm', enable_rosout=False, start_parameter_services=False))
         print(DeclaredParameters(
             node, ARM, ArmConfig.from_values, lambda config: None,
-            [Path(file) for file in parameter_files(ros_arguments)]).config.urdf, end='')
+            files_given(ros_arguments)).config.urdf, end='')
     finally:
         if node is not None:
             node.destroy_node()

@@ -177,9 +177,9 @@ def test_a_limit_that_the_urdf_lacks_is_warned_of_unless_it_is_given():
 
 @pytest.mark.parametrize(('given', 'text'), [
     ({'arm.d1': 0.5, 'arm.mass': [1.0, 1.0, 1.0]},
-     "robot_description and arm.d1, arm.mass are given: lengths, masses and inertias are the "
+     'robot_description and arm.d1, arm.mass are given: lengths, masses and inertias are the '
      "URDF's"),
-    ({'arm.gravity': 9.81}, "robot_description and arm.gravity are given: lengths, masses and "
+    ({'arm.gravity': 9.81}, 'robot_description and arm.gravity are given: lengths, masses and '
      "inertias are the URDF's, and gravity is a parameter of that name"),
     ({'joint_names': ['j2', 'j1', 'j3']},
      "parameter joint_names is ['j2', 'j1', 'j3'], must be ['j1', 'j2', 'j3'], as in the URDF "

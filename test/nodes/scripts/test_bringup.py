@@ -98,7 +98,8 @@ def test_node_that_cannot_start_ends_bringup_with_its_code(tmp_path):
 @pytest.mark.parametrize('arguments', [
     ('--arm', 'go1_leg_arm.yaml'),
     ('--joint-limits', 'go1_leg_limits.yaml', '--ros-args', '-p',
-     f'robot_description:={CONFIG}/arms/go1_leg.urdf')])
+     f'robot_description:={CONFIG}/arms/go1_leg.urdf'),
+    ('--ros-args', '--params-file', f'{CONFIG}/arms/go1_leg_arm.yaml')])
 def test_both_nodes_have_the_arm_of_a_urdf(ros, tmp_path, arguments):
     states, described = ros.listen(JointState, 'joint_states'), ros.listen(
         String, 'robot_description', LATCHED)
