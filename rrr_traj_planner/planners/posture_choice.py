@@ -116,9 +116,9 @@ def path_beginnings(problem: PlanningProblem) -> list[Array]:
     asked_for = found[in_posture(model, found, asked)]
     if not len(asked_for):
         raise UnreachableError(f'via point 0 is out of reach with {asked}', 0.0, 0)
-    times = {p: _time(problem, p, THROUGH) for p in {posture_of(model, q) for q in asked_for}
-             if p is not None}
-    return sorted(asked_for, key=lambda q: times.get(posture_of(model, q), np.inf))
+    postures = [posture_of(model, q) for q in asked_for]
+    times = {p: np.inf if p is None else _time(problem, p, THROUGH) for p in set(postures)}
+    return [asked_for[k] for k in np.argsort([times[p] for p in postures], kind='stable')]
 
 
 def _away_from_axis(problem: PlanningProblem, found: Array) -> Array:

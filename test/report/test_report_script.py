@@ -22,6 +22,7 @@ import sys
 import time
 
 from helpers.places import ROOT
+import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.parameter_files import planner_config
@@ -64,6 +65,20 @@ def test_plan_is_drawn_without_ros_and_nothing_is_written_elsewhere(tmp_path):
     assert 'Peaks of septic' in (tmp_path / 'out' / 'index.html').read_text()
 
 
+def test_plan_of_a_urdf_s_arm_is_drawn(tmp_path):
+    limits = tmp_path / 'slow.yaml'
+    limits.write_text('joint_limits:\n' + ''.join(
+        f'  joint_{i}: {{max_velocity: 0.5, max_acceleration: 9.0}}\n' for i in (1, 2, 3)))
+    code, _, errors = ended(report(
+        '--plan', 'go1_leg.yaml', '--joint-limits', limits, '--output', 'out', cwd=tmp_path,
+        code=without('rclpy', 'ament_index_python')))
+    assert (code, errors) == (0, '')
+    profile = np.genfromtxt(tmp_path / 'out' / 'profiles_cycloid.csv', delimiter=',', names=True)
+    speed = [profile[name] for name in profile.dtype.names if 'velocity' in name]
+    assert len(speed) == 3
+    assert np.abs(speed).max() == pytest.approx(0.5, abs=1e-3)
+
+
 def test_refused_plan_is_shown_with_its_reason(tmp_path):
     (tmp_path / 'heavy.yaml').write_text(HEAVY)
     code, _, errors = ended(report('--plan', 'heavy.yaml', cwd=tmp_path))
@@ -96,7 +111,8 @@ def test_one_refusal_does_not_hide_the_other_plan(tmp_path):
     (('--plan', 'table_6_1.yaml', '--output', '/proc/report'), 1,
      'report: cannot write the page: '),
     ((), 2, 'one of the arguments --thesis --plan is required'),
-    (('--thesis', 'a', '--planner', 'cycloid'), 2, '--planner and --output go with --plan'),
+    (('--thesis', 'a', '--planner', 'cycloid'), 2,
+     '--planner, --output and --joint-limits go with --plan'),
     (('--thesis', 'a', '--plan', 'b'), 2, 'not allowed with argument')])
 def test_wrong_arguments_are_reported(tmp_path, arguments, code, text):
     found, _, errors = ended(report(*arguments, cwd=tmp_path))

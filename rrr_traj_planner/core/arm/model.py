@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+import os
 
 import numpy as np
 from rrr_traj_planner.core.arm.chain import Chain
@@ -26,6 +27,7 @@ from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.inertia_check import lacking_inertia
 from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.tables import ArmTables, tables_of
+from rrr_traj_planner.core.arm.urdf_arm import read_urdf
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
@@ -44,7 +46,8 @@ class RobotModel(ReadOnlyArrays):
     """
     An arm, leg or finger of three revolute joints.
 
-    The default is the thesis's arm (appendix B). `from_lengths` makes others of its kind.
+    The default is the thesis's arm (appendix B). `from_lengths` makes others of its kind,
+    `from_urdf` any.
 
     Parameters
     ----------
@@ -119,6 +122,38 @@ class RobotModel(ReadOnlyArrays):
         if model.lacking_inertia:
             raise InvalidInputError(model.lacking_inertia)
         return model
+
+    @classmethod
+    def from_urdf(cls, text_or_path: str | os.PathLike[str], base: str = '', tip: str = ''
+                  ) -> RobotModel:
+        """
+        Return the arm that a URDF describes, with gravity along -z of the base.
+
+        The names of the joints and their friction are the URDF's; its limits and warnings are in
+        `urdf_arm.read_urdf`.
+
+        Parameters
+        ----------
+        text_or_path : str or path
+            The URDF, or the path of its file: a text that does not begin with '<'.
+        base : str
+            Name of the link in whose frame the arm is given; empty: the root of the tree.
+        tip : str
+            Name of the link whose origin is the tip; empty: the only leaf below the base.
+
+        Returns
+        -------
+        RobotModel
+            The arm.
+
+        Raises
+        ------
+        InvalidInputError
+            If there is no such file, or it describes no such arm.
+
+        """
+        arm = read_urdf(text_or_path, base, tip)
+        return cls(arm.chain, friction=arm.friction, joint_names=arm.joint_names)
 
     @cached_property
     def tables(self) -> ArmTables:

@@ -129,9 +129,8 @@ def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Pos
         raise _unreachable(model, points[i], posture, i)
     outside = out_of_range(q, limits) & ~_turning(limits)
     outside[free[of_point], 0] = False
-    cost = IMPOSSIBLE * 2.0 * outside.any(axis=1)
-    if can_hold is not None:
-        cost = cost + IMPOSSIBLE * ~can_hold(q)
+    impossible = 2 * outside.any(axis=1) + (0 if can_hold is None else ~can_hold(q))
+    cost = IMPOSSIBLE * impossible.astype(float)
     q[free[of_point], 0] = np.nan
     least = np.full(len(points), np.inf)
     np.minimum.at(least, of_point, cost)

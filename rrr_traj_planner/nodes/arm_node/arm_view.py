@@ -24,7 +24,6 @@ from typing import Any
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
-from rrr_traj_planner.core.arm.urdf import urdf
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.output.latched import LATCHED
@@ -38,25 +37,6 @@ TRAIL_STEP = 1.0 / 80.0  # distance of the trail's points, as a fraction of the 
 TRAIL_POINTS = 200       # largest number of the trail's points; rclpy takes some 10 us for each
 MOVED = 1e-6             # least motion that causes new markers, as a fraction of the arm's size
 STILL_PERIOD = 1.0       # s between markers while the arm does not move
-
-
-def description(config: ArmConfig) -> str:
-    """
-    Return the URDF of an arm.
-
-    Parameters
-    ----------
-    config : ArmConfig
-        The arm; its payload is not part of the URDF.
-
-    Returns
-    -------
-    str
-        XML.
-
-    """
-    settings = config.settings
-    return urdf(settings.model, settings.limits, config.frames)
 
 
 class ArmView:
@@ -124,10 +104,9 @@ class ArmView:
             The arm; its model and frames must be unchanged.
 
         """
-        text = description(config)
-        if text != self._description:
-            self._description = text
-            self._describe(String(data=text))
+        if config.urdf != self._description:
+            self._description = config.urdf
+            self._describe(String(data=config.urdf))
         if config.marker_rate != self._rate:
             self._rate = config.marker_rate
             self._timer.cancel()

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+import sys
 from time import monotonic_ns
 from typing import Any
 
@@ -43,6 +44,7 @@ from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, OwnClock, QU
 from rrr_traj_planner.nodes.arm_node.arm_view import ArmView
 from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
+from rrr_traj_planner.nodes.parameters.parameter_files import files_given
 from rrr_traj_planner.nodes.parameters.table import ARM
 from rrr_traj_planner.nodes.process.node_construction import destroyed_on_error
 from rrr_traj_planner.nodes.process.node_start import NodeStart
@@ -90,7 +92,8 @@ class SimulatedArm(ServiceNode):
 
     def _set_up(self, arguments: Sequence[str] | None) -> None:
         self._parameters_declared = DeclaredParameters(
-            self, ARM, ArmConfig.from_values, self._configure)
+            self, ARM, ArmConfig.from_values, self._configure,
+            files_given([*sys.argv, *(arguments or ())]))
         config = self._parameters_declared.config
         self._joint_names = config.settings.model.joint_names
         self._arm = ControlledArm(config.settings, config.initial_positions)

@@ -116,14 +116,17 @@ class Client(Node):
         self.check_alone()
         if bag is not None:
             self._wait(demo_recorder(self, bag).is_connected, 'the topics to record')
-        config = self._planner_config()
+        config = self._planner_config(task)
         response = self._planned(plan_request(task))
         print(f'planned {counted(len(task.via_points), "via point")} with '
               f"'{task.planner_id or config.default_planner_id}' in "
               f'{1e3 * response.planning_time:.0f} ms: {response.via_times[-1]:.3f} s, '
               f'{counted(len(response.trajectory.points), "point")}', flush=True)
         planned = trajectory_points(response.trajectory)
-        self._go_to(planned.positions[0], task, config)
+        rest = self._go_to(planned.positions[0], task, config)
+        if np.abs(rest - planned.positions[0]).max() > AT_START:
+            response = self._planned_from(rest, task, config)
+            planned = trajectory_points(response.trajectory)
         start = self._execute(response.trajectory, 'executing')
         recorded, torque = _recorded(list(self._states), config, start)
         return Run(task, config, response, planned, recorded, torque)
@@ -166,20 +169,26 @@ class Client(Node):
         names = [f'{prefix}/{node}' for node in NODES]
         return [name for name in names if is_claimed(domain, name)]
 
-    def _planner_config(self) -> PlannerConfig:
-        """Return the planner's configuration, read from the running node."""
+    def _planner_config(self, task: Task) -> PlannerConfig:
+        """Return the planner's configuration for a task, read from the running node."""
         names = self._parameter_values(['joint_names'])['joint_names']
-        return PlannerConfig.from_values(self._parameter_values(list(rows_of(PLANNER, names))))
+        config = PlannerConfig.from_values(self._parameter_values(list(rows_of(PLANNER, names))))
+        return replace(config, limits=config.limits_for(task.planner_id))
 
     def _parameter_values(self, names: list[str]) -> dict[str, Any]:
         answer = self._answer(self._get_parameters, GetParameters.Request(names=names))
         return dict(zip(names, map(parameter_value_to_python, answer.values)))
 
-    def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
-        """Move the arm to the start of the motion, if it is elsewhere."""
+    def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> Array:
+        """
+        Move the arm to the first via point, if it is elsewhere, and return where it rests [rad].
+
+        That is not the start of the motion if the arm comes there in another posture, which
+        happens if its postures have no names to ask for.
+        """
         state = self._states[-1]
         if np.abs(_in_order([state], config, 'position')[0] - q).max() <= AT_START:
-            return
+            return q
         request = plan_request(replace(
             task, via_points=task.via_points[:1], segment_durations=np.array([])))
         posture = posture_of(config.model, q)
@@ -187,7 +196,18 @@ class Client(Node):
             request.elbow, request.shoulder = posture.elbow or '', posture.shoulder or ''
         request.start_state.name = list(state.name)
         request.start_state.position = list(state.position)
-        self._execute(self._planned(request).trajectory, 'moving to the first via point')
+        way = self._planned(request).trajectory
+        self._execute(way, 'moving to the first via point')
+        return np.array(way.points[-1].positions)
+
+    def _planned_from(self, q: Array, task: Task, config: PlannerConfig) -> Any:
+        """Return the plan that begins at the first via point in the posture of q [rad]."""
+        request = plan_request(replace(task, via_points=task.via_points[1:]))
+        request.start_state.name = list(config.model.joint_names)
+        request.start_state.position = q.tolist()
+        response = self._planned(request)
+        response.via_times = [0.0, *response.via_times]
+        return response
 
     def _planned(self, request: PlanTrajectory.Request) -> Any:
         response = self._answer(self._plan, request)

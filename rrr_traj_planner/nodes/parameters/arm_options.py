@@ -72,11 +72,12 @@ def friction(values: Values) -> Friction:
     Returns
     -------
     Friction
-        Not known to the controller.
+        The planner has no `friction.known_to_controller`.
 
     """
     with named({name: f'friction.{name}' for name in ('viscous', 'coulomb')}):
-        return Friction(values['friction.viscous'], values['friction.coulomb'])
+        return Friction(values['friction.viscous'], values['friction.coulomb'],
+                        values.get('friction.known_to_controller', False))
 
 
 def tolerances(values: Values) -> Tolerances:

@@ -26,7 +26,9 @@ from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arm.urdf import FrameNames
+from rrr_traj_planner.core.arm.payload import with_payload
+from rrr_traj_planner.core.arm.urdf import FrameNames, urdf
+from rrr_traj_planner.core.arm.urdf_limits import NO_RANGE
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.control.computed_torque import ControllerGains
 from rrr_traj_planner.core.control.trajectory_validation import Rules
@@ -39,7 +41,9 @@ from rrr_traj_planner.nodes.parameters.arm_options import (
     physical_options,
     trajectory_rules,
 )
+from rrr_traj_planner.nodes.parameters.arm_source import read
 from rrr_traj_planner.nodes.parameters.error_names import from_group, named
+from rrr_traj_planner.planners.effort_limits import checked_limits
 from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]
@@ -49,15 +53,20 @@ Values = Mapping[str, Any]
 # grows if it is above 2.
 MAX_DAMPING_PER_STEP = 1.0
 
+# Planners in joint space that need no acceleration limit where there is one of effort; those along
+# paths do not either.
+BY_EFFORT = ('time_optimal',)
+
 
 @dataclass(frozen=True, eq=False)
 class PlannerConfig:
     """The planner node's configuration; times in [s], lengths in [m]."""
 
-    model: RobotModel
+    model: RobotModel  # with its payload
     limits: JointLimits
     base_frame: str
     tip_frame: str
+    default_max_acceleration: float  # infinite for the thesis's kind of arm
     default_planner_id: str
     sample_period: float
     max_deviation: float
@@ -68,6 +77,7 @@ class PlannerConfig:
     planning_time_limit: float
     max_points: int
     max_via_points: int
+    urdf: str  # empty: the thesis's kind of arm
 
     @classmethod
     def from_values(cls, values: Values) -> PlannerConfig:
@@ -94,13 +104,41 @@ class PlannerConfig:
             planner(values['default_planner_id'])
         except InvalidInputError as error:
             raise InvalidInputError(f'default_planner_id: {error}') from None
+        with named({'mass': 'payload.mass'}):
+            model = with_payload(robot_model(values), values['payload.mass'])
         return cls(
-            _robot_model(values), joint_limits(values),
-            half_transition=values['poly_414.t_acc'],
+            model, joint_limits(values),
+            default_max_acceleration=(
+                values['default_max_acceleration'] if values['robot_description'] else inf),
+            half_transition=values['poly_414.t_acc'], urdf=values['robot_description'],
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
                 'max_deviation', 'start_state_tolerance', 'max_tip_speed', 'steady_zones',
                 'planning_time_limit', 'max_points', 'max_via_points')})
+
+    def limits_for(self, *planner_ids: str) -> JointLimits:
+        """
+        Return the limits for planners, with `default_max_acceleration` where one needs it.
+
+        Parameters
+        ----------
+        *planner_ids : str
+            Their ids; empty: the default one.
+
+        Returns
+        -------
+        JointLimits
+            The same object where no acceleration limit is missing, or none is needed.
+
+        """
+        missing = np.isinf(self.limits.max_acceleration)
+        if not missing.any() or np.isinf(self.default_max_acceleration):
+            return self.limits
+        ids = [planner_id or self.default_planner_id for planner_id in planner_ids]
+        if all(i in BY_EFFORT or planner(i).plan_path is not None for i in ids):
+            missing &= np.isinf(checked_limits(self.model, self.limits).max_effort)
+        return replace(self.limits, max_acceleration=np.where(
+            missing, self.default_max_acceleration, self.limits.max_acceleration))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,6 +153,7 @@ class ArmConfig:
     real_time_factor: float
     frames: FrameNames
     marker_rate: float  # 0: none
+    urdf: str
 
     @classmethod
     def from_values(cls, values: Values) -> ArmConfig:
@@ -148,15 +187,16 @@ class ArmConfig:
                 f'with controller.damping_ratio {gains.damping_ratio:g} and physics_step '
                 f'{step:g} s')
         with named({'step': 'physics_step'}):
-            model = replace(_robot_model(values), friction=friction(values))
-            settings = ArmSettings(model, limits, gains, step,
+            settings = ArmSettings(robot_model(values), limits, gains, step,
                                    encoder=encoder(values, gains), **physical_options(values))
+        frames = frame_names(values)
         return cls(settings, values['publish_rate'], _initial_positions(values, limits),
                    trajectory_rules(values), values['publish_clock'], values['real_time_factor'],
-                   frame_names(values), values['marker_rate'])
+                   frames, values['marker_rate'],
+                   values['robot_description'] or urdf(settings.model, limits, frames))
 
 
-def _robot_model(values: Values) -> RobotModel:
+def robot_model(values: Values) -> RobotModel:
     """
     Return the arm's model.
 
@@ -168,26 +208,38 @@ def _robot_model(values: Values) -> RobotModel:
     Returns
     -------
     RobotModel
-        The model.
+        Without payload.
 
     Raises
     ------
     InvalidInputError
-        If the inertia matrix is singular in some pose, or names repeat.
+        If the inertia matrix of an arm without a URDF is singular in some pose, or names repeat.
 
     """
+    others = {'gravity': np.array(values['gravity']),
+              'rotor_inertia': np.array(values['rotor_inertia']), 'friction': friction(values),
+              'joint_names': values['joint_names']}
+    if values['robot_description']:
+        arm = read(values['robot_description'], values['base_frame'], values['tip_frame'])
+        return RobotModel(arm.chain, **others)
+    model = RobotModel(_lengths(values).chain(), **others)
+    if model.lacking_inertia:
+        raise InvalidInputError(model.lacking_inertia)
+    return model
+
+
+def _lengths(values: Values) -> ArmLengths:
     inertia = np.array([list(values[f'arm.inertia_{i}']) for i in (1, 2, 3)])
     parameters = {name: f'arm.{name}' for name in ('d1', 'a2', 'd4', 'l2', 'l3', 'mass')}
-    with named(parameters | {'gravity': 'arm.gravity'}):
-        lengths = ArmLengths(
+    with named(parameters):
+        return ArmLengths(
             **{name: values[parameter] for name, parameter in parameters.items()},
             inertia=inertia)
-        return RobotModel.from_lengths(lengths, values['arm.gravity'], values['joint_names'])
 
 
 def joint_limits(values: Values) -> JointLimits:
     """
-    Return the joints' limits, infinite where `has_..._limits` is false.
+    Return the joints' limits, infinite where `has_..._limits` is false or a range has no end.
 
     Parameters
     ----------
@@ -217,8 +269,10 @@ def joint_limits(values: Values) -> JointLimits:
             values[f'{joint}.max_{name}'] if values[f'{joint}.has_{name}_limits'] else inf
             for joint in joints])
         for name in ('velocity', 'acceleration', 'jerk', 'effort')}
-    return JointLimits(np.array([values[f'{joint}.min_position'] for joint in joints]),
-                       np.array([values[f'{joint}.max_position'] for joint in joints]), **largest)
+    low, high = (np.array([values[f'{joint}.{end}_position'] for joint in joints])
+                 for end in ('min', 'max'))
+    return JointLimits(np.where(low <= -NO_RANGE, -inf, low),
+                       np.where(high >= NO_RANGE, inf, high), **largest)
 
 
 def _initial_positions(values: Values, limits: JointLimits) -> Array:

@@ -30,6 +30,7 @@ from rrr_traj_planner.nodes.parameters.point_tables import (
 import yaml
 
 SOURCE_FOLDER = Path(__file__).resolve().parents[3] / 'config'  # of the source tree
+SHIPPED = ('.yaml', '.urdf')  # kinds of the package's own files
 FIELDS = ('planner_id', 'via_points', 'segment_durations', 'arm')
 NEEDED = 'must have via_points: [[x, y, z], ...] in m'
 
@@ -68,7 +69,7 @@ def read_task(file: str) -> Task:
     Parameters
     ----------
     file : str
-        A path, or the name of a file in the package's config/.
+        A path, or the name of a file in the package's config/ or config/arms/.
 
     Returns
     -------
@@ -81,13 +82,13 @@ def read_task(file: str) -> Task:
         If the file is missing or malformed; names the file, the line if known, and what is wrong.
 
     """
-    path = _found(file, Path.cwd())
+    path = found_file(file, Path.cwd())
     try:
         text = path.read_text(encoding='utf-8-sig')
         content, lines = _table(text) if path.suffix.lower() == '.csv' else _document(text)
         return Task(
             name=path.stem, via_points=listed_points(content['via_points'], lines),
-            arm=arm_file(_text(content, 'arm') or 'thesis_arm.yaml', path.parent),
+            arm=found_file(_text(content, 'arm') or 'thesis_arm.yaml', path.parent),
             planner_id=_text(content, 'planner_id'),
             segment_durations=_durations(content.get('segment_durations')))
     except (OSError, UnicodeDecodeError, InvalidInputError) as error:
@@ -144,14 +145,15 @@ def _check_keys(root: yaml.MappingNode) -> None:
         lines[name] = line
 
 
-def arm_file(name: str, folder: Path) -> Path:
+def found_file(name: str, folder: Path) -> Path:
     """
-    Return the path of an arm's parameter file.
+    Return the path of a file: given, or one of the package's.
 
     Parameters
     ----------
     name : str
-        A path, absolute or relative to the folder, or the name of a file in the package's config/.
+        A path, absolute or relative to the folder, or the name of a file in the package's config/
+        or config/arms/.
     folder : Path
         The folder that relative paths refer to.
 
@@ -166,7 +168,15 @@ def arm_file(name: str, folder: Path) -> Path:
         If there is no such file.
 
     """
-    return _found(name, folder)
+    shipped = (shipped_folder(), shipped_folder() / 'arms')
+    for path in (folder / name, *(place / name for place in shipped)):
+        if path.is_file():
+            return path.resolve()
+        if path.is_dir():
+            raise InvalidInputError(f"'{name}' is a folder, must be a file")
+    ending = Path(name).suffix if Path(name).suffix in SHIPPED else SHIPPED[0]
+    names = ', '.join(sorted(p.name for place in shipped for p in place.glob(f'*{ending}')))
+    raise InvalidInputError(f"no file '{name}' in {folder}, nor among the package's: {names}")
 
 
 def _text(content: dict[str, Any], field: str) -> str:
@@ -181,16 +191,6 @@ def _durations(value: Any) -> Array:
         for i, seconds in enumerate(value):
             check_number(f'segment_durations[{i}]', seconds)
     return finite_array('segment_durations', [] if value is None else value, (-1,))
-
-
-def _found(name: str, folder: Path) -> Path:
-    for path in (folder / name, shipped_folder() / name):
-        if path.is_file():
-            return path.resolve()
-        if path.is_dir():
-            raise InvalidInputError(f"'{name}' is a folder, must be a file")
-    shipped = ', '.join(sorted(p.name for p in shipped_folder().glob('*.yaml')))
-    raise InvalidInputError(f"no file '{name}' in {folder}, nor among the package's: {shipped}")
 
 
 def shipped_folder() -> Path:

@@ -17,7 +17,8 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from rcl_interfaces.msg import (
@@ -29,10 +30,13 @@ from rcl_interfaces.msg import (
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rrr_traj_planner.core.errors import InvalidInputError, RrrPlannerError
-from rrr_traj_planner.nodes.parameters.override_checks import check_given
+from rrr_traj_planner.nodes.parameters.arm_source import arm_source, LIMITS, URDF
+from rrr_traj_planner.nodes.parameters.parameter_files import folder_of_value
 from rrr_traj_planner.nodes.parameters.table import check_value, Row, rows_of
 
 Config = TypeVar('Config')
+
+RESOLVED = (URDF, LIMITS)  # declared with a file's text, and an absolute path
 
 
 class DeclaredParameters(Generic[Config]):
@@ -50,6 +54,9 @@ class DeclaredParameters(Generic[Config]):
         they contradict each other.
     changed : callable
         Called with the new configuration after parameters are set.
+    files : sequence of Path
+        The node's parameter files, in order: relative paths refer to the folder of the one that
+        has them.
 
     Attributes
     ----------
@@ -59,31 +66,31 @@ class DeclaredParameters(Generic[Config]):
         Parameter overrides by name: from files, the command line or the program.
     joint_names : list of str
         Names of the three joints.
+    warnings : tuple of str
+        About the arm's URDF.
 
     Raises
     ------
     InvalidInputError
-        If an override is out of range, a name is unknown, or limits of a renamed joint are
-        missing; with parameter, value and range.
+        If an override is out of range, a name is unknown, limits of a renamed joint are missing,
+        or a file is wrong; with parameter, value and range.
 
     """
 
     def __init__(self, node: Node, role: str, build: Callable[[Mapping[str, Any]], Config],
-                 changed: Callable[[Config], None]) -> None:
+                 changed: Callable[[Config], None], files: Sequence[Path] = ()) -> None:
         self._node, self._build, self._changed = node, build, changed
         # rclpy has no public access to overrides of undeclared parameters.
         self.given = {name: p.value for name, p in node._parameter_overrides.items()}
-        row = rows_of(role, ())['joint_names']
-        joint_names = self._declare(row)
-        self._rows = {row.name: row}
-        self._values = {row.name: joint_names}
-        _check_distinct(row, joint_names)
-        check_given(self.given, joint_names)
-        self.joint_names = joint_names
-        for row in rows_of(role, joint_names).values():
-            if row.name not in self._values:
-                self._values[row.name] = self._declare(row)
-                self._rows[row.name] = row
+        name = node.get_fully_qualified_name()
+        source = arm_source(self.given, lambda *value: folder_of_value(files, name, *value))
+        self.joint_names, self.warnings = source.joint_names, source.warnings
+        self._rows: dict[str, Row] = {}
+        self._values: dict[str, Any] = {}
+        for row in rows_of(role, self.joint_names).values():
+            row = row._replace(default=source.values.get(row.name, row.default))
+            self._values[row.name] = self._declare(row)
+            self._rows[row.name] = row
         self.config = build(self._values)
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
@@ -92,7 +99,8 @@ class DeclaredParameters(Generic[Config]):
         """Declare one parameter; return its override, or the default of the table."""
         # Dynamically typed at first: rclpy's own error messages do not contain the range.
         loose = ParameterDescriptor(dynamic_typing=True)
-        value = self._node.declare_parameter(row.name, row.default, loose).value
+        value = self._node.declare_parameter(
+            row.name, row.default, loose, ignore_override=row.name in RESOLVED).value
         try:
             check_value(row, value)
         except RrrPlannerError as error:
@@ -152,12 +160,6 @@ def descriptor(row: Row) -> ParameterDescriptor:
         result.integer_range = [
             IntegerRange(from_value=int(row.low), to_value=int(row.high), step=1)]
     return result
-
-
-def _check_distinct(row: Row, names: list[str]) -> None:
-    """Refuse repeated joint names: the joints would share the parameters of their limits."""
-    if len(set(names)) != len(names) or '' in names:
-        raise InvalidInputError(f'parameter {row.name} is {names}, must be {row.range_text}')
 
 
 def _plain(value: Any) -> Any:

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
@@ -30,7 +30,9 @@ MAX_SHOWN = 3      # unknown names in one message
 SIMILARITY = 0.75  # least ratio (difflib's; 1: equal) for a known name to be suggested
 
 
-def check_given(given: Mapping[str, Any], joint_names: Sequence[str]) -> None:
+def check_given(given: Mapping[str, Any], joint_names: Sequence[str],
+                in_file: Mapping[str, Any] | None = None,
+                faults_of_urdf: Iterable[str] | None = None) -> None:
     """
     Refuse unknown names in the nodes' parameter groups, and renamed joints without limits.
 
@@ -40,6 +42,10 @@ def check_given(given: Mapping[str, Any], joint_names: Sequence[str]) -> None:
         Parameter overrides by name.
     joint_names : sequence of str
         Names of the three joints.
+    in_file : mapping, optional
+        Limits of a file, by the parameters' names.
+    faults_of_urdf : iterable of str, optional
+        What contradicts the arm's URDF, which has limits too; None: it has no URDF.
 
     Raises
     ------
@@ -47,7 +53,9 @@ def check_given(given: Mapping[str, Any], joint_names: Sequence[str]) -> None:
         If there are any; with the most similar known name for each unknown one.
 
     """
-    faults = [*_missing_limits(given, joint_names), *_unknown(given, joint_names)]
+    if faults_of_urdf is None:
+        faults_of_urdf = _missing_limits({**(in_file or {}), **given}, joint_names)
+    faults = [*faults_of_urdf, *_unknown(given, joint_names)]
     if faults:
         raise InvalidInputError('; '.join(faults))
 

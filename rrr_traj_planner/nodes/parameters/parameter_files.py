@@ -16,23 +16,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 import re
 from typing import Any
 
-from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.nodes.parameters.arm_source import arm_source
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters.override_checks import check_given
 from rrr_traj_planner.nodes.parameters.table import check_value, PLANNER, rows_of
 import yaml
 
 # Sections that apply to the planner node; values of later ones take precedence.
 NODES = ('/**', 'trajectory_planner', '/trajectory_planner')
 
+BOTH = ('/trajectory_planner', '/simulated_arm')
 
-def planner_config(file: Path) -> PlannerConfig:
+
+def planner_config(file: Path, limits: Path | None = None) -> PlannerConfig:
     """
     Return the planner node's configuration from a parameter file.
 
@@ -40,6 +41,8 @@ def planner_config(file: Path) -> PlannerConfig:
     ----------
     file : Path
         A ROS parameter file: `/**:` or the node's name, `ros__parameters:`, values.
+    limits : Path, optional
+        A file of joint limits in place of the file's own `joint_limits_file`.
 
     Returns
     -------
@@ -53,7 +56,10 @@ def planner_config(file: Path) -> PlannerConfig:
 
     """
     try:
-        return _config(_values(file))
+        given = _values(file)
+        if limits is not None:
+            given['joint_limits_file'] = str(limits.absolute())
+        return config_of(given, file.parent)
     except (OSError, UnicodeDecodeError, yaml.YAMLError, InvalidInputError) as error:
         raise InvalidInputError(f'{file}: {" ".join(str(error).split())}') from None
 
@@ -75,28 +81,128 @@ def has_section_for(file: Path, node: str) -> bool:
         True also if the file cannot be read: ROS reports that itself.
 
     """
-    def sections(tree: Any, path: str) -> Iterator[str]:
+    try:
+        return any(True for _ in _sections(file, node))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError):
+        return True
+
+
+def files_given(arguments: Sequence[str]) -> list[Path]:
+    """
+    Return the parameter files on a command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        The command line.
+
+    Returns
+    -------
+    list of Path
+        In order.
+
+    """
+    return [Path(file) for option, file in zip(arguments, arguments[1:])
+            if option == '--params-file']
+
+
+def gives(file: Path, name: str) -> bool:
+    """
+    Return whether a parameter file gives one of the two nodes a value.
+
+    Parameters
+    ----------
+    file : Path
+        A ROS parameter file.
+    name : str
+        The parameter, at the top of a section.
+
+    Returns
+    -------
+    bool
+        False also if the file cannot be read: ROS reports that itself.
+
+    """
+    try:
+        return any(isinstance(values, dict) and bool(values.get(name)) for node in BOTH
+                   for values in _sections(file, node))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError):
+        return False
+
+
+def folder_of_value(files: Sequence[Path], node: str, name: str, value: Any) -> Path:
+    """
+    Return the folder that a parameter's relative path refers to.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        The node's parameter files; the last one that has a value counts.
+    node : str
+        The node's fully qualified name.
+    name : str
+        The parameter, at the top of a section.
+    value : object
+        Its value.
+
+    Returns
+    -------
+    Path
+        Of the file that gives this value; the working directory if none does.
+
+    """
+    for file in reversed(files):
+        try:
+            found = [section.get(name) for section in _sections(file, node)
+                     if isinstance(section, dict)]
+        except (OSError, UnicodeDecodeError, yaml.YAMLError):
+            continue
+        if value in found:
+            return file.absolute().parent
+    return Path.cwd()
+
+
+def _sections(file: Path, node: str) -> Iterator[Any]:
+    """Yield the parameters of a file's sections that apply to a node."""
+    def sections(tree: Any, path: str) -> Iterator[tuple[str, Any]]:
         for key, value in tree.items() if isinstance(tree, dict) else ():
             if key == 'ros__parameters':
-                yield path
+                yield path, value
             else:
                 yield from sections(value, f'{path}/{str(key).strip("/")}')
 
-    try:
-        found = list(sections(yaml.safe_load(file.read_text()), ''))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError):
-        return True
-    return any(re.fullmatch(re.escape(path).replace(r'\*\*', '.*').replace(r'\*', '[^/]*'), node)
-               for path in found)
+    for path, values in sections(yaml.safe_load(file.read_text()), ''):
+        if re.fullmatch(re.escape(path).replace(r'\*\*', '.*').replace(r'\*', '[^/]*'), node):
+            yield values
 
 
-def _config(given: dict[str, Any]) -> PlannerConfig:
-    rows = rows_of(PLANNER, JOINT_NAMES)
-    names = given.get('joint_names', rows['joint_names'].default)
-    check_value(rows['joint_names'], names)
-    check_given(given, names)
-    rows = rows_of(PLANNER, names)
-    values = {name: given.get(name, row.default) for name, row in rows.items()}
+def config_of(given: dict[str, Any], folder: Path) -> PlannerConfig:
+    """
+    Return the planner node's configuration from its parameters.
+
+    Parameters
+    ----------
+    given : dict
+        Values by name.
+    folder : Path
+        The folder that relative paths refer to.
+
+    Returns
+    -------
+    PlannerConfig
+        Checked; parameters that are left out have their defaults.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is wrong.
+
+    """
+    source = arm_source(given, lambda *_: folder)
+    rows = rows_of(PLANNER, source.joint_names)
+    values = {name: source.values.get(name, row.default) for name, row in rows.items()}
+    values.update({name: value for name, value in given.items()
+                   if name in rows and name not in ('robot_description', 'joint_limits_file')})
     for name, value in values.items():
         check_value(rows[name], value)
     return PlannerConfig.from_values(values)

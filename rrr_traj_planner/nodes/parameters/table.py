@@ -24,15 +24,15 @@ from collections.abc import Sequence
 from math import inf, isfinite, pi
 from typing import Any, NamedTuple
 
-from rrr_traj_planner.core.arm.model import JOINT_NAMES, RobotModel
+from rrr_traj_planner.core.arm.model import JOINT_NAMES
+from rrr_traj_planner.core.arm.urdf_limits import NO_RANGE
 from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError
-from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.trajectory.sampling import MOST_POINTS
 
 PLANNER, ARM = 'planner', 'arm'
 
-# The first via point of the thesis's table 6.1 [m]: the arm's initial tip position.
-START_POINT = (1.02, 0.59, 0.97)
+# [rad], at the first via point of the thesis's table 6.1, (1.02, 0.59, 0.97) m, elbow up.
+START = (0.5244092235441183, 0.9438995534205477, 0.2480927534820987)
 
 NOTATION_HINT = {
     bool: '', str: '', int: ' (a whole number)', float: ' (written with a point, as 5.0)'}
@@ -86,6 +86,10 @@ TABLE: tuple[Row, ...] = (
     Row('tip_frame', 'tip', "frame at the arm's tip", read_only=True),
     Row('link_names', ['link_1', 'link_2', 'link_3'], "the links' frames, in robot_description",
         read_only=True, nodes=(ARM,)),
+    Row('robot_description', '', 'the arm as a URDF: its text, or the path of its file; empty: '
+        'the arm of arm.*', read_only=True),
+    Row('joint_limits_file', '', 'path of a MoveIt joint_limits.yaml, for limits that '
+        'joint_limits does not give; empty: none', read_only=True),
     Row('arm.d1', 0.5, 'height of joint axis 2 above the base', 'm', -100.0, 100.0, True),
     Row('arm.a2', 0.9, 'length of the upper arm', 'm', 1e-3, 100.0, True),
     Row('arm.d4', 0.7, 'length of the forearm', 'm', 1e-3, 100.0, True),
@@ -97,15 +101,21 @@ TABLE: tuple[Row, ...] = (
     Row('arm.inertia_2', [0.12, 0.12, 0.01], 'the same of link 2', 'kg m^2', 0.0, 1e6, True),
     Row('arm.inertia_3', [0.12, 0.12, 0.01], 'the same of link 3', 'kg m^2', 0.0, 1e6, True),
     Row('arm.gravity', 9.81, 'acceleration of gravity, downwards', 'm/s^2', -100.0, 100.0, True),
-    Row('joint_limits.{joint}.min_position', (0.0, 0.0, -pi), 'lower end of the range', 'rad',
-        -1e3, 1e3),
-    Row('joint_limits.{joint}.max_position', (pi / 2.0, pi, 2.0 * pi), 'upper end of the range',
-        'rad', -1e3, 1e3),
+    Row('gravity', [0.0, 0.0, -9.81], 'acceleration of gravity in base_frame, in place of '
+        'arm.gravity', 'm/s^2', -100.0, 100.0, True),
+    Row('rotor_inertia', [0.0, 0.0, 0.0], 'inertia of the motors, reflected to the joints',
+        'kg m^2', 0.0, 1e6, True),
+    Row('joint_limits.{joint}.min_position', (0.0, 0.0, -pi), 'lower end of the range; '
+        '-1000: none', 'rad', -NO_RANGE, NO_RANGE),
+    Row('joint_limits.{joint}.max_position', (pi / 2.0, pi, 2.0 * pi), 'upper end of the range; '
+        '1000: none', 'rad', -NO_RANGE, NO_RANGE),
     *_joint_limit('velocity', 'velocity', (1.0, 1.0, 1.0), 'rad/s', 1e-6, 1e3),
     *_joint_limit('acceleration', 'acceleration', (1.0, 1.0, 1.0), 'rad/s^2', 1e-6, 1e4),
     *_joint_limit('jerk', 'jerk', (10.0, 10.0, 10.0), 'rad/s^3', 1e-6, 1e6),
     *_joint_limit('effort', "torque of the joint's motor", (150.0, 200.0, 200.0), 'N m', 1e-6,
                   1e6),
+    Row('default_max_acceleration', 1.0, 'acceleration limit of joints of a URDF that have none, '
+        'for planners that need one', 'rad/s^2', 1e-6, 1e4, nodes=(PLANNER,)),
     Row('default_planner_id', 'cycloid', 'planner of requests without a planner_id',
         nodes=(PLANNER,)),
     Row('sample_period', 0.01, 'time between trajectory points if the request gives none', 's',
@@ -131,19 +141,21 @@ TABLE: tuple[Row, ...] = (
     Row('marker_rate', 10.0, 'rate of markers, in wall time; 0: none', 'Hz', 0.0, 100.0,
         nodes=(ARM,)),
     Row('physics_step', 0.001, 'time step of physics and control', 's', 1e-5, 0.01, True, (ARM,)),
-    Row('initial_positions', inverse_kinematics(RobotModel(), START_POINT).tolist(),
+    Row('initial_positions', list(START),
         'joint positions at the start and after ~/reset', 'rad', -1e3, 1e3, nodes=(ARM,)),
     Row('controller.natural_frequency', 30.0, 'natural frequency of the tracking error', 'rad/s',
         0.1, 1000.0, nodes=(ARM,)),
     Row('controller.damping_ratio', 1.0, 'damping ratio of the tracking error; 1 is critical', '',
         0.01, 10.0, nodes=(ARM,)),
-    Row('payload.mass', 0.0, 'point mass at the tip', 'kg', 0.0, 1e4, nodes=(ARM,)),
+    Row('payload.mass', 0.0, 'point mass at the tip', 'kg', 0.0, 1e4),
     Row('payload.known_to_controller', False, "whether the controller's model has the payload",
         nodes=(ARM,)),
     Row('friction.viscous', [0.0, 0.0, 0.0], 'viscous friction of each joint',
-        'N m s/rad', 0.0, 1e5, nodes=(ARM,)),
+        'N m s/rad', 0.0, 1e5),
     Row('friction.coulomb', [0.0, 0.0, 0.0], 'Coulomb friction of each joint',
-        'N m', 0.0, 1e5, nodes=(ARM,)),
+        'N m', 0.0, 1e5),
+    Row('friction.known_to_controller', False, 'whether the controller adds the friction of the '
+        'motion that it follows', nodes=(ARM,)),
     Row('soft_stops.width', 0.0, 'width of the bumpers between the ends of the ranges and the '
         'hard stops; 0: no bumpers', 'rad', 0.0, 1.0, nodes=(ARM,)),
     Row('soft_stops.stiffness', 1e4, 'stiffness of a bumper', 'N m/rad', 0.0, 1e6, nodes=(ARM,)),

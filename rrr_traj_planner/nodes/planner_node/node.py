@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+import sys
 from time import perf_counter
 import traceback
 from typing import Any, NamedTuple
@@ -38,6 +39,7 @@ from rrr_traj_planner.nodes.output.marker_messages import no_plan_markers, plan_
 from rrr_traj_planner.nodes.output.message_times import seconds
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
+from rrr_traj_planner.nodes.parameters.parameter_files import files_given
 from rrr_traj_planner.nodes.parameters.table import PLANNER
 from rrr_traj_planner.nodes.planner_node.planning_answer import failure, refusal, success, tip_path
 from rrr_traj_planner.nodes.planner_node.planning_request import planning_request
@@ -104,7 +106,8 @@ class TrajectoryPlanner(ServiceNode):
 
     def _set_up(self, arguments: Sequence[str] | None) -> None:
         self._parameters_declared = DeclaredParameters(
-            self, PLANNER, PlannerConfig.from_values, lambda config: None)
+            self, PLANNER, PlannerConfig.from_values, lambda config: None,
+            files_given([*sys.argv, *(arguments or ())]))
         self._trajectory = self.create_publisher(JointTrajectory, 'planned_trajectory', LATCHED)
         self._path = self.create_publisher(Path, 'planned_path', LATCHED)
         self._markers = self.create_publisher(MarkerArray, 'markers', LATCHED)
@@ -195,7 +198,8 @@ def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
     found, trace = None, ''
     deadline = Deadline(config.planning_time_limit, job.checkpoint, is_ending)
     try:
-        found = plan(config.model, config.limits, planning_request(request, config, deadline))
+        wanted = planning_request(request, config, deadline)
+        found = plan(config.model, config.limits_for(wanted.planner_id), wanted)
         planning_time = job.run_time()
         with step('conversion to the response message'):
             response = success(found, config, deadline)

@@ -24,7 +24,9 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Sequence
+import json
 import os
+from pathlib import Path
 import sys
 
 from rrr_traj_planner.core.errors import RrrPlannerError
@@ -78,6 +80,48 @@ def parse(name: str, description: str, arguments: Sequence[str] | None,
     if add_options is not None:
         add_options(parser)
     return parser.parse_args(own), ros
+
+
+def add_limits_option(parser: argparse.ArgumentParser) -> None:
+    """
+    Add the option `--joint-limits`.
+
+    Parameters
+    ----------
+    parser : argparse.ArgumentParser
+        The script's.
+
+    """
+    parser.add_argument(
+        '--joint-limits', metavar='FILE', help='a MoveIt joint_limits.yaml, as parameter '
+        "joint_limits_file: limits that the parameters do not give, in place of the URDF's")
+
+
+def limits_arguments(file: str | None) -> list[str]:
+    """
+    Return the arguments for ROS that stand for the option `--joint-limits`.
+
+    Parameters
+    ----------
+    file : str, optional
+        The option's value.
+
+    Returns
+    -------
+    list of str
+        Empty without the option.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no such file.
+
+    """
+    if file is None:
+        return []
+    from rrr_traj_planner.nodes.parameters.configuration_files import found_file
+    path = json.dumps(str(found_file(file, Path.cwd())), ensure_ascii=False)
+    return ['--ros-args', '-p', f'joint_limits_file:={path}', '--']
 
 
 def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]:

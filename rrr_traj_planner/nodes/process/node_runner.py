@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 import gc
@@ -23,14 +24,24 @@ from threading import Event, Thread
 from typing import Any
 import warnings
 
-from rrr_traj_planner.nodes.process.entry import parse, run_script, StartError
+from rrr_traj_planner.nodes.process.entry import (
+    add_limits_option,
+    limits_arguments,
+    parse,
+    run_script,
+    StartError,
+)
 from rrr_traj_planner.nodes.process.signals import defer_signals, end_if_signalled, signal_arrived
+
+AddOptions = Callable[[argparse.ArgumentParser], None]
+Instead = Callable[[argparse.Namespace, list[str]], 'int | None']
 
 WAKE_PERIOD = 0.25  # s, after which the executor checks for shutdown at the latest
 
 
 def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
-             arguments: Sequence[str] | None = None) -> int:
+             arguments: Sequence[str] | None = None, add_options: AddOptions | None = None,
+             instead: Instead | None = None) -> int:
     """
     Run one node until SIGINT or SIGTERM.
 
@@ -42,6 +53,11 @@ def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
         Imports the node's module and returns its class; not called for `--help`.
     arguments : sequence of str, optional
         The command line without the script's name; None: `sys.argv`'s.
+    add_options : callable, optional
+        Adds options to the parser beside `--joint-limits`.
+    instead : callable, optional
+        Gets options and arguments for ROS; does what the options ask for in place of running the
+        node, and returns the exit code; None: the node is to be run.
 
     Returns
     -------
@@ -49,7 +65,18 @@ def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
         Exit code: 0 after SIGINT or SIGTERM, 1 after a start that failed.
 
     """
-    return run_script(name, lambda: spin(load, parse(name, description, arguments)[1]))
+    def add_all(parser: argparse.ArgumentParser) -> None:
+        if add_options is not None:
+            add_options(parser)
+        add_limits_option(parser)
+
+    def work() -> int:
+        options, own = parse(name, description, arguments, add_all)
+        ros_arguments = [*own, *limits_arguments(options.joint_limits)]
+        code = None if instead is None else instead(options, ros_arguments)
+        return spin(load, ros_arguments) if code is None else code
+
+    return run_script(name, work)
 
 
 def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int:

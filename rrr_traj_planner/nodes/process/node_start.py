@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from math import inf
 import sys
 from typing import Any
 
@@ -28,7 +28,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.override_checks import unused_warnings
-from rrr_traj_planner.nodes.parameters.parameter_files import has_section_for
+from rrr_traj_planner.nodes.parameters.parameter_files import files_given, has_section_for
 from rrr_traj_planner.nodes.process.node_claim import claim
 
 FIRST_DELAY = 0.001  # s, until the first spin
@@ -37,6 +37,7 @@ WATCH_PERIOD = 1.0   # s, between two checks for nodes of the same name
 KEEP_APART = ('end one, or give it a namespace (--ros-args -r __ns:=/NAME) or another '
               'ROS_DOMAIN_ID')
 DEFAULT = 'no parameter file, the default arm'
+OF_URDF = 'no parameter file, the arm of robot_description'
 
 
 class NodeStart:
@@ -62,9 +63,10 @@ class NodeStart:
                  offer: str, arguments: Sequence[str] | None = None) -> None:
         self._node, self._parameters = node, parameters
         self._name = node.get_fully_qualified_name()
-        files = parameter_files([*sys.argv, *(arguments or ())])
-        self._unused = [file for file in files if not has_section_for(Path(file), self._name)]
-        arm = ', '.join(f for f in files if f not in self._unused) or DEFAULT
+        files = files_given([*sys.argv, *(arguments or ())])
+        self._unused = [file for file in files if not has_section_for(file, self._name)]
+        default = OF_URDF if node.get_parameter('robot_description').value else DEFAULT
+        arm = ', '.join(str(f) for f in files if f not in self._unused) or default
         self._text = (f'{self._name}: {arm}; {_limits_text(limits, parameters.joint_names)}; '
                       f'{offer}; ready')
         self._claim = claim(node.context.get_domain_id(), self._name)
@@ -79,7 +81,8 @@ class NodeStart:
         log, given = self._node.get_logger(), self._parameters.given
         log.info(self._text)
         undeclared = [name for name in given if not self._node.has_parameter(name)]
-        for text in unused_warnings(undeclared, self._parameters.joint_names):
+        for text in (*self._parameters.warnings,
+                     *unused_warnings(undeclared, self._parameters.joint_names)):
             log.warning(text)
         for file in self._unused:
             log.warning(f'parameter file {file} has no parameters for this node, {self._name}')
@@ -106,24 +109,6 @@ class NodeStart:
             self._claim.close()
 
 
-def parameter_files(arguments: Sequence[str]) -> list[str]:
-    """
-    Return the parameter files on a command line.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        The command line.
-
-    Returns
-    -------
-    list of str
-        Their paths, in order.
-
-    """
-    return [file for option, file in zip(arguments, arguments[1:]) if option == '--params-file']
-
-
 def _limits_text(limits: JointLimits, joint_names: Sequence[str]) -> str:
     """
     Return the joints' limits as one line of text.
@@ -144,7 +129,11 @@ def _limits_text(limits: JointLimits, joint_names: Sequence[str]) -> str:
     units = (('max_velocity', 'rad/s'), ('max_acceleration', 'rad/s^2'), ('max_jerk', 'rad/s^3'),
              ('max_effort', 'N m'))
     return '; '.join(
-        f'{joint} {limits.min_position[i]:.4g} to {limits.max_position[i]:.4g} rad' + ''.join(
+        f'{joint} {_range_text(limits.min_position[i], limits.max_position[i])}' + ''.join(
             f', {value:.4g} {unit}' for name, unit in units
-            if (value := getattr(limits, name)[i]) < float('inf'))
+            if (value := getattr(limits, name)[i]) < inf)
         for i, joint in enumerate(joint_names))
+
+
+def _range_text(low: float, high: float) -> str:
+    return 'without range' if low == -inf and high == inf else f'{low:.4g} to {high:.4g} rad'

@@ -19,13 +19,20 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
+import re
 import sys
 
-from rrr_traj_planner.nodes.process.entry import parse, run_script
+from rrr_traj_planner.nodes.process.entry import (
+    add_limits_option,
+    limits_arguments,
+    parse,
+    run_script,
+)
 from rrr_traj_planner.nodes.process.processes import exit_message, NodeProcesses
 from rrr_traj_planner.nodes.process.signals import defer_signals
 
 DESCRIPTION = 'Run the trajectory planner and the simulated arm, until Ctrl-C.'
+THESIS_ARM = 'thesis_arm.yaml'
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -45,22 +52,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     def work() -> int:
         options, ros_arguments = parse('bringup', DESCRIPTION, arguments, _add_options)
-        return _run(options.arm, ros_arguments)
+        return _run(options, ros_arguments)
 
     return run_script('bringup', work)
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        '--arm', metavar='FILE', default='thesis_arm.yaml',
-        help="parameters of both nodes: a file, or one of the package's config/ "
-             '(default: %(default)s)')
+        '--arm', metavar='FILE',
+        help="parameters of both nodes: a file, or one of the package's config/ or config/arms/ "
+             f'(default: {THESIS_ARM}, none with a parameter robot_description)')
+    add_limits_option(parser)
 
 
-def _run(arm: str, ros_arguments: list[str]) -> int:
-    from rrr_traj_planner.nodes.parameters.configuration_files import arm_file
+def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+    from rrr_traj_planner.nodes.parameters.configuration_files import found_file
 
-    nodes = NodeProcesses(node_arguments(arm_file(arm, Path.cwd()), ros_arguments))
+    own = [*ros_arguments, *limits_arguments(options.joint_limits)]
+    name = options.arm or (None if describes_an_arm(ros_arguments) else THESIS_ARM)
+    nodes = NodeProcesses(node_arguments(name and found_file(name, Path.cwd()), own))
     defer_signals()
     with nodes:
         ended = nodes.wait()
@@ -71,13 +81,34 @@ def _run(arm: str, ros_arguments: list[str]) -> int:
     return code if code >= 0 else 128 - code
 
 
-def node_arguments(parameters: Path, ros_arguments: Sequence[str]) -> list[str]:
+def describes_an_arm(ros_arguments: Sequence[str]) -> bool:
+    """
+    Return whether arguments for ROS have a parameter `robot_description`.
+
+    Parameters
+    ----------
+    ros_arguments : sequence of str
+        The user's.
+
+    Returns
+    -------
+    bool
+        True for `-p [NODE:]robot_description:=...`, and for a parameter file that has it.
+
+    """
+    from rrr_traj_planner.nodes.parameters.parameter_files import files_given, gives
+
+    return any(re.match(r'([^:]*:)?robot_description:=', a) for a in ros_arguments) or any(
+        gives(file, 'robot_description') for file in files_given(ros_arguments))
+
+
+def node_arguments(parameters: Path | None, ros_arguments: Sequence[str]) -> list[str]:
     """
     Return the ROS arguments of both nodes.
 
     Parameters
     ----------
-    parameters : Path
+    parameters : Path, optional
         The arm's parameter file.
     ros_arguments : sequence of str
         The user's own arguments, which take precedence over the file.
@@ -89,7 +120,8 @@ def node_arguments(parameters: Path, ros_arguments: Sequence[str]) -> list[str]:
 
     """
     own = [a for a in ros_arguments if a not in ('--ros-args', '--')]
-    return ['--ros-args', '--params-file', str(parameters), *own]
+    file = [] if parameters is None else ['--params-file', str(parameters)]
+    return ['--ros-args', *file, *own]
 
 
 if __name__ == '__main__':

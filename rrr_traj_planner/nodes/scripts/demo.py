@@ -23,7 +23,12 @@ from dataclasses import replace
 from pathlib import Path
 import sys
 
-from rrr_traj_planner.nodes.process.entry import parse, run_script
+from rrr_traj_planner.nodes.process.entry import (
+    add_limits_option,
+    limits_arguments,
+    parse,
+    run_script,
+)
 
 DESCRIPTION = """\
 Plan a motion through the via points of a file, run it on the simulated arm and show the figures.
@@ -57,8 +62,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('task', nargs='?', default='table_6_1.yaml', metavar='FILE',
-                        help="via points: a file, or one of the package's config/ "
-                             '(default: %(default)s)')
+                        help="via points: a file, or one of the package's config/ or "
+                             'config/arms/ (default: %(default)s)')
     parser.add_argument('--planner', default='', metavar='ID',
                         help="planner id (default: the file's)")
     parser.add_argument('--plot', type=Path, metavar='PNG',
@@ -67,9 +72,10 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--record', type=Path, metavar='MCAP',
                         help='record all topics in this new file, a ROS 2 bag; folders that do '
                              'not exist are made')
+    add_limits_option(parser)
 
 
-def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     from rrr_traj_planner.core.errors import counted
     from rrr_traj_planner.nodes.demo.client import Client
     from rrr_traj_planner.nodes.demo.table import checked_values, table
@@ -79,6 +85,7 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.recording.bag import Bag
     from rrr_traj_planner.nodes.scripts.bringup import node_arguments
 
+    ros_arguments = [*own_arguments, *limits_arguments(options.joint_limits)]
     task = read_task(options.task)
     task = replace(task, planner_id=options.planner or task.planner_id)
     with ExitStack() as stack:

@@ -16,7 +16,10 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Sequence
+from pathlib import Path
+import sys
 from typing import TYPE_CHECKING
 
 from rrr_traj_planner.nodes.process.node_runner import run_node
@@ -31,7 +34,10 @@ Plan motions of the arm's tip through via points, within the limits of joints an
   publishes   planned_trajectory (trajectory_msgs/JointTrajectory), planned_path (nav_msgs/Path),
               diagnostics (diagnostic_msgs/DiagnosticArray)
               markers (visualization_msgs/MarkerArray)
-  parameters  config/thesis_arm.yaml lists them all"""
+  parameters  config/thesis_arm.yaml lists them all
+
+--check starts nothing: it prints what a URDF was understood to say, and whether this arm can be
+planned for; if not, the exit code is 1."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -49,7 +55,46 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code.
 
     """
-    return run_node('planner', DESCRIPTION, _load, arguments)
+    return run_node('planner', DESCRIPTION, _load, arguments, _add_options, _instead)
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--check', metavar='URDF',
+                        help='print what a URDF is understood to say: a file, or one of the '
+                             "package's config/arms/")
+    parser.add_argument('--base-frame', metavar='LINK',
+                        help='of --check: link at the base (default: base_link, else the root)')
+    parser.add_argument('--tip-frame', metavar='LINK',
+                        help='of --check: link at the tip (default: tip, else the only leaf)')
+
+
+def _instead(options: argparse.Namespace, _: list[str]) -> int | None:
+    if options.check is not None:
+        return _check(options)
+    for name in ('base_frame', 'tip_frame'):
+        if getattr(options, name) is not None:
+            print(f'planner: --{name.replace("_", "-")} goes with --check; the node has the '
+                  f'parameter {name}', file=sys.stderr)
+            return 2
+    return None
+
+
+def _check(options: argparse.Namespace) -> int:
+    """Print what a URDF says, without ROS."""
+    from rrr_traj_planner.nodes.parameters.arm_source import arm_source, LIMITS, read, URDF
+    from rrr_traj_planner.nodes.parameters.parameter_files import config_of
+    from rrr_traj_planner.planners.arm_summary import summary
+
+    asked = {URDF: options.check, LIMITS: options.joint_limits, 'base_frame': options.base_frame,
+             'tip_frame': options.tip_frame}
+    given = {name: value for name, value in asked.items() if value}
+    warnings, config = arm_source(given).warnings, config_of(given, Path.cwd())
+    arm = read(config.urdf, config.base_frame, config.tip_frame)
+    found = summary(arm, config.model, config.limits)
+    print('\n'.join([f'{options.check}: {found[0]}', *found[1:]]))
+    print('\n'.join(f'warning: {text}' for text in warnings), end='\n' if warnings else '')
+    print('this arm can be planned for')
+    return 0
 
 
 def _load() -> type[TrajectoryPlanner]:

@@ -21,7 +21,12 @@ from collections.abc import Sequence
 from pathlib import Path
 import sys
 
-from rrr_traj_planner.nodes.process.entry import parse, run_script, StartError
+from rrr_traj_planner.nodes.process.entry import (
+    add_limits_option,
+    parse,
+    run_script,
+    StartError,
+)
 
 DESCRIPTION = """\
 Write a self-contained page, OUT_DIR/index.html, with its figures as PNG and CSV beside it.
@@ -56,8 +61,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     def work() -> int:
         options, _ = parse('report', DESCRIPTION, arguments, _add_options)
-        if options.thesis and (options.planner or options.output):
-            print('report: --planner and --output go with --plan', file=sys.stderr)
+        if options.thesis and (options.planner or options.output or options.joint_limits):
+            print('report: --planner, --output and --joint-limits go with --plan', file=sys.stderr)
             return 2
         try:
             import matplotlib  # noqa: F401
@@ -83,6 +88,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--output', type=Path, metavar='OUT_DIR',
                         help='folder of the page of --plan (default: report_FILE); an earlier '
                              'report there is replaced, other files are left alone')
+    add_limits_option(parser)
 
 
 def _thesis(folder: Path) -> int:
@@ -93,7 +99,7 @@ def _thesis(folder: Path) -> int:
 
 
 def _plan(options: argparse.Namespace) -> int:
-    from rrr_traj_planner.nodes.parameters.configuration_files import read_task
+    from rrr_traj_planner.nodes.parameters.configuration_files import found_file, read_task
     from rrr_traj_planner.nodes.parameters.parameter_files import planner_config
     from rrr_traj_planner.planners.registry import planner_ids
     from rrr_traj_planner.planners.request import PlanningRequest
@@ -101,7 +107,8 @@ def _plan(options: argparse.Namespace) -> int:
     from rrr_traj_planner.report.plan_report import write_plan_report
 
     file = read_task(options.plan)
-    config = planner_config(file.arm)
+    limits = options.joint_limits and found_file(options.joint_limits, Path.cwd())
+    config = planner_config(file.arm, limits)
     request = PlanningRequest(
         file.via_points, sample_period=config.sample_period, max_deviation=config.max_deviation,
         segment_durations=file.segment_durations if len(file.segment_durations) else None,
@@ -109,8 +116,8 @@ def _plan(options: argparse.Namespace) -> int:
         half_transition=config.half_transition)
     ids = options.planner or [file.planner_id or config.default_planner_id]
     print('planning and drawing ...', flush=True)
-    found = attempts(Task(file.name, config.model, config.limits, request),
-                     planner_ids() if 'all' in ids else ids)
+    ids = planner_ids() if 'all' in ids else ids
+    found = attempts(Task(file.name, config.model, config.limits_for(*ids), request), ids)
     name = file.name.encode()[:MAX_NAME].decode(errors='ignore')
     page = write_plan_report(options.output or Path(f'report_{name}'), found)
     print(f'page: {page}')

@@ -20,8 +20,7 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rrr_traj_planner.nodes.process.entry import parse, run_script
-from rrr_traj_planner.nodes.process.node_runner import create_node, end_ros, spin, start_ros
+from rrr_traj_planner.nodes.process.node_runner import create_node, end_ros, run_node, start_ros
 
 if TYPE_CHECKING:
     from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
@@ -55,11 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code.
 
     """
-    def work() -> int:
-        options, ros_arguments = parse('simulated_arm', DESCRIPTION, arguments, _add_options)
-        return _print_urdf(ros_arguments) if options.urdf else spin(_load, ros_arguments)
-
-    return run_script('simulated_arm', work)
+    return run_node('simulated_arm', DESCRIPTION, _load, arguments, _add_options, _instead)
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:
@@ -67,12 +62,16 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
                         help='print the URDF of the arm that the parameters describe, and end')
 
 
+def _instead(options: argparse.Namespace, ros_arguments: list[str]) -> int | None:
+    return _print_urdf(ros_arguments) if options.urdf else None
+
+
 def _print_urdf(ros_arguments: list[str]) -> int:
     """Print the URDF for the node's parameters, without running the node."""
     from rclpy.node import Node
-    from rrr_traj_planner.nodes.arm_node.arm_view import description
     from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
     from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
+    from rrr_traj_planner.nodes.parameters.parameter_files import files_given
     from rrr_traj_planner.nodes.parameters.table import ARM
 
     node = None
@@ -80,8 +79,9 @@ def _print_urdf(ros_arguments: list[str]) -> int:
         start_ros(ros_arguments)
         node = create_node(lambda: Node(
             'simulated_arm', enable_rosout=False, start_parameter_services=False))
-        print(description(DeclaredParameters(
-            node, ARM, ArmConfig.from_values, lambda config: None).config), end='')
+        print(DeclaredParameters(
+            node, ARM, ArmConfig.from_values, lambda config: None,
+            files_given(ros_arguments)).config.urdf, end='')
     finally:
         if node is not None:
             node.destroy_node()

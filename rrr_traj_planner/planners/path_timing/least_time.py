@@ -27,8 +27,8 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import BoolArray
+from rrr_traj_planner.core.path.following import place_on_path
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
-from rrr_traj_planner.core.path.workspace_check import place_on_path
 from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.planners.effort_limits import check_friction, moving_error

@@ -18,6 +18,7 @@ from dataclasses import FrozenInstanceError
 import itertools
 
 from helpers import thesis_cases as thesis
+from helpers.places import ROOT
 from helpers.random_chains import random_arm
 from helpers.thesis_arm import ThesisArm
 import numpy as np
@@ -192,3 +193,19 @@ def test_every_accepted_arm_has_inertia_in_every_pose():
         # Straight angles are exact to 1e-16 only, and a vanishing inertia shows as that squared.
         assert np.linalg.eigvalsh(inertia_matrix(arm, q)).min() > 1e-3, present
     assert accepted > 50
+
+
+def test_a_urdf_gives_chain_names_and_friction():
+    file = ROOT / 'test/data/arms/go1_leg.urdf'
+    for arm in (RobotModel.from_urdf(file), RobotModel.from_urdf(file.read_text(), 'base', 'tip')):
+        assert arm.chain.axis.tolist() == [[1, 0, 0], [0, 1, 0], [0, 1, 0]]
+        assert arm.chain.tip == pytest.approx((0.1881, 0.04675 + 0.08, -2 * 0.213))
+        assert arm.joint_names == ('joint_1', 'joint_2', 'joint_3')
+        assert arm.friction.viscous.tolist() == [0.01] * 3
+        assert arm.friction.coulomb.tolist() == [0.2] * 3
+        assert arm.gravity.tolist() == [0.0, 0.0, -9.81]
+
+
+def test_a_urdf_of_another_arm_is_refused():
+    with pytest.raises(InvalidInputError, match=r'planar_arm.urdf: the axes of joints .* are '):
+        RobotModel.from_urdf(ROOT / 'test/data/arms/planar_arm.urdf')

@@ -37,6 +37,14 @@ def test_option_prints_the_urdf_of_the_parameters_and_ends():
                           FrameNames(tip='tool'))
 
 
+def test_option_prints_a_urdf_that_is_given_unchanged():
+    with Script(COMMAND, '--ros-args', '--params-file', CONFIG / 'arms' / 'go1_leg_arm.yaml',
+                '-p', 'payload.mass:=1.0') as arm:
+        code, output, errors = arm.ended()
+    assert (code, errors) == (0, '')
+    assert output == (CONFIG / 'arms' / 'go1_leg.urdf').read_text()
+
+
 def test_wrong_parameter_is_reported_instead():
     with Script(COMMAND, '--ros-args', '-p', 'tip_frame:=base_link') as arm:
         code, output, errors = arm.ended()

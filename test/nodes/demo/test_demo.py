@@ -21,11 +21,17 @@ import signal
 from time import monotonic, sleep
 
 from helpers.scripts import DEADLINE, Script, script
+from helpers.urdf_texts import arm, joint, Z
 from matplotlib.image import imread
+import numpy as np
 import pytest
 import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.solutions import solutions
 from rrr_traj_planner.nodes.demo.client import Client
 from rrr_traj_planner.nodes.process.entry import StartError
 
@@ -54,6 +60,42 @@ def test_demo_runs_its_task_and_shows_it(tmp_path, arguments, name, seconds):
     assert min(picture.shape[:2]) >= 1000
     assert (picture[..., :3].min(axis=2) < 0.9).mean() > 0.02  # more than an empty frame
     assert [f.name for f in tmp_path.iterdir()] == [file.name]
+
+
+@pytest.mark.parametrize('name', ['go1_leg', 'kr16_2_first3', 'tilted_arm'])
+def test_demo_runs_arms_of_urdfs(tmp_path, name):
+    with Script(script('demo'), f'{name}.yaml', '--plot', '', cwd=tmp_path) as demo:
+        code, output, errors = demo.ended()
+    assert code == 0, errors
+    assert re.search(rf'^{name}: \S+ s$', output, re.MULTILINE)
+    assert 'moving to the first via point' in output  # from the middle of the ranges
+    assert '26 of 26 figures are inside their bounds' in output
+    assert 'none' not in output  # every limit is there
+    assert 'Traceback' not in errors
+
+
+def test_demo_starts_in_the_posture_in_which_an_arm_without_names_comes(tmp_path):
+    text = arm(j3=joint('j3', 'revolute', 'b', 'c', Z, (0.5, 0.0, 0.0)))
+    model = RobotModel.from_urdf(text)
+    assert not has_named_postures(model)
+    start = np.array((0.4, -0.9, -0.9))
+    q = start + np.array(((0.0, 0.0, 0.0), (0.4, 0.3, -0.2), (0.8, 0.6, 0.1)))
+    other, = (x for x in solutions(model, forward_kinematics(model, q[0])).q
+              if np.abs(x - q[0]).max() > 0.1 and (np.abs(x) < 2.0).all())
+    points = forward_kinematics(model, q).tolist()
+    (tmp_path / 'my.urdf').write_text(text)
+    (tmp_path / 'task.yaml').write_text(f'arm: arm.yaml\nvia_points: {points}\n')
+    planned = []
+    for initial in (start, other):
+        (tmp_path / 'arm.yaml').write_text(
+            '/**:\n  ros__parameters: {robot_description: my.urdf, initial_positions: '
+            f'{initial.round(6).tolist()}}}\n')
+        with Script(script('demo'), 'task.yaml', '--plot', '', cwd=tmp_path) as demo:
+            code, output, errors = demo.ended()
+        assert code == 0, errors
+        assert 'inside their bounds' in output
+        planned.append(errors.count(' planned 3 via points') + errors.count(' planned 2 via p'))
+    assert sorted(planned) == [1, 2]  # one of them has to plan again
 
 
 @pytest.mark.parametrize('planner_id', ['line_arc', 'line_polynomial'])

@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.configuration_files import (
-    arm_file,
+    found_file,
     read_task,
     shipped_folder,
 )
@@ -125,7 +125,7 @@ def test_malformed_file_is_named_with_what_is_wrong(here, content, text):
     assert '\n' not in str(caught.value)
 
 
-@pytest.mark.parametrize('find', [read_task, lambda name: arm_file(name, Path.cwd())])
+@pytest.mark.parametrize('find', [read_task, lambda name: found_file(name, Path.cwd())])
 def test_missing_file_is_reported_with_the_package_s_own(here, find):
     with pytest.raises(InvalidInputError) as caught:
         find('nowhere.yaml')

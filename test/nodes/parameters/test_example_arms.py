@@ -17,10 +17,10 @@
 from __future__ import annotations
 
 from helpers.places import CONFIG, ROOT
-from helpers.random_chains import RobotModel
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits, UNITS
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.urdf_arm import read_urdf
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.nodes.parameters.configuration_files import shipped_folder
@@ -41,7 +41,8 @@ def limits_of(name):
 
 def test_all_are_installed():
     files = {path.name for path in (CONFIG / 'arms').iterdir()}
-    assert files == {f'{name}{end}' for name in ARMS for end in ('.urdf', '_limits.yaml')}
+    assert files == {f'{name}{end}' for name in ARMS for end in (
+        '.urdf', '.yaml', '_arm.yaml', '_limits.yaml')}
     assert files <= {path.name for path in (shipped_folder() / 'arms').iterdir()}
     assert len(ARMS) == 6
 

@@ -25,12 +25,15 @@ from helpers.places import CONFIG
 from helpers.plan_requests import plan_request, TABLE_6_3
 from helpers.scripts import DEADLINE, Script, script
 import pytest
+from rrr_traj_planner.nodes.output.latched import LATCHED
 from rrr_traj_planner.nodes.process.processes import NodeProcesses
 from rrr_traj_planner.nodes.process.signals import signals_blocked
 from rrr_traj_planner.nodes.scripts.bringup import node_arguments
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
+import yaml
 
 
 def assert_up(ros, states):
@@ -90,6 +93,28 @@ def test_node_that_cannot_start_ends_bringup_with_its_code(tmp_path):
     assert 'parameter arm.d1 is 1000 m, must be in [-100, 100] m' in errors
     assert 'ended with exit code 1' in errors
     assert 'Traceback' not in errors
+
+
+@pytest.mark.parametrize('arguments', [
+    ('--arm', 'go1_leg_arm.yaml'),
+    ('--joint-limits', 'go1_leg_limits.yaml', '--ros-args', '-p',
+     f'robot_description:={CONFIG}/arms/go1_leg.urdf'),
+    ('--ros-args', '--params-file', f'{CONFIG}/arms/go1_leg_arm.yaml')])
+def test_both_nodes_have_the_arm_of_a_urdf(ros, tmp_path, arguments):
+    states, described = ros.listen(JointState, 'joint_states'), ros.listen(
+        String, 'robot_description', LATCHED)
+    points = yaml.safe_load((CONFIG / 'arms' / 'go1_leg.yaml').read_text())['via_points']
+    with Script(script('bringup'), *arguments, cwd=tmp_path) as bringup:
+        states.wait_for(lambda m: list(m.name) == ['joint_1', 'joint_2', 'joint_3'] and (
+            m.position[2] < -1.5))  # in the middle of its range
+        text = described.wait_for().data
+        answer = ros.call(PlanTrajectory, 'plan_trajectory', plan_request(points))
+        bringup.process.send_signal(signal.SIGINT)
+        assert bringup.ended()[0] == 0
+    assert text == (CONFIG / 'arms' / 'go1_leg.urdf').read_text()
+    assert answer.error_code == answer.SUCCESS, answer.message
+    assert answer.trajectory.header.frame_id == 'base'
+    assert max(answer.peak_acceleration) == pytest.approx(150.0, rel=1e-6)  # the file's limit
 
 
 def test_missing_file_is_reported_in_one_line(tmp_path):
