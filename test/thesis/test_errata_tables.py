@@ -71,7 +71,7 @@ def test_table_b_3_mirrored_holds_all_points_elbow_up():
 
 def test_table_b_1_s_d3_is_d4():
     # As an offset along z2, 0.7 m could not bring the tip beyond 1.14 m from the shoulder.
-    arm, point = RobotModel(), np.array(POINTS['6.1 point 1'])
+    arm, point = ThesisArm(), np.array(POINTS['6.1 point 1'])
     as_offset = np.hypot(arm.a2, arm.d4)
     distance = np.linalg.norm(point - (0.0, 0.0, arm.d1))
     assert distance > as_offset

@@ -140,7 +140,7 @@ def reachable(model: RobotModel, position: ArrayLike, previous: ArrayLike | None
     found = solutions(model, position, TIP_ROUNDING, previous)
     if not len(found.q):
         raise UnreachableError(
-            f'{point_text(position)} is out of reach: it misses the workspace by '
+            f"{point_text(position)} is out of the arm's reach: it misses by "
             f'{found.nearest:.6g} m', distance=found.nearest)
     return found.q
 

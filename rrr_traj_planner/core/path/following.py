@@ -161,8 +161,8 @@ def _check_reach(model: RobotModel, path: CartesianPath, s: Array) -> None:
         float(farthest.x), -float(farthest.fun))
     place, nearest = place_on_path(path, at)
     raise UnreachableError(
-        f'{place}: the tip would be out of reach, by {most:.6g} m', distance=most,
-        via_point=nearest)
+        f"{place}: the tip would be out of the arm's reach: it misses by {most:.6g} m",
+        distance=most, via_point=nearest)
 
 
 def _refusal(model: RobotModel, path: CartesianPath, s: Array, at: float) -> RrrPlannerError:

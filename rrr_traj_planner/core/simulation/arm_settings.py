@@ -101,7 +101,7 @@ class ArmSettings:
 
     @cached_property
     def loaded_model(self) -> RobotModel:
-        """The arm with its payload."""
+        """Return the arm with its payload."""
         return with_payload(self.model, self.payload.mass)
 
     @property

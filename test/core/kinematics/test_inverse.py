@@ -144,13 +144,13 @@ def test_point_beyond_an_edge_by_rounding_is_on_it(elbow, distance, miss):
 
 @pytest.mark.parametrize(('point', 'miss', 'text'), [
     ((2.0, 0.0, 0.5), 0.4,
-     '(2, 0, 0.5) m is out of reach: it misses the workspace by 0.4 m'),
+     "(2, 0, 0.5) m is out of the arm's reach: it misses by 0.4 m"),
     ((0.0, 3.0, 4.5), 3.4,
-     '(0, 3, 4.5) m is out of reach: it misses the workspace by 3.4 m'),
+     "(0, 3, 4.5) m is out of the arm's reach: it misses by 3.4 m"),
     ((0.05, 0.0, 0.5), 0.15,
-     '(0.05, 0, 0.5) m is out of reach: it misses the workspace by 0.15 m'),
+     "(0.05, 0, 0.5) m is out of the arm's reach: it misses by 0.15 m"),
     ((0.0, 0.0, 0.5), 0.2,
-     '(0, 0, 0.5) m is out of reach: it misses the workspace by 0.2 m')])
+     "(0, 0, 0.5) m is out of the arm's reach: it misses by 0.2 m")])
 @pytest.mark.parametrize('elbow', ELBOWS)
 def test_unreachable_point_is_refused_with_the_distance_it_misses_by(point, miss, text, elbow):
     with pytest.raises(UnreachableError, match=f'^{re.escape(text)}$') as caught:
@@ -159,7 +159,7 @@ def test_unreachable_point_is_refused_with_the_distance_it_misses_by(point, miss
 
 
 def test_a_micrometre_beyond_the_reach_is_refused():
-    with pytest.raises(UnreachableError, match='misses the workspace by 1e-06 m$'):
+    with pytest.raises(UnreachableError, match='it misses by 1e-06 m$'):
         inverse_kinematics(RobotModel(), (1.600001, 0.0, 0.5))
 
 

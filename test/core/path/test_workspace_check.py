@@ -41,7 +41,7 @@ def test_line_that_passes_the_hole_is_refused_where_it_is_nearest():
     path = line_arc([[0.19, 0.3, 0.5], [0.19, -0.3, 0.5]], [])
     with pytest.raises(UnreachableError,
                        match=r'^at 0\.3 m along the path, between via points 0 and 1 \(nearest: '
-                             r'[01]\): the tip would be out of reach, by 0\.01 m$') as caught:
+                             r"[01]\): the tip would be out of the arm's reach: it misses by 0\.01 m$") as caught:
         arm_path_in(MODEL, FREE, path)
     assert caught.value.distance == pytest.approx(0.01, abs=1e-12)
 
@@ -52,7 +52,7 @@ def test_corner_cut_outward_beyond_the_reach_is_refused_near_its_via_point():
     points = [[0.2, 1.0, 0.5], [0.0, tip, 0.5], [-1.0, 0.2, 0.5]]
     for family in (line_arc, line_polynomial):
         path = family(points, 0.3)
-        with pytest.raises(UnreachableError, match=r'\(nearest: 1\).* out of reach') as caught:
+        with pytest.raises(UnreachableError, match=r'\(nearest: 1\).* it misses by ') as caught:
             arm_path_in(MODEL, FREE, path)
         assert caught.value.via_point == 1
         s = np.linspace(0.0, path.length, 100001)

@@ -134,8 +134,8 @@ def test_demo_with_points_out_of_reach_shows_the_refusal(tmp_path):
         code, output, errors = demo.ended()
         assert all(child.has_ended() for child in children)
     assert code == 1
-    assert ('demo: the planner refuses (-31): via point 1: (3, 0, 0.5) m is 3 m from the '
-            "shoulder, beyond the arm's reach of 1.6 m: it misses by 1.4 m\n") in errors
+    assert ('demo: the planner refuses (-31): via point 1: (3, 0, 0.5) m is out of the '
+            "arm's reach: it misses by 1.4 m\n") in errors
     assert 'Traceback' not in errors
     assert not list(tmp_path.glob('*.png'))
 

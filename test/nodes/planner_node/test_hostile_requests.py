@@ -66,11 +66,11 @@ def test_same_request_has_the_same_answer(request):
 
 @pytest.mark.parametrize(('points', 'code', 'text', 'via_point'), [
     ((A, (0.0, 0.0, 2.0)), CODES.SUCCESS, '', -1),  # on axis 1, joint 1 anywhere
-    ((A, (0.0, 0.0, 0.5)), NO_IK, 'nearer than the arm can fold', 1),
-    ((A, (0.1, 0.0, 0.5)), NO_IK, 'nearer than the arm can fold', 1),
+    ((A, (0.0, 0.0, 0.5)), NO_IK, "out of the arm's reach", 1),
+    ((A, (0.1, 0.0, 0.5)), NO_IK, "out of the arm's reach", 1),
     ((A, (5e-324, 5e-324, 5e-324)), CODES.GOAL_CONSTRAINTS_VIOLATED, 'joint_2 would be at', 1),
-    ((A, (1e300, 0.0, 0.0)), NO_IK, "beyond the arm's reach", 1),
-    ((A, (1e308, 1e308, 1e308)), NO_IK, "beyond the arm's reach", 1),
+    ((A, (1e300, 0.0, 0.0)), NO_IK, "out of the arm's reach", 1),
+    ((A, (1e308, 1e308, 1e308)), NO_IK, "out of the arm's reach", 1),
     ((A, (0.0, -inf, 0.5)), INVALID, 'must be finite', 1),
     (((nan, nan, nan), A), INVALID, 'must be finite', 0),
     ((A, A, A), CODES.SUCCESS, '', -1),
