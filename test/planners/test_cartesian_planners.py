@@ -76,7 +76,8 @@ def test_reversal_is_refused_by_number(planner_id):
 def test_line_through_the_inner_workspace_limit_is_refused_with_the_path_coordinate(planner_id):
     with pytest.raises(UnreachableError,
                        match=r'^at 0\.3 m along the path, between via points 0 and 1 \(nearest: '
-                             r"[01]\): the tip would be out of the arm's reach: it misses by 0\.01 m$"):
+                             r"[01]\): the tip would be out of the arm's reach: it misses by "
+                             r'0\.01 m$'):
         planned(planner_id, [(0.19, 0.3, 0.5), (0.19, -0.3, 0.5)])
 
 

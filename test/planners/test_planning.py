@@ -174,7 +174,8 @@ def test_refused_segment_is_counted_as_the_caller_counts():
 
 def test_unreachable_point_is_refused_with_its_miss():
     with pytest.raises(UnreachableError, match=(
-            r"^via point 1: \(3, 0, 0\.5\) m is out of the arm's reach: it misses by 1\.4 m$")) as no:
+            r"^via point 1: \(3, 0, 0\.5\) m is out of the arm's reach: it misses by "
+            r'1\.4 m$')) as no:
         plan(ARM, LIMITS, PlanningRequest([[1.0, 0.6, 1.0], [3.0, 0.0, 0.5]]))
     assert no.value.via_point == 1
     assert no.value.distance == pytest.approx(1.4)

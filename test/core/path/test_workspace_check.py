@@ -41,7 +41,8 @@ def test_line_that_passes_the_hole_is_refused_where_it_is_nearest():
     path = line_arc([[0.19, 0.3, 0.5], [0.19, -0.3, 0.5]], [])
     with pytest.raises(UnreachableError,
                        match=r'^at 0\.3 m along the path, between via points 0 and 1 \(nearest: '
-                             r"[01]\): the tip would be out of the arm's reach: it misses by 0\.01 m$") as caught:
+                             r"[01]\): the tip would be out of the arm's reach: it misses by "
+                             r'0\.01 m$') as caught:
         arm_path_in(MODEL, FREE, path)
     assert caught.value.distance == pytest.approx(0.01, abs=1e-12)
 
