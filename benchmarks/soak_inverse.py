@@ -17,9 +17,10 @@ Whether every pose of random chains is among the inverse solutions for its tip.
 
     python benchmarks/soak_inverse.py [POSES [SEED]]
 
-The chains are skew ones, ones whose joint axes 1 and 2 meet or all but meet, and ones whose joint
-axes 2 and 3 are parallel; the thesis's arm first. Each of POSES random joint states must come back
-to 1e-9 rad, or, next to a singularity, to what rounding of the tip's position allows, and every
+The arms are the thesis's and the public descriptions of test/data/arms. The chains are skew ones,
+ones whose joint axes 1 and 2 meet or all but meet, and ones whose joint axes 2 and 3 are parallel.
+Each of POSES random joint states must come back
+1e-9 rad, or, next to a singularity, to what rounding of the tip's position allows, and every
 solution's tip must be the point, within 1e-9 m. For each chain it prints the poses lost, those too
 singular to be compared, the worst differences and the time of a point. The exit code is 1 if one
 was lost.
@@ -35,12 +36,14 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf_arm import read_urdf
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian
 from rrr_traj_planner.core.kinematics.solutions import all_solutions
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
 sys.path.insert(0, str(Path(__file__).parents[1] / 'test'))
-from helpers.random_chains import random_arm, with_axes  # noqa: E402, I100
+from helpers.public_arms import DESCRIPTIONS  # noqa: E402, I100
+from helpers.random_chains import random_arm, with_axes  # noqa: E402
 
 SINGULAR = 1e-6    # least singular value of the Jacobian, in sizes, of poses that are compared
 SAME = 1e-9        # rad
@@ -51,6 +54,9 @@ CHAINS = 4         # of each kind
 def chains(seed: int) -> Iterator[tuple[str, Any]]:
     """Return arms by what they are."""
     yield 'thesis', RobotModel()
+    for path in sorted(DESCRIPTIONS.glob('*.urdf')):
+        if path.stem != 'planar_arm':  # which is refused
+            yield path.stem, RobotModel(read_urdf(path).chain)
     for k in range(seed, seed + CHAINS):
         arm = random_arm(k)
         yield f'skew {k}', arm
