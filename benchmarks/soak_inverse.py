@@ -19,11 +19,10 @@ Whether every pose of random chains is among the inverse solutions for its tip.
 
 The arms are the thesis's and the public descriptions of test/data/arms. The chains are skew ones,
 ones whose joint axes 1 and 2 meet or all but meet, and ones whose joint axes 2 and 3 are parallel.
-Each of POSES random joint states must come back
-1e-9 rad, or, next to a singularity, to what rounding of the tip's position allows, and every
-solution's tip must be the point, within 1e-9 m. For each chain it prints the poses lost, those too
-singular to be compared, the worst differences and the time of a point. The exit code is 1 if one
-was lost.
+Each of POSES random joint states must come back to 1e-9 rad, or, next to a singularity, to what
+rounding of the tip's position allows, and every solution's tip must be the point, within 1e-9 m.
+For each chain it prints the poses lost, those too singular to be compared, the worst differences
+and the time of a point. The exit code is 1 if one was lost.
 """
 
 from __future__ import annotations
