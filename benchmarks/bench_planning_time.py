@@ -20,16 +20,24 @@ import argparse
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 import math
+from pathlib import Path
+import sys
 
 from measuring import in_turns, REPETITIONS, Row, setting, table, timed
 import numpy as np
 from peers import toppra_duration
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner
-from tasks import full_torque, gentle, random_task, Task, WEAK
+from rrr_traj_planner.planners.request import PlanningRequest
+from tasks import full_torque, gentle, NONE, random_task, Task, WEAK
 from tasks import table as thesis_table
 
+sys.path.insert(0, str(Path(__file__).parents[1] / 'test'))
+from helpers.public_arms import arms  # noqa: E402, I100
+from helpers.public_arms import task as request_to  # noqa: E402
+
 SEED = 7
+OTHER_ARMS = ('go1_leg', 'kr16_2_first3')
 GROWTH = 12.0         # by how much longer ten times the via points may take
 FEW, MORE, MANY = 10, 100, 1000  # via points
 LONG_PERIOD = 0.05    # s between samples: an answer through 1,000 random points has 60,000
@@ -75,6 +83,12 @@ def _small_tasks() -> Iterator[tuple[str, Task, dict[str, float]]]:
             ('v, torque', full_torque(WEAK), {'time_optimal': 1.0})):
         for task in (thesis_table('6.1', limits, label), _random(8, limits)):
             yield f'{len(task.request.via_points)} via points, {label}', task, targets
+    for name in OTHER_ARMS:
+        arm, = arms(name)
+        task = Task(name, replace(arm.limits, max_effort=NONE), PlanningRequest(
+            request_to(arm, 'cycloid', np.random.default_rng(SEED)).via_points), arm.model)
+        yield (f'{len(task.request.via_points)} via points, v, a, jerk, {name}', task,
+               {'cycloid': 0.1, 'time_optimal': 1.0})
 
 
 def _planning(task: Task, planner_id: str) -> Callable[[], object]:

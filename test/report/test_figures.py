@@ -24,6 +24,7 @@ from math import pi, sqrt
 from xml.etree import ElementTree
 
 from helpers.other_arms import OTHER_ARMS
+from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -162,7 +163,7 @@ def test_path_lengths_rise_to_the_whole_path(plans):
 
 
 def test_arm_points_are_the_links_lengths_apart():
-    model, q = RobotModel(), np.random.default_rng(3).uniform(-3.0, 3.0, (50, 3))
+    model, q = ThesisArm(), np.random.default_rng(3).uniform(-3.0, 3.0, (50, 3))
     base, shoulder, elbow, tip = np.moveaxis(arm_points(model, q), 1, 0)
     for one, other, length in ((base, shoulder, model.d1), (shoulder, elbow, model.a2),
                                (elbow, tip, model.d4)):

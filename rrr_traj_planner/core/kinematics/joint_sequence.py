@@ -42,9 +42,14 @@ from rrr_traj_planner.core.kinematics.joint_ranges import (
 )
 from rrr_traj_planner.core.kinematics.least_time_chain import least_time_chain
 from rrr_traj_planner.core.kinematics.least_time_turns import least_time_turns, TRAVEL
-from rrr_traj_planner.core.kinematics.postures import ANY, in_posture, Posture
+from rrr_traj_planner.core.kinematics.postures import ALL, ANY, in_posture, Posture
 from rrr_traj_planner.core.kinematics.solutions import all_solutions
-from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_times, ViaPointBehaviour
+from rrr_traj_planner.core.kinematics.travel_time import (
+    THROUGH,
+    travel_time,
+    travel_times,
+    ViaPointBehaviour,
+)
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 
 # Cost of a solution that is out of a range or cannot be held, far above any motion's time; so the
@@ -89,10 +94,36 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
         If a point is outside the workspace, or out of reach in the posture; with its number.
 
     """
-    frame = axis_frame(model)
-    free = np.hypot(*frame.coordinates(points)[:, :2].T) <= TIP_ROUNDING
-    options, costs = _options(model, limits, points, posture, free, can_hold)
-    q = _chosen(limits, options, costs, start, passing)
+    free = np.hypot(*axis_frame(model).coordinates(points)[:, :2].T) <= TIP_ROUNDING
+
+    def found_in(asked: Posture) -> tuple[Array, bool]:
+        options, costs = _options(model, limits, points, asked, free, can_hold)
+        q = _chosen(limits, options, costs, start, passing)
+        return _with_turns(limits, q, free, start, passing)
+
+    q, turns_matter = found_in(posture)
+    if not turns_matter or None not in posture:
+        return q
+    # Which solutions are best was found without regard to the ends of wide ranges.
+    every = [q]
+    for alone in filter(posture.includes, ALL):
+        try:
+            every.append(found_in(alone)[0])
+        except UnreachableError:
+            continue
+    return min(every, key=lambda x: _estimate(limits, x, start, passing))
+
+
+def _estimate(limits: JointLimits, q: Array, start: Array | None,
+              passing: ViaPointBehaviour) -> tuple[bool, float]:
+    """Return whether a joint leaves its range, and the estimated time [s]."""
+    whole = q if start is None else np.vstack((start, q))
+    return bool(out_of_range(q, limits).any()), travel_time(limits, whole, passing)
+
+
+def _with_turns(limits: JointLimits, q: Array, free: BoolArray, start: Array | None,
+                passing: ViaPointBehaviour) -> tuple[Array, bool]:
+    """Return positions with whole turns and free angles, and whether turns had to be sought."""
     if start is not None:
         q, free = np.vstack((start, q)), np.concatenate(([False], free))
     if free.all():
@@ -101,7 +132,8 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
         q[:, 0] = q[np.maximum.accumulate(np.where(free, free.argmin(), np.arange(len(q)))), 0]
     q[1:] -= TURN * np.cumsum(nearest_turns(np.diff(q, axis=0)), axis=0)
     q += whole_turns(q, limits, start)
-    for j in np.flatnonzero(_needs_search(limits, q, passing))[::-1].tolist():
+    sought = _needs_search(limits, q, passing)
+    for j in np.flatnonzero(sought)[::-1].tolist():
         at = np.flatnonzero(~free) if j == 0 else np.arange(len(q))
         q[at, j] = least_time_turns(
             limits, j, q[at, j], np.diff(_elapsed(limits, q, j, passing)[at]), start is not None,
@@ -112,7 +144,7 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
                              limits.min_position[0], limits.max_position[0])
     q = np.where(out_of_range(q, limits), q,
                  np.clip(q, limits.min_position, limits.max_position))
-    return q if start is None else q[1:]
+    return q if start is None else q[1:], bool(sought.any())
 
 
 def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Posture,
