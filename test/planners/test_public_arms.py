@@ -54,7 +54,7 @@ def test_joint_space_motions_keep_every_limit_by_pinocchio(name):
 @pytest.mark.parametrize('name', ARMS)
 def test_paths_keep_every_limit_by_pinocchio_or_are_refused_for_a_reason(name):
     for planner_id in PATHS:
-        for request in requests(name, planner_id, 2):
+        for request in requests(name, planner_id, 1):
             try:
                 found = plan(ARMS[name].model, ARMS[name].limits, request)
             except (UnreachableError, LimitViolationError):  # the path between the points

@@ -29,6 +29,7 @@ from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.postures import ELBOWS
 
 ROUNDING = 5e-14      # m, of a tip position
+MODEL = RobotModel()
 SHOULDER = np.array([0.0, 0.0, 0.5])
 TURN = 2.0 * np.pi
 
@@ -48,21 +49,21 @@ def distance_of_pose(model, position, elbow, **kwargs):
 @pytest.mark.parametrize('name', thesis.POINTS)
 def test_thesis_points_need_the_verified_joint_angles(name):
     position, angles, _ = thesis.POINTS[name]
-    q = inverse_kinematics(RobotModel(), position, 'up')
+    q = inverse_kinematics(MODEL, position, 'up')
     assert np.rad2deg(q) == pytest.approx(angles, abs=thesis.ANGLE_TOLERANCE)
 
 
 @pytest.mark.parametrize('name', thesis.POINTS)
 def test_thesis_points_are_within_the_mirrored_joint_ranges(name):
     limits = JointLimits()
-    q = inverse_kinematics(RobotModel(), thesis.POINTS[name][0])
+    q = inverse_kinematics(MODEL, thesis.POINTS[name][0])
     assert (limits.min_position <= q).all()
     assert (q <= limits.max_position).all()
 
 
 def test_thesis_printed_range_of_joint_2_holds_no_branch_of_its_own_points():
     low, high = np.pi, TURN
-    kept = {elbow: all(low <= inverse_kinematics(RobotModel(), p, elbow)[1] % TURN <= high
+    kept = {elbow: all(low <= inverse_kinematics(MODEL, p, elbow)[1] % TURN <= high
                        for p, _, _ in thesis.POINTS.values()) for elbow in ELBOWS}
     assert kept == {'up': False, 'down': False}
 
@@ -99,7 +100,7 @@ def test_elbow_is_above_the_line_to_the_tip_on_branch_up_and_below_on_branch_dow
     for _ in range(100):
         r, h = rng.uniform(0.3, 1.0, 2)
         for elbow, side in (('up', 1.0), ('down', -1.0)):
-            q2 = inverse_kinematics(RobotModel(), (r, 0.0, 0.5 + h), elbow)[1]
+            q2 = inverse_kinematics(MODEL, (r, 0.0, 0.5 + h), elbow)[1]
             cross = r * np.sin(q2) - h * np.cos(q2)  # line to the tip x upper arm
             assert side * cross > 0.0
 
@@ -109,7 +110,7 @@ def test_joint_positions_are_in_their_documented_ranges():
     for direction in random_directions(rng, 300):
         point = SHOULDER + direction * rng.uniform(0.2, 1.6)
         for elbow in ELBOWS:
-            q = inverse_kinematics(RobotModel(), point, elbow)
+            q = inverse_kinematics(MODEL, point, elbow)
             assert (-np.pi < q).all()
             assert (q <= np.pi).all()
             assert (abs(q[2]) <= np.pi / 2) == (elbow == 'up')
@@ -117,7 +118,7 @@ def test_joint_positions_are_in_their_documented_ranges():
 
 @pytest.mark.parametrize('y', [0.0, -0.0])
 def test_point_behind_the_base_has_theta_1_of_plus_half_a_turn(y):
-    assert inverse_kinematics(RobotModel(), (-1.0, y, 0.5))[0] == np.pi
+    assert inverse_kinematics(MODEL, (-1.0, y, 0.5))[0] == np.pi
 
 
 @pytest.mark.parametrize('elbow', ELBOWS)
@@ -130,8 +131,8 @@ def test_both_edges_of_the_workspace_are_reached_to_rounding(elbow, edge, inward
         # The angle grows with the root of the distance from the edge.
         for inside in (0.0, 1e-15, 1e-12, 1e-9, 1e-6):
             point = SHOULDER + direction * (edge + inward * inside)
-            assert distance_of_pose(RobotModel(), point, elbow) <= ROUNDING
-        q = inverse_kinematics(RobotModel(), SHOULDER + direction * edge, elbow)
+            assert distance_of_pose(MODEL, point, elbow) <= ROUNDING
+        q = inverse_kinematics(MODEL, SHOULDER + direction * edge, elbow)
         assert q[2] == pytest.approx(theta_3[elbow], abs=1e-7)
 
 
@@ -139,7 +140,7 @@ def test_both_edges_of_the_workspace_are_reached_to_rounding(elbow, edge, inward
 @pytest.mark.parametrize(('distance', 'miss'), [(1.6, 0.9e-9), (0.2, -0.9e-9)])
 def test_point_beyond_an_edge_by_rounding_is_on_it(elbow, distance, miss):
     point = SHOULDER + (0.6 * (distance + miss), 0.0, 0.8 * (distance + miss))
-    assert distance_of_pose(RobotModel(), point, elbow) == pytest.approx(0.9e-9, rel=1e-5)
+    assert distance_of_pose(MODEL, point, elbow) == pytest.approx(0.9e-9, rel=1e-5)
 
 
 @pytest.mark.parametrize(('point', 'miss', 'text'), [
@@ -154,29 +155,29 @@ def test_point_beyond_an_edge_by_rounding_is_on_it(elbow, distance, miss):
 @pytest.mark.parametrize('elbow', ELBOWS)
 def test_unreachable_point_is_refused_with_the_distance_it_misses_by(point, miss, text, elbow):
     with pytest.raises(UnreachableError, match=f'^{re.escape(text)}$') as caught:
-        inverse_kinematics(RobotModel(), point, elbow)
+        inverse_kinematics(MODEL, point, elbow)
     assert caught.value.distance == pytest.approx(miss, abs=1e-15)
 
 
 def test_a_micrometre_beyond_the_reach_is_refused():
     with pytest.raises(UnreachableError, match='it misses by 1e-06 m$'):
-        inverse_kinematics(RobotModel(), (1.600001, 0.0, 0.5))
+        inverse_kinematics(MODEL, (1.600001, 0.0, 0.5))
 
 
 @pytest.mark.parametrize('elbow', ELBOWS)
 @pytest.mark.parametrize('offset', [0.0, 1e-10])
 def test_on_joint_axis_1_theta_1_keeps_its_previous_value(elbow, offset):
     point = (offset, -offset, 1.7)
-    q = inverse_kinematics(RobotModel(), point, elbow, previous=(-2.5, 9.0, 9.0))
+    q = inverse_kinematics(MODEL, point, elbow, previous=(-2.5, 9.0, 9.0))
     assert q[0] == -2.5
-    assert inverse_kinematics(RobotModel(), point, elbow)[0] == 0.0
-    assert distance_of_pose(RobotModel(), point, elbow) <= 1.5 * offset + ROUNDING
+    assert inverse_kinematics(MODEL, point, elbow)[0] == 0.0
+    assert distance_of_pose(MODEL, point, elbow) <= 1.5 * offset + ROUNDING
 
 
 def test_off_joint_axis_1_the_previous_pose_changes_nothing():
-    q = inverse_kinematics(RobotModel(), (0.3, 0.4, 0.9))
+    q = inverse_kinematics(MODEL, (0.3, 0.4, 0.9))
     assert inverse_kinematics(
-        RobotModel(), (0.3, 0.4, 0.9), previous=(5.0, 5.0, 5.0)).tolist() == q.tolist()
+        MODEL, (0.3, 0.4, 0.9), previous=(5.0, 5.0, 5.0)).tolist() == q.tolist()
 
 
 @pytest.mark.parametrize('elbow', ELBOWS)
@@ -193,9 +194,9 @@ def test_arm_of_equal_links_folds_onto_its_shoulder(elbow):
     ((0.5, np.nan, 0.5), r'^position\[1\] is nan, must be finite$')])
 def test_malformed_point_is_refused(position, text):
     with pytest.raises(InvalidInputError, match=text):
-        inverse_kinematics(RobotModel(), position)
+        inverse_kinematics(MODEL, position)
 
 
 def test_unknown_elbow_is_refused():
     with pytest.raises(InvalidInputError, match="^elbow is 'left', must be 'up' or 'down'$"):
-        inverse_kinematics(RobotModel(), (0.5, 0.5, 0.5), 'left')
+        inverse_kinematics(MODEL, (0.5, 0.5, 0.5), 'left')

@@ -32,7 +32,7 @@ from rrr_traj_planner.core.path.workspace_check import check_workspace
 from scipy.spatial.transform import Rotation
 
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))
-ANY_ARM = {**{f'random {seed}': random_arm(seed) for seed in range(6)}, **OTHER_ARMS}
+ANY_ARM = {**{f'random {seed}': random_arm(seed) for seed in range(3)}, **OTHER_ARMS}
 ON_PATH = 1e-12      # of the arm's size
 SAME = 1e-9          # rad, of an arm and the same with a rotated base
 ARM = ThesisArm()
@@ -47,7 +47,7 @@ def gap(q, other):
 @pytest.mark.parametrize('name', ANY_ARM)
 def test_tip_is_on_the_path_and_positions_are_those_of_small_steps(name):
     arm, rng = ANY_ARM[name], np.random.default_rng(85)
-    for _ in range(5):
+    for _ in range(2):
         path, first = regular_path(arm, rng)
         for found in (followed_path(arm, path, first), check_workspace(arm, FREE, path, first,
                                                                        first)):

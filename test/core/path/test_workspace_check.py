@@ -22,6 +22,8 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import LimitViolationError, RrrPlannerError, UnreachableError
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.kinematics.postures import in_posture, Posture
+from rrr_traj_planner.core.kinematics.solutions import all_solutions
 from rrr_traj_planner.core.path.design import line_arc, line_polynomial
 
 MODEL = RobotModel()
@@ -105,11 +107,11 @@ def test_verdict_is_that_of_a_dense_scan():
         path = (line_arc if rng.random() < 0.5 else line_polynomial)(points, 0.1)
         limits = JointLimits(min_position=(-1.2, -0.2, -1.2), max_position=(1.2, 1.8, 1.2))
         p = path(np.linspace(0.0, path.length, 1001))[0]
-        try:
-            q = np.array([inverse_kinematics(MODEL, x, 'up') for x in p])
-            margin = min((q - limits.min_position).min(), (limits.max_position - q).min())
-        except RrrPlannerError:
-            margin = -1.0
+        every = all_solutions(MODEL, p)[0].reshape(-1, 3)
+        every = every[np.isfinite(every[:, 0])]
+        q = every[in_posture(MODEL, every, Posture('up', 'front'))]
+        margin = -1.0 if len(q) < len(p) else min(
+            (q - limits.min_position).min(), (limits.max_position - q).min())
         try:
             found = arm_path_in(MODEL, limits, path)
         except RrrPlannerError:
