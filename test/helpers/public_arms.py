@@ -99,7 +99,7 @@ def task(arm, planner_id, rng):
                            planner_id=planner_id, max_deviation=0.02 * arm.model.chain.size)
 
 
-def _pose(arm, rng, near = None):
+def _pose(arm, rng, near=None):
     """Return a random pose, not far from another one if that is given."""
     limits, size = arm.limits, arm.model.chain.size
     reach = 0.4  # rad
