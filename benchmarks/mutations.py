@@ -158,8 +158,8 @@ FAULTS = {
          'np.maximum(limits.max_acceleration, (torque / inertia).max(axis=0))'),
     ),
     'test/planners/path_timing': (
-        ('ratio = np.abs(table.values.g) / task.limits.max_effort',
-         'ratio = np.abs(table.values.g) / task.limits.max_velocity'),
+        ('ratio = constant / task.limits.max_effort',
+         'ratio = constant / task.limits.max_velocity'),
         ('constraints.margins + check.excess)', 'constraints.margins - self._check.excess)'),
         ('T, motion, _ = min(rounds.found', 'T, motion, _ = max(rounds.found'),
         ('time_scaled(outcome.motion, factor), T - outcome.gap',
