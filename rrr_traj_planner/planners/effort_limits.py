@@ -118,35 +118,3 @@ def effort_less_friction(model: RobotModel, limits: JointLimits) -> Array:
     """
     check_friction(model, limits)
     return np.asarray(limits.max_effort - model.friction.coulomb)
-
-
-def moving_error(where: str, model: RobotModel, joint: int, torque: float, limit: float,
-                 via_point: int = -1) -> LimitViolationError:
-    """
-    Return the error of a pose through which a motor cannot move its joint, however slowly.
-
-    Parameters
-    ----------
-    where : str
-        The position, for the message.
-    model : RobotModel
-        The arm.
-    joint : int
-        Index of the joint.
-    torque, limit : float
-        Torque of gravity and Coulomb friction, and its limit [N m].
-    via_point : int
-        Index of the via point, -1 where it is none.
-
-    Returns
-    -------
-    LimitViolationError
-        To be raised.
-
-    """
-    name = model.joint_names[joint]
-    needed, most = format_distinct(torque, limit)
-    left = '' if torque > limit else ', which leaves no torque for acceleration'
-    return LimitViolationError(
-        f'{where} {name} needs {needed} N m to move against gravity and friction, limit {most} '
-        f'N m{left}', name, torque, limit, via_point)

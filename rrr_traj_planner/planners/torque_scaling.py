@@ -32,9 +32,8 @@ from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
 from rrr_traj_planner.core.trajectory.torque import peak_holding_torque, time_scale_for_torque
 from rrr_traj_planner.core.trajectory.torque_sweep import torque_sweep
 from rrr_traj_planner.core.trajectory.trajectory import MOST_FACTOR, Trajectory
-from rrr_traj_planner.planners.effort_limits import moving_error
+from rrr_traj_planner.planners.effort_errors import holding_error, moving_error
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.via_points import holding_error
 
 Side = Literal['left', 'right']
 
@@ -176,8 +175,9 @@ def cannot_hold(task: JointTask, trajectory: Trajectory) -> LimitViolationError:
     sweep = torque_sweep(task.model, trajectory)
     constant = np.abs(sweep.parts.constant)
     row, joint = map(int, np.unravel_index(int((constant / limits).argmax()), constant.shape))
-    return moving_error(_along_segment(task, trajectory, float(sweep.times[row])), task.model,
-                        joint, float(constant[row, joint]), float(limits[joint]))
+    where = _along_segment(task, trajectory, float(sweep.times[row]))
+    return moving_error(where, task.model.joint_names[joint], float(constant[row, joint]),
+                        float(limits[joint]))
 
 
 def _along_segment(task: JointTask, trajectory: Trajectory, time: float) -> str:

@@ -31,6 +31,7 @@ from rrr_traj_planner.core.kinematics.postures import ANY, Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
+from rrr_traj_planner.planners.effort_errors import holding_error
 
 
 def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
@@ -178,50 +179,3 @@ def holding_failure(model: RobotModel, limits: JointLimits, q: Array,
     where = names[i] if names else f'via point {i}'
     return holding_error(f'{where}:', model.joint_names[j], float(torque[i, j]),
                          float(limits.max_effort[j]), i)
-
-
-def holding_error(where: str, joint: str, torque: float, limit: float,
-                  via_point: int = -1) -> LimitViolationError:
-    """
-    Return the error of a pose that a motor cannot hold, or has no torque left for motion.
-
-    Parameters
-    ----------
-    where : str
-        The position, for the message.
-    joint : str
-        Name of the joint.
-    torque, limit : float
-        The torque needed and its limit [N m].
-    via_point : int
-        Index of the via point, -1 where it is none.
-
-    Returns
-    -------
-    LimitViolationError
-        To be raised.
-
-    """
-    needed, most = torque_texts(torque, limit)
-    left = '' if torque > limit else ', which leaves no torque for motion'
-    return LimitViolationError(
-        f'{where} {joint} needs {needed} N m to hold, limit {most} N m{left}', joint, torque,
-        limit, via_point)
-
-
-def torque_texts(torque: float, limit: float) -> tuple[str, ...]:
-    """
-    Return a torque and its limit for a message, to a tenth where that distinguishes them.
-
-    Parameters
-    ----------
-    torque, limit : float
-        [N m].
-
-    Returns
-    -------
-    tuple of str
-        Both.
-
-    """
-    return format_distinct(torque, limit, digits=len(f'{torque:.1f}') - 1)

@@ -52,11 +52,34 @@ def motor_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike)
         If a shape is wrong, or a value not finite.
 
     """
-    torque, friction = inverse_dynamics(model, q, qd, qdd), model.friction
-    if not friction.is_none:
-        velocity = np.asarray(qd, dtype=float)
-        torque += friction.viscous * velocity + friction.coulomb * np.sign(velocity)
-    return torque
+    torque, coulomb = smooth_motor_torque(model, q, qd, qdd), model.friction.coulomb
+    return torque + coulomb * np.sign(np.asarray(qd, dtype=float)) if coulomb.any() else torque
+
+
+def smooth_motor_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
+    """
+    Return the motors' torques without Coulomb friction: M qdd + C qd + g + viscous qd.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    q, qd, qdd : array_like, shape (..., 3)
+        Joint positions [rad], velocities [rad/s] and accelerations [rad/s^2].
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+        Joint torques [N m].
+
+    Raises
+    ------
+    InvalidInputError
+        If a shape is wrong, or a value not finite.
+
+    """
+    torque, viscous = inverse_dynamics(model, q, qd, qdd), model.friction.viscous
+    return torque + viscous * np.asarray(qd, dtype=float) if viscous.any() else torque
 
 
 def direction_of(qd: Array) -> Array:

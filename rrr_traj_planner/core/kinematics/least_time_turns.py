@@ -118,7 +118,8 @@ def _options(limits: JointLimits, joint: int, q: Array,
     first = np.ceil((low - q - JOINT_ROUNDING) / TURN)
     last = np.floor((high - q + JOINT_ROUNDING) / TURN)
     none = first > last
-    first[none] = last[none] = np.round((0.5 * (low + high) - q[none]) / TURN)
+    if none.any():  # the range is shorter than a turn, and finite
+        first[none] = last[none] = np.round((0.5 * (low + high) - q[none]) / TURN)
     if first_is_fixed:
         first[0] = last[0] = 0.0
     nearest = np.clip(0.0, first, last)

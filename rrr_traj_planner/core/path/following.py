@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
@@ -152,17 +154,25 @@ def _check_reach(model: RobotModel, path: CartesianPath, s: Array) -> None:
     miss = misses(model, path(s)[0])
     if miss.max() <= TIP_ROUNDING:
         return
-    k = int(miss.argmax())
-    low, high = s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)]
-    farthest = optimize.minimize_scalar(
-        lambda x: -float(misses(model, path(np.array([x]))[0])[0]), bounds=(low, high),
-        method='bounded', options={'xatol': TIP_ROUNDING * path.length})
-    at, most = (float(s[k]), float(miss[k])) if -farthest.fun < miss[k] else (
-        float(farthest.x), -float(farthest.fun))
+    at, least = _least(
+        lambda x: -float(misses(model, path(np.array([x]))[0])[0]), s, int(miss.argmax()))
+    most = -least
     place, nearest = place_on_path(path, at)
     raise UnreachableError(
         f"{place}: the tip would be out of the arm's reach: it misses by {most:.6g} m",
         distance=most, via_point=nearest)
+
+
+def _least(function: Callable[[float], float], s: Array, k: int) -> tuple[float, float]:
+    """Return where a function is least between a path coordinate's neighbours, and its value."""
+    begin, middle, end = (float(s[i]) for i in (max(k - 1, 0), k, min(k + 1, len(s) - 1)))
+    # By the offset: the search's tolerance is relative to the coordinate, however long the path.
+    found = optimize.minimize_scalar(
+        lambda offset: function(middle + offset), bounds=(begin - middle, end - middle),
+        method='bounded', options={'xatol': TIP_ROUNDING * (end - begin)})
+    at_middle = function(middle)
+    return (middle + float(found.x), float(found.fun)) if found.fun < at_middle else (
+        middle, at_middle)
 
 
 def _refusal(model: RobotModel, path: CartesianPath, s: Array, at: float) -> RrrPlannerError:
@@ -177,14 +187,9 @@ def _refusal(model: RobotModel, path: CartesianPath, s: Array, at: float) -> Rrr
         return float(np.hypot(*frame.coordinates(path(x)[0])[:2]))
 
     if from_axis(at) < NEAR_AXIS * model.chain.size:
-        step = 0.5 * np.diff(s).max()
-        nearest_to_axis = optimize.minimize_scalar(
-            from_axis, bounds=(max(at - step, 0.0), min(at + step, path.length)),
-            method='bounded', options={'xatol': TIP_ROUNDING * path.length})
-        if nearest_to_axis.fun < from_axis(at):
-            at = float(nearest_to_axis.x)
+        at, distance = _least(from_axis, s, int(np.searchsorted(s, at)))
         place, nearest = place_on_path(path, at)
-        distance, name = from_axis(at), model.joint_names[0]
+        name = model.joint_names[0]
         passed, bound = format_distinct(distance, LEAST_REGULAR, digits=3)
         return LimitViolationError(
             f'{place}: the tip would pass joint axis 1 (singularity) at {passed} m, where {name} '

@@ -29,8 +29,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
-from rrr_traj_planner.core.dynamics.motor_torque import direction_of
-from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.dynamics.motor_torque import direction_of, smooth_motor_torque
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, through_samples
 from rrr_traj_planner.core.trajectory.quintic_spline import QuinticSpline
 from rrr_traj_planner.core.trajectory.time_scaling import squared_time_scale
@@ -141,9 +140,8 @@ def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
 
 def _torque_and_push(model: RobotModel, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array]:
     """Return the motors' torques without Coulomb friction, and for Coulomb friction [N m]."""
-    friction = model.friction
-    return (inverse_dynamics(model, q, qd, qdd) + friction.viscous * qd,
-            friction.coulomb * direction_of(qd))
+    return (smooth_motor_torque(model, q, qd, qdd),
+            model.friction.coulomb * direction_of(qd))
 
 
 def _at_reversals(q: Array, qd: Array, qdd: Array, step: Array) -> Array:

@@ -24,9 +24,9 @@ from functools import cached_property
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
+from rrr_traj_planner.core.dynamics.motor_torque import smooth_motor_torque
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
-from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, TorqueParts
+from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, torque_parts
 from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.solver.excess import excess_near_points, rise_between_samples
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables
@@ -69,9 +69,7 @@ class JointCheck:
         """Return torques without Coulomb friction [N m], None where they are not limited."""
         if np.isinf(self._task.limits.max_effort).all():
             return None
-        model = self._task.model
-        torque = inverse_dynamics(model, self.q, self.qd, self.qdd)
-        return np.asarray(torque + model.friction.viscous * self.qd)
+        return smooth_motor_torque(self._task.model, self.q, self.qd, self.qdd)
 
     def time_scale(self) -> float:
         """
@@ -90,9 +88,8 @@ class JointCheck:
         factor = limits.time_scale(np.abs(self.qd), np.abs(self.qdd), self._peak_jerk)
         if tau is None or (np.abs(tau) <= self._effort * (1.0 + LIMIT_ROUNDING)).all():
             return factor
-        gravity = gravity_torque(self._task.model, self.q)
-        friction = self._task.model.friction.viscous * self.qd
-        parts = TorqueParts(gravity, friction, tau - friction - gravity)
+        # The limits are less Coulomb friction already: no direction, so that it is not added.
+        parts = torque_parts(self._task.model, self.q, self.qd, self.qdd, np.zeros(3))
         return float(max(factor, np.sqrt(squared_scaling(self._effort, parts).max())))
 
     @cached_property

@@ -21,6 +21,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import LimitViolationError
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, torque_parts
+from rrr_traj_planner.planners.effort_errors import torque_texts
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.feasible_path import (
     gravity_ratio,
@@ -29,7 +30,6 @@ from rrr_traj_planner.planners.joint_timing.feasible_path import (
 from rrr_traj_planner.planners.solver.ramps import Grid, Variables, with_durations
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN, START_SCALING
-from rrr_traj_planner.planners.via_points import torque_texts
 
 # Chosen: on 28 random tasks half and twice of LEAST_RAMPS and SLOW change a duration by 0.2 %.
 LEAST_RAMPS = 4        # of a motion from rest to rest: two up, two down

@@ -31,14 +31,14 @@ from rrr_traj_planner.core.path.following import place_on_path
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
-from rrr_traj_planner.planners.effort_limits import check_friction, moving_error
+from rrr_traj_planner.planners.effort_errors import holding_error, moving_error
+from rrr_traj_planner.planners.effort_limits import check_friction
 from rrr_traj_planner.planners.path_timing.problem import PathProblem
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.path_timing.tightening import tightened
 from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, Variables
 from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN
-from rrr_traj_planner.planners.via_points import holding_error
 
 # Chosen values, without unit. On 7 random paths half of MOST_RAMPS makes motions 0.4 % slower in
 # the mean, twice as many 0.4 % faster; more ramps for many pieces (half the exponent, twice
@@ -166,7 +166,7 @@ def _check_held(task: PathTask, table: PathTable) -> None:
         constant[piece, place, joint], task.limits.max_effort[joint]))
     where, nearest = place_on_path(task.arm_path.path, float(table.places[piece, place]))
     if model.friction.coulomb[joint]:
-        raise moving_error(f'{where}:', model, joint, needed, limit, nearest)
+        raise moving_error(f'{where}:', model.joint_names[joint], needed, limit, nearest)
     raise holding_error(f'{where}:', model.joint_names[joint], needed, limit, nearest)
 
 

@@ -33,7 +33,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.dynamics.motor_torque import smooth_motor_torque
 from rrr_traj_planner.core.motion_laws.lin_434 import Lin434
 from rrr_traj_planner.planners.stops.symmetric_434 import DisplacementRatios, least_time
 from scipy.optimize import minimize
@@ -134,11 +134,10 @@ def _torque_ratios(segment: Segment, law: Lin434, T: Array) -> Array:
     s, sd, sdd = (np.concatenate(each, axis=1)[..., np.newaxis] for each in zip(*(
         piece.at(POINTS)[:3] for piece in columns.pieces(T[:, np.newaxis], 0.0, 1.0))))
     D = segment.displacement
-    friction = segment.model.friction
     q, qd, qdd = (v.reshape(-1, 3) for v in (segment.start + s * D, sd * D, sdd * D))
     exists = np.isfinite(q + qd + qdd).all(axis=1)  # not so for a law without a cruise
     torque = np.full(q.shape, np.nan)
-    torque[exists] = inverse_dynamics(segment.model, q[exists], qd[exists], qdd[exists])
-    torque += friction.viscous * qd + friction.coulomb * np.sign(D)
+    torque[exists] = smooth_motor_torque(segment.model, q[exists], qd[exists], qdd[exists])
+    torque += segment.model.friction.coulomb * np.sign(D)
     limit_ratios = torque[:, limited] / segment.limits.max_effort[limited]
     return limit_ratios.reshape(len(T), -1).T
