@@ -50,7 +50,9 @@ MOST_STATES = 100
 
 class FollowedClock:
     """
-    Simulated time that follows the node's clock: each tick simulates up to the present.
+    Simulated time that follows the node's clock from the first tick on.
+
+    Each tick simulates up to the present.
 
     Parameters
     ----------
@@ -69,6 +71,7 @@ class FollowedClock:
     def __init__(self, node: Node, arm: ControlledArm, publish: Callable[[], None]) -> None:
         self._node, self._arm, self._publish = node, arm, publish
         self.epoch = self.now()  # when the arm's own time began [ns]
+        self._begun = False      # what a node does before it is first spun takes no time
         self.behind = 0          # how far the arm is behind after a tick [ns]
         self._states = Schedule(MIN_RATE, arm.now)
 
@@ -89,7 +92,9 @@ class FollowedClock:
     def tick(self) -> None:
         """Simulate up to the present in whole steps, and publish states; at most `MAX_TICK`."""
         behind = self.now() - self.reached()
-        if not -JUMP_BACK <= behind <= JUMP_AHEAD:
+        if not self._begun:
+            self._begun, self.epoch, behind = True, self.epoch + behind, 0
+        elif not -JUMP_BACK <= behind <= JUMP_AHEAD:
             self._node.get_logger().warning(
                 f'the clock jumped by {behind / SECOND:+.3f} s; the arm and its trajectory '
                 'continue from the new time', throttle_duration_sec=WARNING_PERIOD)

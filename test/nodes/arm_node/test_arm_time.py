@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+from time import sleep
+
 from builtin_interfaces.msg import Time
 from helpers.arm_in_ros import ALL, Arm, at, GOAL, rest_to_rest, SECOND, stamp
 import numpy as np
@@ -24,6 +26,8 @@ from rcl_interfaces.msg import Log
 from rclpy.clock import Clock as SteadyClock
 from rclpy.clock import ClockType
 from rosgraph_msgs.msg import Clock
+from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
+from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
 
 STEP = SECOND // 1000
@@ -84,6 +88,16 @@ def test_any_rate_keeps_an_outside_clock_s_time(ros, rate, spread):
     whole = gaps[gaps < 1.5 * SECOND / rate]  # an arm that is late publishes only the last states
     assert whole.size
     assert np.abs(whole - SECOND / rate).max() <= spread + 1
+
+
+def test_time_begins_when_the_node_is_first_spun(ros):
+    """However long it took to get there: an arm is not late when it starts."""
+    actual = ros.listen(JointState, 'joint_states', ALL)
+    node = SimulatedArm(context=ros.context)
+    sleep(0.3)  # loading of other nodes, say
+    spun = node.get_clock().now().nanoseconds
+    ros.add(node)
+    assert stamp(actual.wait_for()) >= spun
 
 
 def test_seldom_published_states_are_on_time(ros):
