@@ -25,12 +25,12 @@ it is interpolated between the point before and the point after.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray
 from rrr_traj_planner.core.errors import UnreachableError
 from rrr_traj_planner.core.kinematics.axis_frame import axis_frame
 from rrr_traj_planner.core.kinematics.inverse import point_text, reachable
@@ -52,11 +52,29 @@ from rrr_traj_planner.core.kinematics.travel_time import (
 )
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
 
-# Cost of a solution that is out of a range or cannot be held, far above any motion's time; so the
-# fewest of them are taken. Chosen.
-IMPOSSIBLE = 1e9  # s
-
 CanHold: TypeAlias = Callable[[Array], BoolArray]
+
+
+class _Options(NamedTuple):
+    """Solutions to choose from: positions (m, 3), the point of each (m,), the number of points."""
+
+    q: Array
+    of_point: IntArray
+    points: int
+
+    @property
+    def lacking(self) -> int | None:
+        """Return the first point without a solution."""
+        numbers = np.bincount(self.of_point, minlength=self.points)
+        return None if numbers.all() else int(numbers.argmin())
+
+    def only(self, wanted: BoolArray) -> _Options:
+        """Return some of them."""
+        return _Options(self.q[wanted], self.of_point[wanted], self.points)
+
+    def at_each_point(self) -> list[Array]:
+        """Return the positions at each point."""
+        return np.split(self.q, np.searchsorted(self.of_point, np.arange(1, self.points)))
 
 
 def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, posture: Posture = ANY,
@@ -95,22 +113,18 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
 
     """
     free = np.hypot(*axis_frame(model).coordinates(points)[:, :2].T) <= TIP_ROUNDING
-
-    def found_in(asked: Posture) -> tuple[Array, bool]:
-        options, costs = _options(model, limits, points, asked, free, can_hold)
-        q = _chosen(limits, options, costs, start, passing)
-        return _with_turns(limits, q, free, start, passing)
-
-    q, turns_matter = found_in(posture)
+    options = _options(model, limits, points, posture, free, can_hold)
+    chosen = _chosen(limits, options, free, start, passing)
+    q, turns_matter = _with_turns(limits, chosen, free, start, passing)
     if not turns_matter or None not in posture:
         return q
     # Which solutions are best was found without regard to the ends of wide ranges.
     every = [q]
     for alone in filter(posture.includes, ALL):
-        try:
-            every.append(found_in(alone)[0])
-        except UnreachableError:
-            continue
+        some = options.only(in_posture(model, options.q, alone))
+        if some.lacking is None and not in_posture(model, chosen, alone).all():
+            q = _chosen(limits, some, free, start, passing)
+            every.append(_with_turns(limits, q, free, start, passing)[0])
     return min(every, key=lambda x: _estimate(limits, x, start, passing))
 
 
@@ -148,37 +162,34 @@ def _with_turns(limits: JointLimits, q: Array, free: BoolArray, start: Array | N
 
 
 def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Posture,
-             free: BoolArray, can_hold: CanHold | None) -> tuple[list[Array], list[Array]]:
-    """Return the solutions at each point, NaN where joint 1 is free, and their costs."""
+             free: BoolArray, can_hold: CanHold | None) -> _Options:
+    """Return the solutions at each point; only those in range that can be held, if there are."""
     found, count = all_solutions(model, points)
     of_point = np.repeat(np.arange(len(points)), count)
     q = found[np.arange(found.shape[1]) < count[:, np.newaxis]]
-    fits = in_posture(model, q, posture)
-    q, of_point = _within_ranges(q[fits], limits), of_point[fits]
-    numbers = np.bincount(of_point, minlength=len(points))
-    if (numbers == 0).any():
-        i = int(numbers.argmin())
-        raise _unreachable(model, points[i], posture, i)
-    outside = out_of_range(q, limits) & ~_turning(limits)
-    outside[free[of_point], 0] = False
-    impossible = 2 * outside.any(axis=1) + (0 if can_hold is None else ~can_hold(q))
-    cost = IMPOSSIBLE * impossible.astype(float)
-    q[free[of_point], 0] = np.nan
-    least = np.full(len(points), np.inf)
-    np.minimum.at(least, of_point, cost)
-    kept = cost == least[of_point]
-    ends = np.cumsum(np.bincount(of_point[kept], minlength=len(points)))[:-1]
-    return np.split(q[kept], ends), np.split(cost[kept], ends)
+    options = _Options(q, of_point, len(points)).only(in_posture(model, q, posture))
+    if options.lacking is not None:
+        raise _unreachable(model, points[options.lacking], posture, options.lacking)
+    options = options._replace(q=_within_ranges(options.q, limits))
+    outside = out_of_range(options.q, limits) & ~_turning(limits)
+    outside[free[options.of_point], 0] = False
+    faults = 2 * outside.any(axis=1) + (0 if can_hold is None else ~can_hold(options.q))
+    least = np.full(len(points), 4)
+    np.minimum.at(least, options.of_point, faults)
+    return options.only(faults == least[options.of_point])
 
 
-def _chosen(limits: JointLimits, options: list[Array], costs: list[Array], start: Array | None,
+def _chosen(limits: JointLimits, options: _Options, free: BoolArray, start: Array | None,
             passing: ViaPointBehaviour) -> Array:
     """Return one of the solutions at each point, up to whole turns."""
+    q = options.q.copy()
+    q[free[options.of_point], 0] = np.nan
+    compared = options._replace(q=q).at_each_point()
     if start is not None:
-        options, costs = [start[np.newaxis], *options], [np.zeros(1), *costs]
-    chosen = least_time_chain(limits, options, costs, passing, _turning(limits))
-    found = np.array([q[k] for q, k in zip(options, chosen)])
-    return found if start is None else found[1:]
+        compared = [start[np.newaxis], *compared]
+    chosen = least_time_chain(limits, compared, passing, _turning(limits))[-options.points:]
+    first = np.searchsorted(options.of_point, np.arange(options.points))
+    return np.asarray(options.q[first + chosen])
 
 
 def _turning(limits: JointLimits) -> BoolArray:

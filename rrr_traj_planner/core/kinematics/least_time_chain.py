@@ -39,8 +39,8 @@ from rrr_traj_planner.core.kinematics.travel_time import (
 RESTS = 8  # sets of joints: joint j, from 0, belongs to the sets whose bit j is 1
 
 
-def least_time_chain(limits: JointLimits, options: Sequence[Array], costs: Sequence[Array],
-                     passing: ViaPointBehaviour, turning: BoolArray) -> list[int]:
+def least_time_chain(limits: JointLimits, options: Sequence[Array], passing: ViaPointBehaviour,
+                     turning: BoolArray) -> list[int]:
     """
     Return which of its options each point has in the motion of least estimated time.
 
@@ -50,8 +50,6 @@ def least_time_chain(limits: JointLimits, options: Sequence[Array], costs: Seque
         Velocities and accelerations.
     options : sequence of ndarray, shape (m_i, 3)
         Joint positions at each point [rad]; NaN where a joint's is arbitrary.
-    costs : sequence of ndarray, shape (m_i,)
-        Of the options themselves [s].
     passing : ViaPointBehaviour
         How the motion passes via points.
     turning : ndarray of bool, shape (3,)
@@ -63,11 +61,9 @@ def least_time_chain(limits: JointLimits, options: Sequence[Array], costs: Seque
         An index into each of the options. The first of several that are equally good.
 
     """
-    if all(len(q) == 1 for q in options):
+    if len(options) == 1 or all(len(q) == 1 for q in options):
         return [0] * len(options)
-    if len(options) == 1:
-        return [int(costs[0].argmin())]
-    q, cost = _padded(options, costs)
+    q, cost = _padded(options)
     travel = np.nan_to_num(q[1:, np.newaxis] - q[:-1, :, np.newaxis])
     travel = np.where(turning, travel - TURN * np.round(travel / TURN), travel)
     times = _times(limits, travel, motion_ends(len(travel)), passing)
@@ -87,12 +83,12 @@ def least_time_chain(limits: JointLimits, options: Sequence[Array], costs: Seque
     return chosen[::-1]
 
 
-def _padded(options: Sequence[Array], costs: Sequence[Array]) -> tuple[Array, Array]:
-    """Return options (n, m, 3) and their costs (n, m), infinite where a point has fewer."""
+def _padded(options: Sequence[Array]) -> tuple[Array, Array]:
+    """Return options (n, m, 3) and their costs (n, m): 0, infinite where a point has fewer."""
     most = max(map(len, options))
     q, cost = np.zeros((len(options), most, 3)), np.full((len(options), most), np.inf)
-    for i, (of_point, of_options) in enumerate(zip(options, costs)):
-        q[i, :len(of_point)], cost[i, :len(of_point)] = of_point, of_options
+    for i, of_point in enumerate(options):
+        q[i, :len(of_point)], cost[i, :len(of_point)] = of_point, 0.0
     return q, cost
 
 

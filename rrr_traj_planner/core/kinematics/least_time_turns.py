@@ -74,41 +74,41 @@ def least_time_turns(limits: JointLimits, joint: int, q: Array, others: Array,
     if len(q) == 1:
         return values[0, [np.argmin(cost[0] + BEGINNING * np.abs(values[0]))]]
     travel = values[1:, np.newaxis] - values[:-1, :, np.newaxis]  # from point, turn, to turn
-    least = others[:, np.newaxis, np.newaxis]
-    ends = motion_ends(len(travel))[:, np.newaxis, np.newaxis]
-    times = np.stack([np.maximum(least, joint_travel_time(
-        limits, joint, np.abs(travel), ends, np.maximum(n - ends, 0), passing))
-        + TRAVEL * np.abs(travel) for n in range(3)], axis=1)
-    # Axes of the cost: turn at the point before, turn at this point, whether the joint rests at
-    # the former.
-    best = np.full((*travel.shape[1:], 2), np.inf)
-    best[..., 1] = (cost[0] + BEGINNING * np.abs(values[0]))[:, np.newaxis] + cost[1]
+    times = _times(limits, joint, travel, others, passing)
+    # A joint that does not reverse cannot rest between two segments, and one that does must.
+    reverses = np.sign(travel[:-1, :, :, np.newaxis]) * np.sign(travel[1:, np.newaxis]) <= 0.0
+    barred = np.where(reverses[..., np.newaxis] == (False, True), 0.0, np.inf)
+    # Axes of the cost: whether the joint rests at the point before, turn there, turn here.
+    best = np.full((2, *travel.shape[1:]), np.inf)
+    best[1] = (cost[0] + BEGINNING * np.abs(values[0]))[:, np.newaxis] + cost[1]
     came = []
     for i in range(len(travel) - 1):
-        rests = np.sign(travel[i])[:, :, np.newaxis] * np.sign(travel[i + 1]) <= 0.0
-        best, origin = _step(best, times[i], rests, cost[i + 2])
-        came.append(origin)
-    best = best + np.stack([times[-1, 1], times[-1, 2]], axis=-1)
-    before, last, rest = (int(k) for k in np.unravel_index(best.argmin(), best.shape))
+        # Rest before, turn before, turn between, turn after, rest between.
+        total = (best[..., np.newaxis] + times[i])[:, :, :, np.newaxis] + barred[i]
+        total = total.reshape(-1, *total.shape[2:])
+        came.append(total.argmin(axis=0))
+        best = np.moveaxis(total.min(axis=0) + cost[i + 2, :, np.newaxis], 2, 0)
+    best = best + times[-1, ..., 1]
+    rest, before, last = (int(k) for k in np.unravel_index(best.argmin(), best.shape))
     chosen = [last, before]
     for origin in reversed(came):
-        former, rest = divmod(int(origin[chosen[-1], chosen[-2], rest]), 2)
+        rest, former = divmod(int(origin[chosen[-1], chosen[-2], rest]), values.shape[1])
         chosen.append(former)
     return np.asarray(values[np.arange(len(q)), chosen[::-1]])
 
 
-def _step(best: Array, times: Array, rests: BoolArray, cost: Array) -> tuple[Array, Array]:
-    """Return least costs at the next stage, and the predecessors that attain them."""
-    reached, origin = [], []
-    for rest in (0, 1):  # at the middle one of three points
-        cost_before = best + np.stack([times[rest], times[rest + 1]], axis=-1)
-        cost_before = np.moveaxis(cost_before, 2, 1)[..., np.newaxis]
-        total = np.where(rests[:, np.newaxis] == rest, cost_before,
-                         np.inf)  # turn before, rest before, turn between, turn after
-        flat = total.reshape(-1, *total.shape[2:])
-        origin.append(flat.argmin(axis=0))
-        reached.append(flat.min(axis=0) + cost)
-    return np.stack(reached, axis=-1), np.stack(origin, axis=-1)
+def _times(limits: JointLimits, joint: int, travel: Array, others: Array,
+           passing: ViaPointBehaviour) -> Array:
+    """
+    Return the times of segments by the joint's turns, and by whether it rests at both ends.
+
+    At the motion's ends it rests. With a tie-breaker for travel. Shape (m - 1, 2, k, k, 2).
+    """
+    length, ends = np.abs(travel), motion_ends(len(travel))[:, np.newaxis, np.newaxis]
+    by_count = np.stack([np.maximum(others[:, np.newaxis, np.newaxis], joint_travel_time(
+        limits, joint, length, ends, np.maximum(n - ends, 0), passing)) + TRAVEL * length
+        for n in range(3)], axis=1)
+    return np.stack([by_count[:, :2], by_count[:, 1:]], axis=-1)
 
 
 def _options(limits: JointLimits, joint: int, q: Array,
