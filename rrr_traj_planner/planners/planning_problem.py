@@ -24,7 +24,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
-from rrr_traj_planner.core.kinematics.postures import ANY, Posture
+from rrr_traj_planner.core.kinematics.postures import ANY_POSTURE, Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.planners.effort_limits import (
@@ -125,7 +125,7 @@ def planning_problem(model: RobotModel, limits: JointLimits,
 
     """
     asked = Posture(request.elbow, request.shoulder)
-    if asked != ANY and not has_named_postures(model):
+    if asked != ANY_POSTURE and not has_named_postures(model):
         raise InvalidInputError(
             f'{asked} is asked for, but the postures of this arm have no names')
     scaled = checked_limits(model, limits).scaled(

@@ -33,11 +33,11 @@ from rrr_traj_planner.core.kinematics.inverse import reachable
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, TURN
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import (
-    ALL,
+    ALL_POSTURES,
     in_posture,
     Posture,
     posture_of,
-    postures_of,
+    postures_near,
 )
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, travel_time, ViaPointBehaviour
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIP_ROUNDING
@@ -73,10 +73,11 @@ def joint_postures(problem: PlanningProblem, passing: ViaPointBehaviour) -> list
     asked = problem.asked
     own: list[Posture] = []
     if problem.start is not None:
-        own = [p for p in postures_of(problem.model, problem.start, MEETING) if asked.includes(p)]
+        own = [p for p in postures_near(problem.model, problem.start, MEETING)
+               if asked.includes(p)]
         if len(own) > 1:
             own.sort(key=lambda posture: _time(problem, posture, passing))
-    return list(dict.fromkeys((*own, asked, *filter(asked.includes, ALL))))
+    return list(dict.fromkeys((*own, asked, *filter(asked.includes, ALL_POSTURES))))
 
 
 def path_beginnings(problem: PlanningProblem) -> list[Array]:
@@ -105,7 +106,7 @@ def path_beginnings(problem: PlanningProblem) -> list[Array]:
     """
     model, start, asked = problem.model, problem.start, problem.asked
     if start is not None:
-        own = postures_of(model, start, JOINT_ROUNDING)
+        own = postures_near(model, start, JOINT_ROUNDING)
         if own and not any(map(asked.includes, own)):
             raise StartStateError(
                 f'the start state has {posture_of(model, start)}: along a path of the tip the arm '

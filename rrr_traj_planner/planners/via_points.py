@@ -27,7 +27,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import format_distinct, LimitViolationError, StartStateError
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
-from rrr_traj_planner.core.kinematics.postures import ANY, Posture
+from rrr_traj_planner.core.kinematics.postures import ANY_POSTURE, Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
@@ -35,7 +35,7 @@ from rrr_traj_planner.planners.effort_errors import holding_error
 
 
 def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
-                     start: Array | None, posture: Posture = ANY,
+                     start: Array | None, posture: Posture = ANY_POSTURE,
                      passing: ViaPointBehaviour = THROUGH) -> Array:
     """
     Return joint positions of via points.

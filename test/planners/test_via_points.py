@@ -70,7 +70,7 @@ def test_elbow_is_down_where_up_is_out_of_range():
 def test_point_out_of_range_is_refused_by_joint_value_and_range():
     narrow = replace(WIDE, max_position=[0.6, np.pi, 2.0 * np.pi])
     with pytest.raises(LimitViolationError, match=(
-            r'^via point 1: joint_1 would be at 0\.874[\d]* rad \(elbow up\), '
+            r'^via point 1: joint_1 would be at 0\.874[\d]* rad \(elbow up, shoulder front\), '
             r'limits -3\.14159 to 0\.6 rad$')) as no:
         joint_via_points(ARM, narrow, tips('6.1 point 1', '6.1 point 2'), None,
                          Posture('up', 'front'))

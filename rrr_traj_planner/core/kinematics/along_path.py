@@ -35,7 +35,7 @@ KERNELS = declared({
     'arm_follow_path': (c_int32, [c_void_p, c_int32, *[c_void_p] * 9]),
 })
 
-DETERMINANT, FIRST, SECOND, LEAST_GAIN = range(4)  # columns, as in native/joint_path.c
+DETERMINANT, FIRST, SECOND, SINGULAR_VALUE = range(4)  # columns, as in native/joint_path.c
 REGULARITY = 4
 
 
@@ -68,7 +68,7 @@ class FollowedPoints(NamedTuple):
 
     q: Array           # [rad], shape (m, 3)
     rates: Array       # (2, m, 3) [rad/m]: as the path leaves and as it reaches each point
-    regularity: Array  # (2, m, 4): det J and two derivatives by arc length, least gain; likewise
+    regularity: Array  # (2, m, 4): as of `joint_path_near`; likewise
     error: Array       # (m - 1,) [rad]: of each position predicted from the one before
 
 
@@ -91,8 +91,8 @@ def joint_path_near(model: RobotModel, points: PathPoints,
     JointPath
         Joint positions and derivatives.
     ndarray, shape (n, 4)
-        Determinant of the Jacobian and two derivatives by arc length [m^3, m^2, m], and its least
-        gain, a lower bound on its least singular value [m/rad].
+        Determinant of the Jacobian and two derivatives by arc length [m^3, m^2, m], and a lower
+        bound on its least singular value [m/rad].
 
     Raises
     ------
@@ -158,8 +158,10 @@ def singular_distance(regularity: Array) -> Array:
     """
     Return the distances to the nearest singular positions along a path, in the complex plane.
 
-    The squared determinant is analytic there, where joint positions have a branch point: of its
-    Taylor polynomial of degree 2, the root nearest to 0.
+    A singular position is a branch point of the joint positions as functions of the path
+    coordinate, so that Taylor polynomials converge up to the nearest one (Ahlfors, Complex
+    Analysis, 1979, chapters 5 and 8). The squared determinant is analytic there too: of its Taylor
+    polynomial of degree 2, the root nearest to 0.
 
     Parameters
     ----------
@@ -172,7 +174,7 @@ def singular_distance(regularity: Array) -> Array:
         [m], infinite where there is none.
 
     """
-    det, first, second = np.moveaxis(regularity[..., :LEAST_GAIN], -1, 0)
+    det, first, second = np.moveaxis(regularity[..., :SINGULAR_VALUE], -1, 0)
     a, b, c = first ** 2 + det * second, det * first, det ** 2  # of a x^2 + 2 b x + c
     farther = np.abs(np.abs(b) + np.sqrt(b * b - a * c + 0j))   # a times the other root
     with np.errstate(divide='ignore', invalid='ignore'):

@@ -24,24 +24,32 @@ axis 2 and Q the square of its distance from the foot of the normal on that axis
 with derivatives by q3. The second term is zero where joint axes 1 and 2 meet (a = 0), and where
 joint axes 2 and 3 are parallel (k' = 0). The arm is then singular where r = 0, the tip above or
 below joint axis 1, and where Q' = 0, the arm stretched or folded: r is the factor of the shoulder,
-Q' / 2 that of the elbow.
+Q' / 2 that of the elbow. (Own derivation, from the columns of the Jacobian; tests compare it with
+the determinant, the sign aside.)
+
+With S the foot of the common normal on joint axis 2, E a point on joint axis 3, T the tip and z3
+the direction of joint axis 3, Q' / 2 = z3 . ((T - S) x (E - S)): its sign says on which side of
+the line from shoulder to tip the elbow is.
 """
 
 from __future__ import annotations
+
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, joint_values
-from rrr_traj_planner.core.kinematics.common_normal import common_normal, front_sign
+from rrr_traj_planner.core.kinematics.common_normal import (
+    CAD_ROUNDING,
+    common_normal,
+    front_sign,
+    leading_sign,
+)
 
 # Part of the cube of the arm's size up to which the rest of the determinant counts as zero.
 # Chosen, above the rounding of descriptions with seven digits.
 REST = 1e-6
-
-# Cosine of the angle of joint axes 2 and 3 up to which it counts as a right one: descriptions from
-# CAD are rounded to 1e-4 rad at worst.
-RIGHT_ANGLE = 1e-4
 
 
 def branch_factors(model: RobotModel, q: ArrayLike) -> tuple[Array, Array]:
@@ -60,8 +68,7 @@ def branch_factors(model: RobotModel, q: ArrayLike) -> tuple[Array, Array]:
     Returns
     -------
     elbow : ndarray, shape (...)
-        Q' / 2 [m^2], its sign reversed where joint axes 2 and 3 point into opposite half-spaces:
-        up where it is positive.
+        Q' / 2 or -Q' / 2 [m^2] (`elbow_sign`): up where it is positive.
     shoulder : ndarray, shape (...)
         r [m], or -r if r is negative with all joints at zero (`front_sign`): front where it is
         positive.
@@ -76,8 +83,38 @@ def branch_factors(model: RobotModel, q: ArrayLike) -> tuple[Array, Array]:
     c3, s3 = np.cos(q[..., 2]), np.sin(q[..., 2])
     u, v = (f[0] + f[1] * c3 + f[2] * s3 for f in (g.u, g.v))
     r = g.a + u * np.cos(q[..., 1]) - v * np.sin(q[..., 1])
-    up = -1.0 if model.chain.axis[1] @ model.chain.axis[2] < -RIGHT_ANGLE else 1.0
-    return np.asarray(0.5 * up * (g.Q[2] * c3 - g.Q[1] * s3)), np.asarray(front_sign(model) * r)
+    elbow = 0.5 * elbow_sign(model) * (g.Q[2] * c3 - g.Q[1] * s3)
+    return np.asarray(elbow), np.asarray(front_sign(model) * r)
+
+
+@lru_cache(maxsize=16)
+def elbow_sign(model: RobotModel) -> float:
+    """
+    Return the sign of Q' where the elbow is up: above the line from shoulder to tip.
+
+    Above, with the tip at the front: towards the upper end of joint axis 1, which is the one with
+    the larger z in the base frame, or larger x, then y, for a horizontal axis. The names do not
+    depend on the signs of the description's axes.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+
+    Returns
+    -------
+    float
+        1 or -1.
+
+    """
+    z1, z2, z3 = model.chain.axis
+    upwards = leading_sign(z1[[2, 0, 1]])
+    along = float(z2 @ z3)
+    # z2 and the normal of the plane of front and up are on one side of that plane or on opposite
+    # ones: z2 . (n x z1) is the sine of the angle of joint axes 1 and 2, positive.
+    if abs(along) <= CAD_ROUNDING:  # joint axes 2 and 3 at right angles: neither above nor below
+        return leading_sign(z3)
+    return float(np.sign(along)) * front_sign(model) * upwards
 
 
 def has_named_postures(model: RobotModel) -> bool:

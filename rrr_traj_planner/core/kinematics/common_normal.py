@@ -22,16 +22,25 @@ from functools import lru_cache
 
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kernels import same_size_as
 
 # Part of the arm's size up to which the tip counts as on joint axis 1, so that it is on neither
-# side: descriptions from CAD are rounded to 1e-4 rad at worst.
-ON_AXIS = 1e-4
+# side, and of a unit vector up to which a component counts as none: descriptions from CAD are
+# rounded to 1e-4 rad at worst.
+CAD_ROUNDING = 1e-4
 
 
 @same_size_as('size_of_common_normal')
-class CommonNormal(ctypes.Structure):  # as in native/inverse.h, where the fields are explained
-    """The axes' common normal from c1 to c2, and the tip x as joint 3 alone turns."""
+class CommonNormal(ctypes.Structure):  # as in native/inverse.h
+    """
+    The common normal of joint axes 1 and 2, and the tip x as joint 3 alone turns.
+
+    It leads from c1 on axis 1 to c2 = c1 + a n on axis 2 [m]; c and s are the cosine and the sine
+    (positive) of the angle of the axes, z the direction of axis 1, n = z x z2 / s and m = z x n.
+    By coefficients of 1, cos q3, sin q3: u, v, k, the components of x - c2 along n, z2 x n and z2
+    [m], and Q, its square [m^2]. No tip is further from axis 1 than size [m].
+    """
 
     _fields_ = [*((name, c_double) for name in ('size', 'a', 'c', 's')),
                 *((name, c_double * 3) for name in ('c1', 'n', 'm', 'z', 'u', 'v', 'k', 'Q'))]
@@ -83,8 +92,30 @@ def front_sign(model: RobotModel) -> float:
     Returns
     -------
     float
-        1 on the side to which the common normal n points, or on neither; else -1.
+        1 on the side to which the common normal n points, else -1. Of a tip on the axis, on the
+        side towards the base frame's x axis, or y, or z where these are at right angles to n.
 
     """
     g = common_normal(model)
-    return -1.0 if g.a + g.u[0] + g.u[1] < -ON_AXIS * g.size else 1.0
+    r = g.a + g.u[0] + g.u[1]
+    if abs(r) <= CAD_ROUNDING * g.size:
+        return leading_sign(np.array(g.n))
+    return -1.0 if r < 0.0 else 1.0
+
+
+def leading_sign(v: Array) -> float:
+    """
+    Return the sign of a vector's first component that is not zero.
+
+    Parameters
+    ----------
+    v : ndarray, shape (3,)
+        A unit vector.
+
+    Returns
+    -------
+    float
+        1 or -1. Components up to `CAD_ROUNDING` count as zero.
+
+    """
+    return float(np.sign(v[np.abs(v) > CAD_ROUNDING][0]))

@@ -15,7 +15,7 @@
 """
 Forward kinematics by the arm's table: the tip, its Jacobian and the Jacobian's time derivative.
 
-Thesis (5.3)-(5.7), (5.18).
+For the thesis's arm they equal (5.3)-(5.7) and (5.18).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from rrr_traj_planner.core.arrays import Array, joint_states, joint_values
 
 def forward_kinematics(model: RobotModel, q: ArrayLike) -> Array:
     """
-    Return the tip's position in the base frame (5.3-5.7).
+    Return the tip's position in the base frame.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def forward_kinematics(model: RobotModel, q: ArrayLike) -> Array:
 
 def jacobian(model: RobotModel, q: ArrayLike) -> Array:
     """
-    Return the Jacobian of the tip's position (5.18).
+    Return the Jacobian of the tip's position.
 
     Parameters
     ----------

@@ -42,7 +42,12 @@ from rrr_traj_planner.core.kinematics.joint_ranges import (
 )
 from rrr_traj_planner.core.kinematics.least_time_chain import least_time_chain
 from rrr_traj_planner.core.kinematics.least_time_turns import least_time_turns, TRAVEL
-from rrr_traj_planner.core.kinematics.postures import ALL, ANY, in_posture, Posture
+from rrr_traj_planner.core.kinematics.postures import (
+    ALL_POSTURES,
+    ANY_POSTURE,
+    in_posture,
+    Posture,
+)
 from rrr_traj_planner.core.kinematics.solutions import all_solutions
 from rrr_traj_planner.core.kinematics.travel_time import (
     THROUGH,
@@ -77,8 +82,9 @@ class _Options(NamedTuple):
         return np.split(self.q, np.searchsorted(self.of_point, np.arange(1, self.points)))
 
 
-def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, posture: Posture = ANY,
-                   start: Array | None = None, passing: ViaPointBehaviour = THROUGH,
+def joint_sequence(model: RobotModel, limits: JointLimits, points: Array,
+                   posture: Posture = ANY_POSTURE, start: Array | None = None,
+                   passing: ViaPointBehaviour = THROUGH,
                    can_hold: CanHold | None = None) -> Array:
     """
     Return joint positions at consecutive via points.
@@ -115,15 +121,16 @@ def joint_sequence(model: RobotModel, limits: JointLimits, points: Array, postur
     free = np.hypot(*axis_frame(model).coordinates(points)[:, :2].T) <= TIP_ROUNDING
     options = _options(model, limits, points, posture, free, can_hold)
     chosen = _chosen(limits, options, free, start, passing)
-    q, turns_matter = _with_turns(limits, chosen, free, start, passing)
+    q, turns_matter = _with_turns(limits, options.q[chosen], free, start, passing)
     if not turns_matter or None not in posture:
         return q
     # Which solutions are best was found without regard to the ends of wide ranges.
     every = [q]
-    for alone in filter(posture.includes, ALL):
-        some = options.only(in_posture(model, options.q, alone))
-        if some.lacking is None and not in_posture(model, chosen, alone).all():
-            q = _chosen(limits, some, free, start, passing)
+    for alone in filter(posture.includes, ALL_POSTURES):
+        fits = in_posture(model, options.q, alone)
+        some = options.only(fits)
+        if some.lacking is None and not fits[chosen].all():
+            q = some.q[_chosen(limits, some, free, start, passing)]
             every.append(_with_turns(limits, q, free, start, passing)[0])
     return min(every, key=lambda x: _estimate(limits, x, start, passing))
 
@@ -171,7 +178,7 @@ def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Pos
     if options.lacking is not None:
         raise _unreachable(model, points[options.lacking], posture, options.lacking)
     options = options._replace(q=_within_ranges(options.q, limits))
-    outside = out_of_range(options.q, limits) & ~_turning(limits)
+    outside = out_of_range(options.q, limits) & ~_full_range(limits)
     outside[free[options.of_point], 0] = False
     faults = 2 * outside.any(axis=1) + (0 if can_hold is None else ~can_hold(options.q))
     least = np.full(len(points), 4)
@@ -180,19 +187,19 @@ def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Pos
 
 
 def _chosen(limits: JointLimits, options: _Options, free: BoolArray, start: Array | None,
-            passing: ViaPointBehaviour) -> Array:
-    """Return one of the solutions at each point, up to whole turns."""
+            passing: ViaPointBehaviour) -> IntArray:
+    """Return which of the solutions is the one at each point, whole turns aside."""
     q = options.q.copy()
     q[free[options.of_point], 0] = np.nan
     compared = options._replace(q=q).at_each_point()
     if start is not None:
         compared = [start[np.newaxis], *compared]
-    chosen = least_time_chain(limits, compared, passing, _turning(limits))[-options.points:]
+    chosen = least_time_chain(limits, compared, passing, _full_range(limits))[-options.points:]
     first = np.searchsorted(options.of_point, np.arange(options.points))
-    return np.asarray(options.q[first + chosen])
+    return np.asarray(first + chosen)
 
 
-def _turning(limits: JointLimits) -> BoolArray:
+def _full_range(limits: JointLimits) -> BoolArray:
     """Return which joints can be in any position, whole turns aside: these are chosen later."""
     return np.asarray(limits.max_position - limits.min_position >= TURN)
 
@@ -214,7 +221,7 @@ def _within_ranges(q: Array, limits: JointLimits) -> Array:
         inside = q + TURN * np.ceil((low - JOINT_ROUNDING - q) / TURN)
         middle = q + TURN * np.round((0.5 * (low + high) - q) / TURN)
     found = np.where(inside <= high + JOINT_ROUNDING, inside, middle)
-    return np.where(_turning(limits), q, found)
+    return np.where(_full_range(limits), q, found)
 
 
 def _needs_search(limits: JointLimits, q: Array, passing: ViaPointBehaviour) -> BoolArray:
@@ -228,7 +235,7 @@ def _needs_search(limits: JointLimits, q: Array, passing: ViaPointBehaviour) -> 
     with np.errstate(invalid='ignore'):
         saved = 2.0 * limits.max_velocity ** 2 / (
             passing.mean_acceleration * limits.max_acceleration)
-    long = 2.0 * (np.pi - np.abs(travel)) < saved
+    long = (travel != 0.0) & (2.0 * (np.pi - np.abs(travel)) < saved)
     other = TURN * np.sign(travel)
     possible = (~out_of_range(q[:-1] + other, limits)) | (~out_of_range(q[1:] - other, limits))
     return np.asarray(out_of_range(q, limits).any(axis=0) | (long & possible).any(axis=0))

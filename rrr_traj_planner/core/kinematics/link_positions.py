@@ -43,7 +43,8 @@ def link_positions(model: RobotModel, q: Sequence[float]) -> tuple[Point, ...]:
     -------
     tuple of 3 to 5 points
         Base frame [m]: the base's origin, the joints' points (one, where two joints have the same)
-        and the tip. Only the first two rest; the number is the same in every pose.
+        and the tip. The base's origin and joint 1's point do not move; the number
+        is the same in every pose.
 
     """
     chain = model.chain

@@ -34,7 +34,7 @@ ROUNDING = 1e-9  # part of a factor's scale up to which it is none; chosen
 
 # The same where two solutions coincide, which are known to half the digits: for positions known to
 # 1e-14 of the arm's size, 5e-7. Chosen.
-DOUBLE = 1e-6
+DOUBLE_ROOT = 1e-6
 
 Elbow = Literal['up', 'down']
 Shoulder = Literal['front', 'back']
@@ -49,8 +49,9 @@ class Posture(NamedTuple):
     Parameters
     ----------
     elbow : {'up', 'down'}, optional
-        None: either. Of the thesis's arm it is up where theta_3 is within a right angle of 0: with
-        the shoulder at the front, the elbow is then above the line from shoulder to tip.
+        None: either. Up: with the shoulder at the front, the elbow is above the line from shoulder
+        to tip, towards the upper end of joint axis 1 (`elbow_sign`; of the thesis's arm, theta_3
+        within a right angle of 0). With the shoulder at the back it is below that line.
     shoulder : {'front', 'back'}, optional
         Front where the tip is on that side of joint axis 1 on which it is with all joints at zero,
         back where the arm reaches over its shoulder. None: either.
@@ -62,8 +63,8 @@ class Posture(NamedTuple):
 
     def __str__(self) -> str:
         """Return the posture for an error's message."""
-        names = [f'{kind} {name}' for kind, name in zip(self._fields, self) if name is not None]
-        return ', '.join(names[:1] if self.shoulder == 'front' and self.elbow else names)
+        return ', '.join(
+            f'{kind} {name}' for kind, name in zip(self._fields, self) if name is not None)
 
     def includes(self, other: Posture | None) -> bool:
         """
@@ -84,8 +85,8 @@ class Posture(NamedTuple):
                    for asked, name in zip(self, other or self))
 
 
-ANY = Posture()
-ALL = tuple(Posture(elbow, shoulder) for shoulder in SHOULDERS for elbow in ELBOWS)
+ANY_POSTURE = Posture()
+ALL_POSTURES = tuple(Posture(elbow, shoulder) for shoulder in SHOULDERS for elbow in ELBOWS)
 
 
 def posture_of(model: RobotModel, q: Array) -> Posture | None:
@@ -108,7 +109,7 @@ def posture_of(model: RobotModel, q: Array) -> Posture | None:
     """
     if not has_named_postures(model):
         return None
-    (elbow, shoulder), (no_elbow, no_shoulder) = _relative_factors(model, q), _rounding(model, q)
+    (elbow, shoulder), (no_elbow, no_shoulder) = _relative_factors(model, q)
     return Posture(ELBOWS[0 if elbow >= -no_elbow else 1],
                    SHOULDERS[0 if shoulder >= -no_shoulder else 1])
 
@@ -133,19 +134,19 @@ def in_posture(model: RobotModel, q: Array, posture: Posture) -> BoolArray:
         where postures meet are in both.
 
     """
-    if posture == ANY:
+    if posture == ANY_POSTURE:
         return np.ones(len(q), dtype=bool)
     if not has_named_postures(model):
         return np.zeros(len(q), dtype=bool)
     fits = np.ones(len(q), dtype=bool)
-    for factor, none, asked, names in zip(_relative_factors(model, q), _rounding(model, q),
-                                          posture, (ELBOWS, SHOULDERS)):
+    for factor, none, asked, names in zip(
+            *_relative_factors(model, q), posture, (ELBOWS, SHOULDERS)):
         if asked is not None:
             fits &= (factor if asked == names[0] else -factor) >= -none
     return fits
 
 
-def postures_of(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
+def postures_near(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
     """
     Return the posture of joint positions, and others within a tolerance.
 
@@ -169,27 +170,23 @@ def postures_of(model: RobotModel, q: Array, tolerance: float) -> list[Posture]:
     own = posture_of(model, q)
     if own is None:
         return []
-    near = [bool(abs(float(factor)) <= tolerance) for factor in _relative_factors(model, q)]
-    others = [p for p in ALL if p != own and all(
+    near = [bool(abs(float(factor)) <= tolerance) for factor in _relative_factors(model, q)[0]]
+    others = [p for p in ALL_POSTURES if p != own and all(
         meets or a == b for meets, a, b in zip(near, p, own))]
     return [own, *others]
 
 
-def _relative_factors(model: RobotModel, q: Array) -> tuple[Array, Array]:
-    """Return the factors over their scales: a product of two links' lengths, and the reach."""
+def _relative_factors(model: RobotModel, q: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+    """
+    Return the factors over their scales, and the tolerance within which each counts as zero.
+
+    Their scales are a product of two links' lengths, and the reach. Two solutions coincide where
+    the elbow's factor is zero; where the shoulder's is, only if the tip is beside joint axis 1. On
+    the axis they are half a turn apart.
+    """
     elbow, shoulder = branch_factors(model, q)
-    size = model.chain.size
-    return elbow / (0.5 * size) ** 2, shoulder / size
-
-
-def _rounding(model: RobotModel, q: Array) -> tuple[Array, Array]:
-    """
-    Return up to which size the relative factors are none.
-
-    Two solutions coincide where the elbow's factor is none; where the shoulder's is, only if the
-    tip is beside joint axis 1. On the axis they are half a turn apart.
-    """
     frame, size = axis_frame(model), model.chain.size
     x, y, _ = np.moveaxis(frame.coordinates(forward_kinematics(model, q)), -1, 0)
-    beside = np.sqrt(np.maximum(x * x + y * y - branch_factors(model, q)[1] ** 2, 0.0)) / size
-    return np.array(DOUBLE), np.asarray(np.maximum(ROUNDING, DOUBLE * np.sqrt(beside)))
+    beside = np.sqrt(np.maximum(x * x + y * y - shoulder ** 2, 0.0)) / size
+    return (elbow / (0.5 * size) ** 2, shoulder / size), (
+        np.array(DOUBLE_ROOT), np.maximum(ROUNDING, DOUBLE_ROOT * np.sqrt(beside)))

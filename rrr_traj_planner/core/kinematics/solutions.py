@@ -126,7 +126,7 @@ def all_solutions(model: RobotModel, points: ArrayLike,
     return q, count
 
 
-def misses(model: RobotModel, points: ArrayLike) -> Array:
+def distances_out_of_reach(model: RobotModel, points: ArrayLike) -> Array:
     """
     Return by how far points are out of reach.
 
@@ -160,4 +160,6 @@ def _solved(model: RobotModel, points: Array, tolerance: float,
     KERNELS.arm_inverse(arm.address, ctypes.addressof(common_normal(model)), n,
                         points.ctypes.data, before.ctypes.data, tolerance, TIP_ROUNDING,
                         q.ctypes.data, count.ctypes.data, miss.ctypes.data)
-    return q, count.astype(np.intp), miss
+    # Of points so far away that their squares overflow, the arm is at the origin.
+    away = np.hypot(np.hypot(points[:, 0], points[:, 1]), points[:, 2])
+    return q, count.astype(np.intp), np.where(np.isinf(miss), away, miss)

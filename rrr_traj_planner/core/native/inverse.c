@@ -202,7 +202,7 @@ static void solve(const Arm *arm, const CommonNormal *g, const Point *t, const d
 }
 
 /* Joint positions q (n, 4, 3), each in (-pi, pi], that bring the tip within tolerance [m] of the
- * points p (n, 3), count (n) of each; of the others miss (n): the tip's least distance found [m].
+ * points p (n, 3), count (n) of each; of the others miss (n): the tip's least distance [m].
  * A point within on_axis [m] of axis 1 is taken as on it. before (3): for arbitrary angles. */
 EXPORTED void arm_inverse(const Arm *arm, const CommonNormal *g, int32_t n, const double *p,
                           const double *before, double tolerance, double on_axis,
@@ -219,6 +219,9 @@ EXPORTED void arm_inverse(const Arm *arm, const CommonNormal *g, int32_t n, cons
         }
         Found found = {target, q[i], {0.0}, tolerance, INFINITY, 0};
         solve(arm, g, &t, before, &found);
-        count[i] = found.count, miss[i] = found.count ? 0.0 : found.miss;
+        const double parts[3] = {t.along_n, t.along_m, t.h};
+        count[i] = found.count;
+        miss[i] = found.count ? 0.0 : fmin(
+            found.miss, distance_out_of_reach(arm, g, target, parts, MORE_ITERATIONS));
     }
 }

@@ -46,4 +46,9 @@ int circle_roots(const double *f, double *angle, double *off);
  * distance [m]. size: of the arm [m]. */
 double polish(const Arm *arm, double size, const double *p, int iterations, double *q);
 
+/* nearest_point.c: the distance from a point p to the nearest one that the tip reaches [m]. parts:
+ * the point's components from c1 along n, m and z [m]. */
+double distance_out_of_reach(const Arm *arm, const CommonNormal *g, const double *p,
+                             const double *parts, int iterations);
+
 #endif

@@ -144,7 +144,7 @@ static double volume(const double *a, const double *b, const double *c)
 
 /* How far from singular: det J with two derivatives by arc length, and 1 / |J^-1| (Frobenius's
  * norm), a lower bound on the least singular value. */
-enum { DETERMINANT, FIRST, SECOND, LEAST_GAIN, REGULARITY };
+enum { DETERMINANT, FIRST, SECOND, SINGULAR_VALUE, REGULARITY };
 
 static void regularity(const Linear *J, const Vector *x, const double *u, const double *v,
                        int fixed, double *to)
@@ -161,7 +161,7 @@ static void regularity(const Linear *J, const Vector *x, const double *u, const 
     double squares = 0.0;
     for (int i = 0; i < 3; ++i)
         squares += dot(J->cofactor[i], J->cofactor[i]);
-    to[LEAST_GAIN] = fabs(J->determinant) / sqrt(squares);
+    to[SINGULAR_VALUE] = fabs(J->determinant) / sqrt(squares);
 }
 
 /* Of the path: position and three derivatives by arc length, each (n, 3). */

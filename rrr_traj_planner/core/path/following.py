@@ -31,11 +31,11 @@ from rrr_traj_planner.core.errors import (
 from rrr_traj_planner.core.kinematics.along_path import (
     follow_points,
     FollowedPoints,
-    LEAST_GAIN,
     singular_distance,
+    SINGULAR_VALUE,
 )
 from rrr_traj_planner.core.kinematics.axis_frame import axis_frame
-from rrr_traj_planner.core.kinematics.solutions import misses
+from rrr_traj_planner.core.kinematics.solutions import distances_out_of_reach
 from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.path.axis_planes import axis_planes
 from rrr_traj_planner.core.path.cartesian_path import CartesianPath
@@ -44,7 +44,7 @@ from scipy import optimize
 
 # Least singular value of the Jacobian along a path: with less, a joint would have to turn by more
 # than a million radians for each metre of the path, practically without bound. Chosen.
-LEAST_REGULAR = 1e-6  # m/rad
+LEAST_SINGULAR_VALUE = 1e-6  # m/rad
 
 # Intervals of the path are halved until they are no longer than the distance to the nearest
 # singular position and predictions are as good as this; or until they are this short, less than
@@ -56,7 +56,7 @@ SHORTEST_STEP = 1e-9  # m
 MOST_ROUNDS = 90
 
 # Distance from joint axis 1 up to which a singular position is one of that axis, over the arm's
-# size: far above LEAST_REGULAR, far below any link. Chosen.
+# size: far above LEAST_SINGULAR_VALUE, far below any link. Chosen.
 NEAR_AXIS = 1e-4
 
 
@@ -98,11 +98,11 @@ def followed_path(model: RobotModel, path: CartesianPath, first: Array,
         found = follow_points(
             model, s, planes.points(path, s), planes.points(path, s, left=True), first)
         ended = len(found.q) < len(s)
-        gain = found.regularity[..., LEAST_GAIN].min(axis=0, initial=np.inf)
+        sigma = found.regularity[..., SINGULAR_VALUE].min(axis=0, initial=np.inf)
         if ended and attempt == 0:
             _check_reach(model, path, s)
-        if gain.min(initial=np.inf) < LEAST_REGULAR:
-            raise _refusal(model, path, s, float(s[gain.argmin()]))
+        if sigma.min(initial=np.inf) < LEAST_SINGULAR_VALUE:
+            raise _refusal(model, path, s, float(s[sigma.argmin()]))
         h = np.diff(s)
         split = _too_long(found, h) & (h > SHORTEST_STEP)
         if not split.any():
@@ -151,11 +151,14 @@ def _too_long(found: FollowedPoints, h: Array) -> BoolArray:
 
 def _check_reach(model: RobotModel, path: CartesianPath, s: Array) -> None:
     """Raise if points of a path are out of reach, at the farthest one."""
-    miss = misses(model, path(s)[0])
+    miss = distances_out_of_reach(model, path(s)[0])
     if miss.max() <= TIP_ROUNDING:
         return
-    at, least = _least(
-        lambda x: -float(misses(model, path(np.array([x]))[0])[0]), s, int(miss.argmax()))
+
+    def within_reach(x: float) -> float:
+        return -float(distances_out_of_reach(model, path(np.array([x]))[0])[0])
+
+    at, least = _least(within_reach, s, int(miss.argmax()))
     most = -least
     place, nearest = place_on_path(path, at)
     raise UnreachableError(
@@ -190,11 +193,11 @@ def _refusal(model: RobotModel, path: CartesianPath, s: Array, at: float) -> Rrr
         at, distance = _least(from_axis, s, int(np.searchsorted(s, at)))
         place, nearest = place_on_path(path, at)
         name = model.joint_names[0]
-        passed, bound = format_distinct(distance, LEAST_REGULAR, digits=3)
+        passed, bound = format_distinct(distance, LEAST_SINGULAR_VALUE, digits=3)
         return LimitViolationError(
             f'{place}: the tip would pass joint axis 1 (singularity) at {passed} m, where {name} '
-            f'would need unbounded velocity; least {bound} m', name, distance, LEAST_REGULAR,
-            via_point=nearest)
+            f'would need unbounded velocity; least {bound} m', name, distance,
+            LEAST_SINGULAR_VALUE, via_point=nearest)
     place, nearest = place_on_path(path, at)
     return UnreachableError(
         f'{place}: the arm would be at the end of its reach in this posture (singularity: '

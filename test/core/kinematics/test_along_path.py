@@ -24,9 +24,9 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.along_path import (
     follow_points,
     joint_path_near,
-    LEAST_GAIN,
     PathPoints,
     singular_distance,
+    SINGULAR_VALUE,
 )
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
@@ -84,7 +84,7 @@ def test_results_do_not_depend_on_the_number_of_points(name):
 
 
 @pytest.mark.parametrize('name', ANY_ARM)
-def test_regularity_is_the_determinant_with_its_derivatives_and_a_bound_on_the_gain(name):
+def test_regularity_is_the_determinant_its_derivatives_and_a_bound_on_the_singular_value(name):
     arm_path = followed(name)
     arm = arm_path.model
     ends = np.concatenate(([0.0], arm_path.path.joins, [arm_path.path.length]))
@@ -102,8 +102,8 @@ def test_regularity_is_the_determinant_with_its_derivatives_and_a_bound_on_the_g
         assert own == pytest.approx(central_difference(determinant(order), s, h),
                                     abs=1e-6 * np.abs(own).max())
     sigma = least_singular_values(arm, q)
-    assert (regularity[:, LEAST_GAIN] <= sigma * (1.0 + 1e-12)).all()
-    assert (regularity[:, LEAST_GAIN] >= sigma / np.sqrt(3.0) * (1.0 - 1e-12)).all()
+    assert (regularity[:, SINGULAR_VALUE] <= sigma * (1.0 + 1e-12)).all()
+    assert (regularity[:, SINGULAR_VALUE] >= sigma / np.sqrt(3.0) * (1.0 - 1e-12)).all()
 
 
 @pytest.mark.parametrize('beyond', [1e-2, 1e-3, 1e-4])

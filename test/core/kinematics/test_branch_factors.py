@@ -14,6 +14,10 @@
 
 """The factors of the Jacobian's determinant that name the branches."""
 
+from dataclasses import replace
+from itertools import product
+
+from helpers.public_arms import DESCRIPTIONS
 from helpers.random_cases import ARMS
 from helpers.random_chains import random_arm, with_axes
 import numpy as np
@@ -21,6 +25,7 @@ import pytest
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.branch_factors import branch_factors, has_named_postures
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobian
+from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.core.kinematics.postures import posture_of
 from rrr_traj_planner.core.kinematics.solutions import all_solutions
 
@@ -82,6 +87,47 @@ def test_no_two_solutions_have_the_same_signs_where_axes_2_and_3_are_parallel(na
 def test_front_is_the_side_of_the_tip_with_all_joints_at_zero():
     for arm in NAMED.values():
         assert branch_factors(arm, np.zeros(3))[1] >= 0.0
+
+
+def with_other_signs(arm, signs):
+    """Return an arm whose axes are described the other way round."""
+    return RobotModel(replace(arm.chain, axis=arm.chain.axis * np.array(signs)[:, np.newaxis]))
+
+
+@pytest.mark.parametrize('name', NAMED)
+def test_postures_do_not_depend_on_the_signs_of_a_description_s_axes(name):
+    arm, q = NAMED[name], states(30)
+    for signs in product((1.0, -1.0), repeat=3):
+        other = with_other_signs(arm, signs)
+        for x in q:
+            assert posture_of(other, x * signs) == posture_of(arm, x)
+
+
+@pytest.mark.parametrize('tilt', [0.0, np.pi])  # hanging from a ceiling too
+def test_elbow_is_up_where_it_is_above_the_line_from_shoulder_to_tip(tilt):
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        # Axes 2 and 3 along y, as a base frame's y axis or against it; joint 1 upright.
+        chain, radial, *heights = RobotModel().chain, *rng.uniform(-0.5, 0.5, 4)
+        point = np.array([(0.0, 0.0, 0.0), (radial, 0.0, heights[0]), (0.6, 0.0, heights[1])])
+        model = RobotModel(replace(
+            chain, axis=np.array([(0.0, 0.0, np.cos(tilt)), *rng.choice((-1.0, 1.0), (2, 1))
+                                  * (0.0, 1.0, 0.0)]),
+            point=point, tip=np.array((1.1, 0.0, heights[2]))))
+        for q in rng.uniform(-np.pi, np.pi, (50, 3)):
+            q[0] = 0.0  # the arm in the plane of x and z
+            shoulder, elbow, tip = np.array(link_positions(model, q)[-3:])
+            if np.abs(np.linalg.det(jacobian(model, q))) < 1e-3:
+                continue
+            (x, _, z), (along, _, height) = tip - shoulder, elbow - shoulder
+            above = (height * x - z * along) > 0.0  # seen with the tip on the right
+            assert posture_of(model, q) == ('up' if above else 'down',
+                                            'front' if tip[0] > 0.0 else 'back')
+
+
+def test_elbow_of_a_real_arm_with_its_upper_arm_upright_and_forearm_level_is_up():
+    model = RobotModel.from_urdf(DESCRIPTIONS / 'kr16_2_first3.urdf', 'base', 'tip')
+    assert posture_of(model, np.array((0.3, -0.5 * np.pi, 0.5 * np.pi))) == ('up', 'front')
 
 
 def test_factors_have_the_states_shape():

@@ -182,13 +182,16 @@ def test_on_joint_axis_1_joint_1_is_between_its_neighbours(offset):
 
 
 @pytest.mark.parametrize(('low', 'high', 'expected'), [
-    (-1.0, 1.0, 0.0), (0.5, 2.0, 0.5), (-9.0, -7.0, -7.0)])
-def test_points_all_on_the_axis_leave_joint_1_at_0_or_at_the_nearest_end(low, high, expected):
+    (-1.0, 1.0, 0.0), (0.5, 2.0, 0.5), (-9.0, -7.0, -7.0), (-np.inf, np.inf, 0.0)])
+@pytest.mark.parametrize('velocity', [1.0, 3.0, 100.0])
+def test_points_all_on_the_axis_leave_joint_1_at_0_or_at_the_nearest_end(
+        low, high, expected, velocity):
     points = np.array([(0.0, 0.0, 1.6), (0.0, 0.0, 1.9)])
-    q = joint_sequence(ARM, ranges(low, high), points, UP)
+    limits = ranges(low, high, max_velocity=[velocity] * 3)
+    q = joint_sequence(ARM, limits, points, UP)
     assert q[:, 0].tolist() == [expected] * 2
-    start = np.array([0.5 * (low + high), 1.0, 0.0])
-    assert joint_sequence(ARM, ranges(low, high), points, UP, start)[:, 0].tolist() == (
+    start = np.array([np.clip(0.7, low, high), 1.0, 0.0])
+    assert joint_sequence(ARM, limits, points, UP, start)[:, 0].tolist() == (
         [start[0]] * 2)
 
 

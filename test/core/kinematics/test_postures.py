@@ -24,12 +24,12 @@ from rrr_traj_planner.core.kinematics.postures import (
     ELBOWS,
     Posture,
     posture_of,
-    postures_of,
+    postures_near,
     SHOULDERS,
 )
 
 ROUNDING = 1e-13  # m
-ALL = [Posture(elbow, shoulder) for elbow in ELBOWS for shoulder in SHOULDERS]
+ALL_POSTURES = [Posture(elbow, shoulder) for elbow in ELBOWS for shoulder in SHOULDERS]
 
 
 def turned(q, near):
@@ -49,7 +49,7 @@ def test_each_pose_is_the_solution_of_its_tip_in_its_own_posture(arm):
             arm, tip, posture.elbow, shoulder=posture.shoulder), q)
         assert found == pytest.approx(q, abs=1e-9)
         assert nearest_solution(arm, tip, q) == pytest.approx(q, abs=1e-9)
-    assert seen == set(ALL)
+    assert seen == set(ALL_POSTURES)
 
 
 @pytest.mark.parametrize('arm', ARMS)
@@ -59,11 +59,12 @@ def test_all_four_postures_bring_the_tip_to_a_point_and_differ(arm):
     for direction in rng.normal(size=(100, 3)):
         distance = rng.uniform(0.9 * least + 0.1 * most, 0.9 * most + 0.1 * least)
         point = direction / np.linalg.norm(direction) * distance + (0.0, 0.0, arm.d1)
-        found = {p: inverse_kinematics(arm, point, p.elbow, shoulder=p.shoulder) for p in ALL}
+        found = {p: inverse_kinematics(arm, point, p.elbow, shoulder=p.shoulder)
+                 for p in ALL_POSTURES}
         for posture, q in found.items():
             assert np.linalg.norm(forward_kinematics(arm, q) - point) <= ROUNDING * most
             assert posture_of(arm, q) == posture
-        gap = found[ALL[0]][0] - found[ALL[1]][0]
+        gap = found[ALL_POSTURES[0]][0] - found[ALL_POSTURES[1]][0]
         assert abs(np.cos(gap) + 1.0) < 1e-12  # joint 1 half a turn away
 
 
@@ -78,8 +79,8 @@ def test_up_is_above_the_line_to_the_tip_with_the_shoulder_at_the_front():
 def test_a_stretched_arm_and_one_on_the_axis_have_the_postures_that_meet_there():
     arm = RobotModel()
     upright = np.array([0.3, np.pi / 2, np.pi / 2])
-    assert set(postures_of(arm, upright, 0.01)) == set(ALL)
-    assert set(postures_of(arm, upright + [0.0, 1e-3, 1e-3], 0.01)) == set(ALL)
-    assert len(postures_of(arm, upright + [0.0, 1e-3, 1e-3], 1e-4)) == 1
+    assert set(postures_near(arm, upright, 0.01)) == set(ALL_POSTURES)
+    assert set(postures_near(arm, upright + [0.0, 1e-3, 1e-3], 0.01)) == set(ALL_POSTURES)
+    assert len(postures_near(arm, upright + [0.0, 1e-3, 1e-3], 1e-4)) == 1
     level = np.array([0.3, 0.0, np.pi / 2])
-    assert postures_of(arm, level, 0.01) == [Posture('up', 'front'), Posture('down', 'front')]
+    assert postures_near(arm, level, 0.01) == [Posture('up', 'front'), Posture('down', 'front')]

@@ -140,13 +140,18 @@ def test_edges_of_the_workspace_are_found_and_misses_beyond_them_told(beyond):
             assert found.nearest == pytest.approx(miss, abs=min(MISS, 1e-3 * miss))
 
 
-@pytest.mark.parametrize('seed', range(3))
+@pytest.mark.parametrize('size', [1e12, 1e200, 1e307])
+def test_a_point_far_away_is_missed_by_its_distance(size):
+    assert solutions(random_arm(0), (-size, 0.0, size)).nearest == pytest.approx(2 ** 0.5 * size)
+
+
+@pytest.mark.parametrize('seed', range(12))
 def test_the_nearest_point_is_that_of_a_search_from_many_starts(seed):
     arm, rng = random_arm(seed), np.random.default_rng(seed)
     missed = 0
     for point in rng.normal(size=(8, 3)) * arm.chain.size:
         found = solutions(arm, point)
-        least = min(distance_from(arm, point, start) for start in states(seed, 6))
+        least = min(distance_from(arm, point, start) for start in states(seed, 16))
         missed += not len(found.q)
         assert found.nearest <= least + MISS
         assert len(found.q) or found.nearest == pytest.approx(least, abs=MISS)
