@@ -58,7 +58,8 @@ class Task:
         r = self.request
         q = first_possible(
             [Posture(elbow) for elbow in ((r.elbow,) if r.elbow else ELBOWS)],
-            lambda posture: joint_via_points(self.model, self.limits, r.via_points, None, posture))
+            lambda posture: joint_via_points(self.model, self.limits, r.via_points, None, posture),
+            lambda failures: failures[0])
         return JointTask(self.model, self.limits, q, None, r.sample_period)
 
     def asked_of(self, planner_id: str) -> PlanningRequest:

@@ -45,6 +45,7 @@ from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning_problem import planning_problem, PlanningProblem
 from rrr_traj_planner.planners.posture_choice import (
     first_possible,
+    furthest,
     joint_postures,
     path_beginnings,
 )
@@ -137,7 +138,10 @@ def _planned_joints(method: Registered, problem: PlanningProblem) -> Plan:
             tried[q.tobytes()] = error
             raise
 
-    return first_possible(joint_postures(problem, method.passing), attempt)
+    postures = joint_postures(problem, method.passing)
+    # What stands against the widest choice stands against every part of it.
+    widest = postures.index(problem.asked)
+    return first_possible(postures, attempt, lambda failures: failures[widest])
 
 
 def _plan_through(method: Registered, problem: PlanningProblem, q: Array) -> Plan:
@@ -197,7 +201,7 @@ def _planned_path(method: CartesianPlanner, problem: PlanningProblem) -> Plan:
 
     beginnings = path_beginnings(problem)
     try:
-        return first_possible(beginnings, attempt)
+        return first_possible(beginnings, attempt, furthest)
     except RrrPlannerError as error:
         raise _renumbered(error, same, start is not None) from error
 

@@ -22,7 +22,6 @@ from typing import TypeVar
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import (
-    JointRangeError,
     LimitViolationError,
     RrrPlannerError,
     StartStateError,
@@ -30,7 +29,7 @@ from rrr_traj_planner.core.errors import (
 )
 from rrr_traj_planner.core.kinematics.axis_frame import axis_frame
 from rrr_traj_planner.core.kinematics.inverse import reachable
-from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, TURN
+from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, TURN, whole_turns
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import (
     ALL_POSTURES,
@@ -94,7 +93,8 @@ def path_beginnings(problem: PlanningProblem) -> list[Array]:
     -------
     list of ndarray, shape (3,)
         The start, or the solutions at the first via point up to whole turns, those first in whose
-        posture the estimated time through the via points is least [rad].
+        posture the estimated time through the via points is least [rad]. Without those out of
+        range, unless all are.
 
     Raises
     ------
@@ -117,6 +117,9 @@ def path_beginnings(problem: PlanningProblem) -> list[Array]:
     asked_for = found[in_posture(model, found, asked)]
     if not len(asked_for):
         raise UnreachableError(f'via point 0 is out of reach with {asked}', 0.0, 0)
+    outside = out_of_range(asked_for + [
+        whole_turns(q[np.newaxis], problem.limits) for q in asked_for], problem.limits).any(axis=1)
+    asked_for = asked_for if outside.all() else asked_for[~outside]
     postures = [posture_of(model, q) for q in asked_for]
     times = {p: np.inf if p is None else _time(problem, p, THROUGH) for p in set(postures)}
     return [asked_for[k] for k in np.argsort([times[p] for p in postures], kind='stable')]
@@ -138,7 +141,8 @@ def _away_from_axis(problem: PlanningProblem, found: Array) -> Array:
     return np.concatenate(turned)
 
 
-def first_possible(branches: Sequence[Branch], attempt: Callable[[Branch], Answer]) -> Answer:
+def first_possible(branches: Sequence[Branch], attempt: Callable[[Branch], Answer],
+                   told: Callable[[list[RrrPlannerError]], RrrPlannerError]) -> Answer:
     """
     Return the answer on the first branch that has one.
 
@@ -148,6 +152,8 @@ def first_possible(branches: Sequence[Branch], attempt: Callable[[Branch], Answe
         In the order in which they are tried.
     attempt : callable
         Returns the answer on a branch, or raises why there is none.
+    told : callable
+        Returns which of the branches' errors is raised, where there is no answer.
 
     Returns
     -------
@@ -157,7 +163,7 @@ def first_possible(branches: Sequence[Branch], attempt: Callable[[Branch], Answe
     Raises
     ------
     UnreachableError, LimitViolationError, StartStateError
-        If there is none: of the first branch that keeps the joints' ranges, else of the first.
+        If there is none.
 
     """
     failures: list[RrrPlannerError] = []
@@ -166,7 +172,25 @@ def first_possible(branches: Sequence[Branch], attempt: Callable[[Branch], Answe
             return attempt(branch)
         except (UnreachableError, LimitViolationError, StartStateError) as error:
             failures.append(error)
-    raise next((e for e in failures if not isinstance(e, JointRangeError)), failures[0])
+    raise told(failures)
+
+
+def furthest(failures: list[RrrPlannerError]) -> RrrPlannerError:
+    """
+    Return the error of the branch on which a path can be followed furthest.
+
+    Parameters
+    ----------
+    failures : list of RrrPlannerError
+        With the nearest via points.
+
+    Returns
+    -------
+    RrrPlannerError
+        The first of several.
+
+    """
+    return max(failures, key=lambda error: -1 if error.via_point is None else error.via_point)
 
 
 def _time(problem: PlanningProblem, posture: Posture, passing: ViaPointBehaviour) -> float:

@@ -27,6 +27,7 @@ from rrr_traj_planner.core.errors import format_distinct, StartStateError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import (
     nearest_turns,
+    out_of_range,
     range_error,
     TURN,
     whole_turns,
@@ -90,10 +91,20 @@ def check_workspace(model: RobotModel, limits: JointLimits, path: CartesianPath,
     if start is not None:
         _check_direction(axis_planes(model, path, float(start[0])), model, start)
     arm_path = followed_path(model, path, first, should_stop)
-    arm_path = arm_path.turned(whole_turns(arm_path.q, limits, start))
+    arm_path = arm_path.turned(_turns(arm_path.q, limits, start))
     arm_path = _with_extremes(arm_path, limits, should_stop)
     _check_ranges(arm_path, limits)
     return arm_path
+
+
+def _turns(q: Array, limits: JointLimits, start: Array | None) -> Array:
+    """
+    Return whole turns for joint positions along a path; of those that fit nowhere, at its start.
+
+    So the error tells where the path leaves the range.
+    """
+    of_all, of_first = (whole_turns(part, limits, start) for part in (q, q[:1]))
+    return np.where(out_of_range(q[:1] + of_all, limits)[0], of_first, of_all)
 
 
 def _check_direction(planes: AxisPlanes, model: RobotModel, start: Array) -> None:
