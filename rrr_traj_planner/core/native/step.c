@@ -73,17 +73,12 @@ EXPORTED void arm_rates(const Arm *arm, const Load *load, const double *state, d
     solve_symmetric(elements, n, a);
 }
 
-/* The state after a time h, and the energy lost (2) [J]. */
-EXPORTED void arm_step(const Arm *arm, const Load *load, double h, const double *before,
-                       double *after, double *lost)
+/* The state after a time h; adds the energy lost (2) [J]. */
+static void nystrom(const Arm *arm, const Load *load, double h, const double *before,
+                    double *after, double *lost)
 {
     const double half = 0.5 * h, sixth = h / 6.0;
     double a[4][3], power[4][2], stage[6];
-    if (load->lock[0] && load->lock[1] && load->lock[2]) {
-        memcpy(after, before, 6 * sizeof *after);
-        lost[0] = lost[1] = 0.0;
-        return;
-    }
     arm_rates(arm, load, before, a[0], power[0]);
     for (int k = 1; k < 4; ++k) {
         const double step = k < 3 ? half : h;
@@ -100,5 +95,22 @@ EXPORTED void arm_step(const Arm *arm, const Load *load, double h, const double 
         after[3 + i] = before[3 + i] + sixth * (a[0][i] + 2.0 * inner + a[3][i]);
     }
     for (int k = 0; k < 2; ++k)
-        lost[k] = sixth * (power[0][k] + 2.0 * (power[1][k] + power[2][k]) + power[3][k]);
+        lost[k] += sixth * (power[0][k] + 2.0 * (power[1][k] + power[2][k]) + power[3][k]);
+}
+
+/* The state after a time h, in equal steps no longer than the longest, and the energy lost (2) [J].
+ */
+EXPORTED void arm_step(const Arm *arm, const Load *load, double h, double longest,
+                       const double *before, double *after, double *lost)
+{
+    const int steps = h > longest ? (int)ceil(h / longest) : 1;
+    double state[6];
+    memcpy(after, before, sizeof state);
+    lost[0] = lost[1] = 0.0;
+    if (load->lock[0] && load->lock[1] && load->lock[2])
+        return;
+    for (int k = 0; k < steps; ++k) {
+        memcpy(state, after, sizeof state);
+        nystrom(arm, load, h / steps, state, after, lost);
+    }
 }

@@ -44,6 +44,7 @@ from rrr_traj_planner.core.simulation.joint_stops import (
 )
 from rrr_traj_planner.core.simulation.saturation_and_contact import SaturationAndContactMonitor
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
+from rrr_traj_planner.core.simulation.step_stability import longest_step
 from rrr_traj_planner.core.simulation.time_step import Load, TimeStep
 from rrr_traj_planner.core.states import State, Triple
 
@@ -79,8 +80,9 @@ class ArmPhysics:
                  monitor: SaturationAndContactMonitor | None = None) -> None:
         self.low, self.high, self._monitor = low, high, monitor or SaturationAndContactMonitor()
         self.ledger = EnergyLedger() if ledger is None else ledger
-        self.terms, self._advanced, self._load = ArmDynamics(model), TimeStep(model), Load()
         self._bumper, friction = soft_stops or SoftStops(), model.friction
+        self.terms, self._load = ArmDynamics(model), Load()
+        self._advanced = TimeStep(model, longest_step(model, self._bumper))
         self._viscous, self._coulomb = friction.viscous.tolist(), friction.coulomb.tolist()
         self._with_friction = None if friction.is_none and not self._bumper.width else (
             FrictionDynamics(self.terms, self._advanced, Bounds(low, high), friction,

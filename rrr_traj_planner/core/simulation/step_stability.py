@@ -13,12 +13,15 @@
 # limitations under the License.
 
 """
-Stability of the integration step with viscous friction and bumpers.
+The longest integration step that is stable and accurate with viscous friction and bumpers.
 
 Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.2.
 """
 
 from __future__ import annotations
+
+from functools import lru_cache
+from math import inf
 
 import numpy as np
 from rrr_traj_planner.core.arm.inertia_check import ANGLES
@@ -32,10 +35,35 @@ from rrr_traj_planner.core.simulation.soft_stops import SoftStops
 # the classical Runge-Kutta method) and accurate up to 1.
 LARGEST = 1.0
 
+# Integration steps of one physics step, at most; chosen: the arm still keeps up with the clock.
+MOST_STEPS = 200
+
+
+def longest_step(model: RobotModel, soft_stops: SoftStops) -> float:
+    """
+    Return the longest integration step.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm with its payload, its inertia matrix regular in every pose.
+    soft_stops : SoftStops
+        Of all joints.
+
+    Returns
+    -------
+    float
+        The shortest time constant of viscous friction, or inverse frequency of a bumper, in any
+        pose [s]; infinite where there is neither.
+
+    """
+    bumper = soft_stops.stiffness if soft_stops.width else 0.0
+    return min(_shortest_time_constant(model), _shortest_period(model, bumper))
+
 
 def check_step(model: RobotModel, soft_stops: SoftStops, step: float) -> None:
     """
-    Refuse friction or bumpers that are too stiff for a time step.
+    Refuse friction or bumpers that are too stiff for a physics step.
 
     Parameters
     ----------
@@ -49,31 +77,45 @@ def check_step(model: RobotModel, soft_stops: SoftStops, step: float) -> None:
     Raises
     ------
     InvalidInputError
-        If the time constant of viscous friction, or the inverse frequency of a bumper, is shorter
-        than a step in some pose.
+        If a physics step needs more than `MOST_STEPS` integration steps.
 
     """
-    friction = model.friction
+    most = MOST_STEPS * _shortest_time_constant(model)
+    if step > most:
+        raise InvalidInputError(
+            f'friction.viscous is {model.friction.viscous.tolist()} N m s/rad (of the URDF: '
+            f'<dynamics damping>), too much for a physics_step of {step:g} s: at most '
+            f'{format_distinct(most / step, 1.0, digits=3)[0]} times that')
     bumper = soft_stops.stiffness if soft_stops.width else 0.0
-    if not friction.viscous.any() and not bumper:
-        return
-    inverse = np.linalg.inv(inertia_matrix(model, _poses()))
-    decay = float(np.abs(np.linalg.eigvals(inverse * friction.viscous)).max())  # [1/s]
-    if decay * step > LARGEST:
+    most = MOST_STEPS * _shortest_period(model, bumper)
+    if step > most:
+        stiffness, largest = format_distinct(bumper, bumper * (most / step) ** 2, digits=3)
         raise InvalidInputError(
-            f'friction.viscous is {friction.viscous.tolist()} N m s/rad, too much for '
-            f'a physics step of {step:g} s: at most '
-            f'{format_distinct(LARGEST / (decay * step), 1.0, digits=3)[0]} times that')
-    squared = float(np.abs(np.linalg.eigvals(inverse)).max()) * bumper  # [1/s^2]
-    if squared * step ** 2 > LARGEST:
-        stiffness, most = format_distinct(
-            bumper, bumper * LARGEST / (squared * step ** 2), digits=3)
-        raise InvalidInputError(
-            f'soft_stops.stiffness is {stiffness} N m/rad, must be at most {most} N m/rad with '
-            f'a physics step of {step:g} s')
+            f'soft_stops.stiffness is {stiffness} N m/rad, must be at most {largest} N m/rad with '
+            f'a physics_step of {step:g} s')
 
 
-def _poses() -> Array:
-    """Return a grid of the joints on which inertia depends, shape (n, 3)."""
+@lru_cache(maxsize=16)
+def _shortest_time_constant(model: RobotModel) -> float:
+    viscous = model.friction.viscous
+    if not viscous.any():
+        return inf
+    decay = float(np.abs(np.linalg.eigvals(_inverse_inertia(model) * viscous)).max())  # [1/s]
+    return LARGEST / decay
+
+
+def _shortest_period(model: RobotModel, bumper: float) -> float:
+    return LARGEST / (_largest_mobility(model) * bumper) ** 0.5 if bumper else inf
+
+
+@lru_cache(maxsize=16)
+def _largest_mobility(model: RobotModel) -> float:
+    """Return the largest eigenvalue of the inverse inertia matrix [1/(kg m^2)]."""
+    return float(np.abs(np.linalg.eigvals(_inverse_inertia(model))).max())
+
+
+def _inverse_inertia(model: RobotModel) -> Array:
+    """Return the inverse inertia matrix on a grid of the joints on which it depends."""
     q2, q3 = (x.ravel() for x in np.meshgrid(ANGLES, ANGLES))
-    return np.column_stack((np.zeros_like(q2), q2, q3))
+    return np.asarray(np.linalg.inv(
+        inertia_matrix(model, np.column_stack((np.zeros_like(q2), q2, q3)))))

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import c_double, c_int32, c_void_p
+from math import inf
 from typing import NamedTuple
 
 from rrr_traj_planner.core.arm.compiled_arm import compiled
@@ -33,7 +34,7 @@ from rrr_traj_planner.core.states import State, Triple
 
 KERNELS = declared({
     'arm_rates': (None, [c_void_p] * 5),
-    'arm_step': (None, [c_void_p, c_void_p, c_double, *[c_void_p] * 3]),
+    'arm_step': (None, [c_void_p, c_void_p, c_double, c_double, *[c_void_p] * 3]),
 })
 
 
@@ -68,11 +69,14 @@ class TimeStep:
     ----------
     model : RobotModel
         The arm.
+    longest : float
+        [s]; what is asked for is divided into equal steps that are not longer. See
+        `step_stability`.
 
     """
 
-    def __init__(self, model: RobotModel) -> None:
-        self._arm = compiled(model)
+    def __init__(self, model: RobotModel, longest: float = inf) -> None:
+        self._arm, self._longest = compiled(model), longest
         self._before, self._after = (c_double * 6)(), (c_double * 6)()
         self._lost = (c_double * 2)()
         self._results = tuple(map(ctypes.addressof, (self._before, self._after, self._lost)))
@@ -97,7 +101,8 @@ class TimeStep:
 
         """
         self._before[:] = state  # type: ignore[call-overload]  # any sequence
-        KERNELS.arm_step(self._arm.address, ctypes.addressof(load), h, *self._results)
+        KERNELS.arm_step(self._arm.address, ctypes.addressof(load), h, self._longest,
+                         *self._results)
         q1, q2, q3, qd1, qd2, qd3 = self._after
         return q1, q2, q3, qd1, qd2, qd3
 

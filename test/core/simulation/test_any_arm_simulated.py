@@ -20,6 +20,7 @@ from dataclasses import replace
 from math import inf
 
 from helpers.friction_arms import with_friction
+from helpers.public_arms import described, DESCRIPTIONS
 from helpers.random_chains import PinocchioChain, random_arm
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.core.simulation.energy import work
 from rrr_traj_planner.core.simulation.physics import ArmPhysics
 from rrr_traj_planner.core.simulation.soft_stops import SoftStops
-from rrr_traj_planner.core.simulation.step_stability import check_step
+from rrr_traj_planner.core.simulation.step_stability import check_step, MOST_STEPS
 from rrr_traj_planner.core.simulation.time_step import Load, TimeStep
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 
@@ -156,7 +157,7 @@ def test_an_arm_without_inertia_is_refused_with_what_to_give():
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_largest_friction_that_is_accepted_decays_within_a_step_in_every_pose(seed):
+def test_largest_friction_that_is_accepted_needs_the_most_integration_steps(seed):
     arm, rng = random_arm(seed), np.random.default_rng(seed)
     q = np.column_stack((np.zeros(4000), rng.uniform(-np.pi, np.pi, (4000, 2))))
     worst = np.abs(np.linalg.eigvals(np.linalg.inv(inertia_matrix(arm, q)))).max()
@@ -168,6 +169,38 @@ def test_largest_friction_that_is_accepted_decays_within_a_step_in_every_pose(se
             return False
         return True
 
-    most = 1.0 / (worst * STEP)
+    most = MOST_STEPS / (worst * STEP)
     assert accepts(0.95 * most)
     assert not accepts(1.05 * most)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_strong_viscous_friction_is_integrated_as_exactly_in_long_steps_as_in_short_ones(seed):
+    """Time constants down to a fiftieth of a step; shorter steps by a physics of their own."""
+    arm = random_arm(seed)
+    q = np.random.default_rng(seed).uniform(-1.0, 1.0, 3)
+    mobility = np.abs(np.linalg.eigvals(np.linalg.inv(inertia_matrix(arm, q)))).max()
+    stiff = replace(arm, friction=Friction([50.0 / (mobility * STEP)] * 3))
+    state = (*q.tolist(), 0.3, -0.2, 0.4)
+    ends = []
+    for parts in (1, 100):
+        physics = ArmPhysics(stiff, (-inf,) * 3, (inf,) * 3)
+        end = state
+        for _ in range(40 * parts):
+            end = physics.step(physics.terms(end), end, (1.0, -2.0, 3.0), STEP / parts)
+        ends.append(end)
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-7)
+    assert np.abs(np.subtract(ends[0][3:], state[3:])).max() > 1e-3
+
+
+@pytest.mark.parametrize('name', [p.stem for p in sorted(DESCRIPTIONS.glob('*.urdf'))
+                                  if p.stem != 'planar_arm'])
+def test_every_public_arm_holds_its_position_at_the_default_step(name):
+    arm = described(DESCRIPTIONS / f'{name}.urdf')
+    model = arm.model if not arm.model.lacking_inertia else replace(
+        arm.model, rotor_inertia=np.full(3, 0.01))
+    rest = np.clip(0.0, arm.limits.min_position, arm.limits.max_position)
+    limits = replace(arm.limits, max_effort=np.full(3, np.inf))
+    controlled = ControlledArm(ArmSettings(model, limits, ControllerGains()), rest)
+    controlled.advance(300)
+    np.testing.assert_allclose(controlled.measured[:3], rest, atol=1e-6)
