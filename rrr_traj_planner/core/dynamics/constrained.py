@@ -158,6 +158,9 @@ def held_and_stopped(t: Terms, qd: Triple, lock: tuple[int, int, int],
         Not 0 for each joint at rest.
 
     """
+    if not any(rests and v for rests, v in zip(lock, qd)) and not any(
+            side * v < 0.0 for side, v in zip(at, qd)):
+        return qd, lock
     while True:
         after = held(t, qd, lock)
         struck = [not rests and side * v < 0.0 for rests, side, v in zip(lock, at, after)]

@@ -83,15 +83,19 @@ class FrictionDynamics:
         self._arm, self._advanced, self._ledger = arm, advanced, ledger
         self._low, self._high = bounds
         self._bumper = bumper
-        (v1, v2, v3), (c1, c2, c3) = friction.viscous.tolist(), friction.coulomb.tolist()
-        self._viscous, self._coulomb = (v1, v2, v3), (c1, c2, c3)
+        c1, c2, c3 = friction.coulomb.tolist()
+        self._coulomb = c1, c2, c3
+        self._reused = Load((0.0,) * 3, tuple(friction.viscous.tolist()), self._low, bumper.stiffness,
+                            bumper.damping, FREE, FREE)
 
-    def step(self, state: State, torque: Triple, h: float) -> State:
+    def step(self, t: Terms, state: State, torque: Triple, h: float) -> State:
         """
         Return the state after a time step.
 
         Parameters
         ----------
+        t : Terms
+            The arm's terms at the state.
         state : tuple of 6 floats
             Positions [rad] and velocities [rad/s].
         torque : tuple of 3 floats
@@ -108,11 +112,12 @@ class FrictionDynamics:
         hard, left = Bounds(*widened(state, self._low, self._high, self._bumper.width)), h
         # Events of a step, chosen; then joints in contact or at rest stay so until its end.
         for _ in range(16):
-            state, load, slip = self._after_impacts(state, torque, hard, SHORTEST_REBOUND * h)
+            state, load, slip = self._after_impacts(t, state, torque, hard, SHORTEST_REBOUND * h)
             taken, state = self._until_event(state, load, slip, left, hard)
             left -= taken
             if left <= 0.0:
                 break
+            t = self._arm(state)
         if left > 0.0:
             state = self._step_with_joints_locked(state, torque, left, hard)
         qd, at = state[3:], contact(state, *hard)
@@ -126,14 +131,13 @@ class FrictionDynamics:
         self._ledger.stops += kinetic_energy(t, qd) - kinetic_energy(t, after)
         return after
 
-    def _after_impacts(self, state: State, torque: Triple, hard: Bounds,
+    def _after_impacts(self, t: Terms, state: State, torque: Triple, hard: Bounds,
                        shortest: float) -> tuple[State, Load, Contact]:
         """Return the state after impacts, the load from there on, and the sliding directions."""
         at, qd = contact(state, *hard), _at_rest(state[3:], self._coulomb)
         if at == FREE and 0.0 not in qd:
             slip = _signs(qd, self._coulomb)
             return state[:3] + qd, self._load(state, torque, slip), slip
-        t = self._arm(state)
         if at != FREE:
             qd = _at_rest(self._velocities_after_impact(t, state[3:], at), self._coulomb)
         (qd1, qd2, qd3), (c1, c2, c3) = qd, self._coulomb
@@ -161,16 +165,16 @@ class FrictionDynamics:
         return after, lock
 
     def _load(self, state: State, torque: Triple, slip: Contact, lock: Contact = FREE) -> Load:
-        """Return torques, friction and bumpers for given sliding directions."""
+        """Return torques, friction and bumpers for given sliding directions; until the next call."""
         (c1, c2, c3), (s1, s2, s3), (n1, n2, n3) = self._coulomb, slip, torque
-        sides = self._bumper.sides(state, self._low, self._high)
-        edges = self._low
-        if sides != FREE:
-            e1, e2, e3 = (low if side > 0 else high
-                          for side, low, high in zip(sides, self._low, self._high))
-            edges = (e1, e2, e3)
-        return Load((n1 - c1 * s1, n2 - c2 * s2, n3 - c3 * s3), self._viscous, edges,
-                    self._bumper.stiffness, self._bumper.damping, lock, sides)
+        load = self._reused
+        load.torque = n1 - c1 * s1, n2 - c2 * s2, n3 - c3 * s3
+        load.lock = lock
+        if self._bumper.width:
+            load.sides = sides = self._bumper.sides(state, self._low, self._high)
+            load.edges = tuple(low if side > 0 else high for side, low, high in zip(
+                sides, self._low, self._high))
+        return load
 
     def _until_event(self, state: State, load: Load, slip: Contact, h: float,
                      hard: Bounds) -> tuple[float, State]:

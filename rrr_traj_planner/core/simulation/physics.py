@@ -127,7 +127,7 @@ class ArmPhysics:
 
         """
         if self._with_friction is not None:
-            after = self._with_friction.step(state, torque, h)
+            after = self._with_friction.step(t, state, torque, h)
             return self._record_contacts(t, state, after, torque, h)
         (l1, l2, l3), (u1, u2, u3) = self.low, self.high
         q1, q2, q3 = state[:3]

@@ -259,5 +259,5 @@ def test_reset_opens_a_new_account():
 
 
 def test_friction_too_hard_for_the_step_is_refused():
-    with pytest.raises(InvalidInputError, match='too much for a physics step of 0.001 s'):
+    with pytest.raises(InvalidInputError, match='too much for a physics_step of 0.001 s'):
         arm_with(model=replace(MODEL, friction=Friction([1e5] * 3)))
