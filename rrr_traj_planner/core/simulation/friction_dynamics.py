@@ -85,8 +85,8 @@ class FrictionDynamics:
         self._bumper = bumper
         c1, c2, c3 = friction.coulomb.tolist()
         self._coulomb = c1, c2, c3
-        self._reused = Load((0.0,) * 3, tuple(friction.viscous.tolist()), self._low, bumper.stiffness,
-                            bumper.damping, FREE, FREE)
+        self._reused = Load((0.0,) * 3, tuple(friction.viscous.tolist()), self._low,
+                            bumper.stiffness, bumper.damping, FREE, FREE)
 
     def step(self, t: Terms, state: State, torque: Triple, h: float) -> State:
         """
@@ -165,7 +165,7 @@ class FrictionDynamics:
         return after, lock
 
     def _load(self, state: State, torque: Triple, slip: Contact, lock: Contact = FREE) -> Load:
-        """Return torques, friction and bumpers for given sliding directions; until the next call."""
+        """Return torques, friction and bumpers for sliding directions; until the next call."""
         (c1, c2, c3), (s1, s2, s3), (n1, n2, n3) = self._coulomb, slip, torque
         load = self._reused
         load.torque = n1 - c1 * s1, n2 - c2 * s2, n3 - c3 * s3

@@ -149,7 +149,8 @@ def test_friction_that_a_step_can_follow_passes():
 
 @pytest.mark.parametrize(('friction', 'soft', 'text'), [
     (Friction([0.0, 0.0, 1e5]), SoftStops(), r'friction.viscous is .*, too much'),
-    (Friction(), SoftStops(0.1, 1e12), r'soft_stops.stiffness is 1e\+12 N m/rad, must be at most')])
+    (Friction(), SoftStops(0.1, 1e12),
+     r'soft_stops.stiffness is 1e\+12 N m/rad, must be at most')])
 def test_friction_and_bumpers_that_are_too_hard_for_the_step_are_refused(friction, soft, text):
     with pytest.raises(InvalidInputError, match=text):
         check_step(RobotModel(friction=friction), soft, 1e-3)
