@@ -28,6 +28,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
+from rrr_traj_planner.core.rotations import rotation
 
 # Sine of the angle between joint axes 1 and 2 up to which they count as parallel: descriptions
 # from CAD are rounded to 1e-4 rad at worst.
@@ -133,7 +134,7 @@ class Chain(ReadOnlyArrays):
         """
         R, t, poses = np.eye(3), np.zeros(3), []
         for j in range(3):
-            turn = _rotation(self.axis[j], q[..., j])
+            turn = rotation(self.axis[j], q[..., j])
             centred = self.point[j] - turn @ self.point[j]
             t = t + np.asarray((R @ centred[..., np.newaxis])[..., 0])
             R = R @ turn
@@ -161,11 +162,3 @@ class Chain(ReadOnlyArrays):
                   for (R, t), axis, point in zip(poses, self.axis[1:], self.point[1:])]
         directions, points = zip(*moved)
         return np.stack(directions, axis=-2), np.stack(points, axis=-2)
-
-
-def _rotation(axis: Array, angle: Array) -> Array:
-    """Return rotations about an axis, shape (..., 3, 3) (Rodrigues)."""
-    x, y, z = axis
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = angle[..., np.newaxis, np.newaxis]
-    return np.asarray(np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K))

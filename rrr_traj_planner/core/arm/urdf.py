@@ -23,17 +23,11 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.link_frames import (
-    Frame,
-    link_frames,
-    link_joints,
-    link_lines,
-    roll_pitch_yaw,
-    turn_to,
-)
+from rrr_traj_planner.core.arm.link_frames import Frame, joint_points, link_frames, link_lines
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.rotations import roll_pitch_yaw, rotation_z_to
 
 # A URDF must have limits on velocity and effort: values that stand for none, chosen far above any
 # motor's.
@@ -141,9 +135,9 @@ def _add_shapes(element: ET.Element, model: RobotModel, link: int, frame: Frame)
         length = float(np.linalg.norm(end - start))
         # A rod is symmetric: of its two directions, the one within a right angle of z.
         along = (end - start) / length * (1.0 if end[2] >= start[2] else -1.0)
-        rod = _add_visual(element, 0.5 * (start + end), turn_to(along), 'light')
+        rod = _add_visual(element, 0.5 * (start + end), rotation_z_to(along), 'light')
         ET.SubElement(rod, 'cylinder', radius=_text([radius]), length=_text([length]))
-    for point in (x.at for x in link_joints(model.chain) if x.link == link):
+    for point in (x.at for x in joint_points(model.chain) if x.link == link):
         ball = _add_visual(element, frame.inside(point), np.eye(3), 'dark')
         ET.SubElement(ball, 'sphere', radius=_text([1.4 * radius]))
 

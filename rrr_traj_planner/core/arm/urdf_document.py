@@ -24,6 +24,7 @@ from xml.parsers.expat import ErrorString
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError, quoted, shown
+from rrr_traj_planner.core.rotations import from_roll_pitch_yaw
 
 KINDS = ('revolute', 'continuous', 'prismatic', 'fixed', 'floating', 'planar')
 BEFORE_XML = '\ufeff \t\r\n'  # a byte order mark, and white space
@@ -224,13 +225,10 @@ def _joint(joint: Any) -> Joint:
 
 
 def _pose(origin: Any) -> Array:
-    """Return an origin as a transform, shape (4, 4): Rz(yaw) Ry(pitch) Rx(roll), then xyz."""
+    """Return an origin as a transform, shape (4, 4)."""
     pose = np.eye(4)
     if origin is None:
         return pose
-    (sr, sp, sy), (cr, cp, cy) = (f(origin.rpy or (0.0,) * 3) for f in (np.sin, np.cos))
-    pose[:3, :3] = ((cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
-                    (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
-                    (-sp, cp * sr, cp * cr))
+    pose[:3, :3] = from_roll_pitch_yaw(origin.rpy or (0.0,) * 3)
     pose[:3, 3] = origin.xyz or (0.0,) * 3
     return pose

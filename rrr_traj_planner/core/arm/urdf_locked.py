@@ -23,6 +23,7 @@ from rrr_traj_planner.core.arm.urdf_document import Joint
 from rrr_traj_planner.core.arm.urdf_tree import LinkTree
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError, quoted
+from rrr_traj_planner.core.rotations import rotation
 
 MOVING = ('revolute', 'continuous')
 UNITS = {'prismatic': 'm'}  # of positions; others: rad
@@ -59,8 +60,7 @@ def pose_after(joint: Joint, pose: Array, position: float = 0.0) -> Array:
     if joint.kind == 'prismatic':
         motion[:3, 3] = position * axis
     else:
-        K = np.cross(np.eye(3), axis)
-        motion[:3, :3] += np.sin(position) * K + (1.0 - np.cos(position)) * (K @ K)
+        motion[:3, :3] = rotation(axis, position)
     return np.asarray(pose @ motion)
 
 
