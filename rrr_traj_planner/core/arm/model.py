@@ -47,7 +47,7 @@ class RobotModel(ReadOnlyArrays):
     An arm, leg or finger of three revolute joints.
 
     The default is the thesis's arm (appendix B). `from_lengths` makes others of its kind,
-    `from_urdf` any.
+    `from_urdf` those of other kinds; joint axes 1 and 2 must not be parallel.
 
     Parameters
     ----------

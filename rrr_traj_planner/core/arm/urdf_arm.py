@@ -22,7 +22,7 @@ import os
 from pathlib import Path
 
 import numpy as np
-from rrr_traj_planner.core.arm.chain import Chain, PARALLEL
+from rrr_traj_planner.core.arm.chain import Chain, UnsupportedChainError
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.urdf_document import BEFORE_XML, Joint, read_document
 from rrr_traj_planner.core.arm.urdf_inertia import lumped, mended, placed
@@ -33,10 +33,6 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import counted, InvalidInputError, quoted, shown
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import text as checked_text
-
-# Distance of the tip from joint axis 3, over the arm's size, up to which it counts as on the axis:
-# rounding of descriptions. Chosen.
-ON_AXIS = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,31 +188,16 @@ def _chain(tree: LinkTree, way: Sequence[Joint], arm: Sequence[Joint], warnings:
         frames[joint.name] = pose
     axis = np.array([frames[joint.name][:3, :3] @ unit_axis(joint) for joint in arm])
     point, nothing = np.array([frames[joint.name][:3, 3] for joint in arm]), np.zeros((3, 3, 3))
-    tip = pose[:3, 3]
-    _check_geometry(arm, axis, tip - point[2])
-    chain = Chain(axis, point, tip, np.zeros(3), point, nothing)
-    if np.linalg.norm(np.cross(axis[2], tip - point[2])) <= ON_AXIS * chain.size:
-        raise _tip_on_axis(arm[2])
+    try:
+        chain = Chain(axis, point, pose[:3, 3], np.zeros(3), point, nothing)
+    except UnsupportedChainError as error:
+        raise error.named([joint.name for joint in arm]) from None
     bodies = [
         lumped([placed(mended(tree.links[name], chain.size, warnings), T) for name, T in links],
                at) for links, at in zip(locked_poses(tree, arm, start, warnings), point)]
     mass, centre, inertia = map(np.array, zip(*bodies))
     _warn_of_no_mass(arm, mass, inertia, warnings)
     return replace(chain, mass=mass, centre=centre, inertia=inertia)
-
-
-def _check_geometry(arm: Sequence[Joint], axis: Array, tip: Array) -> None:
-    """Refuse what `Chain` does, by the joints' names."""
-    if np.linalg.norm(np.cross(axis[0], axis[1])) < PARALLEL:
-        raise InvalidInputError(
-            f'the axes of joints {quoted(arm[0].name)} and {quoted(arm[1].name)} are parallel: '
-            'the tip moves in a plane or on few spheres, and no such arm is planned for')
-    if np.linalg.norm(np.cross(axis[2], tip)) == 0.0:
-        raise _tip_on_axis(arm[2])
-
-
-def _tip_on_axis(joint: Joint) -> InvalidInputError:
-    return InvalidInputError(f'the tip is on the axis of {joint.label}, which does not move it')
 
 
 def _warn_of_no_mass(arm: Sequence[Joint], mass: Array, inertia: Array, warnings: list[str]

@@ -88,8 +88,8 @@ def test_limits_and_friction_are_those_of_the_file(name):
 
 def test_an_arm_whose_axes_are_all_parallel_is_refused_by_names():
     assert refused(str(FILES['planar_arm'])) == (
-        f"{FILES['planar_arm']}: the axes of joints 'joint_1' and 'joint_2' are parallel: the tip "
-        'moves in a plane or on few spheres, and no such arm is planned for')
+        f"{FILES['planar_arm']}: joint axes 'joint_1' and 'joint_2' are parallel: planar and "
+        'SCARA-like arms are not supported')
 
 
 @pytest.mark.parametrize('name', ['geomagic_touch', 'eezybotarm_mk2'])
@@ -170,14 +170,13 @@ def test_empty_names_are_the_root_and_the_only_leaf():
     ({'j2': joint('j2', 'revolute', 'a', 'b', Y + '<mimic joint="j1"/>')},
      "joint 'j2', between base and tip, mimics 'j1': must move by itself"),
     ({'j2': joint('j2', 'revolute', 'a', 'b', Z)},
-     "the axes of joints 'j1' and 'j2' are parallel: the tip moves in a plane or on few spheres, "
-     'and no such arm is planned for'),
+     "joint axes 'j1' and 'j2' are parallel: planar and SCARA-like arms are not supported"),
     ({'j2': joint('j2', 'revolute', 'a', 'b', axis(0, 0, 0) + limit())},
      "joint 'j2': its axis is zero, must have a direction"),
     ({'end': joint('end', 'fixed', 'c', 'tip', '', (0, 1, 0))},
-     "the tip is on the axis of joint 'j3', which does not move it"),
+     "the tip is on joint axis 'j3', which does not move it"),
     ({'end': joint('end', 'fixed', 'c', 'tip', '', (1e-9, 1, 0))},
-     "the tip is on the axis of joint 'j3', which does not move it"),
+     "the tip is on joint axis 'j3', which does not move it"),
     ({'j1': joint('j1', 'revolute', 'base', 'a', Z + '<dynamics damping="-1"/>')},
      "joint 'j1': damping is -1 N m s/rad, must not be negative")])
 def test_what_is_no_arm_of_three_joints_is_refused_by_name(changed, message):

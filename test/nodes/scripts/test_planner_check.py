@@ -55,7 +55,7 @@ def test_missing_limits_and_oddities_are_warned_of(tmp_path):
 
 @pytest.mark.parametrize(('arguments', 'code', 'text'), [
     (('--check', ROOT / 'test/data/arms/planar_arm.urdf'), 1,
-     "planar_arm.urdf: the axes of joints 'joint_1' and 'joint_2' are parallel: "),
+     "planar_arm.urdf: joint axes 'joint_1' and 'joint_2' are parallel: "),
     (('--check', 'none.urdf'), 1, "planner: parameter robot_description: no file 'none.urdf' in "),
     (('--check', 'go1_leg.urdf', '--tip-frame', 'tap'), 1, "no link 'tap' for the tip, the "),
     (('--check', 'go1_leg.urdf', '--joint-limits', 'thesis_arm.yaml'), 1,
