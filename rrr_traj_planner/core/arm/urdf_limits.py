@@ -19,15 +19,9 @@ from __future__ import annotations
 from math import inf
 from typing import NamedTuple
 
+from rrr_traj_planner.core.arm.limits import NO_EFFORT, NO_RANGE, NO_VELOCITY
 from rrr_traj_planner.core.arm.urdf_document import Joint
 from rrr_traj_planner.core.errors import InvalidInputError
-
-# From these on, values stand for no limit. No joint's motor turns at 1e3 rad/s (9,500 revolutions
-# a minute, after the gear), nor do an arm's cables allow 160 turns; the strongest industrial arms,
-# for a ton at 3 m, hold some 4e4 N m.
-NO_RANGE = 1e3      # rad
-NO_VELOCITY = 1e3   # rad/s
-NO_EFFORT = 1e5     # N m
 
 
 class UrdfLimits(NamedTuple):

@@ -22,9 +22,9 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from rrr_traj_planner.core.arm.limits import NO_RANGE
 from rrr_traj_planner.core.arm.urdf_arm import read_urdf, UrdfArm
 from rrr_traj_planner.core.arm.urdf_document import BEFORE_XML, read_document
-from rrr_traj_planner.core.arm.urdf_limits import NO_RANGE
 from rrr_traj_planner.core.errors import counted, InvalidInputError, quoted, shown
 from rrr_traj_planner.nodes.parameters.configuration_files import found_file
 from rrr_traj_planner.nodes.parameters.joint_limits_file import read_joint_limits

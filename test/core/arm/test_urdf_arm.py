@@ -125,6 +125,21 @@ def test_the_urdf_that_the_package_writes_is_read_back(model):
     assert found.friction.coulomb.tolist() == friction.coulomb.tolist()
 
 
+@pytest.mark.parametrize(('low', 'high', 'kinds'), [
+    ((-1.0, -np.inf, -np.inf), (np.inf, 2.0, np.inf), ['revolute', 'revolute', 'continuous']),
+    ((-np.inf,) * 3, (np.inf,) * 3, ['continuous'] * 3)])
+def test_ranges_without_ends_are_written_for_every_parser_and_read_back(low, high, kinds):
+    text = urdf(RobotModel(), JointLimits(low, high, max_effort=(np.inf, 1.0, np.inf)))
+    joints = ElementTree.fromstring(text).findall('joint')[:3]
+    assert [joint.get('type') for joint in joints] == kinds
+    written = [value for joint in joints for value in joint.find('limit').attrib.values()]
+    assert np.isfinite(np.array(written, dtype=float)).all()
+    found = read_urdf(text)
+    assert (found.min_position.tolist(), found.max_position.tolist()) == (list(low), list(high))
+    assert found.max_effort.tolist() == [np.inf, 1.0, np.inf]
+    agrees_with_pinocchio(found)
+
+
 @pytest.mark.parametrize('seed', range(60))
 def test_random_trees_are_read_as_pinocchio_reads_them(seed):
     tree = RandomTree(seed)
