@@ -24,7 +24,12 @@ from pathlib import Path
 import numpy as np
 from rrr_traj_planner.core.arm.chain import Chain, UnsupportedChainError
 from rrr_traj_planner.core.arm.friction import Friction
-from rrr_traj_planner.core.arm.urdf_document import BEFORE_XML, Joint, read_document
+from rrr_traj_planner.core.arm.urdf_document import (
+    BEFORE_XML,
+    Joint,
+    read_document,
+    UrdfWarning,
+)
 from rrr_traj_planner.core.arm.urdf_inertia import lumped, mended, placed
 from rrr_traj_planner.core.arm.urdf_limits import limits_of
 from rrr_traj_planner.core.arm.urdf_locked import locked_poses, MOVING, pose_after, unit_axis
@@ -56,7 +61,7 @@ class UrdfArm(ReadOnlyArrays):
         Damping as viscous, friction as Coulomb friction.
     base, tip : str
         The links between which the arm is.
-    warnings : tuple of str
+    warnings : tuple of UrdfWarning
         What is odd, and what was made of it.
     text : str
         The URDF.
@@ -73,7 +78,7 @@ class UrdfArm(ReadOnlyArrays):
     friction: Friction
     base: str
     tip: str
-    warnings: tuple[str, ...]
+    warnings: tuple[UrdfWarning, ...]
     text: str
 
     @property
@@ -177,7 +182,7 @@ def _friction(arm: Sequence[Joint]) -> Friction:
                     np.array([joint.friction for joint in arm]))
 
 
-def _chain(tree: LinkTree, way: Sequence[Joint], arm: Sequence[Joint], warnings: list[str]
+def _chain(tree: LinkTree, way: Sequence[Joint], arm: Sequence[Joint], warnings: list[UrdfWarning]
            ) -> Chain:
     """Return the arm's chain; the masses follow the geometry, with which they are compared."""
     pose, frames, start = np.eye(4), {}, np.eye(4)
@@ -200,11 +205,12 @@ def _chain(tree: LinkTree, way: Sequence[Joint], arm: Sequence[Joint], warnings:
     return replace(chain, mass=mass, centre=centre, inertia=inertia)
 
 
-def _warn_of_no_mass(arm: Sequence[Joint], mass: Array, inertia: Array, warnings: list[str]
+def _warn_of_no_mass(arm: Sequence[Joint], mass: Array, inertia: Array, warnings: list[UrdfWarning]
                      ) -> None:
     empty = [quoted(joint.child) for joint, m, tensor in zip(arm, mass, inertia)
              if m == 0.0 and not tensor.any()]
     if len(empty) == 3:
-        warnings.append('no link has a mass: torque is not checked')
+        warnings.append(UrdfWarning('no link has a mass'))
     elif empty:
-        warnings.append(f'{counted(len(empty), "link")} without mass: {", ".join(empty)}')
+        warnings.append(UrdfWarning(
+            f'{counted(len(empty), "link")} without mass: {", ".join(empty)}'))

@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 from rrr_traj_planner.core.arm.limits import NO_RANGE
 from rrr_traj_planner.core.arm.urdf_arm import read_urdf, UrdfArm
-from rrr_traj_planner.core.arm.urdf_document import BEFORE_XML, read_document
+from rrr_traj_planner.core.arm.urdf_document import BEFORE_XML, read_document, UrdfWarning
 from rrr_traj_planner.core.errors import counted, InvalidInputError, quoted, shown
 from rrr_traj_planner.nodes.parameters.configuration_files import found_file
 from rrr_traj_planner.nodes.parameters.joint_limits_file import read_joint_limits
@@ -131,8 +131,8 @@ def arm_source(given: Values, folder_of: Callable[[str, str], Path] = in_working
         **used, **limits, 'friction.viscous': arm.friction.viscous.tolist(),
         'friction.coulomb': arm.friction.coulomb.tolist(),
         'initial_positions': _start({**limits, **given}, names)}
-    warnings = [text for text in arm.warnings
-                if not text.startswith(tuple(_of_replaced({**in_file, **given}, arm)))]
+    warnings = [warning.text for warning in arm.warnings
+                if not _is_answered(warning, {**in_file, **given})]
     return ArmSource(names, values, (*warnings, *_lacking(limits, given, names)))
 
 
@@ -211,12 +211,13 @@ def _bounds(arm: UrdfArm) -> Iterator[tuple[str, str, float]]:
             yield joint, kind, float('inf') if values is None else float(values[i])
 
 
-def _of_replaced(limits: Values, arm: UrdfArm) -> Iterator[str]:
-    """Yield how warnings of `urdf_limits` begin of limits that are given elsewhere."""
-    for joint, kind, _ in _bounds(arm):
-        if f'joint_limits.{joint}.max_{kind}' in limits:
-            yield f'joint {quoted(joint)}: {kind} '
-            yield f'joint {quoted(joint)} has no limit on {kind}'
+def _is_answered(warning: UrdfWarning, limits: Values) -> bool:
+    """Return whether a warning is of limits that are all given elsewhere, or switched off."""
+    joint = f'joint_limits.{warning.joint}'
+    return bool(warning.limits) and all(
+        f'{joint}.{name}' in limits
+        or limits.get(f'{joint}.has_{name.removeprefix("max_")}_limits') is False
+        for name in warning.limits)
 
 
 def _limits(given: Values, in_file: Values, arm: UrdfArm) -> dict[str, Any]:

@@ -169,7 +169,31 @@ def test_a_limit_that_the_urdf_lacks_is_warned_of_unless_it_is_given():
     given = {'robot_description': text, **most}
     assert arm_source(given).warnings == (
         "joint 'j2': velocity 0 rad/s is taken for no limit",)
-    assert arm_source({**given, 'joint_limits.j2.max_velocity': 1.0}).warnings == ()
+    for answer in ({'max_velocity': 1.0}, {'has_velocity_limits': False}):
+        named = {f'joint_limits.j2.{name}': value for name, value in answer.items()}
+        assert arm_source({**given, **named}).warnings == ()
+
+
+@pytest.mark.parametrize(('inside', 'answer', 'left'), [
+    ('<limit velocity="3" effort="40"/>', {'min_position': -1.0, 'max_position': 1.0}, []),
+    (limit(0, 0), {'min_position': -1.0, 'max_position': 1.0}, []),
+    (limit(0, 0), {'max_position': 1.0}, ['is revolute and has the range [0, 0] rad, which is '
+                                          'taken for none']),
+    (limit(upper=1e4), {'max_position': 1.0}, []),
+    (limit(upper=1e4), {'min_position': 1.0}, [': upper 10000 rad is taken for no limit']),
+    ('', {'min_position': -1.0, 'max_position': 1.0, 'max_velocity': 1.0, 'max_effort': 1.0}, []),
+    ('', {'min_position': -1.0, 'max_position': 1.0, 'max_velocity': 1.0},
+     ['has no effort limit'])])
+def test_warnings_of_limits_that_are_given_are_left_out(tmp_path, inside, answer, left):
+    text = arm(j2=joint('j2', 'revolute', 'a', 'b', axis(0, 1, 0) + inside))
+    most = {f'joint_limits.{name}.max_acceleration': 1.0 for name in ('j1', 'j2', 'j3')}
+    (tmp_path / 'limits.yaml').write_text('joint_limits:\n  j2:\n' + ''.join(
+        f'    {name}: {value}\n' for name, value in answer.items()))
+    in_parameters = {f'joint_limits.j2.{name}': value for name, value in answer.items()}
+    for given in (in_parameters, {'joint_limits_file': str(tmp_path / 'limits.yaml')}):
+        warnings = arm_source({'robot_description': text, **most, **given}).warnings
+        assert warnings == tuple(
+            f"joint 'j2'{' ' * (text[0] != ':')}{text}" for text in left)
 
 
 # Refusals
@@ -294,7 +318,7 @@ def test_arm_s_controller_may_know_the_friction(ros):
 def test_arm_without_masses_can_be_planned_for_and_not_simulated(ros):
     bare = arm(a='<link name="a"/>', b='<link name="b"/>', c='<link name="c"/>')
     _, parameters = declared(ros, PLANNER, PlannerConfig.from_values, robot_description=bare)
-    assert 'no link has a mass: torque is not checked' in parameters.warnings
+    assert 'no link has a mass' in parameters.warnings
     with pytest.raises(InvalidInputError, match='give masses or rotor_inertia'):
         declared(ros, ARM, ArmConfig.from_values, robot_description=bare)
     declared(ros, ARM, ArmConfig.from_values, robot_description=bare,
