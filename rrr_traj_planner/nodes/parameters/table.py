@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 
 from rrr_traj_planner.core.arm.limits import NO_EFFORT, NO_RANGE, NO_VELOCITY
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
-from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError
+from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError, shown
 from rrr_traj_planner.core.trajectory.sampling import MOST_POINTS
 
 PLANNER, ARM = 'planner', 'arm'
@@ -260,6 +260,5 @@ def check_value(row: Row, value: Any) -> None:
 
 
 def _shown(value: Any) -> str:
-    if isinstance(value, (str, bytes)) or not hasattr(value, '__len__'):
-        return repr(value)
-    return repr(list(value))
+    is_sequence = hasattr(value, '__len__') and not isinstance(value, (str, bytes))
+    return shown(list(value) if is_sequence else value)

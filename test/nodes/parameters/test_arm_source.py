@@ -111,6 +111,15 @@ def test_joints_without_range_have_none():
     assert limits.max_position.tolist() == [inf, 2.0, 2.0]
 
 
+def test_a_range_that_the_file_of_limits_switches_off_is_none(tmp_path):
+    given = with_limits(tmp_path, 'joint_limits:\n  j2: {has_position_limits: false}\n')
+    limits = planner(given, tmp_path).limits
+    assert limits.min_position.tolist() == [-2.0, -inf, -2.0]
+    assert limits.max_position.tolist() == [2.0, inf, 2.0]
+    limits = planner({**given, 'joint_limits.j2.max_position': 1.0}, tmp_path).limits
+    assert (limits.min_position[1], limits.max_position[1]) == (-inf, 1.0)
+
+
 def test_gravity_rotors_friction_and_payload_reach_the_model():
     bare, config = planner({}), planner({
         'gravity': [0.0, 3.0, 4.0], 'rotor_inertia': [0.1, 0.2, 0.3], 'payload.mass': 2.0,

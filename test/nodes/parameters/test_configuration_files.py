@@ -114,6 +114,8 @@ def test_durations_are_read(here):
     (POINTS + 'arm: nowhere.yaml\n', "no file 'nowhere.yaml'"),
     ('via_points: [[\n', 'line 2: while parsing a flow'),
     (POINTS + ' planner_id: x\n', 'task.yaml: line '),
+    ('via_points: 2001-99-99\n', "line 1: '2001-99-99' is not of type timestamp"),
+    ('via_points: ' + '[' * 3000 + '\n', 'nested too deeply'),
     ('via_points: @\n', "line 1: while scanning for the next token, found character '@'"),
     ('\xff', 'task.yaml: ')])
 def test_malformed_file_is_named_with_what_is_wrong(here, content, text):
