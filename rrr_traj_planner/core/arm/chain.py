@@ -155,6 +155,11 @@ class Chain(ReadOnlyArrays):
             if np.linalg.eigvalsh(tensor)[0] < -INERTIA_TOLERANCE * size:
                 raise InvalidInputError(f'inertia of link {i} has a negative principal moment')
 
+    @property
+    def has_masses(self) -> bool:
+        """Return whether any link has a mass or an inertia."""
+        return bool(self.mass.any() or self.inertia.any())
+
     @cached_property
     def size(self) -> float:
         """Upper bound on the tip's distance from joint axis 1 [m], for tolerances."""

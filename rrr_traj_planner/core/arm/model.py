@@ -24,7 +24,7 @@ import os
 import numpy as np
 from rrr_traj_planner.core.arm.chain import Chain
 from rrr_traj_planner.core.arm.friction import Friction
-from rrr_traj_planner.core.arm.inertia_check import lacking_inertia
+from rrr_traj_planner.core.arm.inertia_check import singular_inertia_reason
 from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.tables import ArmTables, tables_of
 from rrr_traj_planner.core.arm.urdf_arm import read_urdf
@@ -119,8 +119,8 @@ class RobotModel(ReadOnlyArrays):
         """
         down = -finite('gravity', gravity, 'm/s^2')
         model = cls(lengths.chain(), np.array((0.0, 0.0, down)), joint_names=joint_names)
-        if model.lacking_inertia:
-            raise InvalidInputError(model.lacking_inertia)
+        if model.singular_inertia_reason:
+            raise InvalidInputError(model.singular_inertia_reason)
         return model
 
     @classmethod
@@ -161,6 +161,8 @@ class RobotModel(ReadOnlyArrays):
         return tables_of(self.chain, self.gravity, self.rotor_inertia)
 
     @cached_property
-    def lacking_inertia(self) -> str:
-        """Which joints a torque could accelerate without bound in some pose; empty: none."""
-        return lacking_inertia(self.tables.inertia)
+    def singular_inertia_reason(self) -> str:
+        """Return why the inertia matrix is singular in some pose; '' where it never is."""
+        if not self.chain.has_masses and not self.rotor_inertia.any():
+            return 'no link has a mass'
+        return singular_inertia_reason(self.tables.inertia)

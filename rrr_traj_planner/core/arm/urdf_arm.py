@@ -83,8 +83,8 @@ class UrdfArm(ReadOnlyArrays):
 
     @property
     def has_masses(self) -> bool:
-        """Return whether any link has a mass or an inertia: without, torque cannot be checked."""
-        return bool(self.chain.mass.any() or self.chain.inertia.any())
+        """Return whether any link has a mass or an inertia."""
+        return self.chain.has_masses
 
 
 def read_urdf(text_or_path: str | os.PathLike[str], base: str = '', tip: str = '') -> UrdfArm:

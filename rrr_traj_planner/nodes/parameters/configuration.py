@@ -222,8 +222,8 @@ def robot_model(values: Values) -> RobotModel:
         arm = read(values['robot_description'], values['base_frame'], values['tip_frame'])
         return RobotModel(arm.chain, **others)
     model = RobotModel(_lengths(values).chain(), **others)
-    if model.lacking_inertia:
-        raise InvalidInputError(model.lacking_inertia)
+    if model.singular_inertia_reason:
+        raise InvalidInputError(model.singular_inertia_reason)
     return model
 
 

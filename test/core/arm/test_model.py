@@ -14,7 +14,7 @@
 
 """The arm's description: the thesis's values, and the arms that are refused."""
 
-from dataclasses import fields, FrozenInstanceError
+from dataclasses import fields, FrozenInstanceError, replace
 import itertools
 
 from helpers import thesis_cases as thesis
@@ -153,18 +153,23 @@ def test_arm_that_a_torque_could_accelerate_without_bound_is_refused(changes, te
     lengths = ArmLengths(**changes)
     with pytest.raises(InvalidInputError, match=f'^{text}$'):
         RobotModel.from_lengths(lengths)
-    assert RobotModel(lengths.chain()).lacking_inertia == text
+    assert RobotModel(lengths.chain()).singular_inertia_reason == text
     # With motors of some inertia, each joint has its own.
-    assert RobotModel(lengths.chain(), rotor_inertia=[0.1, 0.1, 0.1]).lacking_inertia == ''
+    assert RobotModel(lengths.chain(), rotor_inertia=[0.1, 0.1, 0.1]).singular_inertia_reason == ''
 
 
 @pytest.mark.parametrize('seed', range(5))
 def test_chains_lack_inertia_where_links_have_none(seed):
     arm = random_arm(seed)
-    assert arm.lacking_inertia == without_inertia(arm).lacking_inertia == ''
-    assert without_inertia(arm, 0, 1).lacking_inertia == ''  # a body hangs on joint 3
-    assert without_inertia(arm, 2).lacking_inertia == 'link 3 has no inertia about joint axis 3'
-    assert without_inertia(arm, 0, 1, 2).lacking_inertia.startswith('link 3 has no inertia')
+    assert arm.singular_inertia_reason == without_inertia(arm).singular_inertia_reason == ''
+    assert without_inertia(arm, 0, 1).singular_inertia_reason == ''  # a body hangs on joint 3
+    assert without_inertia(arm, 2).singular_inertia_reason == (
+        'link 3 has no inertia about joint axis 3')
+    bare = without_inertia(arm, 0, 1, 2)
+    assert bare.singular_inertia_reason == 'no link has a mass'
+    assert replace(bare, rotor_inertia=[0.1, 0.1, 0.0]).singular_inertia_reason == (
+        'link 3 has no inertia about joint axis 3')
+    assert replace(bare, rotor_inertia=[0.1, 0.1, 0.1]).singular_inertia_reason == ''
 
 
 def test_arm_of_point_masses_on_a_heavy_column_is_accepted():
