@@ -25,6 +25,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits, NO_EFFORT, NO_RANGE, NO_VELOCITY
 from rrr_traj_planner.core.arm.link_frames import Frame, joint_points, link_frames, link_lines
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf_tree import BASE, TIP
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.rotations import roll_pitch_yaw, rotation_z_to
@@ -38,9 +39,9 @@ COLOURS = {'light': (0.75, 0.75, 0.78, 1.0), 'dark': (0.35, 0.37, 0.42, 1.0)}
 class FrameNames(NamedTuple):
     """Names of the arm's links, which are frames of TF, from the base to the tip."""
 
-    base: str = 'base_link'
+    base: str = BASE
     links: tuple[str, ...] = ('link_1', 'link_2', 'link_3')
-    tip: str = 'tip'
+    tip: str = TIP
 
 
 def check_frames(frames: FrameNames) -> None:

@@ -133,7 +133,7 @@ def read_document(text: str) -> Document:
     """
     warnings: list[UrdfWarning] = []
     root = _reduced(_root(text), 'the robot', warnings)
-    from urdf_parser_py.urdf import URDF  # here, since most uses of the core read no URDF
+    URDF = _parser()
     limits = [_limits(joint) for joint in root.iter('joint')]
     _add_needed_limits(root)
     try:
@@ -144,8 +144,28 @@ def read_document(text: str) -> Document:
     return Document(tuple(map(_link, robot.links)), tuple(joints), tuple(warnings))
 
 
+def is_xml(value: str) -> bool:
+    """
+    Return whether a value is a document's text, and no path: its first character is '<'.
+
+    Parameters
+    ----------
+    value : str
+        The value.
+
+    Returns
+    -------
+    bool
+        White space and a byte order mark before that do not matter.
+
+    """
+    return value.lstrip(BEFORE_XML).startswith('<')
+
+
 def _root(text: str) -> ET.Element:
     """Return the element `robot`."""
+    if not is_xml(text):
+        raise InvalidInputError("no URDF, whose text begins with '<'")
     xml = text.lstrip(BEFORE_XML)
     try:
         root = ET.fromstring(xml)
@@ -161,6 +181,17 @@ def _root(text: str) -> ET.Element:
     if root.tag != 'robot':
         raise InvalidInputError(f'the root element is <{root.tag}>, must be <robot>')
     return root
+
+
+def _parser() -> Any:
+    """Return urdf_parser_py's class; imported here, since most uses of the core read no URDF."""
+    try:
+        from urdf_parser_py.urdf import URDF
+    except ImportError as error:
+        raise InvalidInputError(
+            f"reading a URDF needs urdf_parser_py ({error}): install ROS's package "
+            'ros-jazzy-urdfdom-py (apt), or urdf-parser-py (pip)') from None
+    return URDF
 
 
 def _reduced(element: ET.Element, owner: str, warnings: list[UrdfWarning]) -> ET.Element:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Masses and inertias of a URDF's links: mended where no body has them, and lumped."""
+"""Masses and inertias of a URDF's links: without negative ones, and of composite bodies."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Body(NamedTuple):
     inertia: Array   # about it, shape (3, 3) [kg m^2]
 
 
-def mended(link: Link, size: float, warnings: list[UrdfWarning]) -> Link:
+def without_negative_inertia(link: Link, size: float, warnings: list[UrdfWarning]) -> Link:
     """
     Return a link without negative mass and principal moments.
 
@@ -91,7 +91,7 @@ def _faults(moments: Array, mass: float, size: float) -> list[str]:
     return faults
 
 
-def placed(link: Link, pose: Array) -> Body:
+def body_in_base(link: Link, pose: Array) -> Body:
     """
     Return a link as a body in the base frame.
 
@@ -112,9 +112,9 @@ def placed(link: Link, pose: Array) -> Body:
     return Body(link.mass, R @ link.centre + pose[:3, 3], R @ link.inertia @ R.T)
 
 
-def lumped(bodies: Sequence[Body], at: Array) -> Body:
+def composite_body(bodies: Sequence[Body], at: Array) -> Body:
     """
-    Return bodies that are fixed to one another as one (parallel-axis theorem).
+    Return the composite of bodies that are fixed to one another (parallel-axis theorem).
 
     Parameters
     ----------

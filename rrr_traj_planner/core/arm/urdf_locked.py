@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Where a URDF's links are with all joints at zero, those that hang from the arm locked."""
+"""Where a URDF's links are with all joints at zero; joints on side branches are locked."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def locked_poses(tree: LinkTree, arm: Sequence[Joint], pose: Array, warnings: li
     first = pose_after(arm[0], pose)
     found: list[list[tuple[str, Array]]] = [[(arm[0].child, first)], [], []]
     place, texts = {arm[0].child: (0, first)}, []
-    for joint in tree.walk(arm[0].child):
+    for joint in tree.subtree(arm[0].child):
         body, above = place[joint.parent]
         position = 0.0
         if joint.name not in numbers and joint.kind != 'fixed':

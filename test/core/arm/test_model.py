@@ -27,6 +27,7 @@ from rrr_traj_planner.core.arm.chain import Chain
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf_arm import read_urdf
 from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix
 from rrr_traj_planner.core.errors import InvalidInputError
 
@@ -210,6 +211,19 @@ def test_a_urdf_gives_chain_names_and_friction():
         assert arm.friction.viscous.tolist() == [0.01] * 3
         assert arm.friction.coulomb.tolist() == [0.2] * 3
         assert arm.gravity.tolist() == [0.0, 0.0, -9.81]
+
+
+def test_a_urdf_s_arm_may_have_its_gravity_and_motors():
+    file = ROOT / 'test/data/arms/go1_leg.urdf'
+    gravity, rotors = [0.0, 3.0, 4.0], [0.1, 0.2, 0.3]
+    for arm in (RobotModel.from_urdf(file, gravity=gravity, rotor_inertia=rotors),
+                read_urdf(file).model(gravity=gravity, rotor_inertia=rotors)):
+        assert (arm.gravity.tolist(), arm.rotor_inertia.tolist()) == (gravity, rotors)
+        assert arm.friction.coulomb.tolist() == [0.2] * 3
+        assert arm.joint_names == ('joint_1', 'joint_2', 'joint_3')
+    for name in ('gravity', 'rotor_inertia'):
+        with pytest.raises(InvalidInputError, match=rf'^{name} has shape \(2,\)'):
+            RobotModel.from_urdf(file, **{name: [1.0, 2.0]})
 
 
 def test_a_urdf_of_another_arm_is_refused():

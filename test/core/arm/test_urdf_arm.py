@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 import pickle
+import sys
 from xml.etree import ElementTree
 
 from helpers.pinocchio_urdf import PinocchioUrdf
@@ -166,12 +167,52 @@ def test_fixed_offsets_between_base_and_joint_1_are_counted():
     agrees_with_pinocchio(found)
 
 
+@pytest.mark.parametrize('name', READ)
+def test_limits_of_an_arm_are_the_file_s_and_those_that_are_given(name):
+    found = read_urdf(FILES[name])
+    limits = found.joint_limits(2.0, [10.0, 20.0, np.inf])
+    for key in ('min_position', 'max_position', 'max_velocity', 'max_effort'):
+        assert getattr(limits, key).tolist() == getattr(found, key).tolist()
+    assert limits.max_acceleration.tolist() == [2.0] * 3
+    assert limits.max_jerk.tolist() == [10.0, 20.0, np.inf]
+    none = found.joint_limits()
+    assert none.max_acceleration.tolist() == none.max_jerk.tolist() == [np.inf] * 3
+
+
+@pytest.mark.parametrize(('value', 'message'), [
+    (-1.0, r'max_jerk is [-1.0, -1.0, -1.0] rad/s^3, must be positive'),
+    ([1.0, 2.0], 'max_jerk has shape (2,), must have (3)'),
+    ([[1.0], [2.0, 3.0]], 'max_jerk has rows of 1, 2'), ('fast', "max_jerk is 'fast'"),
+    (None, 'max_jerk is '),
+    (np.nan, 'max_jerk is nan, must be a number')])
+def test_limits_that_are_none_are_refused(value, message):
+    with pytest.raises(InvalidInputError) as error:
+        read_urdf(arm()).joint_limits(max_jerk=value)
+    assert str(error.value).startswith(message)
+
+
+def test_a_missing_parser_is_said_with_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, 'urdf_parser_py.urdf', None)
+    assert refused(arm()).startswith('reading a URDF needs urdf_parser_py (')
+    with pytest.raises(InvalidInputError, match=r'urdfdom-py \(apt\), or urdf-parser-py \(pip\)'):
+        RobotModel.from_urdf(arm())
+
+
 def test_empty_names_are_the_root_and_the_only_leaf():
     found = read_urdf(arm())
     assert (found.base, found.tip) == ('base', 'tip')
-    assert refused(arm(link('x'), joint('more', 'fixed', 'c', 'x')), '', '') == (
-        "no tip is named, and what hangs from link 'base' ends in 'tip', 'x': must end in one "
-        'link')
+    more = arm(link('x'), joint('more', 'fixed', 'c', 'x'))
+    assert refused(more.replace('"tip"', '"hand"'), '', '') == (
+        "the tip frame is not given, and the tree below link 'base' has several leaves: 'hand', "
+        "'x'")
+
+
+def test_empty_names_are_base_link_and_tip_where_there_are_such_links():
+    text = arm(link('x'), joint('more', 'fixed', 'c', 'x', '', (0.3, 0.0, 0.0)), link('world'),
+               joint('stand', 'fixed', 'world', 'base')).replace('"base"', '"base_link"')
+    found = read_urdf(text)
+    assert (found.base, found.tip) == ('base_link', 'tip')
+    assert read_urdf(text, 'world', 'x').chain.tip == pytest.approx((0.9, 0.0, 0.5))
 
 
 @pytest.mark.parametrize(('changed', 'message'), [
