@@ -26,6 +26,7 @@ from typing import Any, NamedTuple
 
 from rrr_traj_planner.core.arm.limits import NO_EFFORT, NO_RANGE, NO_VELOCITY
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
+from rrr_traj_planner.core.arm.urdf_tree import BASE, TIP
 from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError, shown
 from rrr_traj_planner.core.trajectory.sampling import MOST_POINTS
 
@@ -82,8 +83,8 @@ def _joint_limit(name: str, kind: str, values: tuple[Any, ...], unit: str, low: 
 
 TABLE: tuple[Row, ...] = (
     Row('joint_names', list(JOINT_NAMES), "the joints' names, from the base", read_only=True),
-    Row('base_frame', 'base_link', 'frame of positions', read_only=True),
-    Row('tip_frame', 'tip', "frame at the arm's tip", read_only=True),
+    Row('base_frame', BASE, 'frame of positions', read_only=True),
+    Row('tip_frame', TIP, "frame at the arm's tip", read_only=True),
     Row('link_names', ['link_1', 'link_2', 'link_3'], "the links' frames, in robot_description",
         read_only=True, nodes=(ARM,)),
     Row('robot_description', '', 'the arm as a URDF: its text, or the path of its file; empty: '
