@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-A chain of three revolute joints: its axes, its tip and the masses that hang on it.
+A chain of three revolute joints: its axes, its tip and the masses of its links.
 
 Everything is given in the base frame with all joints at zero (product of exponentials: Lynch and
 Park, Modern Robotics, 2017, section 4.1), so that no convention for the links' frames is needed.

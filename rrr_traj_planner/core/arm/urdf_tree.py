@@ -160,7 +160,7 @@ class LinkTree:
         looped = self.links.keys() - reached - set(roots)
         if looped:
             loop = [name for name in self.links if name in looped]
-            raise InvalidInputError(f'links {_listed(loop)} are in a loop, or hang from one: must '
+            raise InvalidInputError(f'links {_listed(loop)} are in a loop, or below one: must '
                                     'be a tree')
 
 

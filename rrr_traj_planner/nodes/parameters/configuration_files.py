@@ -178,7 +178,7 @@ def found_file(name: str, folder: Path) -> Path:
 def _text(content: dict[str, Any], field: str) -> str:
     value = content.get(field)
     if value is not None and not isinstance(value, str):
-        raise InvalidInputError(f'{field} is {value!r}, must be a text')
+        raise InvalidInputError(f'{field} is {shown(value)}, must be a text')
     return value or ''
 
 

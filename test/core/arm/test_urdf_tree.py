@@ -93,9 +93,9 @@ def test_paths_that_are_not_there_are_refused(base, tip, message):
     (links('abcdefghijklmn'), "links 'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h', 'i', 'j', 'k', 'l' "
      'and 2 more have no parent: must be one root'),
     ([*links('ab'), *fixed('ab', 'ba')],
-     "links 'a', 'b' are in a loop, or hang from one: must be a tree"),
+     "links 'a', 'b' are in a loop, or below one: must be a tree"),
     ([*links('rabc'), *fixed('ab', 'ba', 'bc')],
-     "links 'a', 'b', 'c' are in a loop, or hang from one: must be a tree")])
+     "links 'a', 'b', 'c' are in a loop, or below one: must be a tree")])
 def test_what_is_no_tree_is_refused(parts, message):
     with pytest.raises(InvalidInputError) as error:
         tree_of(robot(*parts))
