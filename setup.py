@@ -100,9 +100,11 @@ setup(
         (f'share/{NAME}/config/arms', sorted(glob('config/arms/*'))),
     ],
     python_requires='>=3.10',
-    # urdf_parser_py is not among them: PyPI and ROS call its distribution by different names
+    # urdf_parser_py, which reads URDFs, is urdfdom_py to ROS (package.xml) and urdf-parser-py to
+    # PyPI: here, it would be installed twice beside ROS's
     install_requires=['numpy', 'PyYAML', 'scipy', 'setuptools'],
-    extras_require={'figures': ['matplotlib'], 'record': ['mcap'], 'test': ['pytest']},
+    extras_require={'figures': ['matplotlib'], 'record': ['mcap'], 'test': ['pytest'],
+                    'urdf': ['urdf-parser-py']},
     zip_safe=False,
     entry_points={
         'console_scripts': [

@@ -53,7 +53,8 @@ COPIES = {
     'copy': copy.copy, 'deepcopy': copy.deepcopy}
 
 # Values of error fields by their types.
-SAMPLES = {str: 'joint_2', int: 3, float: 0.1 + 0.2, tuple[float, ...]: (0.1, 1.0 / 3.0)}
+SAMPLES = {str: 'joint_2', int: 3, float: 0.1 + 0.2, tuple[float, ...]: (0.1, 1.0 / 3.0),
+           tuple[int, ...]: (1, 2)}
 
 POINTS = [(1.02, 0.59, 0.97), (0.46, 0.55, 1.44), (0.45, 0.38, 1.45)]
 

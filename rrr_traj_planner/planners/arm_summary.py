@@ -95,9 +95,9 @@ def _links(arm: UrdfArm, model: RobotModel) -> Iterator[str]:
         where = ', '.join(f'{x:.4g}' for x in centre + 0.0)
         yield f'  {name}: {mass:.4g} kg' + (
             f', centre of mass with joints at zero ({where}) m' if mass > 0.0 else '')
-    if model.lacking_inertia:
+    if model.singular_inertia_reason:
         yield '  torque is not checked, and the arm cannot be simulated: ' + (
-            'no link has a mass' if not arm.has_masses else model.lacking_inertia)
+            'no link has a mass' if not arm.has_masses else model.singular_inertia_reason)
 
 
 def _first_axes(model: RobotModel) -> str:

@@ -42,9 +42,11 @@ def torque_note(model: RobotModel, limits: JointLimits) -> str:
         For the plan.
 
     """
-    if not model.lacking_inertia or np.isinf(limits.max_effort).all():
+    reason = model.singular_inertia_reason
+    if not reason or np.isinf(limits.max_effort).all():
         return ''
-    reason = 'the arm has no masses' if not model.chain.mass.any() else model.lacking_inertia
+    if not model.chain.mass.any():
+        reason = 'the arm has no masses'
     return f'torque is not checked: {reason}'
 
 
@@ -65,7 +67,9 @@ def checked_limits(model: RobotModel, limits: JointLimits) -> JointLimits:
         The same object where the arm has masses or rotor inertia.
 
     """
-    return replace(limits, max_effort=np.full(3, np.inf)) if model.lacking_inertia else limits
+    if model.singular_inertia_reason:
+        return replace(limits, max_effort=np.full(3, np.inf))
+    return limits
 
 
 def check_friction(model: RobotModel, limits: JointLimits) -> None:

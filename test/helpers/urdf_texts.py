@@ -37,6 +37,11 @@ def inertial(mass, moments=(0.1, 0.0, 0.0, 0.1, 0.0, 0.1), xyz=(0.0, 0.0, 0.0),
             f'<mass value="{mass}"/><inertia {values}/></inertial>')
 
 
+def texts(found):
+    """Return the texts of an arm's, or a document's, warnings."""
+    return tuple(warning.text for warning in found.warnings)
+
+
 def link(name, inside=''):
     return f'<link name="{name}">{inside}</link>'
 

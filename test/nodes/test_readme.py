@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The README's client, run unchanged."""
+"""The README's client and its example of a URDF, run unchanged."""
 
 from __future__ import annotations
 
@@ -20,9 +20,21 @@ import re
 
 from helpers.places import ROOT
 from helpers.scripts import python, Script, script
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.request import PlanningRequest
 from sensor_msgs.msg import JointState
 
 README = ROOT / 'README.md'
+
+
+def test_library_s_example_of_a_urdf_is_planned_with_its_own_limits(monkeypatch):
+    blocks = re.findall(r'^```python\n(.*?)^```', README.read_text(), re.DOTALL | re.MULTILINE)
+    code, = (block for block in blocks if 'read_urdf' in block)
+    monkeypatch.chdir(ROOT)
+    names = {'plan': plan, 'PlanningRequest': PlanningRequest}
+    exec(code, names)
+    assert (names['found'].peaks.velocity <= names['arm'].max_velocity).all()
+    assert names['limits'].max_effort.tolist() == [23.7, 23.7, 35.55]
 
 
 def test_client_s_trajectory_reaches_an_arm_that_is_found_late(ros):

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-A chain of three revolute joints: its axes, its tip and the masses that hang on it.
+A chain of three revolute joints: its axes, its tip and the masses of its links.
 
 Everything is given in the base frame with all joints at zero (product of exponentials: Lynch and
 Park, Modern Robotics, 2017, section 4.1), so that no convention for the links' frames is needed.
@@ -21,21 +21,64 @@ Park, Modern Robotics, 2017, section 4.1), so that no convention for the links' 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, finite_array
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, quoted
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
+from rrr_traj_planner.core.rotations import rotation
 
 # Sine of the angle between joint axes 1 and 2 up to which they count as parallel: descriptions
 # from CAD are rounded to 1e-4 rad at worst.
 PARALLEL = 1e-3
 
+# Distance of the tip from joint axis 3, over the arm's size, up to which it counts as on the axis:
+# rounding of descriptions. Chosen.
+ON_AXIS = 1e-6
+
 # Part of an inertia tensor up to which it may be asymmetric, or a principal moment negative:
 # rounding of descriptions with seven digits. Chosen.
 INERTIA_TOLERANCE = 1e-6
+
+
+class UnsupportedChainError(InvalidInputError):
+    """
+    A chain of a kind that is not planned for.
+
+    Parameters
+    ----------
+    template : str
+        Message, with {} for each joint.
+    joints : tuple of int
+        The joints at fault, from 1.
+
+    """
+
+    def __init__(self, template: str, joints: tuple[int, ...]) -> None:
+        super().__init__(template.format(*joints))
+        self.template = template
+        self.joints = joints
+
+    def named(self, joint_names: Sequence[str]) -> InvalidInputError:
+        """
+        Return the same error with names in place of numbers.
+
+        Parameters
+        ----------
+        joint_names : sequence of str
+            Of the three joints.
+
+        Returns
+        -------
+        InvalidInputError
+            To be raised.
+
+        """
+        return InvalidInputError(
+            self.template.format(*(quoted(joint_names[joint - 1]) for joint in self.joints)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,9 +106,10 @@ class Chain(ReadOnlyArrays):
     Raises
     ------
     InvalidInputError
-        If a value is not finite, an axis is zero, axes 1 and 2 are parallel, the tip lies on joint
-        axis 3, a mass is negative, or an inertia tensor is not symmetric or has a negative
-        principal moment.
+        If a value is not finite, an axis is zero, a mass is negative, or an inertia tensor is not
+        symmetric or has a negative principal moment.
+    UnsupportedChainError
+        If joint axes 1 and 2 are parallel, or the tip lies on joint axis 3.
 
     """
 
@@ -90,13 +134,15 @@ class Chain(ReadOnlyArrays):
         self._check_inertia()
 
     def _check_geometry(self) -> None:
-        """Refuse a chain whose tip moves in a plane, or does not move with joint 3."""
+        """Refuse parallel first axes, and a tip that joint 3 does not move."""
         if np.linalg.norm(np.cross(self.axis[0], self.axis[1])) < PARALLEL:
-            raise InvalidInputError(
-                'joint axes 1 and 2 are parallel: the tip moves in a plane or on few spheres, and '
-                'no arm of this kind is planned for')
-        if np.linalg.norm(np.cross(self.axis[2], self.tip - self.point[2])) == 0.0:
-            raise InvalidInputError('the tip is on joint axis 3, which does not move it')
+            raise UnsupportedChainError(
+                'joint axes {} and {} are parallel: planar and SCARA-like arms are not supported',
+                (1, 2))
+        lever = np.linalg.norm(np.cross(self.axis[2], self.tip - self.point[2]))
+        if lever <= ON_AXIS * self.size:
+            raise UnsupportedChainError(
+                'the tip is on joint axis {}, which does not move it', (3,))
 
     def _check_inertia(self) -> None:
         """Refuse negative masses and tensors that no body has even without regard to its shape."""
@@ -108,6 +154,11 @@ class Chain(ReadOnlyArrays):
                 raise InvalidInputError(f'inertia of link {i} is not symmetric')
             if np.linalg.eigvalsh(tensor)[0] < -INERTIA_TOLERANCE * size:
                 raise InvalidInputError(f'inertia of link {i} has a negative principal moment')
+
+    @property
+    def has_masses(self) -> bool:
+        """Return whether any link has a mass or an inertia."""
+        return bool(self.mass.any() or self.inertia.any())
 
     @cached_property
     def size(self) -> float:
@@ -133,7 +184,7 @@ class Chain(ReadOnlyArrays):
         """
         R, t, poses = np.eye(3), np.zeros(3), []
         for j in range(3):
-            turn = _rotation(self.axis[j], q[..., j])
+            turn = rotation(self.axis[j], q[..., j])
             centred = self.point[j] - turn @ self.point[j]
             t = t + np.asarray((R @ centred[..., np.newaxis])[..., 0])
             R = R @ turn
@@ -161,11 +212,3 @@ class Chain(ReadOnlyArrays):
                   for (R, t), axis, point in zip(poses, self.axis[1:], self.point[1:])]
         directions, points = zip(*moved)
         return np.stack(directions, axis=-2), np.stack(points, axis=-2)
-
-
-def _rotation(axis: Array, angle: Array) -> Array:
-    """Return rotations about an axis, shape (..., 3, 3) (Rodrigues)."""
-    x, y, z = axis
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = angle[..., np.newaxis, np.newaxis]
-    return np.asarray(np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K))

@@ -28,9 +28,9 @@ ANGLES = np.arange(48) * (np.pi / 24.0)  # rad
 ROUNDING = 1e-12
 
 
-def lacking_inertia(table: Array) -> str:
+def singular_inertia_reason(table: Array) -> str:
     """
-    Return which joints of an arm a torque could accelerate without bound in some pose.
+    Return why the inertia matrix is singular in some pose; '' where it never is.
 
     Parameters
     ----------
@@ -40,7 +40,8 @@ def lacking_inertia(table: Array) -> str:
     Returns
     -------
     str
-        The reason; empty where the matrix is positive definite at every angle that is checked.
+        Which links lack inertia, so that a torque could accelerate joints without bound; empty
+        where the matrix is positive definite at every angle that is checked.
 
     """
     basis = np.stack([np.ones_like(ANGLES), np.cos(ANGLES), np.sin(ANGLES),

@@ -24,6 +24,14 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import positive_fraction
 
+# URDFs must have values where a joint has no limit, and so do parameters of ranges: from these on,
+# they stand for none. No joint's motor turns at 1e3 rad/s (9,500 revolutions a minute, after the
+# gear), nor do an arm's cables allow 160 turns; the strongest industrial arms, for a ton at 3 m,
+# hold some 4e4 N m.
+NO_RANGE = 1e3      # rad
+NO_VELOCITY = 1e3   # rad/s
+NO_EFFORT = 1e5     # N m
+
 UNITS = {
     'min_position': 'rad', 'max_position': 'rad', 'max_velocity': 'rad/s',
     'max_acceleration': 'rad/s^2', 'max_jerk': 'rad/s^3', 'max_effort': 'N m'}

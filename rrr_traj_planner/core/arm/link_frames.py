@@ -16,17 +16,12 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, sin
 from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arm.chain import Chain
 from rrr_traj_planner.core.arrays import Array
-
-HALF_TURN = np.diag((1.0, -1.0, -1.0))  # about x
-
-# z of a direction from which on it is turned to from -z. Between, both ways are accurate. Chosen.
-BACKWARDS = -0.5
+from rrr_traj_planner.core.rotations import rotation_z_to
 
 
 class Frame(NamedTuple):
@@ -53,7 +48,7 @@ class Frame(NamedTuple):
         return np.asarray(self.R.T @ (point - self.at))
 
 
-class Joint(NamedTuple):
+class JointPoint(NamedTuple):
     """A joint's point, in the base frame with all joints at zero."""
 
     link: int  # that carries it: 0 for the base, 1 or 2
@@ -93,10 +88,10 @@ def link_frames(chain: Chain) -> list[Frame]:
     origins = (first, chain.point[1], chain.point[2], chain.tip)
     axes = (*chain.axis, _direction(chain.point[2], chain.tip))
     return [Frame(np.eye(3), np.zeros(3)),
-            *(Frame(turn_to(axis), at) for axis, at in zip(axes, origins))]
+            *(Frame(rotation_z_to(axis), at) for axis, at in zip(axes, origins))]
 
 
-def link_joints(chain: Chain) -> list[Joint]:
+def joint_points(chain: Chain) -> list[JointPoint]:
     """
     Return the joints' points, each fixed to a link.
 
@@ -107,13 +102,13 @@ def link_joints(chain: Chain) -> list[Joint]:
 
     Returns
     -------
-    list of Joints
+    list of JointPoint
         Where two joints have the same point, the last one's only.
 
     """
     carriers = (_first_link(chain), 1, 2)
-    joints = [Joint(link, at) for link, at in zip(carriers, chain.point)]
-    return [a for a, b in zip(joints, joints[1:]) if (a.at != b.at).any()] + joints[-1:]
+    points = [JointPoint(link, at) for link, at in zip(carriers, chain.point)]
+    return [a for a, b in zip(points, points[1:]) if (a.at != b.at).any()] + points[-1:]
 
 
 def link_lines(chain: Chain) -> list[Line]:
@@ -137,50 +132,6 @@ def link_lines(chain: Chain) -> list[Line]:
     lines = [Line(link, a, b)
              for link, a, b in zip((_first_link(chain), 1, 2, 3), points, points[1:])]
     return [line for line in lines if (line.start != line.end).any()]
-
-
-def turn_to(direction: Array) -> Array:
-    """
-    Return the rotation that takes z to a direction the shortest way.
-
-    Parameters
-    ----------
-    direction : ndarray, shape (3,)
-        Of length 1.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Half a turn about x, and the shortest way from there, for directions near to -z.
-
-    """
-    if direction[2] < BACKWARDS:
-        return np.asarray(HALF_TURN @ turn_to(HALF_TURN @ direction))
-    x, y, z = direction
-    K = np.array([[0.0, 0.0, x], [0.0, 0.0, y], [-x, -y, 0.0]])  # of the cross product with z
-    return np.asarray(np.eye(3) + K + K @ K / (1.0 + z))
-
-
-def roll_pitch_yaw(R: Array) -> tuple[float, float, float]:
-    """
-    Return the angles of a rotation Rz(yaw) Ry(pitch) Rx(roll), as URDF has them.
-
-    Parameters
-    ----------
-    R : ndarray, shape (3, 3)
-        The rotation.
-
-    Returns
-    -------
-    tuple of three floats
-        Roll, pitch, yaw [rad]. Accurate at pitches of a right angle too, where any yaw will do:
-        roll is that of Rz(-yaw) R.
-
-    """
-    yaw = atan2(R[1, 0], R[0, 0])
-    c, s = cos(yaw), sin(yaw)
-    return (atan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1]),
-            atan2(-R[2, 0], c * R[0, 0] + s * R[1, 0]), yaw)
 
 
 def _first_link(chain: Chain) -> int:

@@ -22,12 +22,12 @@ from functools import cached_property
 import os
 
 import numpy as np
+from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.chain import Chain
 from rrr_traj_planner.core.arm.friction import Friction
-from rrr_traj_planner.core.arm.inertia_check import lacking_inertia
+from rrr_traj_planner.core.arm.inertia_check import singular_inertia_reason
 from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.tables import ArmTables, tables_of
-from rrr_traj_planner.core.arm.urdf_arm import read_urdf
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
@@ -35,6 +35,8 @@ from rrr_traj_planner.core.scalars import finite, kind_of, names
 
 JOINT_NAMES = ('joint_1', 'joint_2', 'joint_3')
 GRAVITY = 9.81  # m/s^2
+GRAVITY_VECTOR = (0.0, 0.0, -GRAVITY)
+NO_INERTIA = (0.0, 0.0, 0.0)  # kg m^2
 
 
 def _default(*values: object) -> Array:
@@ -47,7 +49,7 @@ class RobotModel(ReadOnlyArrays):
     An arm, leg or finger of three revolute joints.
 
     The default is the thesis's arm (appendix B). `from_lengths` makes others of its kind,
-    `from_urdf` any.
+    `from_urdf` those of other kinds; joint axes 1 and 2 must not be parallel.
 
     Parameters
     ----------
@@ -71,8 +73,8 @@ class RobotModel(ReadOnlyArrays):
     """
 
     chain: Chain = field(default_factory=ArmLengths().chain)
-    gravity: Array = _default(0.0, 0.0, -GRAVITY)
-    rotor_inertia: Array = _default(0.0, 0.0, 0.0)
+    gravity: Array = _default(*GRAVITY_VECTOR)
+    rotor_inertia: Array = _default(*NO_INERTIA)
     friction: Friction = field(default_factory=Friction)
     joint_names: Sequence[str] = JOINT_NAMES
 
@@ -119,27 +121,34 @@ class RobotModel(ReadOnlyArrays):
         """
         down = -finite('gravity', gravity, 'm/s^2')
         model = cls(lengths.chain(), np.array((0.0, 0.0, down)), joint_names=joint_names)
-        if model.lacking_inertia:
-            raise InvalidInputError(model.lacking_inertia)
+        if model.singular_inertia_reason:
+            raise InvalidInputError(model.singular_inertia_reason)
         return model
 
     @classmethod
-    def from_urdf(cls, text_or_path: str | os.PathLike[str], base: str = '', tip: str = ''
+    def from_urdf(cls, text_or_path: str | os.PathLike[str], base: str = '', tip: str = '', *,
+                  gravity: ArrayLike = GRAVITY_VECTOR, rotor_inertia: ArrayLike = NO_INERTIA
                   ) -> RobotModel:
         """
-        Return the arm that a URDF describes, with gravity along -z of the base.
+        Return the arm that a URDF describes.
 
-        The names of the joints and their friction are the URDF's; its limits and warnings are in
-        `urdf_arm.read_urdf`.
+        The names of the joints and their friction are the URDF's. This is
+        `urdf_arm.read_urdf(...).model(...)`; what `read_urdf` returns has limits and warnings too.
 
         Parameters
         ----------
         text_or_path : str or path
             The URDF, or the path of its file: a text that does not begin with '<'.
         base : str
-            Name of the link in whose frame the arm is given; empty: the root of the tree.
+            Name of the link in whose frame the arm is given; empty: base_link if there is such a
+            link, else the root of the tree.
         tip : str
-            Name of the link whose origin is the tip; empty: the only leaf below the base.
+            Name of the link whose origin is the tip; empty: tip if there is such a link below the
+            base, else the only leaf below it.
+        gravity : array_like, shape (3,)
+            Acceleration of gravity in the base link's frame [m/s^2].
+        rotor_inertia : array_like, shape (3,)
+            Of the motors, reflected to the joints [kg m^2].
 
         Returns
         -------
@@ -152,8 +161,9 @@ class RobotModel(ReadOnlyArrays):
             If there is no such file, or it describes no such arm.
 
         """
-        arm = read_urdf(text_or_path, base, tip)
-        return cls(arm.chain, friction=arm.friction, joint_names=arm.joint_names)
+        from rrr_traj_planner.core.arm.urdf_arm import read_urdf  # which imports this module
+        return read_urdf(text_or_path, base, tip).model(
+            gravity=gravity, rotor_inertia=rotor_inertia)
 
     @cached_property
     def tables(self) -> ArmTables:
@@ -161,6 +171,8 @@ class RobotModel(ReadOnlyArrays):
         return tables_of(self.chain, self.gravity, self.rotor_inertia)
 
     @cached_property
-    def lacking_inertia(self) -> str:
-        """Which joints a torque could accelerate without bound in some pose; empty: none."""
-        return lacking_inertia(self.tables.inertia)
+    def singular_inertia_reason(self) -> str:
+        """Return why the inertia matrix is singular in some pose; '' where it never is."""
+        if not self.chain.has_masses and not self.rotor_inertia.any():
+            return 'no link has a mass'
+        return singular_inertia_reason(self.tables.inertia)

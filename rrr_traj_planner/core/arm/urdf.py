@@ -22,23 +22,13 @@ from typing import NamedTuple
 from xml.etree import ElementTree as ET
 
 import numpy as np
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.link_frames import (
-    Frame,
-    link_frames,
-    link_joints,
-    link_lines,
-    roll_pitch_yaw,
-    turn_to,
-)
+from rrr_traj_planner.core.arm.limits import JointLimits, NO_EFFORT, NO_RANGE, NO_VELOCITY
+from rrr_traj_planner.core.arm.link_frames import Frame, joint_points, link_frames, link_lines
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf_tree import BASE, TIP
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
-
-# A URDF must have limits on velocity and effort: values that stand for none, chosen far above any
-# motor's.
-NO_VELOCITY_LIMIT = 1e3  # rad/s
-NO_EFFORT_LIMIT = 1e6    # N m
+from rrr_traj_planner.core.rotations import roll_pitch_yaw, rotation_z_to
 
 RADIUS = 1.0 / 32.0  # of the drawn rods, over the arm's size; chosen
 
@@ -49,9 +39,9 @@ COLOURS = {'light': (0.75, 0.75, 0.78, 1.0), 'dark': (0.35, 0.37, 0.42, 1.0)}
 class FrameNames(NamedTuple):
     """Names of the arm's links, which are frames of TF, from the base to the tip."""
 
-    base: str = 'base_link'
+    base: str = BASE
     links: tuple[str, ...] = ('link_1', 'link_2', 'link_3')
-    tip: str = 'tip'
+    tip: str = TIP
 
 
 def check_frames(frames: FrameNames) -> None:
@@ -87,8 +77,8 @@ def urdf(model: RobotModel, limits: JointLimits, frames: FrameNames | None = Non
     model : RobotModel
         The arm. Its gravity and its motors' inertia are no part of a URDF.
     limits : JointLimits
-        Ranges, velocities and efforts; infinite ones become `NO_VELOCITY_LIMIT` and
-        `NO_EFFORT_LIMIT`.
+        Ranges, velocities and efforts. A joint without range is continuous; another end, velocity
+        or effort that is infinite becomes `NO_RANGE`, `NO_VELOCITY` or `NO_EFFORT`.
     frames : FrameNames, optional
         Names of the links.
 
@@ -113,7 +103,8 @@ def urdf(model: RobotModel, limits: JointLimits, frames: FrameNames | None = Non
         link = ET.SubElement(robot, 'link', name=name)
         if 1 <= i <= 3:
             _add_inertial(link, model, i - 1, places[i])
-            joint = _add_joint(robot, model.joint_names[i - 1], 'revolute', names, places, i)
+            kind = 'revolute' if _has_range(limits, i - 1) else 'continuous'
+            joint = _add_joint(robot, model.joint_names[i - 1], kind, names, places, i)
             _add_motion(joint, model, limits, i - 1)
         elif i == 4:
             _add_joint(robot, f'{name}_joint', 'fixed', names, places, i)
@@ -141,9 +132,9 @@ def _add_shapes(element: ET.Element, model: RobotModel, link: int, frame: Frame)
         length = float(np.linalg.norm(end - start))
         # A rod is symmetric: of its two directions, the one within a right angle of z.
         along = (end - start) / length * (1.0 if end[2] >= start[2] else -1.0)
-        rod = _add_visual(element, 0.5 * (start + end), turn_to(along), 'light')
+        rod = _add_visual(element, 0.5 * (start + end), rotation_z_to(along), 'light')
         ET.SubElement(rod, 'cylinder', radius=_text([radius]), length=_text([length]))
-    for point in (x.at for x in link_joints(model.chain) if x.link == link):
+    for point in (x.at for x in joint_points(model.chain) if x.link == link):
         ball = _add_visual(element, frame.inside(point), np.eye(3), 'dark')
         ET.SubElement(ball, 'sphere', radius=_text([1.4 * radius]))
 
@@ -170,15 +161,20 @@ def _add_joint(robot: ET.Element, name: str, kind: str, links: Sequence[str],
 
 def _add_motion(joint: ET.Element, model: RobotModel, limits: JointLimits, i: int) -> None:
     """Add a joint's axis, limits and friction."""
-    velocity, effort = limits.max_velocity[i], limits.max_effort[i]
+    values = {'velocity': (limits.max_velocity[i], NO_VELOCITY),
+              'effort': (limits.max_effort[i], NO_EFFORT)}
+    if _has_range(limits, i):
+        values['lower'] = limits.min_position[i], -NO_RANGE
+        values['upper'] = limits.max_position[i], NO_RANGE
     ET.SubElement(joint, 'axis', xyz='0 0 1')
-    ET.SubElement(
-        joint, 'limit', lower=_text([limits.min_position[i]]),
-        upper=_text([limits.max_position[i]]),
-        velocity=_text([velocity if isfinite(velocity) else NO_VELOCITY_LIMIT]),
-        effort=_text([effort if isfinite(effort) else NO_EFFORT_LIMIT]))
+    ET.SubElement(joint, 'limit', {name: _text([value if isfinite(value) else none])
+                                   for name, (value, none) in values.items()})
     ET.SubElement(joint, 'dynamics', damping=_text([model.friction.viscous[i]]),
                   friction=_text([model.friction.coulomb[i]]))
+
+
+def _has_range(limits: JointLimits, i: int) -> bool:
+    return isfinite(limits.min_position[i]) or isfinite(limits.max_position[i])
 
 
 def _add_origin(element: ET.Element, xyz: Array, R: Array) -> None:

@@ -18,25 +18,34 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import inf
 import os
 from pathlib import Path
 
 import numpy as np
-from rrr_traj_planner.core.arm.chain import Chain, PARALLEL
+from numpy.typing import ArrayLike
+from rrr_traj_planner.core.arm.chain import Chain, UnsupportedChainError
 from rrr_traj_planner.core.arm.friction import Friction
-from rrr_traj_planner.core.arm.urdf_document import BEFORE_XML, Joint, read_document
-from rrr_traj_planner.core.arm.urdf_inertia import lumped, mended, placed
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import GRAVITY_VECTOR, NO_INERTIA, RobotModel
+from rrr_traj_planner.core.arm.urdf_document import (
+    is_xml,
+    Joint,
+    read_document,
+    UrdfWarning,
+)
+from rrr_traj_planner.core.arm.urdf_inertia import (
+    body_in_base,
+    composite_body,
+    without_negative_inertia,
+)
 from rrr_traj_planner.core.arm.urdf_limits import limits_of
 from rrr_traj_planner.core.arm.urdf_locked import locked_poses, MOVING, pose_after, unit_axis
 from rrr_traj_planner.core.arm.urdf_tree import LinkTree
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, bound_array, finite_array
 from rrr_traj_planner.core.errors import counted, InvalidInputError, quoted, shown
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import text as checked_text
-
-# Distance of the tip from joint axis 3, over the arm's size, up to which it counts as on the axis:
-# rounding of descriptions. Chosen.
-ON_AXIS = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +69,7 @@ class UrdfArm(ReadOnlyArrays):
         Damping as viscous, friction as Coulomb friction.
     base, tip : str
         The links between which the arm is.
-    warnings : tuple of str
+    warnings : tuple of UrdfWarning
         What is odd, and what was made of it.
     text : str
         The URDF.
@@ -77,40 +86,103 @@ class UrdfArm(ReadOnlyArrays):
     friction: Friction
     base: str
     tip: str
-    warnings: tuple[str, ...]
+    warnings: tuple[UrdfWarning, ...]
     text: str
 
     @property
     def has_masses(self) -> bool:
-        """Return whether any link has a mass or an inertia: without, torque cannot be checked."""
-        return bool(self.chain.mass.any() or self.chain.inertia.any())
+        """Return whether any link has a mass or an inertia."""
+        return self.chain.has_masses
+
+    def joint_limits(self, max_acceleration: ArrayLike = inf, max_jerk: ArrayLike = inf
+                     ) -> JointLimits:
+        """
+        Return the URDF's limits, with those that no URDF has.
+
+        Parameters
+        ----------
+        max_acceleration, max_jerk : float or array_like, shape (3,)
+            Bounds on the magnitude [rad/s^2, rad/s^3], for all joints or for each; infinite: none.
+            Some planners need one on acceleration.
+
+        Returns
+        -------
+        JointLimits
+            Infinite where the URDF has no limit.
+
+        Raises
+        ------
+        InvalidInputError
+            If a bound is not positive.
+
+        """
+        return JointLimits(
+            self.min_position, self.max_position, self.max_velocity,
+            _for_each('max_acceleration', max_acceleration), _for_each('max_jerk', max_jerk),
+            self.max_effort)
+
+    def model(self, *, gravity: ArrayLike = GRAVITY_VECTOR, rotor_inertia: ArrayLike = NO_INERTIA
+              ) -> RobotModel:
+        """
+        Return the arm's model: chain, friction and joint names of the URDF.
+
+        Parameters
+        ----------
+        gravity : array_like, shape (3,)
+            Acceleration of gravity in the base link's frame [m/s^2].
+        rotor_inertia : array_like, shape (3,)
+            Of the motors, reflected to the joints [kg m^2].
+
+        Returns
+        -------
+        RobotModel
+            The arm.
+
+        Raises
+        ------
+        InvalidInputError
+            If gravity or rotor_inertia is not finite, or an inertia is negative.
+
+        """
+        return RobotModel(
+            self.chain, finite_array('gravity', gravity, (3,)),
+            finite_array('rotor_inertia', rotor_inertia, (3,)), self.friction, self.joint_names)
+
+
+def _for_each(name: str, value: ArrayLike) -> Array:
+    """Return a bound for each joint."""
+    bound = bound_array(name, value)
+    return np.full(3, bound) if bound.ndim == 0 else bound
 
 
 def read_urdf(text_or_path: str | os.PathLike[str], base: str = '', tip: str = '') -> UrdfArm:
     """
     Read an arm of three revolute joints from a URDF.
 
-    The arm's joints are those that turn on the way from the base to the tip. What hangs from its
-    links is lumped to them, joints locked; what hangs from the base otherwise is left out.
+    The arm's joints are those that turn on the path from the base to the tip. Joints on side
+    branches of its links are locked at zero, and links that are fixed to one another are one body;
+    other branches of the base are left out.
 
     Parameters
     ----------
     text_or_path : str or path
         The URDF, or the path of its file: a text that does not begin with '<'.
     base : str
-        Name of the link in whose frame the arm is given; empty: the root of the tree.
+        Name of the link in whose frame the arm is given; empty: base_link if there is such a link,
+        else the root of the tree.
     tip : str
-        Name of the link whose origin is the tip; empty: the only leaf below the base.
+        Name of the link whose origin is the tip; empty: tip if there is such a link below the
+        base, else the only leaf below it.
 
     Returns
     -------
     UrdfArm
-        Infinite limits for none; warnings for what was mended.
+        Infinite limits for none; warnings for what was changed.
 
     Raises
     ------
     InvalidInputError
-        If the text is no URDF, there is no such file or link, the way from base to tip has not
+        If the text is no URDF, there is no such file or link, the path from base to tip has not
         three joints that turn, has joints that move otherwise or mimic others, axes 1 and 2 are
         parallel, the tip is on axis 3, or a range is empty. Names the file, if it is one, and the
         joint or link.
@@ -119,7 +191,7 @@ def read_urdf(text_or_path: str | os.PathLike[str], base: str = '', tip: str = '
     given = os.fspath(text_or_path) if isinstance(text_or_path, os.PathLike) else text_or_path
     given = checked_text('text_or_path', given)
     base, tip = checked_text('base', base), checked_text('tip', tip)
-    if given.lstrip(BEFORE_XML).startswith('<'):
+    if is_xml(given):
         return _read(given.lstrip('\ufeff'), base, tip)
     text = _content(given)
     try:
@@ -144,19 +216,19 @@ def _content(path: str) -> str:
 def _read(text: str, base: str, tip: str) -> UrdfArm:
     document = read_document(text)
     tree, warnings = LinkTree(document), list(document.warnings)
-    way = tree.way(base, tip)
-    first, second, third = arm = _arm_joints(way)
+    path = tree.path(base, tip)
+    first, second, third = arm = _arm_joints(path)
     limits = [limits_of(joint, warnings) for joint in arm]
     lower, upper, velocity, effort = np.array(limits).T
     return UrdfArm(
-        _chain(tree, way, arm, warnings), (first.name, second.name, third.name),
+        _chain(tree, path, arm, warnings), (first.name, second.name, third.name),
         (first.child, second.child, third.child), lower, upper, velocity, effort, _friction(arm),
-        base=way[0].parent, tip=way[-1].child, warnings=tuple(warnings), text=text)
+        base=path[0].parent, tip=path[-1].child, warnings=tuple(warnings), text=text)
 
 
-def _arm_joints(way: Sequence[Joint]) -> list[Joint]:
+def _arm_joints(path: Sequence[Joint]) -> list[Joint]:
     """Return the joints that turn; refuse any number but three, and other motions."""
-    moving = [joint for joint in way if joint.kind != 'fixed']
+    moving = [joint for joint in path if joint.kind != 'fixed']
     for joint in moving:
         if joint.kind not in MOVING:
             raise InvalidInputError(f'{joint.label}, between base and tip, is {joint.kind}: must '
@@ -181,49 +253,36 @@ def _friction(arm: Sequence[Joint]) -> Friction:
                     np.array([joint.friction for joint in arm]))
 
 
-def _chain(tree: LinkTree, way: Sequence[Joint], arm: Sequence[Joint], warnings: list[str]
+def _chain(tree: LinkTree, path: Sequence[Joint], arm: Sequence[Joint], warnings: list[UrdfWarning]
            ) -> Chain:
     """Return the arm's chain; the masses follow the geometry, with which they are compared."""
     pose, frames, start = np.eye(4), {}, np.eye(4)
-    for joint in way:
+    for joint in path:
         if joint is arm[0]:
             start = pose
         pose = pose_after(joint, pose)
         frames[joint.name] = pose
     axis = np.array([frames[joint.name][:3, :3] @ unit_axis(joint) for joint in arm])
     point, nothing = np.array([frames[joint.name][:3, 3] for joint in arm]), np.zeros((3, 3, 3))
-    tip = pose[:3, 3]
-    _check_geometry(arm, axis, tip - point[2])
-    chain = Chain(axis, point, tip, np.zeros(3), point, nothing)
-    if np.linalg.norm(np.cross(axis[2], tip - point[2])) <= ON_AXIS * chain.size:
-        raise _tip_on_axis(arm[2])
+    try:
+        chain = Chain(axis, point, pose[:3, 3], np.zeros(3), point, nothing)
+    except UnsupportedChainError as error:
+        raise error.named([joint.name for joint in arm]) from None
     bodies = [
-        lumped([placed(mended(tree.links[name], chain.size, warnings), T) for name, T in links],
-               at) for links, at in zip(locked_poses(tree, arm, start, warnings), point)]
+        composite_body([body_in_base(without_negative_inertia(
+            tree.links[name], chain.size, warnings), T) for name, T in links], at)
+        for links, at in zip(locked_poses(tree, arm, start, warnings), point)]
     mass, centre, inertia = map(np.array, zip(*bodies))
     _warn_of_no_mass(arm, mass, inertia, warnings)
     return replace(chain, mass=mass, centre=centre, inertia=inertia)
 
 
-def _check_geometry(arm: Sequence[Joint], axis: Array, tip: Array) -> None:
-    """Refuse what `Chain` does, by the joints' names."""
-    if np.linalg.norm(np.cross(axis[0], axis[1])) < PARALLEL:
-        raise InvalidInputError(
-            f'the axes of joints {quoted(arm[0].name)} and {quoted(arm[1].name)} are parallel: '
-            'the tip moves in a plane or on few spheres, and no such arm is planned for')
-    if np.linalg.norm(np.cross(axis[2], tip)) == 0.0:
-        raise _tip_on_axis(arm[2])
-
-
-def _tip_on_axis(joint: Joint) -> InvalidInputError:
-    return InvalidInputError(f'the tip is on the axis of {joint.label}, which does not move it')
-
-
-def _warn_of_no_mass(arm: Sequence[Joint], mass: Array, inertia: Array, warnings: list[str]
+def _warn_of_no_mass(arm: Sequence[Joint], mass: Array, inertia: Array, warnings: list[UrdfWarning]
                      ) -> None:
     empty = [quoted(joint.child) for joint, m, tensor in zip(arm, mass, inertia)
              if m == 0.0 and not tensor.any()]
     if len(empty) == 3:
-        warnings.append('no link has a mass: torque is not checked')
+        warnings.append(UrdfWarning('no link has a mass'))
     elif empty:
-        warnings.append(f'{counted(len(empty), "link")} without mass: {", ".join(empty)}')
+        warnings.append(UrdfWarning(
+            f'{counted(len(empty), "link")} without mass: {", ".join(empty)}'))

@@ -24,6 +24,7 @@ from xml.parsers.expat import ErrorString
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError, quoted, shown
+from rrr_traj_planner.core.rotations import from_roll_pitch_yaw
 
 KINDS = ('revolute', 'continuous', 'prismatic', 'fixed', 'floating', 'planar')
 BEFORE_XML = '\ufeff \t\r\n'  # a byte order mark, and white space
@@ -60,7 +61,7 @@ class Link(NamedTuple):
 
 
 class Joint(NamedTuple):
-    """A joint; limits that its text lacks are zero."""
+    """A joint; limits that its text lacks are None."""
 
     name: str
     kind: str
@@ -68,11 +69,10 @@ class Joint(NamedTuple):
     child: str
     pose: Array                          # of its frame in the parent's, shape (4, 4)
     axis: Array
-    has_limit: bool = False
-    lower: float = 0.0                   # [rad], or [m]
-    upper: float = 0.0
-    velocity: float = 0.0                # [rad/s]
-    effort: float = 0.0                  # [N m]
+    lower: float | None = None           # [rad], or [m]
+    upper: float | None = None
+    velocity: float | None = None        # [rad/s]
+    effort: float | None = None          # [N m]
     damping: float = 0.0                 # [N m s/rad]
     friction: float = 0.0                # [N m]
     mimic: tuple[str, float, float] | None = None  # joint, multiplier, offset
@@ -82,13 +82,32 @@ class Joint(NamedTuple):
         """Return what messages call it."""
         return f'joint {quoted(self.name)}'
 
+    @property
+    def position_range(self) -> tuple[float, float] | None:
+        """Return lower and upper end, 0 for one that the text lacks; None if it lacks both."""
+        if self.lower is None and self.upper is None:
+            return None
+        return self.lower or 0.0, self.upper or 0.0
+
+
+class UrdfWarning(NamedTuple):
+    """What is odd about a URDF, and what is made of it."""
+
+    text: str
+    joint: str = ''                      # whose limits are meant; empty: it is about another thing
+    limits: tuple[str, ...] = ()         # as in `JointLimits`; what gives them all is the answer
+
+    def __str__(self) -> str:
+        """Return the text."""
+        return self.text
+
 
 class Document(NamedTuple):
     """What a URDF says, as far as it is read."""
 
     links: tuple[Link, ...]
     joints: tuple[Joint, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[UrdfWarning, ...]
 
 
 def read_document(text: str) -> Document:
@@ -112,19 +131,41 @@ def read_document(text: str) -> Document:
         finite; names the line, or the link or joint.
 
     """
-    warnings: list[str] = []
+    warnings: list[UrdfWarning] = []
     root = _reduced(_root(text), 'the robot', warnings)
-    from urdf_parser_py.urdf import URDF  # here, since most uses of the core read no URDF
+    URDF = _parser()
+    limits = [_limits(joint) for joint in root.iter('joint')]
+    _add_needed_limits(root)
     try:
         robot = URDF.from_xml_string(ET.tostring(root, encoding='unicode'))
     except Exception as error:  # it raises anything, Exception itself included
         raise InvalidInputError(f'no URDF: {" ".join(str(error).split())}') from None
-    return Document(tuple(map(_link, robot.links)), tuple(map(_joint, robot.joints)),
-                    tuple(warnings))
+    joints = [_joint(joint)._replace(**given) for joint, given in zip(robot.joints, limits)]
+    return Document(tuple(map(_link, robot.links)), tuple(joints), tuple(warnings))
+
+
+def is_xml(value: str) -> bool:
+    """
+    Return whether a value is a document's text, and no path: its first character is '<'.
+
+    Parameters
+    ----------
+    value : str
+        The value.
+
+    Returns
+    -------
+    bool
+        White space and a byte order mark before that do not matter.
+
+    """
+    return value.lstrip(BEFORE_XML).startswith('<')
 
 
 def _root(text: str) -> ET.Element:
     """Return the element `robot`."""
+    if not is_xml(text):
+        raise InvalidInputError("no URDF, whose text begins with '<'")
     xml = text.lstrip(BEFORE_XML)
     try:
         root = ET.fromstring(xml)
@@ -142,7 +183,18 @@ def _root(text: str) -> ET.Element:
     return root
 
 
-def _reduced(element: ET.Element, owner: str, warnings: list[str]) -> ET.Element:
+def _parser() -> Any:
+    """Return urdf_parser_py's class; imported here, since most uses of the core read no URDF."""
+    try:
+        from urdf_parser_py.urdf import URDF
+    except ImportError as error:
+        raise InvalidInputError(
+            f"reading a URDF needs urdf_parser_py ({error}): install ROS's package "
+            'ros-jazzy-urdfdom-py (apt), or urdf-parser-py (pip)') from None
+    return URDF
+
+
+def _reduced(element: ET.Element, owner: str, warnings: list[UrdfWarning]) -> ET.Element:
     """Return a checked copy of an element without what is not read."""
     tag, found = str(element.tag), ET.Element(element.tag)
     if tag in _SEVERAL:
@@ -161,7 +213,8 @@ def _reduced(element: ET.Element, owner: str, warnings: list[str]) -> ET.Element
         if inner.tag not in _INSIDE.get(tag, ()):
             continue
         if inner.tag not in _SEVERAL and found.find(str(inner.tag)) is not None:
-            warnings.append(f'{owner}: the first <{inner.tag}> counts, it has more than one')
+            warnings.append(UrdfWarning(
+                f'{owner}: the first <{inner.tag}> counts, it has more than one'))
             continue
         found.append(_reduced(inner, owner, warnings))
     _check_needs(found, owner)
@@ -169,14 +222,11 @@ def _reduced(element: ET.Element, owner: str, warnings: list[str]) -> ET.Element
 
 
 def _check_needs(element: ET.Element, owner: str) -> None:
-    """Refuse an element that lacks something; limits may, and get zeros."""
+    """Refuse an element that lacks something; limits may."""
     tag = str(element.tag)
     for name in _NEEDED.get(tag, ()):
         if not element.get(name) and element.find(name) is None:
             raise InvalidInputError(f'{owner}: <{tag}> has no {name}')
-    if tag == 'limit':
-        for name in ('velocity', 'effort'):
-            element.set(name, element.get(name, '0'))
     if tag == 'joint' and element.get('type') not in KINDS:
         raise InvalidInputError(f'{owner} is of type {quoted(element.get("type", ""))}, must be '
                                 f'{", ".join(KINDS[:-1])} or {KINDS[-1]}')
@@ -184,8 +234,9 @@ def _check_needs(element: ET.Element, owner: str) -> None:
 
 def _check_numbers(name: str, value: str, count: int, largest: float) -> None:
     """Refuse text that is not so many finite numbers, or has one that is too large."""
+    # Python alone reads 1_000, and digits of other scripts.
     try:
-        numbers = [float(part) for part in value.replace('_', 'no digit').split()]
+        numbers = [float(part) for part in value.split()] if _is_plain(value) else []
     except ValueError:
         numbers = []
     if len(numbers) != count or not all(map(isfinite, numbers)):
@@ -193,6 +244,23 @@ def _check_numbers(name: str, value: str, count: int, largest: float) -> None:
         raise InvalidInputError(f'{name} is {shown(value)}, must be {wanted}')
     if max(map(abs, numbers)) > largest:
         raise InvalidInputError(f'{name} is {shown(value)}, must be at most {largest:g}')
+
+
+def _is_plain(text: str) -> bool:
+    return text.isascii() and '_' not in text
+
+
+def _limits(joint: ET.Element) -> dict[str, Any]:
+    """Return the limits that a joint's text gives."""
+    limit = joint.find('limit')
+    return {} if limit is None else {name: float(value) for name, value in limit.items()}
+
+
+def _add_needed_limits(root: ET.Element) -> None:
+    """Add zeros for limits that a document may lack here, but not for urdf_parser_py."""
+    for limit in root.iter('limit'):
+        for name in ('velocity', 'effort'):
+            limit.set(name, limit.get(name, '0'))
 
 
 def _link(link: Any) -> Link:
@@ -207,14 +275,10 @@ def _link(link: Any) -> Link:
 
 
 def _joint(joint: Any) -> Joint:
-    """Return a joint of urdf_parser_py's."""
+    """Return a joint of urdf_parser_py's, without its limits."""
     axis = np.array((1.0, 0.0, 0.0) if joint.axis is None else joint.axis, dtype=float)
     found = Joint(joint.name, joint.type, joint.parent, joint.child, _pose(joint.origin), axis)
-    limit, dynamics, mimic = joint.limit, joint.dynamics, joint.mimic
-    if limit is not None:
-        found = found._replace(
-            has_limit=True, lower=limit.lower or 0.0, upper=limit.upper or 0.0,
-            velocity=limit.velocity, effort=limit.effort)
+    dynamics, mimic = joint.dynamics, joint.mimic
     if dynamics is not None:
         found = found._replace(damping=dynamics.damping or 0.0, friction=dynamics.friction or 0.0)
     if mimic is not None:
@@ -224,13 +288,10 @@ def _joint(joint: Any) -> Joint:
 
 
 def _pose(origin: Any) -> Array:
-    """Return an origin as a transform, shape (4, 4): Rz(yaw) Ry(pitch) Rx(roll), then xyz."""
+    """Return an origin as a transform, shape (4, 4)."""
     pose = np.eye(4)
     if origin is None:
         return pose
-    (sr, sp, sy), (cr, cp, cy) = (f(origin.rpy or (0.0,) * 3) for f in (np.sin, np.cos))
-    pose[:3, :3] = ((cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
-                    (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
-                    (-sp, cp * sr, cp * cr))
+    pose[:3, :3] = from_roll_pitch_yaw(origin.rpy or (0.0,) * 3)
     pose[:3, 3] = origin.xyz or (0.0,) * 3
     return pose

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Masses and inertias of a URDF's links: mended where no body has them, and lumped."""
+"""Masses and inertias of a URDF's links: without negative ones, and of composite bodies."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arm.urdf_document import Link
+from rrr_traj_planner.core.arm.urdf_document import Link, UrdfWarning
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import quoted
 
@@ -42,7 +42,7 @@ class Body(NamedTuple):
     inertia: Array   # about it, shape (3, 3) [kg m^2]
 
 
-def mended(link: Link, size: float, warnings: list[str]) -> Link:
+def without_negative_inertia(link: Link, size: float, warnings: list[UrdfWarning]) -> Link:
     """
     Return a link without negative mass and principal moments.
 
@@ -52,8 +52,8 @@ def mended(link: Link, size: float, warnings: list[str]) -> Link:
         As a URDF has it.
     size : float
         The arm's size [m], with which radii of gyration are compared.
-    warnings : list of str
-        Gets a text for each value that no body has.
+    warnings : list of UrdfWarning
+        Gets one for each value that no body has.
 
     Returns
     -------
@@ -62,14 +62,15 @@ def mended(link: Link, size: float, warnings: list[str]) -> Link:
 
     """
     if link.mass < 0.0:
-        warnings.append(f'link {quoted(link.name)} has a mass of {link.mass:g} kg; taken for 0')
+        warnings.append(UrdfWarning(
+            f'link {quoted(link.name)} has a mass of {link.mass:g} kg; taken for 0'))
         link = link._replace(mass=0.0)
     moments, axes = np.linalg.eigh(link.inertia)
     faults = _faults(moments, link.mass, size)
     if faults:
         done = 'used as it is' if moments[0] >= 0.0 else 'negative moments are taken for 0'
-        warnings.append(f'link {quoted(link.name)} has an impossible inertia: '
-                        f'{" and ".join(faults)}; {done}')
+        warnings.append(UrdfWarning(f'link {quoted(link.name)} has an impossible inertia: '
+                                    f'{" and ".join(faults)}; {done}'))
     if moments[0] < 0.0:
         link = link._replace(inertia=(axes * moments.clip(0.0)) @ axes.T)
     return link
@@ -90,7 +91,7 @@ def _faults(moments: Array, mass: float, size: float) -> list[str]:
     return faults
 
 
-def placed(link: Link, pose: Array) -> Body:
+def body_in_base(link: Link, pose: Array) -> Body:
     """
     Return a link as a body in the base frame.
 
@@ -111,9 +112,9 @@ def placed(link: Link, pose: Array) -> Body:
     return Body(link.mass, R @ link.centre + pose[:3, 3], R @ link.inertia @ R.T)
 
 
-def lumped(bodies: Sequence[Body], at: Array) -> Body:
+def composite_body(bodies: Sequence[Body], at: Array) -> Body:
     """
-    Return bodies that are fixed to one another as one (parallel-axis theorem).
+    Return the composite of bodies that are fixed to one another (parallel-axis theorem).
 
     Parameters
     ----------

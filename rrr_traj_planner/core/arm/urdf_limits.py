@@ -19,15 +19,11 @@ from __future__ import annotations
 from math import inf
 from typing import NamedTuple
 
-from rrr_traj_planner.core.arm.urdf_document import Joint
+from rrr_traj_planner.core.arm.limits import NO_EFFORT, NO_RANGE, NO_VELOCITY
+from rrr_traj_planner.core.arm.urdf_document import Joint, UrdfWarning
 from rrr_traj_planner.core.errors import InvalidInputError
 
-# From these on, values stand for no limit. No joint's motor turns at 1e3 rad/s (9,500 revolutions
-# a minute, after the gear), nor do an arm's cables allow 160 turns; the strongest industrial arms,
-# for a ton at 3 m, hold some 4e4 N m.
-NO_RANGE = 1e3      # rad
-NO_VELOCITY = 1e3   # rad/s
-NO_EFFORT = 1e5     # N m
+RANGE = ('min_position', 'max_position')
 
 
 class UrdfLimits(NamedTuple):
@@ -39,7 +35,7 @@ class UrdfLimits(NamedTuple):
     effort: float     # [N m]
 
 
-def limits_of(joint: Joint, warnings: list[str]) -> UrdfLimits:
+def limits_of(joint: Joint, warnings: list[UrdfWarning]) -> UrdfLimits:
     """
     Return a moving joint's limits.
 
@@ -47,8 +43,8 @@ def limits_of(joint: Joint, warnings: list[str]) -> UrdfLimits:
     ----------
     joint : Joint
         Revolute or continuous.
-    warnings : list of str
-        Gets a text for each value that is taken for none.
+    warnings : list of UrdfWarning
+        Gets one for each limit that there is not.
 
     Returns
     -------
@@ -61,38 +57,49 @@ def limits_of(joint: Joint, warnings: list[str]) -> UrdfLimits:
         If the range is empty.
 
     """
-    if joint.kind == 'revolute' and not joint.has_limit:
-        warnings.append(f'{joint.label} is revolute and has no <limit>: without limits')
-        return UrdfLimits(-inf, inf, inf, inf)
     lower, upper = _range(joint, warnings)
     return UrdfLimits(
-        lower, upper, _bound(joint, 'velocity', NO_VELOCITY, 'rad/s', warnings),
-        _bound(joint, 'effort', NO_EFFORT, 'N m', warnings))
+        lower, upper, _bound(joint, 'velocity', joint.velocity, NO_VELOCITY, 'rad/s', warnings),
+        _bound(joint, 'effort', joint.effort, NO_EFFORT, 'N m', warnings))
 
 
-def _range(joint: Joint, warnings: list[str]) -> tuple[float, float]:
-    lower, upper = joint.lower, joint.upper
+def _range(joint: Joint, warnings: list[UrdfWarning]) -> tuple[float, float]:
     if joint.kind == 'continuous':
         return -inf, inf
-    if lower == upper == 0.0:
-        warnings.append(f'{joint.label} is revolute and has the range [0, 0] rad: without range')
+    if joint.position_range in (None, (0.0, 0.0)):
+        text = ('is revolute and has no range' if joint.position_range is None
+                else 'is revolute and has the range [0, 0] rad, which is taken for none')
+        warnings.append(UrdfWarning(f'{joint.label} {text}', joint.name, RANGE))
         return -inf, inf
+    lower, upper = joint.position_range
     if lower >= upper:
-        raise InvalidInputError(f'{joint.label}: lower is {lower:g} rad, must be below upper, '
-                                f'{upper:g} rad')
-    for name, value, none in (('lower', lower, lower <= -NO_RANGE),
-                              ('upper', upper, upper >= NO_RANGE)):
-        if none:
-            warnings.append(f'{joint.label}: {name} {value:g} rad is taken for no limit')
-    return -inf if lower <= -NO_RANGE else lower, inf if upper >= NO_RANGE else upper
+        raise InvalidInputError(f'{joint.label}: lower is {_end(joint.lower)}, must be below '
+                                f'upper, {_end(joint.upper)}')
+    if lower <= -NO_RANGE:
+        warnings.append(_placeholder(joint, 'lower', lower, 'rad', RANGE[0]))
+        lower = -inf
+    if upper >= NO_RANGE:
+        warnings.append(_placeholder(joint, 'upper', upper, 'rad', RANGE[1]))
+        upper = inf
+    return lower, upper
 
 
-def _bound(joint: Joint, name: str, none: float, unit: str, warnings: list[str]) -> float:
-    value = float(getattr(joint, name))
-    if 0.0 < value < none:
+def _bound(joint: Joint, name: str, value: float | None, none: float, unit: str,
+           warnings: list[UrdfWarning]) -> float:
+    if value is not None and 0.0 < value < none:
         return value
-    if joint.has_limit:
-        warnings.append(f'{joint.label}: {name} {value:g} {unit} is taken for no limit')
+    limit = f'max_{name}'
+    if value is None:
+        warnings.append(UrdfWarning(f'{joint.label} has no {name} limit', joint.name, (limit,)))
     else:
-        warnings.append(f'{joint.label} has no limit on {name}')
+        warnings.append(_placeholder(joint, name, value, unit, limit))
     return inf
+
+
+def _placeholder(joint: Joint, name: str, value: float, unit: str, limit: str) -> UrdfWarning:
+    return UrdfWarning(f'{joint.label}: {name} {value:g} {unit} is taken for no limit', joint.name,
+                       (limit,))
+
+
+def _end(value: float | None) -> str:
+    return '0 rad by default' if value is None else f'{value:g} rad'

@@ -12,17 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Where a URDF's links are with all joints at zero, those that hang from the arm locked."""
+"""Where a URDF's links are with all joints at zero; joints on side branches are locked."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
-from rrr_traj_planner.core.arm.urdf_document import Joint
+from rrr_traj_planner.core.arm.urdf_document import Joint, UrdfWarning
 from rrr_traj_planner.core.arm.urdf_tree import LinkTree
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError, quoted
+from rrr_traj_planner.core.rotations import rotation
 
 MOVING = ('revolute', 'continuous')
 UNITS = {'prismatic': 'm'}  # of positions; others: rad
@@ -59,8 +60,7 @@ def pose_after(joint: Joint, pose: Array, position: float = 0.0) -> Array:
     if joint.kind == 'prismatic':
         motion[:3, 3] = position * axis
     else:
-        K = np.cross(np.eye(3), axis)
-        motion[:3, :3] += np.sin(position) * K + (1.0 - np.cos(position)) * (K @ K)
+        motion[:3, :3] = rotation(axis, position)
     return np.asarray(pose @ motion)
 
 
@@ -90,7 +90,7 @@ def unit_axis(joint: Joint) -> Array:
     return np.asarray(joint.axis / length)
 
 
-def locked_poses(tree: LinkTree, arm: Sequence[Joint], pose: Array, warnings: list[str]
+def locked_poses(tree: LinkTree, arm: Sequence[Joint], pose: Array, warnings: list[UrdfWarning]
                  ) -> list[list[tuple[str, Array]]]:
     """
     Return what moves with each of the arm's joints.
@@ -103,9 +103,9 @@ def locked_poses(tree: LinkTree, arm: Sequence[Joint], pose: Array, warnings: li
         The arm's three joints, from the base; they are at zero.
     pose : ndarray, shape (4, 4)
         Of the first one's parent in the base frame.
-    warnings : list of str
-        Gets a text that names joints that are locked, and one for each that mimics another that is
-        not.
+    warnings : list of UrdfWarning
+        Gets one that names the joints that are locked, and one for each that mimics another that
+        is not.
 
     Returns
     -------
@@ -124,7 +124,7 @@ def locked_poses(tree: LinkTree, arm: Sequence[Joint], pose: Array, warnings: li
     first = pose_after(arm[0], pose)
     found: list[list[tuple[str, Array]]] = [[(arm[0].child, first)], [], []]
     place, texts = {arm[0].child: (0, first)}, []
-    for joint in tree.walk(arm[0].child):
+    for joint in tree.subtree(arm[0].child):
         body, above = place[joint.parent]
         position = 0.0
         if joint.name not in numbers and joint.kind != 'fixed':
@@ -134,18 +134,21 @@ def locked_poses(tree: LinkTree, arm: Sequence[Joint], pose: Array, warnings: li
         place[joint.child] = body, pose_after(joint, above, position)
         found[body].append((joint.child, place[joint.child][1]))
     if texts:
-        warnings.append(f'what hangs from the arm is locked: {", ".join(texts)}')
+        warnings.append(UrdfWarning(
+            f'joints on side branches are locked: {", ".join(texts)}'))
     return found
 
 
-def _locked_at(tree: LinkTree, joint: Joint, arm: dict[str, int], warnings: list[str]) -> float:
+def _locked_at(tree: LinkTree, joint: Joint, arm: dict[str, int], warnings: list[UrdfWarning]
+               ) -> float:
     """Return where a joint is locked; one that mimics a locked joint follows it."""
     factor, offset, seen = 1.0, 0.0, [joint]
     while (mimic := seen[-1].mimic) is not None:
         other = tree.joints.get(mimic[0])
         if other is None or other.name in arm or any(other is joint for joint in seen):
-            warnings.append(f'{joint.label} hangs from the arm and mimics {quoted(mimic[0])}, '
-                            'which it does not follow here: torque is not exact')
+            warnings.append(UrdfWarning(
+                f'{joint.label}, on a side branch, mimics {quoted(mimic[0])}, which it does not '
+                'follow here: the inertia is not exact'))
             return _rest(joint)
         factor, offset = factor * mimic[1], offset + factor * mimic[2]
         seen.append(other)
@@ -154,9 +157,10 @@ def _locked_at(tree: LinkTree, joint: Joint, arm: dict[str, int], warnings: list
 
 def _rest(joint: Joint) -> float:
     """Return the position nearest to zero."""
-    if joint.kind not in ('revolute', 'prismatic') or not joint.has_limit:
+    if joint.kind not in ('revolute', 'prismatic') or joint.position_range is None:
         return 0.0
-    if joint.lower > joint.upper:
-        raise InvalidInputError(f'{joint.label}: lower is {joint.lower:g}, must not be above '
-                                f'upper, {joint.upper:g}')
-    return min(max(0.0, joint.lower), joint.upper)
+    lower, upper = joint.position_range
+    if lower > upper:
+        raise InvalidInputError(f'{joint.label}: lower is {lower:g}, must not be above upper, '
+                                f'{upper:g}')
+    return min(max(0.0, lower), upper)

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The tree of a URDF's links: the way from one to another, and what hangs where."""
+"""The tree of a URDF's links: the path from one to another, and the subtree of each."""
 
 from __future__ import annotations
 
@@ -24,6 +24,9 @@ from rrr_traj_planner.core.arm.urdf_document import Document, Joint
 from rrr_traj_planner.core.errors import InvalidInputError, quoted
 
 MAX_SHOWN = 12  # names in one message
+
+# Names of the first and the last link of an arm, unless others are given.
+BASE, TIP = 'base_link', 'tip'
 
 
 class LinkTree:
@@ -47,31 +50,14 @@ class LinkTree:
         self.links = {link.name: link for link in document.links}
         self.joints = {joint.name: joint for joint in document.joints}
         self._check_names(document)
-        self._above = {joint.child: joint for joint in document.joints}
-        self._below: dict[str, list[Joint]] = {name: [] for name in self.links}
+        self._parents = {joint.child: joint for joint in document.joints}
+        self._children: dict[str, list[Joint]] = {name: [] for name in self.links}
         for joint in document.joints:
-            self._below[joint.parent].append(joint)
+            self._children[joint.parent].append(joint)
         self._check_shape(document)
-        self.root = next(name for name in self.links if name not in self._above)
+        self.root = next(name for name in self.links if name not in self._parents)
 
-    def below(self, link: str) -> list[Joint]:
-        """
-        Return the joints whose parent a link is.
-
-        Parameters
-        ----------
-        link : str
-            Its name.
-
-        Returns
-        -------
-        list of Joint
-            In the order of the document.
-
-        """
-        return self._below[link]
-
-    def walk(self, link: str) -> Iterator[Joint]:
+    def subtree(self, link: str) -> Iterator[Joint]:
         """
         Yield every joint below a link, parents before children.
 
@@ -86,22 +72,23 @@ class LinkTree:
             One after the other.
 
         """
-        waiting = self._below[link][::-1]
+        waiting = self._children[link][::-1]
         while waiting:
             joint = waiting.pop()
             yield joint
-            waiting += self._below[joint.child][::-1]
+            waiting += self._children[joint.child][::-1]
 
-    def way(self, base: str, tip: str) -> list[Joint]:
+    def path(self, base: str, tip: str) -> list[Joint]:
         """
         Return the joints from one link to another.
 
         Parameters
         ----------
         base : str
-            Name of the first link; empty: the root.
+            Name of the first link; empty: base_link if there is such a link, else the root.
         tip : str
-            Name of the last link, below the base; empty: the only leaf below the base.
+            Name of the last link, below the base; empty: tip if there is such a link below the
+            base, else the only leaf below it.
 
         Returns
         -------
@@ -115,26 +102,26 @@ class LinkTree:
             where there are several.
 
         """
-        base = base or self.root
+        base = base or (BASE if BASE in self.links else self.root)
         self._check_link('base', base)
-        tip = tip or self._only_leaf(base)
+        tip = tip or self._default_tip(base)
         self._check_link('tip', tip)
         joints, link = [], tip
         while link != base:
-            if link not in self._above:
+            if link not in self._parents:
                 raise InvalidInputError(
                     f'the tip, link {quoted(tip)}, is not below the base, link {quoted(base)}')
-            joints.append(self._above[link])
+            joints.append(self._parents[link])
             link = joints[-1].parent
         return joints[::-1]
 
-    def _only_leaf(self, base: str) -> str:
-        leaves = [joint.child for joint in self.walk(base) if not self._below[joint.child]]
+    def _default_tip(self, base: str) -> str:
+        below = [joint.child for joint in self.subtree(base)]
+        leaves = [TIP] if TIP in below else [name for name in below if not self._children[name]]
         if len(leaves) != 1:
-            found = f'ends in {_listed(leaves)}' if leaves else 'carries nothing'
+            found = f'several leaves: {_listed(leaves)}' if leaves else 'no links'
             raise InvalidInputError(
-                f'no tip is named, and what hangs from link {quoted(base)} {found}: must end in '
-                'one link')
+                f'the tip frame is not given, and the tree below link {quoted(base)} has {found}')
         return leaves[0]
 
     def _check_link(self, role: str, name: str) -> None:
@@ -169,11 +156,11 @@ class LinkTree:
         roots = [name for name in self.links if name not in parents]
         if len(roots) > 1:
             raise InvalidInputError(f'links {_listed(roots)} have no parent: must be one root')
-        reached = {joint.child for root in roots for joint in self.walk(root)}
+        reached = {joint.child for root in roots for joint in self.subtree(root)}
         looped = self.links.keys() - reached - set(roots)
         if looped:
             loop = [name for name in self.links if name in looped]
-            raise InvalidInputError(f'links {_listed(loop)} are in a loop, or hang from one: must '
+            raise InvalidInputError(f'links {_listed(loop)} are in a loop, or below one: must '
                                     'be a tree')
 
 

@@ -17,9 +17,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, sin
 
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.rotations import rotated
 
 Point = tuple[float, float, float]
 
@@ -51,8 +51,8 @@ def link_positions(model: RobotModel, q: Sequence[float]) -> tuple[Point, ...]:
     points: list[Point] = [_point(chain.tip.tolist())]
     for axis, point, angle in zip(chain.axis[::-1].tolist(), chain.point[::-1].tolist(),
                                   reversed(q)):
-        c, s, at = cos(angle), sin(angle), _point(point)
-        points = [_turned(p, axis, at, c, s) for p in points]
+        at = _point(point)
+        points = [_turned(p, axis, at, angle) for p in points]
         if points[0] != at:
             points.insert(0, at)
     return (BASE, *points)
@@ -63,11 +63,7 @@ def _point(values: Sequence[float]) -> Point:
     return x, y, z
 
 
-def _turned(p: Point, axis: Sequence[float], at: Point, c: float, s: float) -> Point:
-    """Return a point turned about an axis through another point (Rodrigues)."""
-    x, y, z = p[0] - at[0], p[1] - at[1], p[2] - at[2]
-    a, b, d = axis
-    along = (a * x + b * y + d * z) * (1.0 - c)
-    return (at[0] + c * x + s * (b * z - d * y) + along * a,
-            at[1] + c * y + s * (d * x - a * z) + along * b,
-            at[2] + c * z + s * (a * y - b * x) + along * d)
+def _turned(p: Point, axis: Sequence[float], at: Point, angle: float) -> Point:
+    """Return a point turned about an axis through another point."""
+    x, y, z = rotated((p[0] - at[0], p[1] - at[1], p[2] - at[2]), axis, angle)
+    return at[0] + x, at[1] + y, at[2] + z

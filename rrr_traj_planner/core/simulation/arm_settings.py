@@ -89,9 +89,9 @@ class ArmSettings:
             raise InvalidInputError(f'step is {step} s, must be at most {LONGEST_STEP} s')
         object.__setattr__(self, 'step', step)
         object.__setattr__(self, 'step', max(self.step_ns, 1) / SECOND)
-        if self.loaded_model.lacking_inertia:
+        if self.loaded_model.singular_inertia_reason:
             raise InvalidInputError(
-                f'{self.loaded_model.lacking_inertia}: give masses or rotor_inertia')
+                f'{self.loaded_model.singular_inertia_reason}: give masses or rotor_inertia')
         check_step(self.loaded_model, self.soft_stops, self.step)
 
     @property

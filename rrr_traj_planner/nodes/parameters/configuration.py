@@ -24,11 +24,10 @@ from typing import Any
 import numpy as np
 from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arm.lengths import ArmLengths
-from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.limits import JointLimits, NO_RANGE
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.payload import with_payload
 from rrr_traj_planner.core.arm.urdf import FrameNames, urdf
-from rrr_traj_planner.core.arm.urdf_limits import NO_RANGE
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.control.computed_torque import ControllerGains
 from rrr_traj_planner.core.control.trajectory_validation import Rules
@@ -223,8 +222,8 @@ def robot_model(values: Values) -> RobotModel:
         arm = read(values['robot_description'], values['base_frame'], values['tip_frame'])
         return RobotModel(arm.chain, **others)
     model = RobotModel(_lengths(values).chain(), **others)
-    if model.lacking_inertia:
-        raise InvalidInputError(model.lacking_inertia)
+    if model.singular_inertia_reason:
+        raise InvalidInputError(model.singular_inertia_reason)
     return model
 
 

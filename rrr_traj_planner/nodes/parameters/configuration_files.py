@@ -27,6 +27,7 @@ from rrr_traj_planner.nodes.parameters.point_tables import (
     listed_points,
     tabulated_points,
 )
+from rrr_traj_planner.nodes.parameters.yaml_loader import input_error, Loader
 import yaml
 
 SOURCE_FOLDER = Path(__file__).resolve().parents[3] / 'config'  # of the source tree
@@ -106,16 +107,11 @@ def _table(text: str) -> tuple[dict[str, Any], list[int]]:
 def _document(text: str) -> tuple[dict[str, Any], list[int]]:
     """Return the content of a YAML file, and the line number of each via point."""
     try:
-        loader = yaml.SafeLoader(text)
+        loader = Loader(text)
         root = loader.get_single_node()
         content = None if root is None else loader.construct_document(root)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        raise InvalidInputError(
-            (f'line {mark.line + 1}: ' if mark else '')
-            + ', '.join(filter(None, (error.context, error.problem)))) from None
     except yaml.YAMLError as error:
-        raise InvalidInputError(str(error)) from None
+        raise input_error(error) from None
     if not isinstance(content, dict):
         raise InvalidInputError(
             f'no via_points, it {"is empty" if content is None else "has no fields"}: {NEEDED}')
@@ -182,7 +178,7 @@ def found_file(name: str, folder: Path) -> Path:
 def _text(content: dict[str, Any], field: str) -> str:
     value = content.get(field)
     if value is not None and not isinstance(value, str):
-        raise InvalidInputError(f'{field} is {value!r}, must be a text')
+        raise InvalidInputError(f'{field} is {shown(value)}, must be a text')
     return value or ''
 
 

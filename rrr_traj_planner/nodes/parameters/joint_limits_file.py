@@ -24,15 +24,18 @@ from pathlib import Path
 import re
 from typing import Any
 
+from rrr_traj_planner.core.arm.limits import NO_RANGE
 from rrr_traj_planner.core.errors import InvalidInputError, quoted, shown
 from rrr_traj_planner.core.scalars import positive_fraction
 from rrr_traj_planner.nodes.parameters.table import check_value, PLANNER, Row, rows_of
+from rrr_traj_planner.nodes.parameters.yaml_loader import input_error, Loader
 import yaml
+from yaml.constructor import ConstructorError
 
 GROUP = 'joint_limits'
 SCALING = ('default_velocity_scaling_factor', 'default_acceleration_scaling_factor')
 
-# MoveIt's switch of a range; here a range is given or not.
+# MoveIt's switch of a range, which has a value for none here.
 HAS_POSITION = Row('has_position_limits', True, 'whether the range is limited')
 
 
@@ -55,7 +58,7 @@ def read_joint_limits(path_or_text: str | os.PathLike[str],
     -------
     dict
         Values by names of parameters, such as joint_limits.JOINT.max_velocity [rad/s], for what
-        is given and not switched off by has_..._limits.
+        is given and not switched off by has_..._limits; a range that is switched off has no ends.
 
     Raises
     ------
@@ -73,15 +76,19 @@ def read_joint_limits(path_or_text: str | os.PathLike[str],
         raise InvalidInputError(f'{given}: {" ".join(str(error).split())}') from None
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(Loader):
     """YAML with MoveIt's tags of angles and 1e3 for a number; without keys that repeat."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         """Return a mapping; refuse a repeated key, of which YAML takes the last value."""
         found: set[str] = set()
         for key, _ in node.value:
+            if not isinstance(key, yaml.ScalarNode):
+                given = shown(self.construct_object(key, deep=True))
+                raise ConstructorError(
+                    None, None, f'key {given} must be a text', key.start_mark)
             if key.value in found:
-                raise yaml.constructor.ConstructorError(
+                raise ConstructorError(
                     None, None, f'{key.value} is repeated', key.start_mark)
             found.add(key.value)
         return super().construct_mapping(node, deep)
@@ -91,7 +98,7 @@ class _Loader(yaml.SafeLoader):
         try:
             number = float(self.construct_scalar(node))
         except ValueError:
-            raise yaml.constructor.ConstructorError(
+            raise ConstructorError(
                 None, None, f'{quoted(node.value)} is not a number', node.start_mark) from None
         return radians(number) if node.tag == '!degrees' else number
 
@@ -106,13 +113,8 @@ _Loader.add_implicit_resolver(
 def _content(text: str) -> Any:
     try:
         return yaml.load(text, _Loader)  # noqa: S506, a SafeLoader
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        raise InvalidInputError(
-            (f'line {mark.line + 1}: ' if mark else '')
-            + ', '.join(filter(None, (error.context, error.problem)))) from None
     except yaml.YAMLError as error:
-        raise InvalidInputError(' '.join(str(error).split())) from None
+        raise input_error(error) from None
 
 
 def _parameters(content: Any, joint_names: Collection[str] | None) -> dict[str, Any]:
@@ -122,7 +124,8 @@ def _parameters(content: Any, joint_names: Collection[str] | None) -> dict[str, 
     for name in SCALING:
         if name in content:
             positive_fraction(name, content[name])
-    joints = _mapping(GROUP, content.get(GROUP))
+    joints = {str(joint): limits for joint, limits in _mapping(
+        GROUP, content.get(GROUP)).items()}
     chosen = [joint for joint in joints if joint_names is None or joint in joint_names]
     if joints and not chosen:
         raise InvalidInputError(
@@ -130,7 +133,7 @@ def _parameters(content: Any, joint_names: Collection[str] | None) -> dict[str, 
             f'{", ".join(map(shown, joint_names or ()))}')
     found: dict[str, Any] = {}
     for joint in chosen:
-        found.update(_limits(str(joint), _mapping(f'{GROUP}.{joint}', joints[joint])))
+        found.update(_limits(joint, _mapping(f'{GROUP}.{joint}', joints[joint])))
     return found
 
 
@@ -142,20 +145,31 @@ def _limits(joint: str, given: Mapping[Any, Any]) -> dict[str, Any]:
     known = {**rows, HAS_POSITION.name: HAS_POSITION._replace(name=prefix + HAS_POSITION.name)}
     for key in given:
         _check_known(str(key), known, prefix)
-    values = {key: float(value) if type(value) is int else value for key, value in given.items()}
-    switches = {key: value for key, value in values.items() if key.startswith('has_')}
+    switches = {key: value for key, value in given.items() if key.startswith('has_')}
     for key, value in switches.items():
         check_value(known[key], value)
     off = [key.split('_')[1] for key, value in switches.items() if not value]
-    limits = {key: value for key, value in values.items()
+    limits = {key: value if key in switches else _number(rows[key], value)
+              for key, value in given.items()
               if key in rows and (key in switches or key.split('_')[1] not in off)}
-    for key, value in limits.items():
-        check_value(rows[key], value)
+    if 'position' in off:
+        limits.update(min_position=-NO_RANGE, max_position=NO_RANGE)
     low, high = limits.get('min_position'), limits.get('max_position')
     if low is not None and high is not None and low >= high:
         raise InvalidInputError(f'{prefix}min_position is {low:g} rad, must be below '
                                 f'max_position, {high:g} rad')
     return {prefix + key: value for key, value in limits.items()}
+
+
+def _number(row: Row, value: Any) -> Any:
+    """Return a limit as a float: unlike ROS's parameters, the file may have whole numbers."""
+    try:
+        number = float(value) if type(value) is int else value
+    except OverflowError:
+        raise InvalidInputError(f'{row.name} is {shown(value)}, must be {row.range_text}'
+                                ) from None
+    check_value(row, number)
+    return number
 
 
 def _mapping(name: str, value: Any) -> Mapping[Any, Any]:

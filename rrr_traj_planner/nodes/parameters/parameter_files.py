@@ -25,6 +25,7 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.arm_source import arm_source
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.table import check_value, PLANNER, rows_of
+from rrr_traj_planner.nodes.parameters.yaml_loader import Loader
 import yaml
 
 # Sections that apply to the planner node; values of later ones take precedence.
@@ -171,7 +172,7 @@ def _sections(file: Path, node: str) -> Iterator[Any]:
             else:
                 yield from sections(value, f'{path}/{str(key).strip("/")}')
 
-    for path, values in sections(yaml.safe_load(file.read_text()), ''):
+    for path, values in sections(yaml.load(file.read_text(), Loader), ''):
         if re.fullmatch(re.escape(path).replace(r'\*\*', '.*').replace(r'\*', '[^/]*'), node):
             yield values
 
@@ -210,7 +211,7 @@ def config_of(given: dict[str, Any], folder: Path) -> PlannerConfig:
 
 def _values(file: Path) -> dict[str, Any]:
     """Return a file's parameters by their full names, with dots."""
-    content = yaml.safe_load(file.read_text())
+    content = yaml.load(file.read_text(), Loader)
     found: dict[str, Any] = {}
     for node in NODES:
         part = content.get(node) if isinstance(content, dict) else None

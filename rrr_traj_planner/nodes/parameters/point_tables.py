@@ -24,9 +24,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import InvalidInputError, shown
 
 AXES = ('x', 'y', 'z')
+WANTED = 'three numbers, [x, y, z] in m'
 LARGEST = sys.float_info.max
 
 
@@ -53,15 +54,16 @@ def listed_points(value: Any, lines: Sequence[int] = ()) -> Array:
 
     """
     if not isinstance(value, list):
-        raise InvalidInputError(f'via_points is {value!r}, must be a list of points [x, y, z]')
+        raise InvalidInputError(
+            f'via_points is {shown(value)}, must be a list of points [x, y, z]')
     for i, point in enumerate(value):
         where = f'line {lines[i]}: ' if i < len(lines) else ''
         name = f'{where}via_points[{i}]'
         if not isinstance(point, list):
-            raise InvalidInputError(f'{name} is {point!r}, must be three numbers, [x, y, z] in m')
+            raise InvalidInputError(f'{name} is {shown(point)}, must be {WANTED}')
         if len(point) != len(AXES):
-            raise InvalidInputError(f'{name} is {point!r}, must be three numbers, [x, y, z] in m: '
-                                    f'{_difference(point)}')
+            raise InvalidInputError(
+                f'{name} is {shown(point)}, must be {WANTED}: {_difference(point)}')
         for j, number in enumerate(point):
             check_number(f'{name}[{j}]', number)
     return np.array(value, dtype=float).reshape(-1, len(AXES))
@@ -88,16 +90,16 @@ def check_number(name: str, value: Any) -> None:
         hint = ''
         if isinstance(value, str) and _number(value) is not None:
             hint = ' (YAML reads 1e-3 and quoted numbers as text: write 1.0e-3)'
-        raise InvalidInputError(f'{name} is {value!r}, must be a number{hint}')
+        raise InvalidInputError(f'{name} is {shown(value)}, must be a number{hint}')
     if abs(value) > LARGEST or value != value:
-        raise InvalidInputError(f'{name} is {value}, must be finite')
+        raise InvalidInputError(f'{name} is {shown(value)}, must be finite')
 
 
 def _difference(point: Sequence[Any]) -> str:
     if len(point) < len(AXES):
         missing = AXES[len(point):]
         return f'{" and ".join(missing)} {"is" if len(missing) == 1 else "are"} missing'
-    more = ', '.join(map(repr, point[len(AXES):]))
+    more = ', '.join(map(shown, point[len(AXES):]))
     return f'{more} {"is" if len(point) == len(AXES) + 1 else "are"} too many'
 
 
@@ -171,7 +173,7 @@ def _check_width(row: _Row, width: int) -> None:
     if more:
         raise InvalidInputError(
             f'line {row.line} is {", ".join(row.fields)}: the header has {width} columns, '
-            f'{", ".join(map(repr, more))} {"is" if len(more) == 1 else "are"} too many')
+            f'{", ".join(map(shown, more))} {"is" if len(more) == 1 else "are"} too many')
 
 
 def _point(row: _Row, columns: list[int] | None) -> list[float]:
@@ -184,8 +186,8 @@ def _point(row: _Row, columns: list[int] | None) -> list[float]:
         value = row.number(column) if column < len(row.fields) and row.fields[column] else None
         if value is None:
             found = row.fields[column] if column < len(row.fields) else ''
-            raise InvalidInputError(f'line {row.line}: {axis} is '
-                                    + (f'{found!r}, must be a number' if found else 'missing'))
+            what = f'{shown(found)}, must be a number' if found else 'missing'
+            raise InvalidInputError(f'line {row.line}: {axis} is {what}')
         if not isfinite(value):
             raise InvalidInputError(f'line {row.line}: {axis} is {value}, must be finite')
         point.append(value)

@@ -24,9 +24,10 @@ from collections.abc import Sequence
 from math import inf, isfinite, pi
 from typing import Any, NamedTuple
 
+from rrr_traj_planner.core.arm.limits import NO_EFFORT, NO_RANGE, NO_VELOCITY
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
-from rrr_traj_planner.core.arm.urdf_limits import NO_RANGE
-from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError
+from rrr_traj_planner.core.arm.urdf_tree import BASE, TIP
+from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError, shown
 from rrr_traj_planner.core.trajectory.sampling import MOST_POINTS
 
 PLANNER, ARM = 'planner', 'arm'
@@ -82,8 +83,8 @@ def _joint_limit(name: str, kind: str, values: tuple[Any, ...], unit: str, low: 
 
 TABLE: tuple[Row, ...] = (
     Row('joint_names', list(JOINT_NAMES), "the joints' names, from the base", read_only=True),
-    Row('base_frame', 'base_link', 'frame of positions', read_only=True),
-    Row('tip_frame', 'tip', "frame at the arm's tip", read_only=True),
+    Row('base_frame', BASE, 'frame of positions', read_only=True),
+    Row('tip_frame', TIP, "frame at the arm's tip", read_only=True),
     Row('link_names', ['link_1', 'link_2', 'link_3'], "the links' frames, in robot_description",
         read_only=True, nodes=(ARM,)),
     Row('robot_description', '', 'the arm as a URDF: its text, or the path of its file; empty: '
@@ -106,14 +107,15 @@ TABLE: tuple[Row, ...] = (
     Row('rotor_inertia', [0.0, 0.0, 0.0], 'inertia of the motors, reflected to the joints',
         'kg m^2', 0.0, 1e6, True),
     Row('joint_limits.{joint}.min_position', (0.0, 0.0, -pi), 'lower end of the range; '
-        '-1000: none', 'rad', -NO_RANGE, NO_RANGE),
+        f'{-NO_RANGE:g}: none', 'rad', -NO_RANGE, NO_RANGE),
     Row('joint_limits.{joint}.max_position', (pi / 2.0, pi, 2.0 * pi), 'upper end of the range; '
-        '1000: none', 'rad', -NO_RANGE, NO_RANGE),
-    *_joint_limit('velocity', 'velocity', (1.0, 1.0, 1.0), 'rad/s', 1e-6, 1e3),
+        f'{NO_RANGE:g}: none', 'rad', -NO_RANGE, NO_RANGE),
+    *_joint_limit('velocity', 'velocity', (1.0, 1.0, 1.0), 'rad/s', 1e-6,
+                  NO_VELOCITY),
     *_joint_limit('acceleration', 'acceleration', (1.0, 1.0, 1.0), 'rad/s^2', 1e-6, 1e4),
     *_joint_limit('jerk', 'jerk', (10.0, 10.0, 10.0), 'rad/s^3', 1e-6, 1e6),
     *_joint_limit('effort', "torque of the joint's motor", (150.0, 200.0, 200.0), 'N m', 1e-6,
-                  1e6),
+                  NO_EFFORT),
     Row('default_max_acceleration', 1.0, 'acceleration limit of joints of a URDF that have none, '
         'for planners that need one', 'rad/s^2', 1e-6, 1e4, nodes=(PLANNER,)),
     Row('default_planner_id', 'cycloid', 'planner of requests without a planner_id',
@@ -142,7 +144,8 @@ TABLE: tuple[Row, ...] = (
         nodes=(ARM,)),
     Row('physics_step', 0.001, 'time step of physics and control', 's', 1e-5, 0.01, True, (ARM,)),
     Row('initial_positions', list(START),
-        'joint positions at the start and after ~/reset', 'rad', -1e3, 1e3, nodes=(ARM,)),
+        'joint positions at the start and after ~/reset', 'rad', -NO_RANGE, NO_RANGE,
+        nodes=(ARM,)),
     Row('controller.natural_frequency', 30.0, 'natural frequency of the tracking error', 'rad/s',
         0.1, 1000.0, nodes=(ARM,)),
     Row('controller.damping_ratio', 1.0, 'damping ratio of the tracking error; 1 is critical', '',
@@ -258,6 +261,5 @@ def check_value(row: Row, value: Any) -> None:
 
 
 def _shown(value: Any) -> str:
-    if isinstance(value, (str, bytes)) or not hasattr(value, '__len__'):
-        return repr(value)
-    return repr(list(value))
+    is_sequence = hasattr(value, '__len__') and not isinstance(value, (str, bytes))
+    return shown(list(value) if is_sequence else value)

@@ -88,7 +88,8 @@ def _check(options: argparse.Namespace) -> int:
     asked = {URDF: options.check, LIMITS: options.joint_limits, 'base_frame': options.base_frame,
              'tip_frame': options.tip_frame}
     given = {name: value for name, value in asked.items() if value}
-    warnings, config = arm_source(given).warnings, config_of(given, Path.cwd())
+    warnings = arm_source(given, labels={URDF: '--check'}).warnings
+    config = config_of(given, Path.cwd())
     arm = read(config.urdf, config.base_frame, config.tip_frame)
     found = summary(arm, config.model, config.limits)
     print('\n'.join([f'{options.check}: {found[0]}', *found[1:]]))

@@ -15,12 +15,14 @@
 """Chains of three joints: what is refused, and where links are."""
 
 from dataclasses import replace
+import pickle
 
 from helpers.other_arms import OTHER_ARMS
 from helpers.random_cases import random_states
 from helpers.random_chains import random_chain
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.chain import UnsupportedChainError
 from rrr_traj_planner.core.errors import InvalidInputError
 
 ROUNDING = 1e-12
@@ -31,8 +33,11 @@ SKEW = np.array([[1.0, 0.1, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 @pytest.mark.parametrize(('changes', 'text'), [
     ({'axis': np.eye(2)}, r'^axis has shape \(2, 2\), must have \(3, 3\)$'),
     ({'axis': [(1, 0, 0), (0, 0, 0), (0, 1, 0)]}, '^axis of joint 2 is zero$'),
-    ({'axis': [(0, 0, 1), (0, 1e-4, -1), (0, 1, 0)]}, '^joint axes 1 and 2 are parallel: the tip'),
-    ({'tip': CHAIN.point[2]}, '^the tip is on joint axis 3, which does not move it$'),
+    ({'axis': [(0, 0, 1), (0, 1e-4, -1), (0, 1, 0)]},
+     '^joint axes 1 and 2 are parallel: planar and SCARA-like arms are not supported$'),
+    *(({'tip': CHAIN.point[2] + offset + 0.5 * CHAIN.axis[2]},
+       '^the tip is on joint axis 3, which does not move it$')
+      for offset in (0.0, 1e-8 * np.cross(CHAIN.axis[2], (0.0, 0.0, 1.0)))),
     ({'tip': (0.0, np.nan, 0.0)}, r'^tip\[1\] is nan, must be finite$'),
     ({'mass': (1.0, -2.0, 3.0)}, r'^mass is \[1\.0, -2\.0, 3\.0\] kg, must not be negative$'),
     ({'inertia': [np.eye(3), SKEW, np.eye(3)]}, '^inertia of link 2 is not symmetric$'),
@@ -42,6 +47,16 @@ SKEW = np.array([[1.0, 0.1, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 def test_what_is_no_arm_is_refused(changes, text):
     with pytest.raises(InvalidInputError, match=text):
         replace(CHAIN, **changes)
+
+
+def test_a_chain_that_is_not_supported_is_told_by_joints():
+    scara = {'axis': [(0, 0, 1)] * 3}  # and an arm of this kind reaches a volume, not a plane
+    with pytest.raises(UnsupportedChainError) as error:
+        replace(CHAIN, **scara)
+    again = pickle.loads(pickle.dumps(error.value))
+    assert again.joints == (1, 2)
+    assert str(again.named(['a', 'b', 'c'])) == (
+        "joint axes 'a' and 'b' are parallel: planar and SCARA-like arms are not supported")
 
 
 def test_axes_have_length_one():

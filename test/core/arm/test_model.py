@@ -14,7 +14,7 @@
 
 """The arm's description: the thesis's values, and the arms that are refused."""
 
-from dataclasses import FrozenInstanceError
+from dataclasses import fields, FrozenInstanceError, replace
 import itertools
 
 from helpers import thesis_cases as thesis
@@ -27,6 +27,7 @@ from rrr_traj_planner.core.arm.chain import Chain
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.lengths import ArmLengths
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.urdf_arm import read_urdf
 from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix
 from rrr_traj_planner.core.errors import InvalidInputError
 
@@ -49,8 +50,9 @@ def test_default_arm_is_the_thesis_s():
     assert arm.rotor_inertia.tolist() == [0.0, 0.0, 0.0]
     assert arm.friction.is_none
     assert arm.joint_names == ('joint_1', 'joint_2', 'joint_3')
-    for name, value in vars(lengths.chain()).items():
-        assert getattr(arm.chain, name).tolist() == value.tolist()
+    for field in fields(Chain):
+        ours, expected = (getattr(chain, field.name) for chain in (arm.chain, lengths.chain()))
+        assert ours.tolist() == expected.tolist()
 
 
 def test_lengths_lay_the_arm_along_x_and_its_forearm_down():
@@ -152,18 +154,23 @@ def test_arm_that_a_torque_could_accelerate_without_bound_is_refused(changes, te
     lengths = ArmLengths(**changes)
     with pytest.raises(InvalidInputError, match=f'^{text}$'):
         RobotModel.from_lengths(lengths)
-    assert RobotModel(lengths.chain()).lacking_inertia == text
+    assert RobotModel(lengths.chain()).singular_inertia_reason == text
     # With motors of some inertia, each joint has its own.
-    assert RobotModel(lengths.chain(), rotor_inertia=[0.1, 0.1, 0.1]).lacking_inertia == ''
+    assert RobotModel(lengths.chain(), rotor_inertia=[0.1, 0.1, 0.1]).singular_inertia_reason == ''
 
 
 @pytest.mark.parametrize('seed', range(5))
 def test_chains_lack_inertia_where_links_have_none(seed):
     arm = random_arm(seed)
-    assert arm.lacking_inertia == without_inertia(arm).lacking_inertia == ''
-    assert without_inertia(arm, 0, 1).lacking_inertia == ''  # a body hangs on joint 3
-    assert without_inertia(arm, 2).lacking_inertia == 'link 3 has no inertia about joint axis 3'
-    assert without_inertia(arm, 0, 1, 2).lacking_inertia.startswith('link 3 has no inertia')
+    assert arm.singular_inertia_reason == without_inertia(arm).singular_inertia_reason == ''
+    assert without_inertia(arm, 0, 1).singular_inertia_reason == ''  # a body hangs on joint 3
+    assert without_inertia(arm, 2).singular_inertia_reason == (
+        'link 3 has no inertia about joint axis 3')
+    bare = without_inertia(arm, 0, 1, 2)
+    assert bare.singular_inertia_reason == 'no link has a mass'
+    assert replace(bare, rotor_inertia=[0.1, 0.1, 0.0]).singular_inertia_reason == (
+        'link 3 has no inertia about joint axis 3')
+    assert replace(bare, rotor_inertia=[0.1, 0.1, 0.1]).singular_inertia_reason == ''
 
 
 def test_arm_of_point_masses_on_a_heavy_column_is_accepted():
@@ -206,6 +213,19 @@ def test_a_urdf_gives_chain_names_and_friction():
         assert arm.gravity.tolist() == [0.0, 0.0, -9.81]
 
 
+def test_a_urdf_s_arm_may_have_its_gravity_and_motors():
+    file = ROOT / 'test/data/arms/go1_leg.urdf'
+    gravity, rotors = [0.0, 3.0, 4.0], [0.1, 0.2, 0.3]
+    for arm in (RobotModel.from_urdf(file, gravity=gravity, rotor_inertia=rotors),
+                read_urdf(file).model(gravity=gravity, rotor_inertia=rotors)):
+        assert (arm.gravity.tolist(), arm.rotor_inertia.tolist()) == (gravity, rotors)
+        assert arm.friction.coulomb.tolist() == [0.2] * 3
+        assert arm.joint_names == ('joint_1', 'joint_2', 'joint_3')
+    for name in ('gravity', 'rotor_inertia'):
+        with pytest.raises(InvalidInputError, match=rf'^{name} has shape \(2,\)'):
+            RobotModel.from_urdf(file, **{name: [1.0, 2.0]})
+
+
 def test_a_urdf_of_another_arm_is_refused():
-    with pytest.raises(InvalidInputError, match=r'planar_arm.urdf: the axes of joints .* are '):
+    with pytest.raises(InvalidInputError, match=r'planar_arm.urdf: joint axes .* are parallel'):
         RobotModel.from_urdf(ROOT / 'test/data/arms/planar_arm.urdf')

@@ -27,9 +27,9 @@ import numpy as np
 import pinocchio
 import pytest
 from rrr_traj_planner.core.arm.friction import Friction
-from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.limits import JointLimits, NO_EFFORT, NO_VELOCITY
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arm.urdf import FrameNames, NO_EFFORT_LIMIT, NO_VELOCITY_LIMIT, urdf
+from rrr_traj_planner.core.arm.urdf import FrameNames, urdf
 from rrr_traj_planner.core.dynamics.rigid_body import inertia_matrix, inverse_dynamics
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
@@ -137,8 +137,8 @@ def test_limits_and_friction_are_read_back_to_the_last_bit():
     assert model.upperPositionLimit.tolist() == limits.max_position.tolist()
     robot = URDF.from_xml_string(text.encode())
     joints = [robot.joint_map[name] for name in RobotModel().joint_names]
-    assert [j.limit.velocity for j in joints] == [1.1, NO_VELOCITY_LIMIT, 0.1 + 0.2]
-    assert [j.limit.effort for j in joints] == [NO_EFFORT_LIMIT, 2e2, 1e-5]
+    assert [j.limit.velocity for j in joints] == [1.1, NO_VELOCITY, 0.1 + 0.2]
+    assert [j.limit.effort for j in joints] == [NO_EFFORT, 2e2, 1e-5]
     assert [j.dynamics.damping for j in joints] == friction.viscous.tolist()
     assert [j.dynamics.friction for j in joints] == friction.coulomb.tolist()
 

@@ -18,12 +18,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 import pickle
+import sys
 from xml.etree import ElementTree
 
 from helpers.pinocchio_urdf import PinocchioUrdf
 from helpers.places import ROOT
 from helpers.random_cases import ARMS, random_states
-from helpers.urdf_texts import arm, axis, joint, limit, link, PARTS, RandomTree, Y, Z
+from helpers.urdf_texts import arm, axis, joint, limit, link, PARTS, RandomTree, texts, Y, Z
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.friction import Friction
@@ -88,15 +89,15 @@ def test_limits_and_friction_are_those_of_the_file(name):
 
 def test_an_arm_whose_axes_are_all_parallel_is_refused_by_names():
     assert refused(str(FILES['planar_arm'])) == (
-        f"{FILES['planar_arm']}: the axes of joints 'joint_1' and 'joint_2' are parallel: the tip "
-        'moves in a plane or on few spheres, and no such arm is planned for')
+        f"{FILES['planar_arm']}: joint axes 'joint_1' and 'joint_2' are parallel: planar and "
+        'SCARA-like arms are not supported')
 
 
 @pytest.mark.parametrize('name', ['geomagic_touch', 'eezybotarm_mk2'])
 def test_an_arm_without_masses_is_read_with_a_warning(name):
     found = read_urdf(FILES[name])
     assert not found.has_masses
-    assert found.warnings[-1] == 'no link has a mass: torque is not checked'
+    assert texts(found)[-1] == 'no link has a mass'
     assert read_urdf(FILES['go1_leg']).has_masses
 
 
@@ -104,7 +105,7 @@ def test_an_ordinary_description_gives_no_warning_and_no_noise(capfd):
     noise = ('<gazebo foo="1"><b/></gazebo><transmission name="t"/><material name="m"/>'
              '<ros2_control name="x" type="system"/>')
     found = read_urdf(arm(noise, a=link('a', '<visual/><sensor/>').replace('>', ' odd="1">', 1)))
-    assert found.warnings == ("1 link without mass: 'a'",)
+    assert texts(found) == ("1 link without mass: 'a'",)
     assert read_urdf(arm()).warnings == ()
     assert capfd.readouterr() == ('', '')
 
@@ -123,6 +124,21 @@ def test_the_urdf_that_the_package_writes_is_read_back(model):
     for name in UNITS.keys() & vars(found).keys():
         assert getattr(found, name).tolist() == getattr(limits, name).tolist()
     assert found.friction.coulomb.tolist() == friction.coulomb.tolist()
+
+
+@pytest.mark.parametrize(('low', 'high', 'kinds'), [
+    ((-1.0, -np.inf, -np.inf), (np.inf, 2.0, np.inf), ['revolute', 'revolute', 'continuous']),
+    ((-np.inf,) * 3, (np.inf,) * 3, ['continuous'] * 3)])
+def test_ranges_without_ends_are_written_for_every_parser_and_read_back(low, high, kinds):
+    text = urdf(RobotModel(), JointLimits(low, high, max_effort=(np.inf, 1.0, np.inf)))
+    joints = ElementTree.fromstring(text).findall('joint')[:3]
+    assert [joint.get('type') for joint in joints] == kinds
+    written = [value for joint in joints for value in joint.find('limit').attrib.values()]
+    assert np.isfinite(np.array(written, dtype=float)).all()
+    found = read_urdf(text)
+    assert (found.min_position.tolist(), found.max_position.tolist()) == (list(low), list(high))
+    assert found.max_effort.tolist() == [np.inf, 1.0, np.inf]
+    agrees_with_pinocchio(found)
 
 
 @pytest.mark.parametrize('seed', range(60))
@@ -151,12 +167,52 @@ def test_fixed_offsets_between_base_and_joint_1_are_counted():
     agrees_with_pinocchio(found)
 
 
+@pytest.mark.parametrize('name', READ)
+def test_limits_of_an_arm_are_the_file_s_and_those_that_are_given(name):
+    found = read_urdf(FILES[name])
+    limits = found.joint_limits(2.0, [10.0, 20.0, np.inf])
+    for key in ('min_position', 'max_position', 'max_velocity', 'max_effort'):
+        assert getattr(limits, key).tolist() == getattr(found, key).tolist()
+    assert limits.max_acceleration.tolist() == [2.0] * 3
+    assert limits.max_jerk.tolist() == [10.0, 20.0, np.inf]
+    none = found.joint_limits()
+    assert none.max_acceleration.tolist() == none.max_jerk.tolist() == [np.inf] * 3
+
+
+@pytest.mark.parametrize(('value', 'message'), [
+    (-1.0, r'max_jerk is [-1.0, -1.0, -1.0] rad/s^3, must be positive'),
+    ([1.0, 2.0], 'max_jerk has shape (2,), must have (3)'),
+    ([[1.0], [2.0, 3.0]], 'max_jerk has rows of 1, 2'), ('fast', "max_jerk is 'fast'"),
+    (None, 'max_jerk is '),
+    (np.nan, 'max_jerk is nan, must be a number')])
+def test_limits_that_are_none_are_refused(value, message):
+    with pytest.raises(InvalidInputError) as error:
+        read_urdf(arm()).joint_limits(max_jerk=value)
+    assert str(error.value).startswith(message)
+
+
+def test_a_missing_parser_is_said_with_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, 'urdf_parser_py.urdf', None)
+    assert refused(arm()).startswith('reading a URDF needs urdf_parser_py (')
+    with pytest.raises(InvalidInputError, match=r'urdfdom-py \(apt\), or urdf-parser-py \(pip\)'):
+        RobotModel.from_urdf(arm())
+
+
 def test_empty_names_are_the_root_and_the_only_leaf():
     found = read_urdf(arm())
     assert (found.base, found.tip) == ('base', 'tip')
-    assert refused(arm(link('x'), joint('more', 'fixed', 'c', 'x')), '', '') == (
-        "no tip is named, and what hangs from link 'base' ends in 'tip', 'x': must end in one "
-        'link')
+    more = arm(link('x'), joint('more', 'fixed', 'c', 'x'))
+    assert refused(more.replace('"tip"', '"hand"'), '', '') == (
+        "the tip frame is not given, and the tree below link 'base' has several leaves: 'hand', "
+        "'x'")
+
+
+def test_empty_names_are_base_link_and_tip_where_there_are_such_links():
+    text = arm(link('x'), joint('more', 'fixed', 'c', 'x', '', (0.3, 0.0, 0.0)), link('world'),
+               joint('stand', 'fixed', 'world', 'base')).replace('"base"', '"base_link"')
+    found = read_urdf(text)
+    assert (found.base, found.tip) == ('base_link', 'tip')
+    assert read_urdf(text, 'world', 'x').chain.tip == pytest.approx((0.9, 0.0, 0.5))
 
 
 @pytest.mark.parametrize(('changed', 'message'), [
@@ -170,14 +226,13 @@ def test_empty_names_are_the_root_and_the_only_leaf():
     ({'j2': joint('j2', 'revolute', 'a', 'b', Y + '<mimic joint="j1"/>')},
      "joint 'j2', between base and tip, mimics 'j1': must move by itself"),
     ({'j2': joint('j2', 'revolute', 'a', 'b', Z)},
-     "the axes of joints 'j1' and 'j2' are parallel: the tip moves in a plane or on few spheres, "
-     'and no such arm is planned for'),
+     "joint axes 'j1' and 'j2' are parallel: planar and SCARA-like arms are not supported"),
     ({'j2': joint('j2', 'revolute', 'a', 'b', axis(0, 0, 0) + limit())},
      "joint 'j2': its axis is zero, must have a direction"),
     ({'end': joint('end', 'fixed', 'c', 'tip', '', (0, 1, 0))},
-     "the tip is on the axis of joint 'j3', which does not move it"),
+     "the tip is on joint axis 'j3', which does not move it"),
     ({'end': joint('end', 'fixed', 'c', 'tip', '', (1e-9, 1, 0))},
-     "the tip is on the axis of joint 'j3', which does not move it"),
+     "the tip is on joint axis 'j3', which does not move it"),
     ({'j1': joint('j1', 'revolute', 'base', 'a', Z + '<dynamics damping="-1"/>')},
      "joint 'j1': damping is -1 N m s/rad, must not be negative")])
 def test_what_is_no_arm_of_three_joints_is_refused_by_name(changed, message):
@@ -213,7 +268,7 @@ def test_what_is_no_file_is_refused(tmp_path):
 
 def test_an_arm_is_pickled_read_only():
     found = pickle.loads(pickle.dumps(read_urdf(arm())))
-    assert found.warnings == () and found.text == arm()
+    assert texts(found) == () and found.text == arm()
     for array in (found.min_position, found.max_effort, found.chain.mass, found.friction.viscous):
         with pytest.raises(ValueError, match='read-only'):
             array[0] = 1.0

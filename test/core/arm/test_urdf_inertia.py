@@ -12,21 +12,21 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Masses and inertias of a URDF's links: impossible ones are named and mended."""
+"""Masses and inertias of a URDF's links: impossible ones are named, negative ones are zero."""
 
 from __future__ import annotations
 
-from helpers.urdf_texts import arm, BODY, inertial, link
+from helpers.urdf_texts import arm, BODY, inertial, link, texts
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.urdf_arm import read_urdf
-from rrr_traj_planner.core.arm.urdf_inertia import Body, lumped
+from rrr_traj_planner.core.arm.urdf_inertia import Body, composite_body
 
 
 def read(body):
     """Return link b's mass and inertia, and the warnings."""
     found = read_urdf(arm(b=link('b', body)))
-    return found.chain.mass[1], found.chain.inertia[1], found.warnings
+    return found.chain.mass[1], found.chain.inertia[1], texts(found)
 
 
 @pytest.mark.parametrize('moments', [
@@ -84,14 +84,14 @@ def test_links_that_do_not_move_with_the_arm_are_not_judged():
 def test_two_point_masses_are_a_dumb_bell():
     ends = [Body(m, np.array((x, 0.0, 0.0)), np.zeros((3, 3)))
             for m, x in ((1.0, 0.0), (3.0, 4.0))]
-    found = lumped(ends, np.zeros(3))
+    found = composite_body(ends, np.zeros(3))
     assert (found.mass, found.centre.tolist()) == (4.0, [3.0, 0.0, 0.0])
     assert found.inertia == pytest.approx(np.diag((0.0, 12.0, 12.0)))  # 1 * 9 + 3 * 1
 
 
 def test_bodies_without_mass_are_where_it_is_said():
     at = np.array((1.0, 2.0, 3.0))
-    found = lumped([Body(0.0, np.zeros(3), np.eye(3))] * 2, at)
+    found = composite_body([Body(0.0, np.zeros(3), np.eye(3))] * 2, at)
     assert (found.mass, found.centre.tolist()) == (0.0, at.tolist())
     assert found.inertia == pytest.approx(2.0 * np.eye(3))
 
@@ -99,5 +99,5 @@ def test_bodies_without_mass_are_where_it_is_said():
 def test_masses_of_all_links_may_be_missing():
     found = read_urdf(arm(a=link('a'), b=link('b'), c=link('c')))
     assert not found.has_masses
-    assert found.warnings == ('no link has a mass: torque is not checked',)
+    assert texts(found) == ('no link has a mass',)
     assert read_urdf(arm(a=link('a'), b=link('b'), tip=link('tip', BODY), c=link('c'))).has_masses

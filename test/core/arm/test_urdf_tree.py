@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The tree of a URDF's links: ways through it, and what is no tree."""
+"""The tree of a URDF's links: paths through it, and what is no tree."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def tree_of(text):
     return LinkTree(read_document(text))
 
 
-def way(text, base='', tip=''):
-    return [found.name for found in tree_of(text).way(base, tip)]
+def path(text, base='', tip=''):
+    return [found.name for found in tree_of(text).path(base, tip)]
 
 
 def fixed(*pairs):
@@ -40,33 +40,44 @@ def links(names):
     return [link(name) for name in names]
 
 
-def test_ways_are_from_the_base_to_the_tip():
+def test_paths_are_from_the_base_to_the_tip():
     text = robot(*links('dcbae'), *fixed('bc', 'ab', 'cd', 'be'))
-    assert way(text, '', 'd') == ['a-b', 'b-c', 'c-d']
-    assert way(text, 'b', 'e') == ['b-e']
-    assert way(text, 'c') == ['c-d']
-    assert way(text, 'b', 'b') == []
+    assert path(text, '', 'd') == ['a-b', 'b-c', 'c-d']
+    assert path(text, 'b', 'e') == ['b-e']
+    assert path(text, 'c') == ['c-d']
+    assert path(text, 'b', 'b') == []
 
 
-def test_walks_see_parents_before_children():
+def test_default_ends_are_base_link_and_tip_else_the_root_and_the_only_leaf():
+    text = robot(*(link(name) for name in ('w', 'base_link', 'arm', 'tip', 'x')),
+                 *(joint(f'{a}-{b}', 'fixed', a, b) for a, b in (
+                     ('w', 'base_link'), ('base_link', 'arm'), ('base_link', 'tip'),
+                     ('arm', 'x'))))
+    assert path(text) == ['base_link-tip']
+    assert path(text, 'w') == ['w-base_link', 'base_link-tip']
+    assert path(text, 'arm') == ['arm-x']  # the link tip is not below it
+    assert path(text.replace('base_link', 'foot'), '', 'arm') == ['w-foot', 'foot-arm']
+
+
+def test_subtrees_see_parents_before_children():
     text = robot(*links('abcdef'), *fixed('ce', 'ab', 'ac', 'cd', 'df'))
-    assert [found.name for found in tree_of(text).walk('a')] == ['a-b', 'a-c', 'c-e', 'c-d', 'd-f']
+    assert [found.name for found in tree_of(text).subtree('a')] == [
+        'a-b', 'a-c', 'c-e', 'c-d', 'd-f']
 
 
 def test_a_long_chain_is_no_problem():
     names = [f'l{i}' for i in range(3000)]
-    assert len(way(robot(*links(names), *fixed(*zip(names, names[1:]))))) == 2999
+    assert len(path(robot(*links(names), *fixed(*zip(names, names[1:]))))) == 2999
 
 
 @pytest.mark.parametrize(('base', 'tip', 'message'), [
     ('bse', 'tip', "no link 'bse' for the base, the nearest name is 'base'"),
     ('base', 'tool', "no link 'tool' for the tip, the nearest name is 'tip'"),
     ('b', 'a', "the tip, link 'a', is not below the base, link 'b'"),
-    ('tip', '', "no tip is named, and what hangs from link 'tip' carries nothing: must end in one "
-     'link')])
-def test_ways_that_are_not_there_are_refused(base, tip, message):
+    ('tip', '', "the tip frame is not given, and the tree below link 'tip' has no links")])
+def test_paths_that_are_not_there_are_refused(base, tip, message):
     with pytest.raises(InvalidInputError) as error:
-        way(arm(), base, tip)
+        path(arm(), base, tip)
     assert str(error.value) == message
 
 
@@ -82,9 +93,9 @@ def test_ways_that_are_not_there_are_refused(base, tip, message):
     (links('abcdefghijklmn'), "links 'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h', 'i', 'j', 'k', 'l' "
      'and 2 more have no parent: must be one root'),
     ([*links('ab'), *fixed('ab', 'ba')],
-     "links 'a', 'b' are in a loop, or hang from one: must be a tree"),
+     "links 'a', 'b' are in a loop, or below one: must be a tree"),
     ([*links('rabc'), *fixed('ab', 'ba', 'bc')],
-     "links 'a', 'b', 'c' are in a loop, or hang from one: must be a tree")])
+     "links 'a', 'b', 'c' are in a loop, or below one: must be a tree")])
 def test_what_is_no_tree_is_refused(parts, message):
     with pytest.raises(InvalidInputError) as error:
         tree_of(robot(*parts))

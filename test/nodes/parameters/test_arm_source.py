@@ -111,6 +111,15 @@ def test_joints_without_range_have_none():
     assert limits.max_position.tolist() == [inf, 2.0, 2.0]
 
 
+def test_a_range_that_the_file_of_limits_switches_off_is_none(tmp_path):
+    given = with_limits(tmp_path, 'joint_limits:\n  j2: {has_position_limits: false}\n')
+    limits = planner(given, tmp_path).limits
+    assert limits.min_position.tolist() == [-2.0, -inf, -2.0]
+    assert limits.max_position.tolist() == [2.0, inf, 2.0]
+    limits = planner({**given, 'joint_limits.j2.max_position': 1.0}, tmp_path).limits
+    assert (limits.min_position[1], limits.max_position[1]) == (-inf, 1.0)
+
+
 def test_gravity_rotors_friction_and_payload_reach_the_model():
     bare, config = planner({}), planner({
         'gravity': [0.0, 3.0, 4.0], 'rotor_inertia': [0.1, 0.2, 0.3], 'payload.mass': 2.0,
@@ -130,7 +139,7 @@ def test_frames_of_the_contract_s_names_are_found_others_must_be_named():
     text = arm('<link name="camera"/>', joint('more', 'fixed', 'a', 'camera'))
     assert planner({'robot_description': text}).tip_frame == 'tip'
     renamed = text.replace('"tip"', '"hand"')
-    with pytest.raises(InvalidInputError, match=r"no tip is named, .* ends in 'hand', 'camera'"):
+    with pytest.raises(InvalidInputError, match=r"not given, .* several leaves: 'hand', 'camera'"):
         planner({'robot_description': renamed})
     assert planner({'robot_description': renamed, 'tip_frame': 'hand'}).tip_frame == 'hand'
 
@@ -169,7 +178,31 @@ def test_a_limit_that_the_urdf_lacks_is_warned_of_unless_it_is_given():
     given = {'robot_description': text, **most}
     assert arm_source(given).warnings == (
         "joint 'j2': velocity 0 rad/s is taken for no limit",)
-    assert arm_source({**given, 'joint_limits.j2.max_velocity': 1.0}).warnings == ()
+    for answer in ({'max_velocity': 1.0}, {'has_velocity_limits': False}):
+        named = {f'joint_limits.j2.{name}': value for name, value in answer.items()}
+        assert arm_source({**given, **named}).warnings == ()
+
+
+@pytest.mark.parametrize(('inside', 'answer', 'left'), [
+    ('<limit velocity="3" effort="40"/>', {'min_position': -1.0, 'max_position': 1.0}, []),
+    (limit(0, 0), {'min_position': -1.0, 'max_position': 1.0}, []),
+    (limit(0, 0), {'max_position': 1.0}, ['is revolute and has the range [0, 0] rad, which is '
+                                          'taken for none']),
+    (limit(upper=1e4), {'max_position': 1.0}, []),
+    (limit(upper=1e4), {'min_position': 1.0}, [': upper 10000 rad is taken for no limit']),
+    ('', {'min_position': -1.0, 'max_position': 1.0, 'max_velocity': 1.0, 'max_effort': 1.0}, []),
+    ('', {'min_position': -1.0, 'max_position': 1.0, 'max_velocity': 1.0},
+     ['has no effort limit'])])
+def test_warnings_of_limits_that_are_given_are_left_out(tmp_path, inside, answer, left):
+    text = arm(j2=joint('j2', 'revolute', 'a', 'b', axis(0, 1, 0) + inside))
+    most = {f'joint_limits.{name}.max_acceleration': 1.0 for name in ('j1', 'j2', 'j3')}
+    (tmp_path / 'limits.yaml').write_text('joint_limits:\n  j2:\n' + ''.join(
+        f'    {name}: {value}\n' for name, value in answer.items()))
+    in_parameters = {f'joint_limits.j2.{name}': value for name, value in answer.items()}
+    for given in (in_parameters, {'joint_limits_file': str(tmp_path / 'limits.yaml')}):
+        warnings = arm_source({'robot_description': text, **most, **given}).warnings
+        assert warnings == tuple(
+            f"joint 'j2'{' ' * (text[0] != ':')}{text}" for text in left)
 
 
 # Refusals
@@ -294,7 +327,7 @@ def test_arm_s_controller_may_know_the_friction(ros):
 def test_arm_without_masses_can_be_planned_for_and_not_simulated(ros):
     bare = arm(a='<link name="a"/>', b='<link name="b"/>', c='<link name="c"/>')
     _, parameters = declared(ros, PLANNER, PlannerConfig.from_values, robot_description=bare)
-    assert 'no link has a mass: torque is not checked' in parameters.warnings
+    assert 'no link has a mass' in parameters.warnings
     with pytest.raises(InvalidInputError, match='give masses or rotor_inertia'):
         declared(ros, ARM, ArmConfig.from_values, robot_description=bare)
     declared(ros, ARM, ArmConfig.from_values, robot_description=bare,

@@ -114,6 +114,12 @@ def test_durations_are_read(here):
     (POINTS + 'arm: nowhere.yaml\n', "no file 'nowhere.yaml'"),
     ('via_points: [[\n', 'line 2: while parsing a flow'),
     (POINTS + ' planner_id: x\n', 'task.yaml: line '),
+    (f'via_points: [[0x{"f" * 5000}, 2.0, 3.0]]\n', 'via_points[0][0] is of int and too long to '
+     'show, must be finite'),
+    (f'via_points: 0x{"f" * 5000}\n', 'via_points is of int and too long to show, must be a list'),
+    (POINTS + f'arm: 0x{"f" * 5000}\n', 'arm is of int and too long to show, must be a text'),
+    ('via_points: 2001-99-99\n', "line 1: '2001-99-99' is not of type timestamp"),
+    ('via_points: ' + '[' * 3000 + '\n', 'nested too deeply'),
     ('via_points: @\n', "line 1: while scanning for the next token, found character '@'"),
     ('\xff', 'task.yaml: ')])
 def test_malformed_file_is_named_with_what_is_wrong(here, content, text):

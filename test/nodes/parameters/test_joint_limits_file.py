@@ -19,6 +19,7 @@ from __future__ import annotations
 from math import pi
 
 import pytest
+from rrr_traj_planner.core.arm.limits import NO_RANGE
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.joint_limits_file import read_joint_limits
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
@@ -69,10 +70,12 @@ def test_every_limit_becomes_the_parameter_of_its_name():
     assert all(type(x) in (float, bool) for x in found.values())
 
 
-def test_what_is_switched_off_is_left_out():
+def test_what_is_switched_off_is_left_out_and_a_range_is_none():
     assert read_joint_limits(of_joint(
         'has_position_limits: false', 'min_position: 0', 'max_position: 0',
         'has_effort_limits: false', 'max_effort: 0', 'max_jerk: 7')) == {
+            'joint_limits.elbow.min_position': -NO_RANGE,
+            'joint_limits.elbow.max_position': NO_RANGE,
             'joint_limits.elbow.has_effort_limits': False, 'joint_limits.elbow.max_jerk': 7.0}
 
 
@@ -87,27 +90,42 @@ def test_a_file_may_say_nothing(text):
     assert read_joint_limits(text) == {}
 
 
+ONES = '1' * 28 + '...' + '1' * 29  # as long numbers are shown
+
+
 @pytest.mark.parametrize(('line', 'message'), [
     ('max_velocity: fast', "joint_limits.elbow.max_velocity is 'fast', must be in [1e-06, 1000] "
      'rad/s (written with a point, as 5.0)'),
     ('max_velocity: "3.0"', "joint_limits.elbow.max_velocity is '3.0', must be in"),
     ('max_jerk: true', 'joint_limits.elbow.max_jerk is True, must be in [1e-06, 1e+06] rad/s^3'),
     ('max_jerk:', 'joint_limits.elbow.max_jerk is None, must be in [1e-06, 1e+06] rad/s^3'),
-    ('max_effort: .nan', 'joint_limits.elbow.max_effort is nan N m, must be in [1e-06, 1e+06] '
+    ('max_effort: .nan', 'joint_limits.elbow.max_effort is nan N m, must be in [1e-06, 100000] '
      'N m'),
-    ('max_effort: .inf', 'joint_limits.elbow.max_effort is inf N m, must be in [1e-06, 1e+06] '
+    ('max_effort: .inf', 'joint_limits.elbow.max_effort is inf N m, must be in [1e-06, 100000] '
      'N m'),
     ('max_acceleration: 0', 'joint_limits.elbow.max_acceleration is 0 rad/s^2, must be in [1e-06, '
      '10000] rad/s^2'),
     ('max_acceleration: -2', 'joint_limits.elbow.max_acceleration is -2 rad/s^2, must be in'),
     ('min_position: [1]', 'joint_limits.elbow.min_position is [1], must be in [-1000, 1000] rad'),
-    ('has_jerk_limits: 1', 'joint_limits.elbow.has_jerk_limits is 1.0, must be true or false'),
+    ('has_jerk_limits: 1', 'joint_limits.elbow.has_jerk_limits is 1, must be true or false'),
     ('has_position_limits: "no"',
      "joint_limits.elbow.has_position_limits is 'no', must be true or false"),
     ('max_speed: 1', 'joint_limits.elbow.max_speed is unknown, the nearest known key is '),
     ('max_velocty: 1', 'joint_limits.elbow.max_velocty is unknown, the nearest known key is '
      'max_velocity'),
     ('max_jerk: 1\n    max_jerk: 2', 'line 4: max_jerk is repeated'),
+    ('max_jerk: ' + '1' * 401,
+     f'joint_limits.elbow.max_jerk is {ONES}, must be in [1e-06, 1e+06] rad/s^3'),
+    ('max_jerk: 0x' + 'f' * 400, 'joint_limits.elbow.max_jerk is '),
+    ('has_jerk_limits: ' + '1' * 401,
+     f'joint_limits.elbow.has_jerk_limits is {ONES}, must be true or false'),
+    ('max_jerk: ' + '1' * 4400, f"line 3: '{ONES[1:-1]}' is not of type int"),
+    ('max_jerk: 2001-99-99', "line 3: '2001-99-99' is not of type timestamp"),
+    ('max_jerk: !!bool x', "line 3: 'x' is not of type bool"),
+    ('max_jerk: !!timestamp x', "line 3: 'x' is not of type timestamp"),
+    ('[max_jerk]: 1', "line 3: key ['max_jerk'] must be a text"),
+    ('{max_jerk: 1}: 1', "line 3: key {'max_jerk': 1} must be a text"),
+    ('max_jerk: ' + '[' * 3000, 'nested too deeply'),
     ('max_jerk: !degrees far', "line 3: 'far' is not a number"),
     ('max_jerk: [1', 'line '),
     ('min_position: 2\n    max_position: 1', 'joint_limits.elbow.min_position is 2 rad, must be '
@@ -118,6 +136,7 @@ def test_what_is_wrong_is_named_with_joint_key_value_and_range(line, message):
 
 @pytest.mark.parametrize(('text', 'message'), [
     ('joint_limit:\n  a: {}\n', 'joint_limit is unknown, the nearest known key is joint_limits'),
+    ('{[a]: 1}\n', "line 1: key ['a'] must be a text"),
     ('- 1\n- 2\n', 'the file is [1, 2], must have keys and values'),
     ('joint_limits: 3\n', 'joint_limits is 3, must have keys and values'),
     ('joint_limits:\n  a: 3\n', 'joint_limits.a is 3, must have keys and values'),
@@ -128,6 +147,11 @@ def test_what_is_wrong_is_named_with_joint_key_value_and_range(line, message):
     ('a: \x01\n', 'unacceptable character')])
 def test_what_is_no_such_file_is_refused(text, message):
     assert refused(text).startswith(message)
+
+
+def test_a_joint_may_be_called_a_number():
+    assert read_joint_limits('joint_limits:\n  1: {max_jerk: 2}\n', ['1', '2', '3']) == {
+        'joint_limits.1.max_jerk': 2.0}
 
 
 def test_joints_of_other_names_alone_are_refused():
@@ -143,5 +167,9 @@ def test_a_file_is_named_in_errors(tmp_path):
         f"{file}: joint_limits.finger.max_velocity is 'nonsense', must be in")
     assert refused(tmp_path / 'none.yaml').startswith(f'{tmp_path / "none.yaml"}: [Errno 2]')
     assert refused(tmp_path).startswith(f'{tmp_path}: [Errno 21]')
+    file.write_text('{[a]: 1}')
+    assert refused(file) == f"{file}: line 1: key ['a'] must be a text"
+    file.write_text(of_joint('max_jerk: ' + '1' * 401))
+    assert refused(file).startswith(f'{file}: joint_limits.elbow.max_jerk is 1111')
     file.write_bytes(b'\xff\xfe')
     assert refused(file).startswith(f"{file}: 'utf-8' codec")

@@ -55,8 +55,12 @@ def test_missing_limits_and_oddities_are_warned_of(tmp_path):
 
 @pytest.mark.parametrize(('arguments', 'code', 'text'), [
     (('--check', ROOT / 'test/data/arms/planar_arm.urdf'), 1,
-     "planar_arm.urdf: the axes of joints 'joint_1' and 'joint_2' are parallel: "),
-    (('--check', 'none.urdf'), 1, "planner: parameter robot_description: no file 'none.urdf' in "),
+     "planar_arm.urdf: joint axes 'joint_1' and 'joint_2' are parallel: "),
+    (('--check', 'none.urdf'), 1, "planner: --check: no file 'none.urdf' in "),
+    (('--check', 'x' * 5000), 1, "planner: --check is 'xxx"),
+    (('--check', '<robot name="x"/>'), 1, 'planner: --check: there is no link'),
+    (('--check', 'go1_leg.urdf', '--joint-limits', 'none.yaml'), 1,
+     "planner: no file 'none.yaml' in "),
     (('--check', 'go1_leg.urdf', '--tip-frame', 'tap'), 1, "no link 'tap' for the tip, the "),
     (('--check', 'go1_leg.urdf', '--joint-limits', 'thesis_arm.yaml'), 1,
      'thesis_arm.yaml: /** is unknown'),
