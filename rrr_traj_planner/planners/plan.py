@@ -49,7 +49,7 @@ class Plan(ReadOnlyArrays):
     model : RobotModel
         The arm that it is planned for.
     note : str
-        Remarks for the caller, mostly empty.
+        Remarks for the caller, usually empty.
 
     """
 
