@@ -26,7 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.dynamics.motor_torque import direction_of
+from rrr_traj_planner.core.dynamics.motor_torque import direction_of, rest_speed_of
 from rrr_traj_planner.core.trajectory.trajectory import ONE_SIDED, Trajectory
 
 MOST_STEPS = 60          # of the iteration; chosen: bisections alone would reach rounding
@@ -129,7 +129,8 @@ def directions(trajectory: Trajectory, grid: Array) -> Directions:
     found = trajectory.cache.get('directions')
     if not isinstance(found, Directions):
         velocity, slowest = _functions(trajectory)
-        at_grid = direction_of(trajectory(grid)[1]).T
+        qd = trajectory(grid)[1]
+        at_grid = direction_of(qd, rest_speed_of(qd)).T
         (t1, s1), (t2, s2), (t3, s3) = (
             _of_joint(velocity, slowest, grid, direction, j)
             for j, direction in enumerate(at_grid))

@@ -90,7 +90,7 @@ def torque_parts(model: RobotModel, q: Array, qd: Array, qdd: Array,
     q, qd, qdd : ndarray, shape (..., 3)
         Positions, velocities and accelerations [rad, rad/s, rad/s^2].
     direction : ndarray, shape (..., 3), optional
-        Directions of motion, 1, -1 or 0; by default, as of `direction_of`.
+        Directions of motion, 1, -1 or 0; by default Coulomb friction is left out.
 
     Returns
     -------
@@ -100,14 +100,13 @@ def torque_parts(model: RobotModel, q: Array, qd: Array, qdd: Array,
     """
     friction, gravity = model.friction, gravity_torque(model, q)
     inertial = inverse_dynamics(model, q, qd, qdd) - gravity
-    if friction.coulomb.any():
-        gravity = gravity + friction.coulomb * (
-            direction_of(qd) if direction is None else direction)
+    if direction is not None:
+        gravity = gravity + friction.coulomb * direction
     return TorqueParts(gravity, friction.viscous * qd, inertial)
 
 
-def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Array,
-                       qdd: Array) -> Array:
+def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Array, qdd: Array,
+                       rest_speed: float) -> Array:
     """
     Return the square of the time-scaling factor that torque limits require at given states.
 
@@ -121,6 +120,8 @@ def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Arr
         Effort limits, infinite where there is none.
     q, qd, qdd : ndarray, shape (..., 3)
         Positions, velocities and accelerations [rad, rad/s, rad/s^2].
+    rest_speed : float
+        Speed up to which a joint is at rest [rad/s], without Coulomb friction.
 
     Returns
     -------
@@ -128,7 +129,9 @@ def squared_time_scale(model: RobotModel, limits: JointLimits, q: Array, qd: Arr
         For each joint, 0 where it has no effort limit.
 
     """
-    return squared_scaling_if_held(limits.max_effort, torque_parts(model, q, qd, qdd))
+    direction = direction_of(qd, rest_speed) if model.friction.coulomb.any() else None
+    return squared_scaling_if_held(
+        limits.max_effort, torque_parts(model, q, qd, qdd, direction))
 
 
 def squared_scaling(max_effort: Array, parts: TorqueParts) -> Array:

@@ -102,8 +102,8 @@ def _least_durations(task: JointTask, constraints: JointConstraints,
         T = np.maximum(T, START_SCALING * constraints.least_T)
     if not constraints.with_torque:
         return T, T
-    # Coulomb friction is off the limits already.
-    parts = torque_parts(task.model, at.q[:, 1:], at.qd[:, 1:], at.qdd[:, 1:], np.zeros(3))
+    # Without Coulomb friction, which is off the limits already.
+    parts = torque_parts(task.model, at.q[:, 1:], at.qd[:, 1:], at.qdd[:, 1:])
     by_torque = np.sqrt(squared_scaling_any_slower(constraints.effort, parts).max(axis=(1, 2)))
     blocked = (gravity_ratio(task.model, limits, at.q) >= 1.0 - HOLDING_MARGIN)[:, 1:-1]
     by_torque[blocked.any(axis=1)] = np.inf
