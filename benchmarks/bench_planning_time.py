@@ -33,13 +33,14 @@ from tasks import full_torque, gentle, NONE, random_task, Task, WEAK
 from tasks import table as thesis_table
 
 sys.path.insert(0, str(Path(__file__).parents[1] / 'test'))
-from helpers.public_arms import arms  # noqa: E402, I100
+from helpers.public_arms import Arm, arms  # noqa: E402, I100
 from helpers.public_arms import task as request_to  # noqa: E402
 
 SEED = 7
 OTHER_ARMS = ('go1_leg', 'kr16_2_first3')
 GROWTH = 12.0         # by how much longer ten times the via points may take
-FEW, MORE, MANY = 10, 100, 1000  # via points
+FEWEST, SEVERAL = 3, 8           # via points
+FEW, MORE, MANY = 10, 100, 1000
 LONG_PERIOD = 0.05    # s between samples: an answer through 1,000 random points has 60,000
 GROWTH_BUDGET = 20.0  # s for one row
 
@@ -81,14 +82,24 @@ def _small_tasks() -> Iterator[tuple[str, Task, dict[str, float]]]:
     for label, limits, targets in (
             ('v, a', gentle(), {'cycloid': 0.1, 'time_optimal': 1.0}),
             ('v, torque', full_torque(WEAK), {'time_optimal': 1.0})):
-        for task in (thesis_table('6.1', limits, label), _random(8, limits)):
+        for task in (thesis_table('6.1', limits, label), _random(SEVERAL, limits)):
             yield f'{len(task.request.via_points)} via points, {label}', task, targets
     for name in OTHER_ARMS:
         arm, = arms(name)
-        task = Task(name, replace(arm.limits, max_effort=NONE), PlanningRequest(
-            request_to(arm, 'cycloid', np.random.default_rng(SEED)).via_points), arm.model)
-        yield (f'{len(task.request.via_points)} via points, v, a, jerk, {name}', task,
-               {'cycloid': 0.1, 'time_optimal': 1.0})
+        for label, limits, targets in (
+                ('v, a', replace(arm.limits, max_effort=NONE),
+                 {'cycloid': 0.1, 'time_optimal': 1.0}),
+                ('v, torque', replace(arm.limits, max_acceleration=NONE), {'time_optimal': 1.0})):
+            for points in (FEWEST, SEVERAL):
+                yield (f'{points} via points, {label}, {name}',
+                       Task(name, limits, PlanningRequest(_tips(arm, points)), arm.model), targets)
+
+
+def _tips(arm: Arm, number: int) -> np.ndarray:
+    """Return the tips of random poses that the arm can hold, away from singular ones."""
+    rng = np.random.default_rng(SEED)
+    drawn = [request_to(arm, 'cycloid', rng).via_points for _ in range(number)]
+    return np.concatenate(drawn)[:number]
 
 
 def _planning(task: Task, planner_id: str) -> Callable[[], object]:

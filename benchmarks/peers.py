@@ -36,7 +36,7 @@ def toppra_duration(task: JointTask) -> float:
     Return how long TOPP-RA takes along the natural cubic spline through the via points [s].
 
     The spline's parameter is the way in joint space. Velocity is kept, and acceleration and torque
-    where they are limited; jerk is not known.
+    where they are limited; jerk and viscous friction are not known.
     """
     points, limits = task.points, task.limits
     way = np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))))
@@ -46,7 +46,7 @@ def toppra_duration(task: JointTask) -> float:
         wanted.append(constraint.JointAccelerationConstraint(both(limits.max_acceleration)))
     if np.isfinite(limits.max_effort).all():
         wanted.append(constraint.JointTorqueConstraint(
-            torque_of(task.model), both(limits.max_effort), np.zeros(3)))
+            torque_of(task.model), both(limits.max_effort), task.model.friction.coulomb))
     solver = algorithm.TOPPRA(wanted, path, gridpoints=np.linspace(0.0, 1.0, GRID_POINTS + 1),
                               solver_wrapper='seidel')
     trajectory = solver.compute_trajectory(0.0, 0.0)

@@ -80,8 +80,9 @@ def lost_poses(name: str, arm: Any, q: np.ndarray) -> int:
     misses = np.linalg.norm(tips - np.repeat(points, count, axis=0), axis=1)
     regular = singular > SINGULAR
     lost = regular & (nearest > np.maximum(SAME, ROUNDING / singular))
+    compared = nearest[regular & ~lost]
     print(f'{name:24} lost {np.count_nonzero(lost)}, singular {np.count_nonzero(~regular)}, '
-          f'worst {nearest[regular & ~lost].max():.1e} rad, {misses.max():.1e} m, '
+          f'worst {compared.max(initial=0.0):.1e} rad, {misses.max(initial=0.0):.1e} m, '
           f'{microseconds:.1f} us', flush=True)
     for k in np.flatnonzero(lost):
         print(f'    {q[k].tolist()}: {nearest[k]:.1e} rad, singular value {singular[k]:.1e}')

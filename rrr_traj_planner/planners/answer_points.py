@@ -65,7 +65,7 @@ class AnswerPoints(NamedTuple):
     points: TrajectoryPoints
     effort: Array             # largest torque of the quintics, (3,) [N m]
     time_scale: float            # the factor by which the motion has been slowed
-    note: str                 # on slowing and jerk; mostly empty
+    note: str                 # on slowing and jerk; usually empty
 
 
 def answer_points(problem: PlanningProblem, trajectory: Trajectory) -> AnswerPoints:
@@ -184,7 +184,7 @@ def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, step
 
 
 def _note(problem: PlanningProblem, jerk: Array, time_scale: float) -> str:
-    """Return the note on slowing and on jerk; mostly empty."""
+    """Return the note on slowing and on jerk; usually empty."""
     limit, texts = problem.limits.max_jerk, []
     if time_scale > REPORTED_SCALING:
         period, slower = problem.request.sample_period, 100.0 * (time_scale - 1.0)

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import degrees
 
 import numpy as np
@@ -25,17 +25,18 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.urdf_arm import UrdfArm
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
+from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
 from rrr_traj_planner.core.kinematics.common_normal import common_normal
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.planners.effort_limits import check_friction, checked_limits
+from rrr_traj_planner.planners.range_extremes import finite_ranges, largest
 
-# Lengths over the arm's size, and angles [rad], up to which they count as zero: descriptions from
-# CAD are rounded to 1e-4 at worst.
+# Of offsets over the arm's size, of angles [rad], and of torques over that of the arm's weight at
+# its size: what counts as zero, as descriptions from CAD are rounded to 1e-4 at worst.
 ROUNDING = 1e-4
-
-STEPS = 60       # of each joint's range, for the reach
-POSES = 2000     # for the torque of gravity
+SMALL = 1e-3     # part of the arm's size up to which a distance of the tip is told as zero
+POSES = 2000     # from which extremes over the ranges are sought
 SEED = 1
 
 
@@ -107,7 +108,7 @@ def _first_axes(model: RobotModel) -> str:
     at = 'at right angles' if right else f'at {angle:.4g} deg'
     if abs(g.a) <= ROUNDING * g.size:
         return f'joint axes 1 and 2 meet {at}'
-    return f'radial offset: joint axis 2 passes joint axis 1 at {abs(g.a):.4g} m, {at}'
+    return f'shoulder offset {abs(g.a):.4g} m (common normal of joint axes 1 and 2), axes {at}'
 
 
 def _last_axes(model: RobotModel) -> str:
@@ -116,8 +117,8 @@ def _last_axes(model: RobotModel) -> str:
     sine, cosine = float(np.linalg.norm(np.cross(z2, z3))), float(abs(z2 @ z3))
     if sine > ROUNDING:
         if cosine <= ROUNDING:
-            return 'joint axes 2 and 3 are perpendicular'
-        return f'joint axes 2 and 3 are skew, at {degrees(np.arctan2(sine, cosine)):.4g} deg'
+            return 'joint axes 2 and 3 are at right angles'
+        return f'joint axes 2 and 3 are at {degrees(np.arctan2(sine, cosine)):.4g} deg'
     if abs(g.k[0]) <= ROUNDING * g.size:
         return 'joint axes 2 and 3 are parallel, without lateral offset'
     return (f'joint axes 2 and 3 are parallel, with a lateral offset of the tip by '
@@ -144,39 +145,65 @@ def _postures(model: RobotModel) -> str:
     return 'postures have no names: requests may not ask for one'
 
 
-def _ranges(limits: JointLimits) -> tuple[Array, Array]:
-    """Return the ranges, a revolution where there is none."""
-    low, high = limits.min_position, limits.max_position
-    low = np.where(np.isfinite(low), low, np.where(np.isfinite(high), high - 2.0 * np.pi, -np.pi))
-    return low, np.where(np.isfinite(high), high, low + 2.0 * np.pi)
+def _random_poses(limits: JointLimits) -> Array:
+    return np.random.default_rng(SEED).uniform(*finite_ranges(limits), (POSES, 3))
 
 
 def _reach(model: RobotModel, limits: JointLimits) -> Iterator[str]:
     """Yield distances of the tip, which do not depend on joint 1."""
-    low, high = _ranges(limits)
-    q2, q3 = (x.ravel() for x in np.meshgrid(
-        *(np.linspace(low[j], high[j], STEPS + 1) for j in (1, 2))))
-    tip = forward_kinematics(model, np.column_stack((np.zeros_like(q2), q2, q3)))
     g = common_normal(model)
     foot, axis = np.array(g.c1) + g.a * np.array(g.n), model.chain.axis[0]
-    radial = np.linalg.norm(np.cross(tip - np.array(g.c1), axis), axis=1)
-    for name, distance in (('the shoulder, on joint axis 2', np.linalg.norm(tip - foot, axis=1)),
-                           ('joint axis 1', radial)):
-        yield f'  the tip is {distance.min():.4g} to {distance.max():.4g} m from {name}'
+
+    def from_foot(q: Array) -> Array:
+        """Return squares, which are smooth where the tip is at the foot or on the axis."""
+        return np.asarray(((_tip(model, q) - foot) ** 2).sum(axis=1))
+
+    def from_axis(q: Array) -> Array:
+        return np.asarray((np.cross(_tip(model, q) - np.array(g.c1), axis) ** 2).sum(axis=1))
+
+    for name, square in (('the shoulder, on joint axis 2', from_foot),
+                         ('joint axis 1', from_axis)):
+        least, most = _extremes(square, limits)
+        yield (f'  the tip is {_length(np.sqrt(least), g.size)} to '
+               f'{_length(np.sqrt(most), g.size)} m from {name}')
+
+
+def _tip(model: RobotModel, q: Array) -> Array:
+    """Return the tip's position with joint 1 at zero."""
+    return forward_kinematics(model, q * (0.0, 1.0, 1.0))
+
+
+def _extremes(square: Callable[[Array], Array], limits: JointLimits) -> tuple[float, float]:
+    """Return the least and the largest value over the ranges, not negative."""
+    poses = _random_poses(limits)
+    return (max(-largest(lambda q: -square(q), limits, poses), 0.0),
+            largest(square, limits, poses))
+
+
+def _length(x: float, size: float) -> str:
+    """Return a length [m] as text, to a thousandth of the arm's size or a little finer."""
+    decimals = int(np.ceil(-np.log10(SMALL * size)))
+    return np.format_float_positional(round(x, decimals), trim='-') if x >= SMALL * size else '0'
 
 
 def _holding(model: RobotModel, limits: JointLimits) -> Iterator[str]:
     """Yield the largest torques of gravity over the ranges, if there are any."""
-    if not model.chain.mass.any():
+    chain, most = model.chain, limits.max_effort
+    weight = float(chain.mass.sum() * np.linalg.norm(model.gravity))
+    if not weight:
         return
-    low, high = _ranges(limits)
-    q = np.random.default_rng(SEED).uniform(low, high, (POSES, 3))
-    torque = np.abs(gravity_torque(model, q))
-    most = limits.max_effort
+    poses = _random_poses(limits)
     yield 'torque to hold the arm, over the ranges'
-    for i, name in enumerate(model.joint_names):
-        limit = f' of {most[i]:.4g}' if np.isfinite(most[i]) else ''
-        yield f'  {name}: up to {torque[:, i].max():.4g}{limit} N m'
-    beyond = float((torque > most).any(axis=1).mean())
-    if beyond > 0.0:
-        yield f'  some {max(100.0 * beyond, 0.1):.2g} % of the poses cannot be held'
+
+    def magnitude(joint: int) -> Callable[[Array], Array]:
+        return lambda q: np.abs(gravity_torque(model, q)[:, joint])
+
+    torque = [largest(magnitude(joint), limits, poses) for joint in range(3)]
+    for name, needed, limit in zip(model.joint_names, torque, most):
+        needed = needed if needed > ROUNDING * weight * chain.size else 0.0
+        texts = format_distinct(needed, *[limit] * bool(np.isfinite(limit)), digits=4)
+        yield f'  {name}: up to {" of ".join(texts)} N m'
+    if (torque > most).any():
+        beyond = 100.0 * float((np.abs(gravity_torque(model, poses)) > most).any(axis=1).mean())
+        share = f'about {beyond:.0f} %' if beyond >= 1.0 else 'less than 1 %'
+        yield f'  {share} of the poses cannot be held'

@@ -22,7 +22,9 @@ from rrr_traj_planner.core.errors import format_distinct, LimitViolationError
 def holding_error(where: str, joint: str, torque: float, limit: float,
                   via_point: int = -1) -> LimitViolationError:
     """
-    Return the error of a pose that a motor cannot hold, or has no torque left for motion.
+    Return the error of a pose that a motor cannot hold, or can only hold.
+
+    In the latter gravity leaves it no torque for motion.
 
     Parameters
     ----------

@@ -12,7 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Effort limits as planners take them: of arms without masses, and less Coulomb friction."""
+"""
+Effort limits as the planners use them.
+
+They are dropped where the torque is undefined, and reduced by Coulomb friction.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +31,7 @@ from rrr_traj_planner.core.errors import format_distinct, LimitViolationError
 
 def torque_note(model: RobotModel, limits: JointLimits) -> str:
     """
-    Return the note on limits that `checked_limits` leaves out; mostly empty.
+    Return the note on limits that `checked_limits` leaves out; usually empty.
 
     Parameters
     ----------
@@ -74,7 +78,7 @@ def checked_limits(model: RobotModel, limits: JointLimits) -> JointLimits:
 
 def check_friction(model: RobotModel, limits: JointLimits) -> None:
     """
-    Refuse effort limits that leave nothing beside Coulomb friction: the joint could not move.
+    Refuse effort limits that Coulomb friction reaches: such a joint could not be moved.
 
     Parameters
     ----------
@@ -86,7 +90,7 @@ def check_friction(model: RobotModel, limits: JointLimits) -> None:
     Raises
     ------
     LimitViolationError
-        With joint, limit and friction.
+        If one leaves no torque for motion; with joint, limit and friction.
 
     """
     coulomb = model.friction.coulomb
@@ -100,7 +104,9 @@ def check_friction(model: RobotModel, limits: JointLimits) -> None:
 
 def effort_less_friction(model: RobotModel, limits: JointLimits) -> Array:
     """
-    Return effort limits less Coulomb friction, for optimisation: smooth, and safe on both sides.
+    Return effort limits less Coulomb friction, which is then left out of torques.
+
+    Torque without it is smooth, as optimisation needs; lower limits are safe in both directions.
 
     Parameters
     ----------

@@ -26,14 +26,15 @@ from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
 
-class Misses(NamedTuple):
+class ViaPointErrors(NamedTuple):
     """Distances from the via points at their times, shape (n,)."""
 
     tip: Array    # [m]
     joint: Array  # of the joint that is furthest [rad]
 
 
-def misses(model: RobotModel, trajectory: Trajectory, via_times: Array, q: Array) -> Misses:
+def via_point_errors(model: RobotModel, trajectory: Trajectory, via_times: Array,
+                     q: Array) -> ViaPointErrors:
     """
     Return the distances of a motion from its via points at their times.
 
@@ -50,22 +51,22 @@ def misses(model: RobotModel, trajectory: Trajectory, via_times: Array, q: Array
 
     Returns
     -------
-    Misses
+    ViaPointErrors
         For each via point.
 
     """
     passed = trajectory(via_times)[0]
     difference = forward_kinematics(model, passed) - forward_kinematics(model, q)
-    return Misses(np.linalg.norm(difference, axis=1), np.abs(passed - q).max(axis=1))
+    return ViaPointErrors(np.linalg.norm(difference, axis=1), np.abs(passed - q).max(axis=1))
 
 
-def miss_note(found: Misses) -> str:
+def miss_note(found: ViaPointErrors) -> str:
     """
     Return the note on missed via points.
 
     Parameters
     ----------
-    found : Misses
+    found : ViaPointErrors
         For each via point.
 
     Returns

@@ -22,7 +22,7 @@ from typing import TextIO
 
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.motor_torque import direction_of, motor_torque
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque, rest_speed_of
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.trajectory import Peaks, Trajectory
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
@@ -49,7 +49,7 @@ class Plan(ReadOnlyArrays):
     model : RobotModel
         The arm that it is planned for.
     note : str
-        Remarks for the caller, mostly empty.
+        Remarks for the caller, usually empty.
 
     """
 
@@ -74,8 +74,8 @@ class Plan(ReadOnlyArrays):
 
         """
         p = self.points
-        moving = p.velocities * (direction_of(p.velocities) != 0.0)  # no friction of rounding
-        torque = motor_torque(self.model, p.positions, moving, p.accelerations)
+        torque = motor_torque(self.model, p.positions, p.velocities, p.accelerations,
+                              rest_speed_of(p.velocities))
         found = {'time [s]': p.times}
         for quantity, values in (
                 ('position [rad]', p.positions), ('velocity [rad/s]', p.velocities),

@@ -40,7 +40,7 @@ from rrr_traj_planner.core.trajectory.torque import peak_torque
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.answer_points import answer_points
 from rrr_traj_planner.planners.answer_size import check_answer_size
-from rrr_traj_planner.planners.missed_via_points import miss_note, misses
+from rrr_traj_planner.planners.missed_via_points import miss_note, via_point_errors
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning_problem import planning_problem, PlanningProblem
 from rrr_traj_planner.planners.posture_choice import (
@@ -161,7 +161,7 @@ def _plan_through(method: Registered, problem: PlanningProblem, q: Array) -> Pla
         model, limits, distinct, durations, _spacing(request), np.flatnonzero(~same),
         request.should_stop, request.half_transition))
     answer = _checked(problem, trajectory, _via_times(request, trajectory, same))
-    return _with_misses(model, answer, q) if method.misses_via_points else answer
+    return _with_miss_note(model, answer, q) if method.misses_via_points else answer
 
 
 def _spacing(request: PlanningRequest) -> float:
@@ -169,9 +169,9 @@ def _spacing(request: PlanningRequest) -> float:
     return min(request.sample_period, LONGEST_SPACING)
 
 
-def _with_misses(model: RobotModel, answer: Plan, q: Array) -> Plan:
+def _with_miss_note(model: RobotModel, answer: Plan, q: Array) -> Plan:
     """Return a plan with the distances by which it misses its via points in the note."""
-    found = misses(
+    found = via_point_errors(
         model, answer.trajectory, answer.via_times, q[len(q) - len(answer.via_times):])
     return replace(answer, note='; '.join(filter(None, (answer.note, miss_note(found)))))
 

@@ -53,7 +53,7 @@ class PlanningProblem(ReadOnlyArrays):
         Joint positions [rad] where the motion starts, within the ranges; None: at the first via
         point.
     note : str
-        On limits that cannot be checked, for the plan; mostly empty.
+        On limits that cannot be checked, for the plan; usually empty.
 
     """
 
@@ -121,7 +121,7 @@ def planning_problem(model: RobotModel, limits: JointLimits,
     StartStateError
         If the start state is out of its range or cannot be held.
     LimitViolationError
-        If an effort limit leaves nothing beside Coulomb friction.
+        If Coulomb friction reaches an effort limit: it leaves no torque for motion.
 
     """
     asked = Posture(request.elbow, request.shoulder)

@@ -35,14 +35,15 @@ class Registered(NamedTuple):
     plan_path: CartesianPlanner | None = None
     misses_via_points: bool = False  # whether it blends around via points instead of reaching them
     passing: ViaPointBehaviour = THROUGH  # at via points, for the choice of whole turns
+    needs_acceleration_limit: bool = True  # of a joint that has an effort limit too
 
 
 REGISTERED: dict[str, Registered] = {}  # by id
 
 
 def register(planner_id: str, some_durations: bool = False,
-             misses_via_points: bool = False,
-             passing: ViaPointBehaviour = THROUGH) -> Callable[[JointPlanner], JointPlanner]:
+             misses_via_points: bool = False, passing: ViaPointBehaviour = THROUGH,
+             needs_acceleration_limit: bool = True) -> Callable[[JointPlanner], JointPlanner]:
     """
     Return a decorator that makes a function the planner of an id.
 
@@ -57,6 +58,8 @@ def register(planner_id: str, some_durations: bool = False,
         has the distances.
     passing : ViaPointBehaviour
         How it passes via points, for the estimate of time by which whole turns are chosen.
+    needs_acceleration_limit : bool
+        Whether every joint needs an acceleration limit; else an effort limit does as well.
 
     Returns
     -------
@@ -66,7 +69,8 @@ def register(planner_id: str, some_durations: bool = False,
     """
     def remember(planner: JointPlanner) -> JointPlanner:
         REGISTERED[planner_id] = Registered(
-            planner, some_durations, misses_via_points=misses_via_points, passing=passing)
+            planner, some_durations, misses_via_points=misses_via_points, passing=passing,
+            needs_acceleration_limit=needs_acceleration_limit)
         return planner
 
     return remember
@@ -75,6 +79,8 @@ def register(planner_id: str, some_durations: bool = False,
 def register_path(planner_id: str) -> Callable[[CartesianPlanner], CartesianPlanner]:
     """
     Return a decorator that makes a function the planner of Cartesian paths of an id.
+
+    Along a path an effort limit does as well as an acceleration limit.
 
     Parameters
     ----------
@@ -88,7 +94,8 @@ def register_path(planner_id: str) -> Callable[[CartesianPlanner], CartesianPlan
 
     """
     def remember(planner: CartesianPlanner) -> CartesianPlanner:
-        REGISTERED[planner_id] = Registered(None, plan_path=planner)
+        REGISTERED[planner_id] = Registered(
+            None, plan_path=planner, needs_acceleration_limit=False)
         return planner
 
     return remember

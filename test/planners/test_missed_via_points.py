@@ -21,7 +21,7 @@ from helpers.planning_cases import ARM, LIMITS, through
 import numpy as np
 import pytest
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.planners.missed_via_points import miss_note, Misses
+from rrr_traj_planner.planners.missed_via_points import miss_note, ViaPointErrors
 from rrr_traj_planner.planners.planning import plan
 
 PLANNERS = ['cycloid_approach_b', 'poly_414']
@@ -76,6 +76,6 @@ def test_slower_motions_of_approach_b_miss_by_less():
 
 
 def test_one_miss_is_one_via_point():
-    found = Misses(np.array([0.0, 0.0123, 0.0]), np.array([1e-12, 0.0456, 0.0]))
+    found = ViaPointErrors(np.array([0.0, 0.0123, 0.0]), np.array([1e-12, 0.0456, 0.0]))
     assert miss_note(found) == 'via point missed by construction: 1 by 0.0123 m (0.0456 rad)'
-    assert miss_note(Misses(np.zeros(2), np.zeros(2))) == ''
+    assert miss_note(ViaPointErrors(np.zeros(2), np.zeros(2))) == ''

@@ -19,6 +19,7 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.registry import planner, planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
@@ -94,6 +95,17 @@ def test_a_function_registered_is_the_planner_of_its_id(monkeypatch):
         return task
 
     assert planner('mine').plan is mine
+
+
+@pytest.mark.parametrize('planner_id', planner_ids())
+def test_a_planner_needs_acceleration_limits_as_registered(planner_id):
+    without = JointLimits(max_acceleration=[np.inf] * 3, max_effort=[300.0] * 3)
+    request = PlanningRequest(POINTS, planner_id=planner_id)
+    if planner(planner_id).needs_acceleration_limit:
+        with pytest.raises(InvalidInputError, match='needs acceleration limits, joint_1 has none'):
+            plan(RobotModel(), without, request)
+    else:
+        assert plan(RobotModel(), without, request).trajectory.duration > 0.0
 
 
 def test_law_is_the_cycloid_s_peaks_over_the_limits():

@@ -21,17 +21,19 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
+from rrr_traj_planner.core.scalars import not_negative
 
 # Part of the largest velocity of a motion up to which a velocity is rounding: the joint rests.
 # Chosen: some hundred times the rounding of a sum of velocities near singular positions.
 AT_REST = 1e-12
 
 
-def motor_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
+def motor_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike,
+                 rest_speed: float = 0.0) -> Array:
     """
-    Return the motors' torques: M qdd + C qd + g + viscous qd + coulomb sign(qd).
+    Return the motors' torques: M qdd + C qd + g + viscous qd + coulomb direction(qd).
 
-    A joint at rest (qd exactly 0) has no Coulomb friction: what friction would help to hold is
+    A joint at rest (`direction_of`) has no Coulomb friction: what friction would help to hold is
     left to the motor.
 
     Parameters
@@ -40,6 +42,9 @@ def motor_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike)
         The arm.
     q, qd, qdd : array_like, shape (..., 3)
         Joint positions [rad], velocities [rad/s] and accelerations [rad/s^2].
+    rest_speed : float
+        Speed up to which a joint is at rest [rad/s]: for a planned motion, that of
+        `rest_speed_of`.
 
     Returns
     -------
@@ -49,11 +54,14 @@ def motor_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike)
     Raises
     ------
     InvalidInputError
-        If a shape is wrong, or a value not finite.
+        If a shape is wrong, or a value not finite; if the speed is negative.
 
     """
+    not_negative('rest_speed', rest_speed, 'rad/s')
     torque, coulomb = smooth_motor_torque(model, q, qd, qdd), model.friction.coulomb
-    return torque + coulomb * np.sign(np.asarray(qd, dtype=float)) if coulomb.any() else torque
+    if not coulomb.any():
+        return torque
+    return torque + coulomb * direction_of(np.asarray(qd, dtype=float), rest_speed)
 
 
 def smooth_motor_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
@@ -82,20 +90,39 @@ def smooth_motor_torque(model: RobotModel, q: ArrayLike, qd: ArrayLike, qdd: Arr
     return torque + viscous * np.asarray(qd, dtype=float) if viscous.any() else torque
 
 
-def direction_of(qd: Array) -> Array:
+def direction_of(qd: Array, rest_speed: float) -> Array:
     """
-    Return the directions in which joints move.
+    Return the directions in which joints move, by which Coulomb friction goes.
 
     Parameters
     ----------
     qd : ndarray, shape (..., 3)
-        Velocities of one motion [rad/s].
+        Velocities [rad/s].
+    rest_speed : float
+        Speed up to which a joint is at rest [rad/s].
 
     Returns
     -------
     ndarray, shape (..., 3)
-        1, -1, or 0 where the velocity is zero up to rounding.
+        1, -1, or 0 at rest.
 
     """
-    speed = np.abs(qd)
-    return np.where(speed > AT_REST * speed.max(initial=0.0), np.sign(qd), 0.0)
+    return np.where(np.abs(qd) > rest_speed, np.sign(qd), 0.0)
+
+
+def rest_speed_of(qd: Array) -> float:
+    """
+    Return the speed up to which a motion's velocities are rounding, of joints at rest.
+
+    Parameters
+    ----------
+    qd : ndarray, shape (..., 3)
+        Velocities over the whole motion [rad/s], or derivatives over a whole path.
+
+    Returns
+    -------
+    float
+        `AT_REST` of the largest.
+
+    """
+    return AT_REST * float(np.abs(qd).max(initial=0.0))

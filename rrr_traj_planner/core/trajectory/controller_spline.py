@@ -29,7 +29,11 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
-from rrr_traj_planner.core.dynamics.motor_torque import direction_of, smooth_motor_torque
+from rrr_traj_planner.core.dynamics.motor_torque import (
+    direction_of,
+    rest_speed_of,
+    smooth_motor_torque,
+)
 from rrr_traj_planner.core.trajectory.bernstein import bernstein_forms, through_samples
 from rrr_traj_planner.core.trajectory.quintic_spline import QuinticSpline
 from rrr_traj_planner.core.trajectory.time_scaling import squared_time_scale
@@ -92,7 +96,8 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
     fractions = np.linspace(0.0, 1.0, COARSE_STEPS + 1)
     q, qd, qdd = spline.within(fractions)
     should_stop()
-    tau, push = _torque_and_push(model, q, qd, qdd)
+    rest_speed = rest_speed_of(qd)
+    tau, push = _torque_and_push(model, q, qd, qdd, rest_speed)
     effort = np.abs(tau + push).max(axis=(0, 1))
     should_stop()
     forms = bernstein_forms(spline.coefficients, np.diff(spline.knots))
@@ -109,7 +114,7 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
     found = SplineExcess(none + 1.0, none, none.copy(), effort, spline.peak_jerks())
     index = np.flatnonzero(doubtful)
     if len(index):
-        *fine, most = _dense_check(model, limits, spline, index)
+        *fine, most = _dense_check(model, limits, spline, index, rest_speed)
         for all_of_them, some in zip(found, fine):
             all_of_them[index] = some
         found = found._replace(effort=np.maximum(effort, most))
@@ -117,16 +122,16 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
 
 
 def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
-                 index: IntArray) -> tuple[Array, Array, Array, Array]:
+                 index: IntArray, rest_speed: float) -> tuple[Array, Array, Array, Array]:
     """Return time scale, distance outside, place and effort of some intervals, checked densely."""
     fractions = np.linspace(0.0, 1.0, FINE_STEPS + 1)
     q, qd, qdd = spline.within(fractions, index)
-    tau, push = _torque_and_push(model, q, qd, qdd)
+    tau, push = _torque_and_push(model, q, qd, qdd, rest_speed)
     ratios = np.stack([
         np.abs(qd) / limits.max_velocity, np.abs(qdd) / limits.max_acceleration,
         np.abs(tau + push) / limits.max_effort])
     factors = np.stack([ratios[0], np.sqrt(ratios[1]), np.sqrt(
-        squared_time_scale(model, limits, q, qd, qdd))])
+        squared_time_scale(model, limits, q, qd, qdd, rest_speed))])
     # Friction steps between samples where a joint turns: peaks are those of the smooth torque.
     effort = np.maximum(_between(tau) + push, _between(-tau) - push)
     peaks = np.concatenate((_between(ratios[:2]), effort[np.newaxis] / limits.max_effort))
@@ -138,10 +143,11 @@ def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
             fractions[factors.argmax(axis=0)], effort.max(axis=(0, 1)))
 
 
-def _torque_and_push(model: RobotModel, q: Array, qd: Array, qdd: Array) -> tuple[Array, Array]:
+def _torque_and_push(model: RobotModel, q: Array, qd: Array, qdd: Array,
+                     rest_speed: float) -> tuple[Array, Array]:
     """Return the motors' torques without Coulomb friction, and for Coulomb friction [N m]."""
     return (smooth_motor_torque(model, q, qd, qdd),
-            model.friction.coulomb * direction_of(qd))
+            model.friction.coulomb * direction_of(qd, rest_speed))
 
 
 def _at_reversals(q: Array, qd: Array, qdd: Array, step: Array) -> Array:

@@ -25,8 +25,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.motor_torque import direction_of
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.dynamics.motor_torque import direction_of, rest_speed_of
 from rrr_traj_planner.core.trajectory.trajectory import ONE_SIDED, Trajectory
 
 MOST_STEPS = 60          # of the iteration; chosen: bisections alone would reach rounding
@@ -35,14 +35,25 @@ ZERO_TOLERANCE = 1e-12   # s; chosen: a thousandth of ONE_SIDED
 
 class Directions(NamedTuple):
     """
-    The directions of motion, for each joint constant between its turning points.
+    The directions of motion, for each joint constant between its changes of direction.
 
-    A joint that rests over an interval has direction 0 there, and at the instants of stops.
+    A joint that rests over an interval has direction 0 there: resting and moving on are changes.
+    Attributes hold arrays for joints 1 to 3; joint j changes k_j times, and stops m_j times.
+
+    Attributes
+    ----------
+    times : tuple of ndarray, shape (k_j,)
+        Changes of direction [s], increasing.
+    signs : tuple of ndarray, shape (k_j + 1,)
+        1, -1 or 0: before the first change, between each two, and after the last.
+    stops : tuple of ndarray, shape (m_j,)
+        Instants [s] at which a joint rests that moves before or after, or both; increasing.
+
     """
 
-    times: tuple[Array, Array, Array]  # of each joint's changes of direction [s], increasing
-    signs: tuple[Array, Array, Array]  # 1, -1 or 0 before, between and after them
-    stops: tuple[Array, Array, Array]  # instants at which it rests: the start, the end, others [s]
+    times: tuple[Array, Array, Array]
+    signs: tuple[Array, Array, Array]
+    stops: tuple[Array, Array, Array]
 
     def at(self, t: Array) -> Array:
         """
@@ -118,12 +129,22 @@ def directions(trajectory: Trajectory, grid: Array) -> Directions:
     found = trajectory.cache.get('directions')
     if not isinstance(found, Directions):
         velocity, slowest = _functions(trajectory)
-        at_grid = direction_of(trajectory(grid)[1]).T
+        qd = trajectory(grid)[1]
+        at_grid = direction_of(qd, rest_speed_of(qd)).T
         (t1, s1), (t2, s2), (t3, s3) = (
             _of_joint(velocity, slowest, grid, direction, j)
             for j, direction in enumerate(at_grid))
-        stops = grid[at_grid[0] == 0.0], grid[at_grid[1] == 0.0], grid[at_grid[2] == 0.0]
-        found = trajectory.cache['directions'] = Directions((t1, t2, t3), (s1, s2, s3), stops)
+        stop1, stop2, stop3 = (grid[_alone(direction == 0.0)] for direction in at_grid)
+        found = trajectory.cache['directions'] = Directions(
+            (t1, t2, t3), (s1, s2, s3), (stop1, stop2, stop3))
+    return found
+
+
+def _alone(resting: BoolArray) -> BoolArray:
+    """Return which points of a grid rest without their neighbours: instants, not intervals."""
+    found = resting.copy()
+    found[1:] &= ~resting[:-1]
+    found[:-1] &= ~resting[1:]
     return found
 
 

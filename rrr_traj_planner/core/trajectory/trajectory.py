@@ -82,7 +82,7 @@ class Trajectory(ReadOnlyArrays, ABC):
     via_times : ndarray
         When each via point is passed [s], never decreasing; at the end the duration exactly.
     note : str
-        Remark on how the motion was planned; mostly empty.
+        Remark on how the motion was planned; usually empty.
 
     """
 
@@ -158,7 +158,7 @@ class Trajectory(ReadOnlyArrays, ABC):
 
     @property
     def step_times(self) -> Array:
-        """Return the times [s] at which acceleration steps, increasing; mostly none."""
+        """Return the times [s] at which acceleration steps, increasing; usually none."""
         return np.zeros(0)
 
     @abstractmethod

@@ -52,10 +52,6 @@ Values = Mapping[str, Any]
 # grows if it is above 2.
 MAX_DAMPING_PER_STEP = 1.0
 
-# Planners in joint space that need no acceleration limit where there is one of effort; those along
-# paths do not either.
-BY_EFFORT = ('time_optimal',)
-
 
 @dataclass(frozen=True, eq=False)
 class PlannerConfig:
@@ -133,8 +129,8 @@ class PlannerConfig:
         missing = np.isinf(self.limits.max_acceleration)
         if not missing.any() or np.isinf(self.default_max_acceleration):
             return self.limits
-        ids = [planner_id or self.default_planner_id for planner_id in planner_ids]
-        if all(i in BY_EFFORT or planner(i).plan_path is not None for i in ids):
+        methods = [planner(planner_id or self.default_planner_id) for planner_id in planner_ids]
+        if not any(method.needs_acceleration_limit for method in methods):
             missing &= np.isinf(checked_limits(self.model, self.limits).max_effort)
         return replace(self.limits, max_acceleration=np.where(
             missing, self.default_max_acceleration, self.limits.max_acceleration))

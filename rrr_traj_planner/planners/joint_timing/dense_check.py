@@ -88,8 +88,8 @@ class JointCheck:
         factor = limits.time_scale(np.abs(self.qd), np.abs(self.qdd), self._peak_jerk)
         if tau is None or (np.abs(tau) <= self._effort * (1.0 + LIMIT_ROUNDING)).all():
             return factor
-        # The limits are less Coulomb friction already: no direction, so that it is not added.
-        parts = torque_parts(self._task.model, self.q, self.qd, self.qdd, np.zeros(3))
+        # Without Coulomb friction, which is off the limits already.
+        parts = torque_parts(self._task.model, self.q, self.qd, self.qdd)
         return float(max(factor, np.sqrt(squared_scaling(self._effort, parts).max())))
 
     @cached_property

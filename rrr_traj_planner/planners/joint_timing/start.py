@@ -20,7 +20,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.errors import LimitViolationError
-from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, torque_parts
+from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling_any_slower, torque_parts
 from rrr_traj_planner.planners.effort_errors import torque_texts
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.feasible_path import (
@@ -102,10 +102,9 @@ def _least_durations(task: JointTask, constraints: JointConstraints,
         T = np.maximum(T, START_SCALING * constraints.least_T)
     if not constraints.with_torque:
         return T, T
-    # Coulomb friction is off the limits already.
-    parts = torque_parts(task.model, at.q[:, 1:], at.qd[:, 1:], at.qdd[:, 1:], np.zeros(3))
-    by_torque = np.sqrt(squared_scaling(constraints.effort, parts, all_slower=True).max(
-        axis=(1, 2)))
+    # Without Coulomb friction, which is off the limits already.
+    parts = torque_parts(task.model, at.q[:, 1:], at.qd[:, 1:], at.qdd[:, 1:])
+    by_torque = np.sqrt(squared_scaling_any_slower(constraints.effort, parts).max(axis=(1, 2)))
     blocked = (gravity_ratio(task.model, limits, at.q) >= 1.0 - HOLDING_MARGIN)[:, 1:-1]
     by_torque[blocked.any(axis=1)] = np.inf
     return np.maximum(T, START_SCALING * by_torque), T

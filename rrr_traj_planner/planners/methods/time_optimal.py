@@ -47,7 +47,7 @@ SHAPED = 0.1      # acceleration reversal / segment, by duration: RAMPS suffice 
 MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps are about a tenth of it
 
 
-@register('time_optimal', some_durations=True,
+@register('time_optimal', some_durations=True, needs_acceleration_limit=False,
           passing=ViaPointBehaviour(mean_acceleration=MEAN_ACCELERATION))
 def plan(task: JointTask) -> Trajectory:
     """

@@ -26,7 +26,11 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits, kinematic_time_scale
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.kernels import contiguous
-from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, TorqueParts
+from rrr_traj_planner.core.trajectory.time_scaling import (
+    squared_scaling,
+    squared_scaling_any_slower,
+    TorqueParts,
+)
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import FAR, Limits
@@ -156,10 +160,11 @@ def limited_quantities(problem: TimingProblem, z: Array, at_points: bool) -> tup
     return x, gravity
 
 
-def least_time_scale(x: Array, gravity: Array, viscous: Array, bounds: Array,
-                     all_slower: bool = False) -> float:
+def least_time_scale(x: Array, gravity: Array, viscous: Array, bounds: Array) -> float:
     """
     Return the least factor on all times with which limits hold at given points.
+
+    Torques may exceed their limits again at larger factors.
 
     Parameters
     ----------
@@ -170,8 +175,6 @@ def least_time_scale(x: Array, gravity: Array, viscous: Array, bounds: Array,
     bounds : ndarray, shape (..., QUANTITIES)
         On magnitudes, infinite where there is none; that on acceleration along the path is left
         out.
-    all_slower : bool
-        Whether torques must keep their limits at every larger factor too.
 
     Returns
     -------
@@ -179,9 +182,36 @@ def least_time_scale(x: Array, gravity: Array, viscous: Array, bounds: Array,
         At most 1 where they hold as it is; infinite where no factor helps.
 
     """
-    ratio = (np.abs(x) / bounds).reshape(-1, QUANTITIES).max(axis=0)
+    by_torque = squared_scaling(bounds[..., TORQUE], _torque_parts(x, gravity, viscous))
+    return max(_kinematic_scale(x, bounds), float(np.sqrt(by_torque.max())))
+
+
+def time_scale_any_slower(x: Array, gravity: Array, viscous: Array, bounds: Array) -> float:
+    """
+    Return the factor on all times with which, and with every larger one, limits hold.
+
+    Parameters
+    ----------
+    x, gravity, viscous, bounds
+        As of `least_time_scale`.
+
+    Returns
+    -------
+    float
+        Infinite where the torque of gravity and Coulomb friction exceeds its limit.
+
+    """
+    by_torque = squared_scaling_any_slower(bounds[..., TORQUE], _torque_parts(x, gravity, viscous))
+    return max(_kinematic_scale(x, bounds), float(np.sqrt(by_torque.max())))
+
+
+def _torque_parts(x: Array, gravity: Array, viscous: Array) -> TorqueParts:
     friction = viscous * x[..., VELOCITY]
-    by_torque = squared_scaling(bounds[..., TORQUE], TorqueParts(
-        gravity, friction, x[..., TORQUE] - friction - gravity), all_slower)
+    return TorqueParts(gravity, friction, x[..., TORQUE] - friction - gravity)
+
+
+def _kinematic_scale(x: Array, bounds: Array) -> float:
+    """Return the factor for joint velocities, accelerations and jerks, and the tip's speed."""
+    ratio = (np.abs(x) / bounds).reshape(-1, QUANTITIES).max(axis=0)
     kinematic = kinematic_time_scale(ratio[VELOCITY], ratio[ACCELERATION], ratio[JERK])
-    return float(max(kinematic, ratio[SPEED], np.sqrt(by_torque.max())))
+    return float(max(kinematic, ratio[SPEED]))

@@ -27,7 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.motor_torque import direction_of
+from rrr_traj_planner.core.dynamics.motor_torque import direction_of, rest_speed_of
 from rrr_traj_planner.core.dynamics.rigid_body import path_torque_terms
 from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
@@ -111,7 +111,7 @@ class PathTable:
 
     def _with_friction(self, terms: PathTerms) -> tuple[Array, PathTerms]:
         """Return the friction that is left out, and terms with that of joints that do not turn."""
-        direction, coulomb = direction_of(terms.dq), self.friction.coulomb
+        direction, coulomb = direction_of(terms.dq, rest_speed_of(terms.dq)), self.friction.coulomb
         least, most = direction.min(axis=1, keepdims=True), direction.max(axis=1, keepdims=True)
         turns = least * most < 0.0
         one_way = np.where(turns, 0.0, np.sign(least + most))

@@ -24,10 +24,10 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.planners.path_timing.constraints import (
-    least_time_scale,
     limited_quantities,
     PathConstraints,
     QUANTITIES,
+    time_scale_any_slower,
 )
 from rrr_traj_planner.planners.path_timing.dense_check import dense_check, PathCheck
 from rrr_traj_planner.planners.path_timing.initial_speeds import initial_speeds_of
@@ -155,6 +155,5 @@ def _slow_start(problem: PathProblem, constraints: PathConstraints) -> Variables
         m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))
     z = np.concatenate(grid.states(constraints.points, m), axis=-1)
     x, gravity = limited_quantities(constraints.problem, z, at_points=True)
-    return time_scaled(m, START_SCALING * least_time_scale(
-        x, gravity, table.friction.viscous, bounds - constraints.margins - problem.reserve,
-        all_slower=True))
+    return time_scaled(m, START_SCALING * time_scale_any_slower(
+        x, gravity, table.friction.viscous, bounds - constraints.margins - problem.reserve))

@@ -30,7 +30,6 @@ from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, TorqueParts
 from rrr_traj_planner.core.trajectory.torque import peak_torque, time_scale_for_torque
 from rrr_traj_planner.core.trajectory.torque_sweep import torque_sweep
 
@@ -134,40 +133,6 @@ def test_motion_slowed_by_the_factor_brings_its_torque_to_the_limit(seed):
     for j in np.flatnonzero(factors > 1.0):
         slowed = peak_torque(arm, trajectory.time_scaled(factors[j])).value
         assert slowed[j] <= effort[j] * (1.0 + PEAK) or factors[j] < factors.max()
-
-
-def brute_force(limit, k, v, m):
-    """Return the least factor of a torque by a fine search from 1 down, or up."""
-    def within(f):
-        return np.abs(k + v / f + m / f ** 2) <= limit
-
-    if within(1.0):
-        f = np.linspace(1.0, 1e-3, 100001)
-        return f[np.argmax(~within(f))] if (~within(f)).any() else 0.0
-    f = np.geomspace(1.0, 1e3, 1000001)
-    return f[np.argmax(within(f))]
-
-
-@pytest.mark.parametrize('seed', range(40))
-def test_least_factor_of_time_is_that_of_a_fine_search(seed):
-    rng = np.random.default_rng(seed)
-    k, (v, m) = rng.uniform(-9.0, 9.0), rng.normal(size=2) * rng.choice([1.0, 10.0, 30.0], 2)
-    parts = TorqueParts(*(np.array([x]) for x in (k, v, m)))
-    limit = np.array([10.0])
-    found = float(np.sqrt(squared_scaling(limit, parts)[0]))
-    assert found == pytest.approx(brute_force(10.0, k, v, m), rel=2e-5, abs=2e-3)
-    slower = float(np.sqrt(squared_scaling(limit, parts, all_slower=True)[0]))
-    f = np.geomspace(max(slower, 1e-3) * (1.0 + 1e-9), 1e4, 20001)
-    assert (np.abs(k + v / f + m / f ** 2) <= 10.0 * (1.0 + 1e-9)).all()
-    assert slower >= found * (1.0 - 1e-12)
-
-
-def test_without_viscous_friction_the_quadratic_is_the_one_of_gravity_and_inertia():
-    rng = np.random.default_rng(0)
-    k, m, small = rng.uniform(-9.0, 9.0, 200), rng.normal(0.0, 20.0, 200), np.full(200, 1e-13)
-    limit = np.full(200, 10.0)
-    plain = squared_scaling(limit, TorqueParts(k, np.zeros(200), m))
-    np.testing.assert_allclose(squared_scaling(limit, TorqueParts(k, small, m)), plain, rtol=1e-9)
 
 
 def test_effort_limits_count_coulomb_friction_as_torque_that_no_slowness_takes_away():

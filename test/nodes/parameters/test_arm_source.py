@@ -31,6 +31,7 @@ from rrr_traj_planner.nodes.parameters.configuration import ArmConfig, PlannerCo
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.parameter_files import config_of, folder_of_value
 from rrr_traj_planner.nodes.parameters.table import ARM, PLANNER
+from rrr_traj_planner.planners.registration import register
 
 TEXT = arm()
 LIMITS = """
@@ -161,6 +162,16 @@ def test_default_acceleration_is_taken_where_a_planner_needs_one(ids, expected):
     config = planner({'default_max_acceleration': 2.0, 'joint_limits.j2.max_acceleration': 5.0,
                       'joint_limits.j3.has_effort_limits': False})
     assert config.limits_for(*ids).max_acceleration.tolist() == expected
+
+
+def test_default_acceleration_is_not_taken_for_a_new_planner_that_says_so(monkeypatch):
+    monkeypatch.setattr('rrr_traj_planner.planners.registration.REGISTERED', {})
+    register('limited by torque', needs_acceleration_limit=False)(lambda task: task)
+    register('limited by both')(lambda task: task)
+    config = planner({'default_max_acceleration': 2.0, 'default_planner_id': 'limited by both'})
+    assert config.limits_for('limited by torque').max_acceleration.tolist() == [inf] * 3
+    assert config.limits_for('limited by both').max_acceleration.tolist() == [2.0] * 3
+    assert config.limits_for('limited by torque', '').max_acceleration.tolist() == [2.0] * 3
 
 
 def test_missing_acceleration_limits_are_said_and_those_of_the_thesis_s_arm_stay_missing():
