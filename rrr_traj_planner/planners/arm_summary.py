@@ -29,7 +29,7 @@ from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
 from rrr_traj_planner.core.kinematics.common_normal import common_normal
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.planners.effort_limits import check_friction, checked_limits
+from rrr_traj_planner.planners.effort_limits import check_friction
 from rrr_traj_planner.planners.range_extremes import finite_ranges, largest
 
 # Of offsets over the arm's size, of angles [rad], and of torques over that of the arm's weight at
@@ -64,7 +64,7 @@ def summary(arm: UrdfArm, model: RobotModel, limits: JointLimits) -> list[str]:
         If a joint's motor cannot overcome its friction.
 
     """
-    check_friction(model, checked_limits(model, limits))
+    check_friction(model, limits)
     return [f'three joints from link {arm.base} to link {arm.tip}', 'joints',
             *_joints(model, limits), 'links, with what is fixed to them', *_links(arm, model),
             'geometry', *(f'  {line}' for line in (
@@ -97,8 +97,8 @@ def _links(arm: UrdfArm, model: RobotModel) -> Iterator[str]:
         yield f'  {name}: {mass:.4g} kg' + (
             f', centre of mass with joints at zero ({where}) m' if mass > 0.0 else '')
     if model.singular_inertia_reason:
-        yield '  torque is not checked, and the arm cannot be simulated: ' + (
-            'no link has a mass' if not arm.has_masses else model.singular_inertia_reason)
+        unchecked = '' if model.has_inertia else 'torque is not checked, and '
+        yield f'  {unchecked}the arm cannot be simulated: {model.singular_inertia_reason}'
 
 
 def _first_axes(model: RobotModel) -> str:

@@ -20,8 +20,6 @@ They are dropped where the torque is undefined, and reduced by Coulomb friction.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
@@ -31,7 +29,7 @@ from rrr_traj_planner.core.errors import format_distinct, LimitViolationError
 
 def torque_note(model: RobotModel, limits: JointLimits) -> str:
     """
-    Return the note on limits that `checked_limits` leaves out; usually empty.
+    Return the note on effort limits that mean nothing; usually empty.
 
     Parameters
     ----------
@@ -46,34 +44,9 @@ def torque_note(model: RobotModel, limits: JointLimits) -> str:
         For the plan.
 
     """
-    reason = model.singular_inertia_reason
-    if not reason or np.isinf(limits.max_effort).all():
+    if model.has_inertia or np.isinf(limits.max_effort).all():
         return ''
-    if not model.chain.mass.any():
-        reason = 'the arm has no masses'
-    return f'torque is not checked: {reason}'
-
-
-def checked_limits(model: RobotModel, limits: JointLimits) -> JointLimits:
-    """
-    Return the limits that can be checked: without those of effort where the arm lacks inertia.
-
-    Parameters
-    ----------
-    model : RobotModel
-        The arm.
-    limits : JointLimits
-        Its limits.
-
-    Returns
-    -------
-    JointLimits
-        The same object where the arm has masses or rotor inertia.
-
-    """
-    if model.singular_inertia_reason:
-        return replace(limits, max_effort=np.full(3, np.inf))
-    return limits
+    return 'torque is not checked: no link has a mass'
 
 
 def check_friction(model: RobotModel, limits: JointLimits) -> None:

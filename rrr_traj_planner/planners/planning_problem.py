@@ -29,7 +29,6 @@ from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehavi
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.planners.effort_limits import (
     check_friction,
-    checked_limits,
     torque_note,
 )
 from rrr_traj_planner.planners.request import PlanningRequest
@@ -112,7 +111,7 @@ def planning_problem(model: RobotModel, limits: JointLimits,
     Returns
     -------
     PlanningProblem
-        With scaled limits; without those of effort for an arm that lacks inertia.
+        With scaled limits.
 
     Raises
     ------
@@ -128,8 +127,7 @@ def planning_problem(model: RobotModel, limits: JointLimits,
     if asked != ANY_POSTURE and not has_named_postures(model):
         raise InvalidInputError(
             f'{asked} is asked for, but the postures of this arm have no names')
-    scaled = checked_limits(model, limits).scaled(
-        request.velocity_scaling, request.acceleration_scaling)
+    scaled = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
     check_friction(model, scaled)
     start = None if request.start is None else check_start(
         model, scaled, request.start, request.start_state_tolerance)

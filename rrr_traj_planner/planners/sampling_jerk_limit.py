@@ -40,6 +40,10 @@ SAMPLES_PER_TRANSITION = 5.0
 CONSTANT_JERK_FRACTION, SLOW_ENOUGH = 0.6, 7.5
 
 
+# Part of the arm's largest inertia up to which a joint's is none: rounding of the tables. Chosen.
+NO_INERTIA = 1e-12
+
+
 class SamplingLimits(NamedTuple):
     """Limits with the jerk limit due to sampling, and the shape of ramps."""
 
@@ -131,11 +135,16 @@ def acceleration_scale(model: RobotModel, limits: JointLimits, q: Array) -> Arra
         If a joint has neither an acceleration nor an effort limit.
 
     """
-    lacking = np.isinf(limits.max_acceleration) & np.isinf(limits.max_effort)
-    if lacking.any():
-        raise InvalidInputError(
-            'the fastest motion needs an acceleration or an effort limit on every joint, '
-            f'{model.joint_names[int(lacking.argmax())]} has neither')
     inertia = np.diagonal(inertia_matrix(model, q), axis1=1, axis2=2)
     torque = limits.max_effort + np.abs(gravity_torque(model, q))
-    return np.asarray(np.minimum(limits.max_acceleration, (torque / inertia).max(axis=0)))
+    is_none = inertia <= NO_INERTIA * inertia.max()
+    by_torque = np.where(is_none, np.inf, torque / np.where(is_none, 1.0, inertia)).max(axis=0)
+    scale = np.minimum(limits.max_acceleration, by_torque)
+    if np.isinf(scale).any():
+        j = int(np.isinf(scale).argmax())
+        raise InvalidInputError(
+            'the fastest motion needs an acceleration or an effort limit on every joint, '
+            f'{model.joint_names[j]} has ' + (
+                'neither' if np.isinf(limits.max_effort[j]) else
+                'an effort limit only, and no inertia in some pose'))
+    return np.asarray(scale)

@@ -109,7 +109,7 @@ def _pose(arm, rng, near=None):
         else:
             q = np.clip(near + rng.uniform(-reach, reach, 3), limits.min_position,
                         limits.max_position)
-        held = arm.model.singular_inertia_reason or (
+        held = (
             np.abs(gravity_torque(arm.model, q)) + arm.model.friction.coulomb
             <= HELD * limits.max_effort).all()
         least = np.linalg.svd(jacobian(arm.model, q), compute_uv=False)[2]
@@ -129,7 +129,7 @@ def violations(arm, request, found):
         ('velocity', qd, limits.max_velocity), ('acceleration', qdd, limits.max_acceleration),
         ('jerk', jerk, limits.max_jerk))
         if not (np.abs(x) <= bound * (1.0 + LIMIT_TOLERANCE)).all()]
-    if not arm.model.singular_inertia_reason:
+    if arm.model.has_inertia:
         share = np.abs(arm.torque(q, qd, qdd)) / limits.max_effort
         if share.max() > 1.0 + LIMIT_TOLERANCE:
             broken.append(f'torque {share.max():.9f} of its limit')

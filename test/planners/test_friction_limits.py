@@ -26,8 +26,8 @@ from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
-from rrr_traj_planner.core.errors import LimitViolationError
-from rrr_traj_planner.planners.effort_limits import checked_limits, torque_note
+from rrr_traj_planner.core.errors import InvalidInputError, LimitViolationError
+from rrr_traj_planner.planners.effort_limits import torque_note
 from rrr_traj_planner.planners.joint_timing.feasible_path import (
     gravity_ratio,
     statically_feasible_path,
@@ -83,20 +83,56 @@ def massless():
 @pytest.mark.parametrize('planner_id', planner_ids())
 def test_arm_without_masses_is_planned_for_without_torque(planner_id):
     arm = massless()
-    assert np.isinf(checked_limits(arm, LIMITS).max_effort).all()
     request = PlanningRequest(POINTS, planner_id=planner_id)
     assert planning_problem(arm, LIMITS, request).note == (
-        'torque is not checked: the arm has no masses')
+        'torque is not checked: no link has a mass')
     found = plan(arm, LIMITS, request)
     assert (found.effort == 0.0).all()
     assert (found.peaks.velocity <= LIMITS.max_velocity * (1.0 + PROMISED)).all()
 
 
-def test_arm_with_masses_has_no_note_and_keeps_its_limits():
+def test_arm_with_masses_or_rotors_has_no_note():
     assert torque_note(ARM, LIMITS) == ''
-    assert checked_limits(ARM, LIMITS) is LIMITS
-    rotors = replace(massless(), rotor_inertia=np.ones(3))
-    assert checked_limits(rotors, LIMITS) is LIMITS
+    assert torque_note(replace(massless(), rotor_inertia=np.ones(3)), LIMITS) == ''
+
+
+def peak_torque_of(arm, found):
+    t = np.linspace(0.0, found.trajectory.duration, 4001)
+    return np.abs(torques(arm, *found.trajectory(t)[:3])).max(axis=0)
+
+
+def with_light_link_3(where):
+    """Return an arm whose link 3 has no inertia about joint axis 3: its matrix is singular."""
+    chain = RobotModel().chain
+    mass, centre, inertia = chain.mass.copy(), chain.centre.copy(), chain.inertia.copy()
+    inertia[2] = 0.0
+    centre[2] = chain.point[2] + 0.3 * chain.axis[2]
+    mass[2] = {'massless': 0.0, 'on its axis': 3.0}[where]
+    return RobotModel(replace(chain, mass=mass, centre=centre, inertia=inertia))
+
+
+@pytest.mark.parametrize('where', ['massless', 'on its axis'])
+@pytest.mark.parametrize('planner_id', planner_ids())
+def test_arm_with_a_link_without_inertia_keeps_its_torque_limits(planner_id, where):
+    arm = with_light_link_3(where)
+    assert arm.singular_inertia_reason
+    found = plan(arm, LIMITS, PlanningRequest(POINTS, planner_id=planner_id))
+    assert 'not checked' not in found.note
+    peak = peak_torque_of(arm, found)
+    assert (peak <= LIMITS.max_effort * (1.0 + PROMISED)).all()
+    below = replace(LIMITS, max_effort=(0.7 * peak[0], *LIMITS.max_effort[1:]))
+    slower = plan(arm, below, PlanningRequest(POINTS, planner_id=planner_id))
+    assert slower.trajectory.duration > found.trajectory.duration
+    assert (peak_torque_of(arm, slower) <= below.max_effort * (1.0 + PROMISED)).all()
+
+
+def test_joint_whose_effort_limit_bounds_no_acceleration_needs_a_limit_of_it():
+    free = replace(LIMITS, max_acceleration=np.full(3, np.inf))
+    for where in ('massless', 'on its axis'):
+        with pytest.raises(InvalidInputError, match='joint_3 has an effort limit only, and no '
+                                                    'inertia in some pose'):
+            plan(with_light_link_3(where), free,
+                 PlanningRequest(POINTS, planner_id='time_optimal'))
 
 
 # Poses that can be held, where gravity depends on joint 1 too

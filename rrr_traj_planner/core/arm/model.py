@@ -170,9 +170,14 @@ class RobotModel(ReadOnlyArrays):
         """Coefficients of its kinematics and dynamics."""
         return tables_of(self.chain, self.gravity, self.rotor_inertia)
 
+    @property
+    def has_inertia(self) -> bool:
+        """Return whether any link has a mass or an inertia, or any motor's rotor."""
+        return self.chain.has_masses or bool(self.rotor_inertia.any())
+
     @cached_property
     def singular_inertia_reason(self) -> str:
         """Return why the inertia matrix is singular in some pose; '' where it never is."""
-        if not self.chain.has_masses and not self.rotor_inertia.any():
+        if not self.has_inertia:
             return 'no link has a mass'
         return singular_inertia_reason(self.tables.inertia)

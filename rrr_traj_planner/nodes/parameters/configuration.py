@@ -42,7 +42,6 @@ from rrr_traj_planner.nodes.parameters.arm_options import (
 )
 from rrr_traj_planner.nodes.parameters.arm_source import read
 from rrr_traj_planner.nodes.parameters.error_names import from_group, named
-from rrr_traj_planner.planners.effort_limits import checked_limits
 from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]
@@ -131,7 +130,7 @@ class PlannerConfig:
             return self.limits
         methods = [planner(planner_id or self.default_planner_id) for planner_id in planner_ids]
         if not any(method.needs_acceleration_limit for method in methods):
-            missing &= np.isinf(checked_limits(self.model, self.limits).max_effort)
+            missing &= np.isinf(self.limits.max_effort) | bool(self.model.singular_inertia_reason)
         return replace(self.limits, max_acceleration=np.where(
             missing, self.default_max_acceleration, self.limits.max_acceleration))
 

@@ -197,7 +197,7 @@ def test_strong_viscous_friction_is_integrated_as_exactly_in_long_steps_as_in_sh
                                   if p.stem != 'planar_arm'])
 def test_every_public_arm_holds_its_position_at_the_default_step(name):
     arm = described(DESCRIPTIONS / f'{name}.urdf')
-    model = arm.model if not arm.model.lacking_inertia else replace(
+    model = arm.model if not arm.model.singular_inertia_reason else replace(
         arm.model, rotor_inertia=np.full(3, 0.01))
     rest = np.clip(0.0, arm.limits.min_position, arm.limits.max_position)
     limits = replace(arm.limits, max_effort=np.full(3, np.inf))

@@ -195,7 +195,7 @@ def test_end_too_near_to_the_end_of_a_range_is_warned_of(ros):
     ('payload.mass', -1.0, 'payload.mass'), ('encoder.seed', -1, 'encoder.seed'),
     ('friction.coulomb', [1.0, -1.0, 0.0],
      'friction.coulomb[1] is -1 N m, must be in [0, 100000] N m'),
-    ('friction.viscous', [0.0, 0.0, 1e5], 'too much for a physics step of 0.001 s'),
+    ('friction.viscous', [0.0, 0.0, 1e5], 'too much for a physics_step of 0.001 s'),
     ('publish_clock', True, 'read-only')])
 def test_options_without_sense_are_refused(ros, name, value, text):
     arm = Arm(ros)
