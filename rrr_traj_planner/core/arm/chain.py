@@ -109,7 +109,8 @@ class Chain(ReadOnlyArrays):
         If a value is not finite, an axis is zero, a mass is negative, or an inertia tensor is not
         symmetric or has a negative principal moment.
     UnsupportedChainError
-        If joint axes 1 and 2 are parallel, or the tip lies on joint axis 3.
+        If joint axes 1 and 2 are parallel, or the tip cannot leave a surface: it lies on joint
+        axis 3, joint axes 2 and 3 are one line, or all three meet in one point.
 
     """
 
@@ -134,8 +135,16 @@ class Chain(ReadOnlyArrays):
         self._check_inertia()
 
     def _check_geometry(self) -> None:
-        """Refuse parallel first axes, and a tip that joint 3 does not move."""
-        if np.linalg.norm(np.cross(self.axis[0], self.axis[1])) < PARALLEL:
+        """
+        Refuse parallel first axes, and arms whose Jacobian is singular in every pose.
+
+        It is s r Q' / 2 + a k' y (`core.kinematics.branch_factors`). Q' is zero in every pose if
+        the tip is on joint axis 3, or the foot of the common normal of joint axes 1 and 2 is; then
+        the rest is zero too if these meet (a = 0), or if joint axes 2 and 3 are parallel (k' = 0).
+        """
+        across = np.cross(self.axis[0], self.axis[1])
+        s = float(np.linalg.norm(across))
+        if s < PARALLEL:
             raise UnsupportedChainError(
                 'joint axes {} and {} are parallel: planar and SCARA-like arms are not supported',
                 (1, 2))
@@ -143,6 +152,17 @@ class Chain(ReadOnlyArrays):
         if lever <= ON_AXIS * self.size:
             raise UnsupportedChainError(
                 'the tip is on joint axis {}, which does not move it', (3,))
+        between = self.point[1] - self.point[0]
+        foot = self.point[1] + self.axis[1] * (np.cross(between, self.axis[0]) @ across / s ** 2)
+        nothing = ON_AXIS * self.size
+        if np.linalg.norm(np.cross(self.axis[2], foot - self.point[2])) > nothing:
+            return
+        if np.linalg.norm(np.cross(self.axis[1], self.axis[2])) <= ON_AXIS:
+            raise UnsupportedChainError(
+                'joint axes {} and {} are one line: the tip moves on a surface', (2, 3))
+        if abs(between @ across / s) <= nothing:
+            raise UnsupportedChainError(
+                'joint axes {}, {} and {} meet in one point: the tip moves on a sphere', (1, 2, 3))
 
     def _check_inertia(self) -> None:
         """Refuse negative masses and tensors that no body has even without regard to its shape."""

@@ -41,7 +41,7 @@ def link_positions(model: RobotModel, q: Sequence[float]) -> tuple[Point, ...]:
 
     Returns
     -------
-    tuple of 3 to 5 points
+    tuple of 4 or 5 points
         Base frame [m]: the base's origin, the joints' points (one, where two joints have the same)
         and the tip. The base's origin and joint 1's point do not move; the number
         is the same in every pose.

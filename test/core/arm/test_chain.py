@@ -23,7 +23,9 @@ from helpers.random_chains import random_chain
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.chain import UnsupportedChainError
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.kinematics.forward import jacobian
 
 ROUNDING = 1e-12
 CHAIN = random_chain(np.random.default_rng(0))
@@ -47,6 +49,34 @@ SKEW = np.array([[1.0, 0.1, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 def test_what_is_no_arm_is_refused(changes, text):
     with pytest.raises(InvalidInputError, match=text):
         replace(CHAIN, **changes)
+
+
+def turned_by(R, points):
+    return np.asarray(points, dtype=float) @ R.T
+
+
+@pytest.mark.parametrize('seed', range(6))
+@pytest.mark.parametrize(('axis', 'point', 'text'), [
+    ([(0, 0, 1), (0, 1, 0), (0, -1, 0)], [(0, 0, 0), (0.1, 0, 0.5), (0.1, 0.3, 0.5)],
+     '^joint axes 2 and 3 are one line: the tip moves on a surface$'),
+    ([(0, 0, 1), (0.3, 1, 0.2), (1, 0, 0.5)], [(0, 0, 0.5), (0.3, 1, 0.7), (-2, 0, -1)],
+     '^joint axes 1, 2 and 3 meet in one point: the tip moves on a sphere$')])
+def test_arms_whose_jacobian_is_singular_in_every_pose_are_refused(axis, point, text, seed):
+    rng = np.random.default_rng(seed)
+    R, tip = np.linalg.qr(rng.normal(size=(3, 3)))[0], rng.uniform(-1.0, 1.0, 3)
+    shift = rng.uniform(-1.0, 1.0, 3)
+    if 'meet' in text:  # in (0, 0, 0)
+        point = np.array([3.0, -1.0, 2.0])[:, np.newaxis] * np.array(axis, dtype=float)
+    change = {'axis': turned_by(R, axis), 'point': turned_by(R, point) + shift,
+              'tip': turned_by(R, tip) + shift}
+    with pytest.raises(UnsupportedChainError, match=text):
+        replace(CHAIN, **change)
+    # A thousandth of its size beside it is an arm, and no other arm's Jacobian is so singular.
+    change['point'][2] += 2e-3 * np.cross(change['axis'][2], change['tip'] - change['point'][2])
+    arm = RobotModel(replace(CHAIN, **change))
+    q = rng.uniform(-np.pi, np.pi, (200, 3))
+    least = np.linalg.svd(jacobian(arm, q), compute_uv=False)[:, 2]
+    assert least.max() > 1e-5 * arm.chain.size
 
 
 def test_a_chain_that_is_not_supported_is_told_by_joints():

@@ -24,8 +24,6 @@ from helpers.thesis_link_motion import link_motion
 import numpy as np
 import pinocchio
 import pytest
-from rrr_traj_planner.core.arm.chain import Chain
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
 
@@ -68,13 +66,3 @@ def test_joints_with_one_point_have_it_once(name, kept):
     for q in random_states(np.random.default_rng(2), 20)[0]:
         np.testing.assert_allclose(link_positions(arm, q.tolist()),
                                    pinocchio_s_points(arm, q)[kept], rtol=0.0, atol=ROUNDING)
-
-
-def test_three_joints_with_one_point_are_one_joint():
-    at = np.full((3, 3), (0.1, 0.2, 0.3))
-    arm = RobotModel(Chain(np.eye(3), at, (0.5, 0.0, 0.3), np.ones(3), at,
-                           np.tile(np.eye(3), (3, 1, 1))))
-    for q in random_states(np.random.default_rng(3), 20)[0]:
-        base, joint, tip = link_positions(arm, q.tolist())
-        assert (base, joint) == ((0.0, 0.0, 0.0), (0.1, 0.2, 0.3))
-        np.testing.assert_allclose(tip, forward_kinematics(arm, q), rtol=0.0, atol=ROUNDING)
