@@ -21,11 +21,11 @@ import subprocess
 import sys
 import time
 
-from helpers.places import ROOT
+from helpers.places import CONFIG, ROOT
 import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.parameters.parameter_files import planner_config
+from rrr_traj_planner.nodes.parameters.planner_config import planner_config
 
 DEADLINE = 120.0  # s; nothing here takes so long
 PROMPT = 2.0      # s, in which a signal is to end it
@@ -77,6 +77,45 @@ def test_plan_of_a_urdf_s_arm_is_drawn(tmp_path):
     speed = [profile[name] for name in profile.dtype.names if 'velocity' in name]
     assert len(speed) == 3
     assert np.abs(speed).max() == pytest.approx(0.5, abs=1e-3)
+
+
+def test_points_of_a_table_are_planned_for_the_arm_of_ros_arguments(tmp_path):
+    """Without ROS; relative paths refer to the parameter file's folder."""
+    (tmp_path / 'arms').mkdir()
+    (tmp_path / 'arms' / 'own.urdf').write_text(
+        (CONFIG / 'arms' / 'kr16_2_first3.urdf').read_text())
+    (tmp_path / 'arms' / 'own.yaml').write_text(
+        '/**:\n  ros__parameters:\n    robot_description: own.urdf\n'
+        '    default_max_acceleration: 3.0\n')
+    (tmp_path / 'points.csv').write_text('1.2,0.1,1.2\n1.0,0.4,1.3\n')
+
+    def peak(*more):
+        code, _, errors = ended(report(
+            '--plan', 'points.csv', '--planner', 'cycloid', '--output', 'out', '--ros-args',
+            '--params-file', 'arms/own.yaml', *more, cwd=tmp_path,
+            code=without('rclpy', 'ament_index_python')))
+        assert (code, errors) == (0, '')
+        profile = np.genfromtxt(tmp_path / 'out' / 'profiles_cycloid.csv', delimiter=',',
+                                names=True)
+        return max(np.abs(profile[name]).max() for name in profile.dtype.names
+                   if 'acceleration' in name and 'joint_1' in name)
+
+    assert peak() == pytest.approx(3.0, abs=1e-2)
+    assert peak('-r', 'a:=b', '-p', 'default_max_acceleration:=2.0', '-p',
+                'simulated_arm:default_max_acceleration:=1.0') == pytest.approx(2.0, abs=1e-2)
+
+
+@pytest.mark.parametrize(('arguments', 'text'), [
+    (('-p', 'payload.mass:=bad'), "payload.mass is 'bad', must be in"),
+    (('-p', 'payload.mas:=1.0'), 'parameter payload.mas is unknown, the nearest known one is '),
+    (('-p', 'payload.mass:=[1'), 'report: parameter payload.mass: while parsing'),
+    (('--params-file', 'nope.yaml'), 'report: nope.yaml: ')])
+def test_wrong_ros_arguments_are_reported(tmp_path, arguments, text):
+    code, _, errors = ended(report('--plan', 'table_6_1.yaml', '--ros-args', *arguments,
+                                   cwd=tmp_path))
+    assert code == 1
+    assert text in errors
+    assert errors.count('\n') == 1
 
 
 def test_refused_plan_is_shown_with_its_reason(tmp_path):

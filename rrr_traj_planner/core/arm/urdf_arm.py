@@ -20,7 +20,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import inf
 import os
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,7 +28,6 @@ from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import GRAVITY_VECTOR, NO_INERTIA, RobotModel
 from rrr_traj_planner.core.arm.urdf_document import (
-    is_xml,
     Joint,
     read_document,
     UrdfWarning,
@@ -42,8 +40,9 @@ from rrr_traj_planner.core.arm.urdf_inertia import (
 from rrr_traj_planner.core.arm.urdf_limits import limits_of
 from rrr_traj_planner.core.arm.urdf_locked import locked_poses, MOVING, pose_after, unit_axis
 from rrr_traj_planner.core.arm.urdf_tree import LinkTree
+from rrr_traj_planner.core.arm.urdf_xml import file_text, is_xml
 from rrr_traj_planner.core.arrays import Array, bound_array, finite_array
-from rrr_traj_planner.core.errors import counted, InvalidInputError, quoted, shown
+from rrr_traj_planner.core.errors import counted, InvalidInputError, quoted
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.scalars import text as checked_text
 
@@ -193,24 +192,11 @@ def read_urdf(text_or_path: str | os.PathLike[str], base: str = '', tip: str = '
     base, tip = checked_text('base', base), checked_text('tip', tip)
     if is_xml(given):
         return _read(given.lstrip('\ufeff'), base, tip)
-    text = _content(given)
+    text = file_text(given)
     try:
         return _read(text, base, tip)
     except InvalidInputError as error:
         raise InvalidInputError(f'{given}: {error}') from None
-
-
-def _content(path: str) -> str:
-    """Return a file's text."""
-    if not path.strip():
-        raise InvalidInputError("the URDF is empty, must be its text or a file's path")
-    try:
-        return Path(path).read_text(encoding='utf-8-sig')
-    except (OSError, ValueError) as error:  # no such file, a folder, a null character, no UTF-8
-        why = error.strerror if isinstance(error, OSError) else str(error)
-        raise InvalidInputError(
-            f"{shown(path)} is neither a URDF, whose text begins with '<', nor a file that can be "
-            f'read: {why}') from None
 
 
 def _read(text: str, base: str, tip: str) -> UrdfArm:

@@ -19,17 +19,15 @@ from __future__ import annotations
 from math import inf, isfinite
 from typing import Any, NamedTuple
 from xml.etree import ElementTree as ET
-from xml.parsers.expat import ErrorString
 
 import numpy as np
+from rrr_traj_planner.core.arm.urdf_xml import robot_element
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError, quoted, shown
 from rrr_traj_planner.core.rotations import from_roll_pitch_yaw
 
 KINDS = ('revolute', 'continuous', 'prismatic', 'fixed', 'floating', 'planar')
-BEFORE_XML = '\ufeff \t\r\n'  # a byte order mark, and white space
 LARGEST = 1e50  # magnitude of numbers, so that products of some are finite; limits may be larger
-XACRO = '{http://www.ros.org/wiki/xacro}'
 
 # Of the elements that are read: attributes that are texts, those that are numbers and how many
 # each has, and the elements inside. Everything else in a URDF is for others.
@@ -132,7 +130,7 @@ def read_document(text: str) -> Document:
 
     """
     warnings: list[UrdfWarning] = []
-    root = _reduced(_root(text), 'the robot', warnings)
+    root = _reduced(robot_element(text), 'the robot', warnings)
     URDF = _parser()
     limits = [_limits(joint) for joint in root.iter('joint')]
     _add_needed_limits(root)
@@ -142,45 +140,6 @@ def read_document(text: str) -> Document:
         raise InvalidInputError(f'no URDF: {" ".join(str(error).split())}') from None
     joints = [_joint(joint)._replace(**given) for joint, given in zip(robot.joints, limits)]
     return Document(tuple(map(_link, robot.links)), tuple(joints), tuple(warnings))
-
-
-def is_xml(value: str) -> bool:
-    """
-    Return whether a value is a document's text, and no path: its first character is '<'.
-
-    Parameters
-    ----------
-    value : str
-        The value.
-
-    Returns
-    -------
-    bool
-        White space and a byte order mark before that do not matter.
-
-    """
-    return value.lstrip(BEFORE_XML).startswith('<')
-
-
-def _root(text: str) -> ET.Element:
-    """Return the element `robot`."""
-    if not is_xml(text):
-        raise InvalidInputError("no URDF, whose text begins with '<'")
-    xml = text.lstrip(BEFORE_XML)
-    try:
-        root = ET.fromstring(xml)
-    except ET.ParseError as error:
-        line = error.position[0] + text[:len(text) - len(xml)].count('\n')
-        raise InvalidInputError(
-            f'line {line}, column {error.position[1]}: not well-formed XML, '
-            f'{ErrorString(error.code)}') from None
-    except ValueError as error:
-        raise InvalidInputError(f'not well-formed XML, {error}') from None
-    if any(str(element.tag).startswith(XACRO) for element in root.iter()):
-        raise InvalidInputError('this is a xacro file, must be expanded: xacro FILE > FILE.urdf')
-    if root.tag != 'robot':
-        raise InvalidInputError(f'the root element is <{root.tag}>, must be <robot>')
-    return root
 
 
 def _parser() -> Any:

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rrr_traj_planner.core.arm.urdf_arm import read_urdf, UrdfArm
-from rrr_traj_planner.core.arm.urdf_document import is_xml
+from rrr_traj_planner.core.arm.urdf_xml import is_xml
 from rrr_traj_planner.core.errors import InvalidInputError, shown
 from rrr_traj_planner.nodes.parameters import urdf_defaults
 from rrr_traj_planner.nodes.parameters.configuration_files import found_file
@@ -50,7 +50,8 @@ class ArmSource(NamedTuple):
         Values by names of parameters, in place of the table's defaults; `robot_description` is the
         URDF's text.
     warnings : tuple of str
-        What is odd about the URDF, and what it leaves out.
+        What is odd about the URDF, what it leaves out, and what has no effect in the file of
+        joint limits.
 
     """
 
@@ -97,16 +98,18 @@ def arm_source(given: Values, folder_of: Callable[[str, str], Path] = lambda *_:
         arm = files.arm(used[URDF], given.get('base_frame', ''), given.get('tip_frame', ''))
         used.update(urdf_defaults.names_of(arm, given))
     names = _distinct(used['joint_names'])
-    in_file = {}
+    in_file: dict[str, Any] = {}
+    warnings: tuple[str, ...] = ()
     if used[LIMITS]:
         used[LIMITS] = str(files.found(LIMITS, used[LIMITS]))
-        in_file = read_joint_limits(used[LIMITS], names)
+        in_file, warnings = read_joint_limits(used[LIMITS], names)
+        warnings = tuple(f'{used[LIMITS]}: {text}' for text in warnings)
     if arm is None:
         check_given(given, names, in_file)
-        return ArmSource(names, {**used, **in_file, **_gravity(given)}, ())
+        return ArmSource(names, {**used, **in_file, **_gravity(given)}, warnings)
     check_given(given, names, in_file, urdf_defaults.faults(arm, given, in_file))
     return ArmSource(names, {**used, **urdf_defaults.values_of(arm, given, in_file)},
-                     tuple(urdf_defaults.warnings_of(arm, given, in_file)))
+                     (*urdf_defaults.warnings_of(arm, given, in_file), *warnings))
 
 
 class _Files(NamedTuple):

@@ -22,7 +22,7 @@ from math import radians
 import os
 from pathlib import Path
 import re
-from typing import Any
+from typing import Any, NamedTuple
 
 from rrr_traj_planner.core.arm.limits import NO_RANGE
 from rrr_traj_planner.core.errors import InvalidInputError, quoted, shown
@@ -35,16 +35,30 @@ from yaml.constructor import ConstructorError
 GROUP = 'joint_limits'
 SCALING = ('default_velocity_scaling_factor', 'default_acceleration_scaling_factor')
 
+# Limits of other programs, without effect here: of controllers, and of wrapping joints.
+WITHOUT_EFFECT = ('angle_wraparound', 'has_soft_limits', 'k_position', 'k_velocity',
+                  'soft_lower_limit', 'soft_upper_limit')
+
 # MoveIt's switch of a range, which has a value for none here.
 HAS_POSITION = Row('has_position_limits', True, 'whether the range is limited')
 
+# Here acceleration has one limit both ways, the smaller of the two; Pilz's decelerations are
+# negative.
+DECELERATION = 'max_deceleration'
+HAS_DECELERATION = Row('has_deceleration_limits', True, 'whether deceleration is limited')
+
+
+class MoveItLimits(NamedTuple):
+    """What a joint_limits.yaml gives."""
+
+    values: dict[str, Any]      # by names of parameters
+    warnings: tuple[str, ...]   # of what is given and has no effect
+
 
 def read_joint_limits(path_or_text: str | os.PathLike[str],
-                      joint_names: Collection[str] | None = None) -> dict[str, Any]:
+                      joint_names: Collection[str] | None = None) -> MoveItLimits:
     """
     Return the parameters that a joint_limits.yaml gives.
-
-    MoveIt's default scaling factors are checked, and have no parameter here: requests scale.
 
     Parameters
     ----------
@@ -56,9 +70,10 @@ def read_joint_limits(path_or_text: str | os.PathLike[str],
 
     Returns
     -------
-    dict
+    MoveItLimits
         Values by names of parameters, such as joint_limits.JOINT.max_velocity [rad/s], for what
         is given and not switched off by has_..._limits; a range that is switched off has no ends.
+        MoveIt's default scaling factors are warned of: here a request has its own.
 
     Raises
     ------
@@ -80,7 +95,11 @@ class _Loader(Loader):
     """YAML with MoveIt's tags of angles and 1e3 for a number; without keys that repeat."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """Return a mapping; refuse a repeated key, of which YAML takes the last value."""
+        """
+        Return a mapping with keys as they are written: a joint may be called 1, or on.
+
+        A repeated key is refused: YAML takes the last value.
+        """
         found: set[str] = set()
         for key, _ in node.value:
             if not isinstance(key, yaml.ScalarNode):
@@ -91,7 +110,8 @@ class _Loader(Loader):
                 raise ConstructorError(
                     None, None, f'{key.value} is repeated', key.start_mark)
             found.add(key.value)
-        return super().construct_mapping(node, deep)
+        self.flatten_mapping(node)
+        return {key.value: self.construct_object(value, deep=True) for key, value in node.value}
 
     def construct_angle(self, node: yaml.Node) -> float:
         """Return the number behind !radians or !degrees [rad]."""
@@ -117,15 +137,16 @@ def _content(text: str) -> Any:
         raise input_error(error) from None
 
 
-def _parameters(content: Any, joint_names: Collection[str] | None) -> dict[str, Any]:
+def _parameters(content: Any, joint_names: Collection[str] | None) -> MoveItLimits:
     content = _mapping('the file', content)
     for name in content:
-        _check_known(str(name), (*SCALING, GROUP), '')
-    for name in SCALING:
-        if name in content:
-            positive_fraction(name, content[name])
-    joints = {str(joint): limits for joint, limits in _mapping(
-        GROUP, content.get(GROUP)).items()}
+        _check_known(name, (*SCALING, GROUP), '')
+    warnings = [
+        f'{name} {factor:g} has no effect: a request has its own '
+        f'{name.removeprefix("default_").removesuffix("_factor")}'
+        for name in SCALING if name in content
+        if (factor := positive_fraction(name, content[name])) < 1.0]
+    joints = _mapping(GROUP, content.get(GROUP))
     chosen = [joint for joint in joints if joint_names is None or joint in joint_names]
     if joints and not chosen:
         raise InvalidInputError(
@@ -134,7 +155,7 @@ def _parameters(content: Any, joint_names: Collection[str] | None) -> dict[str, 
     found: dict[str, Any] = {}
     for joint in chosen:
         found.update(_limits(joint, _mapping(f'{GROUP}.{joint}', joints[joint])))
-    return found
+    return MoveItLimits(found, tuple(warnings))
 
 
 def _limits(joint: str, given: Mapping[Any, Any]) -> dict[str, Any]:
@@ -142,16 +163,23 @@ def _limits(joint: str, given: Mapping[Any, Any]) -> dict[str, Any]:
     prefix = f'{GROUP}.{joint}.'
     rows = {name.removeprefix(prefix): row for name, row in rows_of(PLANNER, [joint]).items()
             if name.startswith(prefix)}
-    known = {**rows, HAS_POSITION.name: HAS_POSITION._replace(name=prefix + HAS_POSITION.name)}
+    known = {**rows, **{row.name: row._replace(name=prefix + row.name)
+                        for row in (HAS_POSITION, HAS_DECELERATION)}}
     for key in given:
-        _check_known(str(key), known, prefix)
-    switches = {key: value for key, value in given.items() if key.startswith('has_')}
+        _check_known(key, (*known, DECELERATION, *WITHOUT_EFFECT), prefix)
+    switches = {key: value for key, value in given.items()
+                if key.startswith('has_') and key not in WITHOUT_EFFECT}
     for key, value in switches.items():
         check_value(known[key], value)
     off = [key.split('_')[1] for key, value in switches.items() if not value]
     limits = {key: value if key in switches else _number(rows[key], value)
               for key, value in given.items()
               if key in rows and (key in switches or key.split('_')[1] not in off)}
+    if DECELERATION in given and 'deceleration' not in off:
+        row = rows['max_acceleration']._replace(name=prefix + DECELERATION)
+        value = given[DECELERATION]
+        most = _number(row, abs(value) if type(value) in (int, float) else value)
+        limits['max_acceleration'] = min(most, limits.get('max_acceleration', most))
     if 'position' in off:
         limits.update(min_position=-NO_RANGE, max_position=NO_RANGE)
     low, high = limits.get('min_position'), limits.get('max_position')

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameter files read without ROS, with the result that the planner node would have."""
+"""Parameter files, read without ROS."""
 
 from __future__ import annotations
 
@@ -22,9 +22,6 @@ import re
 from typing import Any
 
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.parameters.arm_source import arm_source
-from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters.table import check_value, PLANNER, rows_of
 from rrr_traj_planner.nodes.parameters.yaml_loader import Loader
 import yaml
 
@@ -34,33 +31,28 @@ NODES = ('/**', 'trajectory_planner', '/trajectory_planner')
 BOTH = ('/trajectory_planner', '/simulated_arm')
 
 
-def planner_config(file: Path, limits: Path | None = None) -> PlannerConfig:
+def planner_values(file: Path) -> dict[str, Any]:
     """
-    Return the planner node's configuration from a parameter file.
+    Return the planner node's parameters in a file.
 
     Parameters
     ----------
     file : Path
         A ROS parameter file: `/**:` or the node's name, `ros__parameters:`, values.
-    limits : Path, optional
-        A file of joint limits in place of the file's own `joint_limits_file`.
 
     Returns
     -------
-    PlannerConfig
-        Checked; parameters that the file leaves out have their defaults.
+    dict
+        Values by full names, with dots.
 
     Raises
     ------
     InvalidInputError
-        If the file is missing or malformed, or a value is wrong; names the file.
+        If the file is missing or malformed; names it.
 
     """
     try:
-        given = _values(file)
-        if limits is not None:
-            given['joint_limits_file'] = str(limits.absolute())
-        return config_of(given, file.parent)
+        return _values(file)
     except (OSError, UnicodeDecodeError, yaml.YAMLError, InvalidInputError) as error:
         raise InvalidInputError(f'{file}: {" ".join(str(error).split())}') from None
 
@@ -175,38 +167,6 @@ def _sections(file: Path, node: str) -> Iterator[Any]:
     for path, values in sections(yaml.load(file.read_text(), Loader), ''):
         if re.fullmatch(re.escape(path).replace(r'\*\*', '.*').replace(r'\*', '[^/]*'), node):
             yield values
-
-
-def config_of(given: dict[str, Any], folder: Path) -> PlannerConfig:
-    """
-    Return the planner node's configuration from its parameters.
-
-    Parameters
-    ----------
-    given : dict
-        Values by name.
-    folder : Path
-        The folder that relative paths refer to.
-
-    Returns
-    -------
-    PlannerConfig
-        Checked; parameters that are left out have their defaults.
-
-    Raises
-    ------
-    InvalidInputError
-        If a value is wrong.
-
-    """
-    source = arm_source(given, lambda *_: folder)
-    rows = rows_of(PLANNER, source.joint_names)
-    values = {name: source.values.get(name, row.default) for name, row in rows.items()}
-    values.update({name: value for name, value in given.items()
-                   if name in rows and name not in ('robot_description', 'joint_limits_file')})
-    for name, value in values.items():
-        check_value(rows[name], value)
-    return PlannerConfig.from_values(values)
 
 
 def _values(file: Path) -> dict[str, Any]:

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import isfinite
+from math import isfinite, pi
 from typing import Any
 
 from rrr_traj_planner.core.arm.limits import NO_RANGE
@@ -178,12 +178,19 @@ def _limits(arm: UrdfArm, given: Values, in_file: Values) -> dict[str, Any]:
 
 
 def _start(values: Values, joint_names: Sequence[str]) -> list[float]:
-    """Return zero where a range has it, else the middle of the range."""
+    """
+    Return zero where a range has it, else the middle of the range.
+
+    Of a range with one end only, half a turn from it.
+    """
     q = []
     for joint in joint_names:
         low, high = (values[f'joint_limits.{joint}.{end}_position'] for end in ('min', 'max'))
-        numbers = isinstance(low, float) and isinstance(high, float)  # else refused later on
-        q.append(0.5 * (low + high) if numbers and not low <= 0.0 <= high else 0.0)
+        if isinstance(low, float) and isinstance(high, float):  # else refused later on
+            half = 0.5 * (high - low) if max(-low, high) < NO_RANGE else pi
+            q.append(low + half if low > 0.0 else high - half if high < 0.0 else 0.0)
+        else:
+            q.append(0.0)
     return q
 
 

@@ -19,7 +19,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-import re
 import sys
 
 from rrr_traj_planner.nodes.process.entry import (
@@ -67,6 +66,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.parameters.configuration_files import found_file
+    from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
 
     own = [*ros_arguments, *limits_arguments(options.joint_limits)]
     name = options.arm or (None if describes_an_arm(ros_arguments) else THESIS_ARM)
@@ -79,27 +79,6 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     name, code = ended
     print(f'bringup: {exit_message(name, code)}', file=sys.stderr)
     return code if code >= 0 else 128 - code
-
-
-def describes_an_arm(ros_arguments: Sequence[str]) -> bool:
-    """
-    Return whether arguments for ROS have a parameter `robot_description`.
-
-    Parameters
-    ----------
-    ros_arguments : sequence of str
-        The user's.
-
-    Returns
-    -------
-    bool
-        True for `-p [NODE:]robot_description:=...`, and for a parameter file that has it.
-
-    """
-    from rrr_traj_planner.nodes.parameters.parameter_files import files_given, gives
-
-    return any(re.match(r'([^:]*:)?robot_description:=', a) for a in ros_arguments) or any(
-        gives(file, 'robot_description') for file in files_given(ros_arguments))
 
 
 def node_arguments(parameters: Path | None, ros_arguments: Sequence[str]) -> list[str]:

@@ -80,6 +80,7 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.demo.client import Client
     from rrr_traj_planner.nodes.demo.table import checked_values, table
     from rrr_traj_planner.nodes.parameters.configuration_files import read_task
+    from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
     from rrr_traj_planner.nodes.process.node_runner import spin_in_background
     from rrr_traj_planner.nodes.process.processes import NodeProcesses
     from rrr_traj_planner.nodes.recording.bag import Bag
@@ -92,7 +93,8 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
         client = stack.enter_context(spin_in_background(Client, ros_arguments))
         client.check_free()
         bag = None if options.record is None else stack.enter_context(Bag(options.record))
-        nodes = stack.enter_context(NodeProcesses(node_arguments(task.arm, ros_arguments)))
+        arm = None if describes_an_arm(ros_arguments) else task.arm
+        nodes = stack.enter_context(NodeProcesses(node_arguments(arm, ros_arguments)))
         run = client.run(task, nodes.ended, bag)
     found = checked_values(run)
     print(table(run, found), flush=True)

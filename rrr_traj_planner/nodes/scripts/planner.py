@@ -68,9 +68,9 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
                         help='of --check: link at the tip (default: tip, else the only leaf)')
 
 
-def _instead(options: argparse.Namespace, _: list[str]) -> int | None:
+def _instead(options: argparse.Namespace, ros_arguments: list[str]) -> int | None:
     if options.check is not None:
-        return _check(options)
+        return _check(options, ros_arguments)
     for name in ('base_frame', 'tip_frame'):
         if getattr(options, name) is not None:
             print(f'planner: --{name.replace("_", "-")} goes with --check; the node has the '
@@ -79,17 +79,19 @@ def _instead(options: argparse.Namespace, _: list[str]) -> int | None:
     return None
 
 
-def _check(options: argparse.Namespace) -> int:
-    """Print what a URDF says, without ROS."""
+def _check(options: argparse.Namespace, ros_arguments: list[str]) -> int:
+    """Print what a URDF says, and the parameters beside it, without ROS."""
     from rrr_traj_planner.nodes.parameters.arm_source import arm_source, LIMITS, read, URDF
-    from rrr_traj_planner.nodes.parameters.parameter_files import config_of
+    from rrr_traj_planner.nodes.parameters.planner_config import config_of, merged
+    from rrr_traj_planner.nodes.parameters.ros_arguments import parameters_in
     from rrr_traj_planner.planners.arm_summary import summary
 
     asked = {URDF: options.check, LIMITS: options.joint_limits, 'base_frame': options.base_frame,
              'tip_frame': options.tip_frame}
-    given = {name: value for name, value in asked.items() if value}
-    warnings = arm_source(given, labels={URDF: '--check'}).warnings
-    config = config_of(given, Path.cwd())
+    asked = {name: value for name, value in asked.items() if value}
+    given, folder_of = merged([*parameters_in(ros_arguments), (asked, Path.cwd())])
+    warnings = arm_source(given, folder_of, {URDF: '--check'}).warnings
+    config = config_of(given, folder_of)
     arm = read(config.urdf, config.base_frame, config.tip_frame)
     found = summary(arm, config.model, config.limits)
     print('\n'.join([f'{options.check}: {found[0]}', *found[1:]]))

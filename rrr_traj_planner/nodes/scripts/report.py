@@ -33,8 +33,8 @@ Write a self-contained page, OUT_DIR/index.html, with its figures as PNG and CSV
 
 --thesis redraws the thesis's tables and figures from this package's own planners. --plan draws a
 plan of a via-point file: profiles against limits, torque use, path, animation, peaks; by several
-planners side by side. Starts no node. If a planner refuses, the page shows why, and the exit code
-is 1."""
+planners side by side. Starts no node; of the arguments for ROS the parameters count, those of the
+planner. If a planner refuses, the page shows why, and the exit code is 1."""
 
 NO_MATPLOTLIB = (
     'no figures, matplotlib is missing ({error}): sudo apt install python3-matplotlib, or '
@@ -60,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     """
     def work() -> int:
-        options, _ = parse('report', DESCRIPTION, arguments, _add_options)
+        options, ros_arguments = parse('report', DESCRIPTION, arguments, _add_options)
         if options.thesis and (options.planner or options.output or options.joint_limits):
             print('report: --planner, --output and --joint-limits go with --plan', file=sys.stderr)
             return 2
@@ -69,7 +69,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except ImportError as error:
             raise StartError(NO_MATPLOTLIB.format(error=error)) from None
         try:
-            return _thesis(options.thesis) if options.thesis else _plan(options)
+            return _thesis(options.thesis) if options.thesis else _plan(
+                options, ros_arguments)
         except OSError as error:
             raise StartError(f'cannot write the page: {error}') from None
 
@@ -98,9 +99,10 @@ def _thesis(folder: Path) -> int:
     return 0
 
 
-def _plan(options: argparse.Namespace) -> int:
+def _plan(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.parameters.configuration_files import found_file, read_task
-    from rrr_traj_planner.nodes.parameters.parameter_files import planner_config
+    from rrr_traj_planner.nodes.parameters.planner_config import planner_config
+    from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
     from rrr_traj_planner.planners.registry import planner_ids
     from rrr_traj_planner.planners.request import PlanningRequest
     from rrr_traj_planner.report.attempts import attempts, Task
@@ -108,7 +110,8 @@ def _plan(options: argparse.Namespace) -> int:
 
     file = read_task(options.plan)
     limits = options.joint_limits and found_file(options.joint_limits, Path.cwd())
-    config = planner_config(file.arm, limits)
+    arm = None if describes_an_arm(ros_arguments) else file.arm
+    config = planner_config(arm, limits, ros_arguments)
     request = PlanningRequest(
         file.via_points, sample_period=config.sample_period, max_deviation=config.max_deviation,
         segment_durations=file.segment_durations if len(file.segment_durations) else None,

@@ -257,6 +257,28 @@ def test_a_file_is_read_as_its_text_is_and_named_in_errors(tmp_path):
     assert refused(str(file)).startswith(f'{file}: line 2, column ')
 
 
+def test_a_file_is_read_in_the_encoding_that_it_declares(tmp_path):
+    file, text = tmp_path / 'arm.urdf', arm().replace('j2', 'Gelenk-Größe')
+    for encoding in ('ISO-8859-1', 'windows-1252', 'UTF-8', 'utf-16'):
+        declared = f'<?xml version="1.0" encoding="{encoding}"?>\n{text}'
+        file.write_bytes(declared.encode(encoding))
+        if encoding == 'utf-16':  # its declaration is no ASCII
+            assert 'utf-8' in refused(str(file))
+        else:
+            assert read_urdf(file).joint_names[1] == 'Gelenk-Größe'
+    file.write_bytes(f'<?xml version="1.0" encoding="latin-77"?>{text}'.encode('latin-1'))
+    assert 'unknown encoding: latin-77' in refused(str(file))
+
+
+def test_a_namespace_of_the_whole_document_changes_nothing():
+    text = arm()
+    text = text.replace('<robot', '<robot xmlns="http://drake.mit.edu"')
+    assert read_urdf(text).joint_names == read_urdf(arm()).joint_names
+    other = arm().replace('<robot', '<robot xmlns:x="http://other"').replace(
+        '</robot>', '<x:joint name="more"/></robot>')
+    assert read_urdf(other).joint_names == read_urdf(arm()).joint_names
+
+
 def test_what_is_no_file_is_refused(tmp_path):
     for path in ('no_such.urdf', str(tmp_path), '\0', 'x' * 5000):
         assert "is neither a URDF, whose text begins with '<', nor a file" in refused(path)

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, pi
 from pathlib import Path
 
 from helpers.places import CONFIG
@@ -29,7 +29,8 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.arm_source import arm_source
 from rrr_traj_planner.nodes.parameters.configuration import ArmConfig, PlannerConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
-from rrr_traj_planner.nodes.parameters.parameter_files import config_of, folder_of_value
+from rrr_traj_planner.nodes.parameters.parameter_files import folder_of_value
+from rrr_traj_planner.nodes.parameters.planner_config import config_of
 from rrr_traj_planner.nodes.parameters.table import ARM, PLANNER
 from rrr_traj_planner.planners.registration import register
 
@@ -47,7 +48,7 @@ def here(name, value):
 
 
 def planner(given, folder=CONFIG):
-    return config_of({'robot_description': TEXT, **given}, folder)
+    return config_of({'robot_description': TEXT, **given}, lambda *_: folder)
 
 
 def with_limits(folder, text=LIMITS):
@@ -94,7 +95,8 @@ def test_a_limit_is_switched_on_and_off_by_parameters(tmp_path):
 
 def test_the_file_of_limits_serves_the_thesis_s_arm_too(tmp_path):
     given = with_limits(tmp_path, 'joint_limits:\n  joint_2: {max_effort: 250.0}\n')
-    assert config_of(given, tmp_path).limits.max_effort.tolist() == [150.0, 250.0, 200.0]
+    found = config_of(given, lambda *_: tmp_path).limits
+    assert found.max_effort.tolist() == [150.0, 250.0, 200.0]
 
 
 def test_the_file_of_limits_serves_renamed_joints(tmp_path):
@@ -102,7 +104,7 @@ def test_the_file_of_limits_serves_renamed_joints(tmp_path):
            'max_jerk: 3.0, max_effort: 99.0}')
     given = {'joint_names': ['a', 'b', 'c'], **with_limits(
         tmp_path, 'joint_limits:\n' + ''.join(f'  {name}: {one}\n' for name in 'abc'))}
-    assert config_of(given, tmp_path).limits.max_effort.tolist() == [99.0] * 3
+    assert config_of(given, lambda *_: tmp_path).limits.max_effort.tolist() == [99.0] * 3
 
 
 def test_joints_without_range_have_none():
@@ -133,7 +135,7 @@ def test_gravity_rotors_friction_and_payload_reach_the_model():
 
 def test_thesis_s_arm_takes_either_gravity():
     for given in ({'arm.gravity': 1.62}, {'gravity': [0.0, 0.0, -1.62]}):
-        assert config_of(given, CONFIG).model.gravity.tolist() == [0.0, 0.0, -1.62]
+        assert config_of(given, lambda *_: CONFIG).model.gravity.tolist() == [0.0, 0.0, -1.62]
 
 
 def test_frames_of_the_contract_s_names_are_found_others_must_be_named():
@@ -149,6 +151,12 @@ def test_arm_starts_at_zero_where_ranges_have_it_else_in_their_middle(tmp_path):
     source = arm_source({'robot_description': TEXT, 'joint_limits.j3.max_position': -1.0,
                          'joint_limits.j2.min_position': 0.5}, here)
     assert source.values['initial_positions'] == [0.0, 1.25, -1.5]
+    # With one end only, half a turn from it; without any, at zero.
+    source = arm_source({'robot_description': TEXT, 'joint_limits.j2.min_position': 0.5,
+                         'joint_limits.j2.max_position': 1000.0,
+                         'joint_limits.j3.min_position': -1000.0,
+                         'joint_limits.j3.max_position': -7.0}, here)
+    assert source.values['initial_positions'] == pytest.approx([0.0, 0.5 + pi, -7.0 - pi])
 
 
 # Acceleration limits that are missing
@@ -179,7 +187,7 @@ def test_missing_acceleration_limits_are_said_and_those_of_the_thesis_s_arm_stay
                        ).warnings
     assert text == ('2 joints without acceleration limit, j1, j3: a planner that needs one takes '
                     'default_max_acceleration, 1.0 rad/s^2')
-    config = config_of({'joint_limits.joint_1.has_acceleration_limits': False}, CONFIG)
+    config = config_of({'joint_limits.joint_1.has_acceleration_limits': False}, lambda *_: CONFIG)
     assert config.limits_for('cycloid') is config.limits
 
 
@@ -261,7 +269,7 @@ def test_contradictions_are_refused_by_the_names(given, text):
 
 def test_two_gravities_are_refused():
     with pytest.raises(InvalidInputError, match='^gravity and arm.gravity are both given'):
-        config_of({'gravity': [0.0, 0.0, -9.81], 'arm.gravity': 9.81}, CONFIG)
+        config_of({'gravity': [0.0, 0.0, -9.81], 'arm.gravity': 9.81}, lambda *_: CONFIG)
 
 
 # Paths

@@ -33,7 +33,7 @@ STATES = 500
 def limits_of(name):
     """Return an arm and its limits: of the URDF, and over them those of the other file."""
     arm = read_urdf(CONFIG / f'arms/{name}.urdf', 'base', 'tip')
-    given = read_joint_limits(CONFIG / f'arms/{name}_limits.yaml', arm.joint_names)
+    given = read_joint_limits(CONFIG / f'arms/{name}_limits.yaml', arm.joint_names).values
     return arm, JointLimits(**{
         kind: [given.get(f'joint_limits.{joint}.{kind}', getattr(arm, kind, [np.inf] * 3)[i])
                for i, joint in enumerate(arm.joint_names)] for kind in UNITS})

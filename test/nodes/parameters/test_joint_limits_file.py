@@ -42,25 +42,29 @@ joint_limits:
 """
 
 
+def values_of(*arguments):
+    return read_joint_limits(*arguments).values
+
+
 def of_joint(*lines):
     return '\n'.join(('joint_limits:', '  elbow:', *(f'    {line}' for line in lines), ''))
 
 
 def refused(text, joints=None):
     with pytest.raises(InvalidInputError) as error:
-        read_joint_limits(text, joints)
+        values_of(text, joints)
     return str(error.value)
 
 
 def test_what_the_setup_assistant_writes_is_read():
-    assert read_joint_limits(WRITTEN, ['shoulder', 'elbow', 'wrist']) == {
+    assert values_of(WRITTEN, ['shoulder', 'elbow', 'wrist']) == {
         'joint_limits.shoulder.has_velocity_limits': True,
         'joint_limits.shoulder.max_velocity': 3.0,
         'joint_limits.shoulder.has_acceleration_limits': False}
 
 
 def test_every_limit_becomes_the_parameter_of_its_name():
-    found = read_joint_limits(of_joint(
+    found = values_of(of_joint(
         'has_position_limits: true', 'min_position: -1', 'max_position: 2.5',
         *(f'has_{kind}_limits: true\n    max_{kind}: {value}' for kind, value in (
             ('velocity', 1.5), ('acceleration', '1e1'), ('jerk', '2.0e+2'), ('effort', '.5e2')))))
@@ -71,7 +75,7 @@ def test_every_limit_becomes_the_parameter_of_its_name():
 
 
 def test_what_is_switched_off_is_left_out_and_a_range_is_none():
-    assert read_joint_limits(of_joint(
+    assert values_of(of_joint(
         'has_position_limits: false', 'min_position: 0', 'max_position: 0',
         'has_effort_limits: false', 'max_effort: 0', 'max_jerk: 7')) == {
             'joint_limits.elbow.min_position': -NO_RANGE,
@@ -80,14 +84,14 @@ def test_what_is_switched_off_is_left_out_and_a_range_is_none():
 
 
 def test_angles_may_be_in_degrees_as_moveit_reads_them():
-    assert read_joint_limits(of_joint('max_velocity: !degrees 90', 'max_jerk: !radians 2')) == {
+    assert values_of(of_joint('max_velocity: !degrees 90', 'max_jerk: !radians 2')) == {
         'joint_limits.elbow.max_velocity': pytest.approx(pi / 2), 'joint_limits.elbow.max_jerk': 2}
 
 
 @pytest.mark.parametrize('text', ['\n', 'joint_limits:\n', 'joint_limits: {}\n',
                                   'joint_limits:\n  a:\n'])
 def test_a_file_may_say_nothing(text):
-    assert read_joint_limits(text) == {}
+    assert values_of(text) == {}
 
 
 ONES = '1' * 28 + '...' + '1' * 29  # as long numbers are shown
@@ -150,7 +154,7 @@ def test_what_is_no_such_file_is_refused(text, message):
 
 
 def test_a_joint_may_be_called_a_number():
-    assert read_joint_limits('joint_limits:\n  1: {max_jerk: 2}\n', ['1', '2', '3']) == {
+    assert values_of('joint_limits:\n  1: {max_jerk: 2}\n', ['1', '2', '3']) == {
         'joint_limits.1.max_jerk': 2.0}
 
 
@@ -162,7 +166,7 @@ def test_joints_of_other_names_alone_are_refused():
 def test_a_file_is_named_in_errors(tmp_path):
     file = tmp_path / 'joint_limits.yaml'
     file.write_text('\ufeff' + WRITTEN, encoding='utf-8')
-    assert read_joint_limits(str(file), ['shoulder']) == read_joint_limits(WRITTEN, ['shoulder'])
+    assert values_of(str(file), ['shoulder']) == values_of(WRITTEN, ['shoulder'])
     assert refused(file).startswith(
         f"{file}: joint_limits.finger.max_velocity is 'nonsense', must be in")
     assert refused(tmp_path / 'none.yaml').startswith(f'{tmp_path / "none.yaml"}: [Errno 2]')
@@ -173,3 +177,40 @@ def test_a_file_is_named_in_errors(tmp_path):
     assert refused(file).startswith(f'{file}: joint_limits.elbow.max_jerk is 1111')
     file.write_bytes(b'\xff\xfe')
     assert refused(file).startswith(f"{file}: 'utf-8' codec")
+
+
+def test_scaling_factors_are_warned_of_unless_they_are_1():
+    assert read_joint_limits(WRITTEN, ['shoulder']).warnings == (
+        'default_velocity_scaling_factor 0.1 has no effect: a request has its own '
+        'velocity_scaling',
+        'default_acceleration_scaling_factor 0.1 has no effect: a request has its own '
+        'acceleration_scaling')
+    assert read_joint_limits('default_velocity_scaling_factor: 1\n').warnings == ()
+
+
+@pytest.mark.parametrize(('lines', 'most'), [
+    (('max_acceleration: 4.0', 'max_deceleration: -3.0'), 3.0),
+    (('max_acceleration: 4', 'max_deceleration: 5'), 4.0),
+    (('has_deceleration_limits: true', 'max_deceleration: 5'), 5.0),
+    (('max_acceleration: 4.0', 'has_deceleration_limits: false', 'max_deceleration: -3.0'), 4.0),
+    (('has_acceleration_limits: false', 'max_acceleration: 4.0', 'max_deceleration: -3.0'), 3.0)])
+def test_a_deceleration_limit_is_one_of_acceleration(lines, most):
+    assert values_of(of_joint(*lines))['joint_limits.elbow.max_acceleration'] == most
+
+
+@pytest.mark.parametrize('value', ['soft', '0', '-0.0', '.nan', '[1.0]', 'true'])
+def test_deceleration_that_is_no_limit_is_refused(value):
+    assert refused(of_joint(f'max_deceleration: {value}')).startswith(
+        'joint_limits.elbow.max_deceleration is ')
+
+
+def test_limits_of_controllers_have_no_effect():
+    assert values_of(of_joint('angle_wraparound: false', 'has_soft_limits: true', 'k_velocity: 10',
+                              'soft_lower_limit: -1.0', 'max_velocity: 2')) == {
+        'joint_limits.elbow.max_velocity': 2.0}
+
+
+@pytest.mark.parametrize('name', ['on', 'No', '1', '0x1F', '1.50', 'null', '2026-01-01', '~'])
+def test_joints_are_called_as_the_file_writes_them(name):
+    assert values_of(f'joint_limits:\n  {name}: {{max_velocity: 2}}\n', [name]) == {
+        f'joint_limits.{name}.max_velocity': 2.0}

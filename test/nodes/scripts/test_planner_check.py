@@ -53,7 +53,22 @@ def test_missing_limits_and_oddities_are_warned_of(tmp_path):
     assert 'a planner that needs one takes default_max_acceleration, 1.0 rad/s^2' in found.stdout
 
 
+def test_parameters_beside_the_urdf_count(tmp_path):
+    def held(*more):
+        found = check('--check', 'kr16_2_first3.urdf', *more, cwd=tmp_path)
+        assert (found.returncode, found.stderr) == (0, '')
+        return found.stdout.partition('  joint_1: up to ')[2].partition(' of ')[0]
+
+    assert held() == '0'  # its axis is vertical
+    sideways = held('--ros-args', '-p', 'gravity:=[9.81, 0.0, 0.0]')
+    assert float(sideways) > 100.0
+    (tmp_path / 'side.yaml').write_text(
+        '/**: {ros__parameters: {gravity: [9.81, 0.0, 0.0]}}')
+    assert held('--ros-args', '--params-file', 'side.yaml') == sideways
+
+
 @pytest.mark.parametrize(('arguments', 'code', 'text'), [
+    (('--check', 'go1_leg.urdf', '--ros-args', '-p', 'gravity:=down'), 1, "gravity is 'down', "),
     (('--check', ROOT / 'test/data/arms/planar_arm.urdf'), 1,
      "planar_arm.urdf: joint axes 'joint_1' and 'joint_2' are parallel: "),
     (('--check', 'none.urdf'), 1, "planner: --check: no file 'none.urdf' in "),

@@ -1,0 +1,96 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Parameters among a command line's arguments for ROS, read without ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.nodes.parameters.parameter_files import (
+    files_given,
+    gives,
+    NODES,
+    planner_values,
+)
+from rrr_traj_planner.nodes.parameters.yaml_loader import Loader
+import yaml
+
+PARAMETER = ('-p', '--param')
+
+
+def describes_an_arm(ros_arguments: Sequence[str]) -> bool:
+    """
+    Return whether arguments for ROS have a parameter `robot_description`.
+
+    Parameters
+    ----------
+    ros_arguments : sequence of str
+        The user's.
+
+    Returns
+    -------
+    bool
+        True for `-p [NODE:]robot_description:=...`, and for a parameter file that has it.
+
+    """
+    return any(name == 'robot_description' for _, name, _ in _assigned(ros_arguments)) or any(
+        gives(file, 'robot_description') for file in files_given(ros_arguments))
+
+
+def parameters_in(ros_arguments: Sequence[str]) -> Iterator[tuple[dict[str, Any], Path]]:
+    """
+    Yield the planner node's parameters in arguments for ROS; later ones take precedence.
+
+    Parameters
+    ----------
+    ros_arguments : sequence of str
+        With `--params-file FILE` and `-p [NODE:]NAME:=VALUE`; others, on names of topics and on
+        logging, are left out.
+
+    Yields
+    ------
+    values : dict
+        By name.
+    folder : Path
+        That relative paths among them refer to.
+
+    Raises
+    ------
+    InvalidInputError
+        If a file is missing or malformed; names it.
+
+    """
+    for file in files_given(ros_arguments):
+        yield planner_values(file), file.absolute().parent
+    nodes = {node.strip('/') for node in NODES}
+    for node, name, text in _assigned(ros_arguments):
+        if not node or node.strip('/') in nodes:
+            try:
+                yield {name: yaml.load(text, Loader)}, Path.cwd()
+            except yaml.YAMLError as error:
+                raise InvalidInputError(
+                    f'parameter {name}: {" ".join(str(error).split())}') from None
+
+
+def _assigned(ros_arguments: Sequence[str]) -> Iterator[tuple[str, str, str]]:
+    """Yield node, name and value of each `-p`."""
+    for option, text in zip(ros_arguments, ros_arguments[1:]):
+        if option in PARAMETER and ':=' in text:
+            name, _, value = text.partition(':=')
+            node, _, name = name.rpartition(':')
+            yield node, name, value
