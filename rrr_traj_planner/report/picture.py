@@ -22,6 +22,7 @@ from io import StringIO
 from pathlib import Path
 import re
 from typing import Any
+from warnings import catch_warnings, filterwarnings
 
 import matplotlib
 from matplotlib.figure import Figure
@@ -82,7 +83,8 @@ class Picture:
             The figure as SVG, with variables of the style sheet as colours.
 
         """
-        with matplotlib.rc_context(STYLE):
+        with matplotlib.rc_context(STYLE), catch_warnings():
+            filterwarnings('ignore', 'Glyph')  # a name in a script that the font lacks has boxes
             figure = Figure(figsize=(WIDTH, self.height))
             self.draw(figure)
             figure.savefig(folder / f'{self.name}.png', dpi=PNG_RESOLUTION)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
+from warnings import catch_warnings, filterwarnings
 
 import matplotlib
 from matplotlib.figure import Figure
@@ -58,7 +59,8 @@ def draw(run: Run, file: Path) -> None:
         The picture; its suffix sets the format.
 
     """
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(STYLE), catch_warnings():
+        filterwarnings('ignore', 'Glyph')  # a name in a script that the font lacks has boxes
         figure = Figure(figsize=(10.0, 8.0))
         left, right = figure.subfigures(1, 2, width_ratios=(1.25, 1.0))
         profiles = _profiles(left, run)

@@ -31,7 +31,7 @@ from rrr_traj_planner.core.arm.urdf import FrameNames, urdf
 from rrr_traj_planner.core.arrays import Array, finite_array
 from rrr_traj_planner.core.control.computed_torque import ControllerGains
 from rrr_traj_planner.core.control.trajectory_validation import Rules
-from rrr_traj_planner.core.errors import format_distinct, InvalidInputError
+from rrr_traj_planner.core.errors import format_distinct, InvalidInputError, LimitViolationError
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.nodes.parameters.arm_options import (
     encoder,
@@ -42,6 +42,7 @@ from rrr_traj_planner.nodes.parameters.arm_options import (
 )
 from rrr_traj_planner.nodes.parameters.arm_source import read
 from rrr_traj_planner.nodes.parameters.error_names import from_group, named
+from rrr_traj_planner.planners.effort_limits import check_friction
 from rrr_traj_planner.planners.registry import planner
 
 Values = Mapping[str, Any]
@@ -91,7 +92,8 @@ class PlannerConfig:
         Raises
         ------
         InvalidInputError
-            If the values contradict each other, or the default planner is unknown.
+            If the values contradict each other, friction leaves a motor no torque for motion, or
+            the default planner is unknown.
 
         """
         try:
@@ -100,8 +102,13 @@ class PlannerConfig:
             raise InvalidInputError(f'default_planner_id: {error}') from None
         with named({'mass': 'payload.mass'}):
             model = with_payload(robot_model(values), values['payload.mass'])
+        limits = joint_limits(values)
+        try:
+            check_friction(model, limits)
+        except LimitViolationError as error:
+            raise InvalidInputError(str(error)) from None
         return cls(
-            model, joint_limits(values),
+            model, limits,
             default_max_acceleration=(
                 values['default_max_acceleration'] if values['robot_description'] else inf),
             half_transition=values['poly_414.t_acc'], urdf=values['robot_description'],

@@ -37,6 +37,10 @@ Starts the planner and the arm, calls the planner's service, sends its answer to
 compares the requested, planned and executed motion. The exit code is 0 only if every figure is
 inside its bound."""
 
+UNKNOWN_FRICTION = (
+    "demo: the joints have friction: friction.known_to_controller: true lets the arm's controller "
+    'make up for it')
+
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """
@@ -106,6 +110,8 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     exceeded = [value for value in found if not value.within_bound]
     for value in exceeded:
         print(f'demo: out of bounds: {value.text}', file=sys.stderr)
+    if exceeded and not run.config.model.friction.is_none:
+        print(UNKNOWN_FRICTION, file=sys.stderr)
     return 1 if exceeded else 0
 
 

@@ -351,3 +351,9 @@ def test_arm_without_masses_can_be_planned_for_and_not_simulated(ros):
         declared(ros, ARM, ArmConfig.from_values, robot_description=bare)
     declared(ros, ARM, ArmConfig.from_values, robot_description=bare,
              rotor_inertia=[0.1, 0.1, 0.1])
+
+
+def test_friction_that_leaves_no_torque_for_motion_is_refused_with_the_parameters():
+    with pytest.raises(InvalidInputError, match='joint_2 has a Coulomb friction of 200 N m, limit '
+                                                '200 N m, which leaves no torque for motion'):
+        config_of({'friction.coulomb': [0.0, 200.0, 0.0]}, lambda *_: CONFIG)
