@@ -22,7 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque, rest_speed_of
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
@@ -66,7 +66,7 @@ def sampled(model: RobotModel, trajectory: Trajectory) -> Samples:
     """
     t = drawing_times(trajectory)
     q, qd, qdd, qddd = trajectory(t)
-    return Samples(t, q, qd, qdd, qddd, motor_torque(model, q, qd, qdd),
+    return Samples(t, q, qd, qdd, qddd, motor_torque(model, q, qd, qdd, rest_speed_of(qd)),
                    forward_kinematics(model, q))
 
 

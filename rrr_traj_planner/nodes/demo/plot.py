@@ -26,7 +26,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque, rest_speed_of
 from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
@@ -80,7 +80,7 @@ def _profiles(figure: Any, run: Run) -> list[Any]:
     limits, names = run.config.limits, run.config.model.joint_names
     t = np.linspace(0.0, run.planned.duration, STEPS)
     q, qd, qdd, jerk = spline_through(run.planned).at(t)
-    torque = motor_torque(run.config.model, q, qd, qdd)
+    torque = motor_torque(run.config.model, q, qd, qdd, rest_speed_of(qd))
     rows: list[tuple[str, Array, Array | None]] = [
         ('position [rad]', q, None), ('velocity [rad/s]', qd, limits.max_velocity),
         ('acceleration [rad/s²]', qdd, limits.max_acceleration),
