@@ -40,7 +40,7 @@ INVALID, BAD_START = CODES.INVALID_GOAL_CONSTRAINTS, CODES.START_STATE_INVALID
 @pytest.mark.parametrize(('points', 'text', 'via_point'), [
     (TABLE_6_3, 'via point 2: joint_2 needs 218.9 N m to hold, limit 200 N m', 2),
     ((TABLE_6_1[0], (1.0, -0.5, 0.9)), 'via point 1: joint_1 would be at -0.463648 rad (elbow '
-     'up), limits 0 to 1.5708 rad', 1)])
+     'up, shoulder front), limits 0 to 1.5708 rad', 1)])
 def test_refusal_names_the_via_point_beyond_a_limit(ask, points, text, via_point):
     assert_refused(ask, plan_request(points), CODES.GOAL_CONSTRAINTS_VIOLATED, text, via_point)
 
