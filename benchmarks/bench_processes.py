@@ -88,7 +88,8 @@ def memory() -> list[Row]:
     tips = forward_kinematics(ARM, MIDDLE + AMPLITUDE * np.sin(TURNS * share + PHASES))
     rows = []
     for planner_id in ('cycloid', 'time_optimal'):
-        with Client() as client, node('planner') as planner:
+        with Client() as client, node(
+                'planner', f'planning_time_limit:={PATIENCE}') as planner:
             call = client.service(planner)
             call(plan_request(TIPS['6.1']))
             idle = planner.memory()

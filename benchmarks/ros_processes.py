@@ -88,9 +88,10 @@ class Process:
         (self._files / 'clear_refs').write_text('5')
 
 
-def node(name: str) -> Process:
+def node(name: str, *parameters: str) -> Process:
     """Return one of the package's nodes, by its script; only what goes wrong is logged."""
-    return Process(name, '--ros-args', '--log-level', 'error')
+    given = [argument for parameter in parameters for argument in ('-p', parameter)]
+    return Process(name, '--ros-args', '--log-level', 'error', *given)
 
 
 class Client:
