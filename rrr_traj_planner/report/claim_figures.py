@@ -20,13 +20,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.trajectory.residual_vibration import residual_vibration
 from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.attempts import Planned
 from rrr_traj_planner.report.excitation import (
     amplitude_spectrum,
     fraction_above,
     joint_acceleration,
-    residual_vibration,
 )
 from rrr_traj_planner.report.function_figures import FUNCTIONS
 from rrr_traj_planner.report.picture import Picture
@@ -53,7 +53,8 @@ class Excitation(NamedTuple):
 
 def of_transitions() -> dict[str, Excitation]:
     """Return the excitation by each function's transition, of equal duration and change."""
-    return {f.name: _excitation(*_transition(f)) for f in FUNCTIONS}
+    return {f.name: Excitation(fraction_above(*_transition(f), HIGH),
+                               float(_vibration(f, MODES).max())) for f in FUNCTIONS}
 
 
 def of_plan(of: Planned) -> Excitation:
@@ -71,8 +72,10 @@ def of_plan(of: Planned) -> Excitation:
         The largest values of the three joints.
 
     """
-    each = [_excitation(*joint_acceleration(of.plan.trajectory, j)) for j in range(3)]
-    return Excitation(*(max(values) for values in zip(*each)))
+    trajectory = of.plan.trajectory
+    above = (fraction_above(*joint_acceleration(trajectory, joint), HIGH) for joint in range(3))
+    vibration = residual_vibration(trajectory, trajectory.knots, MODES)
+    return Excitation(max(above), float((vibration / of.plan.peaks.acceleration).max()))
 
 
 def spectra() -> Picture:
@@ -87,11 +90,11 @@ def spectra() -> Picture:
 
 def vibrations() -> Picture:
     """Return the figure of a flexible mode's residual vibration."""
-    curves = {f.name: residual_vibration(*_transition(f), FREQUENCIES) for f in FUNCTIONS}
+    curves = {f.name: _vibration(f, FREQUENCIES) for f in FUNCTIONS}
     return _by_frequency(
         'claim_vibrations', 'Residual vibration after a transition',
         'Of a flexible mode with 1 % damping, relative to its deflection under the largest '
-        'acceleration.', curves, "mode's frequency [Hz]", 'amplitude / deflection')
+        'acceleration.', curves, "mode's frequency [Hz]", 'vibration / deflection')
 
 
 def claims_table(plans: list[tuple[Planned, Planned]]) -> Table:
@@ -131,9 +134,16 @@ def _transition(function: Any) -> tuple[Array, Array]:
     return t, piece.at(t / DURATION)[2]
 
 
-def _excitation(t: Array, acceleration: Array) -> Excitation:
-    return Excitation(fraction_above(t, acceleration, HIGH),
-                      float(residual_vibration(t, acceleration, MODES).max()))
+def _vibration(function: Any, frequencies: Array) -> Array:
+    """Return the residual vibration over the deflection under the largest acceleration."""
+    piece = function.transition(DURATION, 0.0, 0.0, CHANGE)
+
+    def motion(t: Array) -> tuple[Array, Array, Array, Array]:
+        q, qd, qdd, qddd = (x[:, np.newaxis] for x in piece.at(t / DURATION))
+        return q, qd, qdd, qddd
+
+    found = residual_vibration(motion, [0.0, DURATION], frequencies)[:, 0]
+    return np.asarray(found / np.abs(_transition(function)[1]).max())
 
 
 def _by_frequency(name: str, title: str, caption: str, curves: dict[str, Array], x_label: str,

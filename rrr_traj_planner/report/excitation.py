@@ -12,11 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Excitation of a flexible structure by a motion: amplitude spectrum and residual vibration."""
+"""Excitation of a flexible structure by a motion: amplitude spectrum and energy."""
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import pi
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
@@ -24,7 +24,6 @@ from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
 POINTS = 4001   # of the quadrature over a motion: some hundred per period of the frequencies here
 BELOW = 400     # frequencies of the quadrature of a spectrum
-DAMPING = 0.01  # damping ratio of a lightly damped flexible mode; chosen
 
 
 def amplitude_spectrum(t: Array, acceleration: Array, frequencies: Array) -> Array:
@@ -71,37 +70,6 @@ def fraction_above(t: Array, acceleration: Array, frequency: float) -> float:
     power = amplitude_spectrum(t, acceleration, below) ** 2
     whole = float(_integral(acceleration ** 2, t))
     return float(1.0 - 2.0 * _integral(power, below) / whole)
-
-
-def residual_vibration(t: Array, acceleration: Array, frequencies: Array,
-                       damping: float = DAMPING) -> Array:
-    """
-    Return the residual vibration of a flexible mode after a motion.
-
-    The mode y'' + 2 z w y' + w^2 y = -acceleration starts at rest. Its amplitude at the end of
-    the motion is divided by its static deflection under the largest acceleration. The response
-    is Duhamel's integral (Clough & Penzien, Dynamics of Structures, chapter 6).
-
-    Parameters
-    ----------
-    t, acceleration
-        As in `amplitude_spectrum`.
-    frequencies : ndarray, shape (m,)
-        Undamped natural frequencies of the mode [Hz].
-    damping : float
-        Damping ratio z.
-
-    Returns
-    -------
-    ndarray, shape (m,)
-        Amplitude / static deflection.
-
-    """
-    w = 2.0 * pi * frequencies
-    rate = (-damping + 1j * sqrt(1.0 - damping ** 2)) * w
-    response = np.exp(np.outer(rate, t[-1] - t)) * acceleration
-    amplitude = np.abs(_integral(response, t)) / (w * sqrt(1.0 - damping ** 2))
-    return np.asarray(amplitude * w ** 2 / np.abs(acceleration).max())
 
 
 def joint_acceleration(trajectory: Trajectory, joint: int) -> tuple[Array, Array]:

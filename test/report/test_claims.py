@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import pi
 import re
 
 from helpers.places import DOCS
@@ -24,28 +24,12 @@ import numpy as np
 import pytest
 from rrr_traj_planner.report.claim_figures import LIMIT_TIMES, of_plan, of_transitions
 from rrr_traj_planner.report.coefficients import PER_TRANSITION
-from rrr_traj_planner.report.excitation import (
-    amplitude_spectrum,
-    fraction_above,
-    residual_vibration,
-)
+from rrr_traj_planner.report.excitation import amplitude_spectrum, fraction_above
 
 DOCUMENT = (DOCS / 'claims.md').read_text()
 ROWS = {row[0]: row[1:] for row in (
     [cell.strip(' `') for cell in line.strip('|').split('|')]
     for line in DOCUMENT.splitlines() if line.startswith('| `'))}
-
-
-def scipy_vibration(t, acceleration, frequency, damping):
-    """Return the residual vibration by integrating the mode's equation, a slow second method."""
-    from scipy.integrate import solve_ivp
-    w = 2.0 * pi * frequency
-    y, v = solve_ivp(
-        lambda s, x: (x[1], -2.0 * damping * w * x[1] - w * w * x[0]
-                      - np.interp(s, t, acceleration)),
-        (0.0, t[-1]), (0.0, 0.0), rtol=1e-9, atol=1e-12, max_step=0.002).y[:, -1]
-    damped = w * sqrt(1.0 - damping ** 2)
-    return np.hypot(y, (v + damping * w * y) / damped) * w * w / np.abs(acceleration).max()
 
 
 def test_spectrum_of_a_pulse_is_the_sinc():
@@ -60,14 +44,6 @@ def test_fraction_above_is_parsevals():
     a = np.exp(-0.5 * ((t - 10.0) / 0.5) ** 2)  # energy spectrum: normal, deviation 1/(2 pi)*sqrt2
     from scipy.special import erfc
     assert fraction_above(t, a, 0.4) == pytest.approx(erfc(2.0 * pi * 0.5 * 0.4), abs=1e-5)
-
-
-@pytest.mark.parametrize('frequency', [1.3, 4.0])
-def test_residual_vibration_is_that_of_the_integrated_mode(frequency):
-    t = np.linspace(0.0, 1.5, 4001)
-    a = np.sin(pi * t / 1.5) ** 2 * (1.0 - t)
-    assert residual_vibration(t, a, np.array([frequency]), 0.02) == pytest.approx(
-        [scipy_vibration(t, a, frequency, 0.02)], rel=1e-3)
 
 
 def test_claim_fewer_coefficients_holds():
