@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Excitation of a flexible structure by a motion: amplitude spectrum and energy."""
+"""Excitation of a flexible structure by a motion: amplitude spectrum, energy, a line of text."""
 
 from __future__ import annotations
 
@@ -20,10 +20,12 @@ from math import pi
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.trajectory.residual_vibration import Motion, residual_vibration
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
 POINTS = 4001   # of the quadrature over a motion: some hundred per period of the frequencies here
 BELOW = 400     # frequencies of the quadrature of a spectrum
+IN_TEXT = (16.0, 32.0, 64.0)  # Hz, of the modes in a line of text
 
 
 def amplitude_spectrum(t: Array, acceleration: Array, frequencies: Array) -> Array:
@@ -70,6 +72,26 @@ def fraction_above(t: Array, acceleration: Array, frequency: float) -> float:
     power = amplitude_spectrum(t, acceleration, below) ** 2
     whole = float(_integral(acceleration ** 2, t))
     return float(1.0 - 2.0 * _integral(power, below) / whole)
+
+
+def vibration_text(motion: Motion, knots: Array) -> str:
+    """
+    Return the residual vibration after a motion as a line.
+
+    Parameters
+    ----------
+    motion, knots
+        As in `residual_vibration`.
+
+    Returns
+    -------
+    str
+        At a few frequencies, the largest of all joints.
+
+    """
+    found = residual_vibration(motion, knots, IN_TEXT).max(axis=1)
+    return (f'residual vibration [rad/s^2] at {" / ".join(f"{f:g}" for f in IN_TEXT)} Hz: '
+            + ' / '.join(f'{value:.3g}' for value in found))
 
 
 def joint_acceleration(trajectory: Trajectory, joint: int) -> tuple[Array, Array]:

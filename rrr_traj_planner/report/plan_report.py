@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The report of a task: profiles, torque, path, animation and peaks, for one or more planners."""
+"""The report of a task: vibration, profiles, torque, path, animation, peaks; several planners."""
 
 from __future__ import annotations
 
@@ -31,6 +31,7 @@ from rrr_traj_planner.report.tables import (
     refusals_table,
     via_points_table,
 )
+from rrr_traj_planner.report.vibration import TEXT, vibration_figure, vibration_table
 
 FEW = 6  # largest number of via points that the introduction lists; else only first and last
 
@@ -86,6 +87,8 @@ def sections(found: Sequence[Attempt]) -> list[Section]:
     points = Section('Via points', '', [via_points_table(task, plans, 'via_points')])
     if not plans:
         return [*parts, points]
+    parts.append(Section('Residual vibration', TEXT, [
+        vibration_table(plans, 'vibrations'), vibration_figure(plans, 'vibration')]))
     parts.append(Section('Motion', '', [Animation(
         'animation', 'The arm along the path',
         'Drag a picture to turn the view. The path ahead of the tip is grey. Below each picture: '

@@ -28,7 +28,7 @@ FIGURES = [*(f'figure_3_{i}' for i in (1, 2, 3)), *(f'figure_4_{i}' for i in (1,
            *(f'figure_6_{i}' for i in (*range(2, 10), 12, 13)), 'torque_line_arc',
            'torque_line_polynomial', 'times_table_6_1', 'times_table_6_3', 'claim_spectra',
            'claim_vibrations']
-PLAN_FIGURES = ['paths', *(f'compared_{i}' for i in (1, 2, 3)), *(
+PLAN_FIGURES = ['vibration', 'paths', *(f'compared_{i}' for i in (1, 2, 3)), *(
     f'{kind}_{planner}' for kind in ('profiles', 'torque', 'path')
     for planner in ('cycloid', 'line_arc', 'time_optimal'))]
 

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import subprocess
 import sys
@@ -61,8 +62,13 @@ def test_plan_is_drawn_without_ros_and_nothing_is_written_elsewhere(tmp_path):
     assert output.endswith('page: out/index.html\n')
     assert [f.name for f in tmp_path.iterdir()] == ['out']
     names = {f.name for f in (tmp_path / 'out').iterdir()}
-    assert {'index.html', 'planners.csv', 'profiles_cycloid.png', 'profiles_septic.csv'} <= names
-    assert 'Peaks of septic' in (tmp_path / 'out' / 'index.html').read_text()
+    assert {'index.html', 'planners.csv', 'profiles_cycloid.png', 'profiles_septic.csv',
+            'vibrations.csv', 'vibration.png'} <= names
+    page = (tmp_path / 'out' / 'index.html').read_text()
+    assert 'Peaks of septic' in page and 'Residual vibration over frequency' in page
+    for planner_id in ('cycloid', 'septic'):
+        assert re.search(rf'^{planner_id}: 2\.\d+ s, residual vibration \[rad/s\^2\] at 16 / 32 / '
+                         r'64 Hz: 0\.\d+ / 0\.\d+ / 0\.\d+$', output, re.MULTILINE)
 
 
 def test_plan_of_a_urdf_s_arm_is_drawn(tmp_path):

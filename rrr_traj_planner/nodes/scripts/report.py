@@ -32,9 +32,10 @@ DESCRIPTION = """\
 Write a self-contained page, OUT_DIR/index.html, with its figures as PNG and CSV beside it.
 
 --thesis redraws the thesis's tables and figures from this package's own planners. --plan draws a
-plan of a via-point file: profiles against limits, torque use, path, animation, peaks; by several
-planners side by side. Starts no node; of the arguments for ROS the parameters count, those of the
-planner. If a planner refuses, the page shows why, and the exit code is 1."""
+plan of a via-point file: profiles against limits, torque use, path, animation, peaks, residual
+vibration; by several planners side by side. Starts no node; of the arguments for ROS the
+parameters count, those of the planner. If a planner refuses, the page shows why, and the exit code
+is 1."""
 
 NO_MATPLOTLIB = (
     'no figures, matplotlib is missing ({error}): sudo apt install python3-matplotlib, or '
@@ -105,7 +106,8 @@ def _plan(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
     from rrr_traj_planner.planners.registry import planner_ids
     from rrr_traj_planner.planners.request import PlanningRequest
-    from rrr_traj_planner.report.attempts import attempts, Task
+    from rrr_traj_planner.report.attempts import attempts, planned, Task
+    from rrr_traj_planner.report.excitation import vibration_text
     from rrr_traj_planner.report.plan_report import write_plan_report
 
     file = read_task(options.plan)
@@ -121,6 +123,10 @@ def _plan(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     print('planning and drawing ...', flush=True)
     ids = planner_ids() if 'all' in ids else ids
     found = attempts(Task(file.name, config.model, config.limits_for(*ids), request), ids)
+    for of in planned(found):
+        trajectory = of.plan.trajectory
+        print(f'{of.planner_id}: {trajectory.duration:.3f} s, '
+              f'{vibration_text(trajectory, trajectory.knots)}', flush=True)
     name = file.name.encode()[:MAX_NAME].decode(errors='ignore')
     page = write_plan_report(options.output or Path(f'report_{name}'), found)
     print(f'page: {page}')
