@@ -28,6 +28,7 @@ from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.nodes.demo.client import Run
 from rrr_traj_planner.planners.registration import Registered
 from rrr_traj_planner.planners.registry import planner
+from rrr_traj_planner.report.excitation import vibration_text
 from rrr_traj_planner.report.measures import joint_errors, tip_errors
 
 PLANNED_BOUND = 1e-9   # rad, error of the plan at via points: rounding
@@ -135,6 +136,8 @@ def table(run: Run, found: list[CheckedValue]) -> str:
         label = f'{name} [{unit}]'
         lines.append(f'{label:<24}' + ''.join(
             f'{f"{p:.4g} / {_limit(m)}":>24}' for p, m in zip(peak, limit)))
+    spline = spline_through(run.planned)
+    lines += ['', vibration_text(spline.at, spline.knots)]
     within = sum(f.within_bound for f in found)
     lines += ['', f'{within} of {len(found)} figures are inside their bounds']
     return '\n'.join(lines)

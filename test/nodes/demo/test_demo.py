@@ -51,6 +51,7 @@ def test_demo_runs_its_task_and_shows_it(tmp_path, arguments, name, seconds):
     shown = float(re.search(rf'^{name}: (\S+) s$', output, re.MULTILINE)[1])
     assert shown == pytest.approx(seconds, abs=5e-3)  # the reference solution's
     for text in ('tip error [mm]', 'at rest', 'executed torque [N m]', 'joint_3',
+                 'residual vibration [rad/s^2] at 16 / 32 / 64 Hz: 0.',
                  '22 of 22 figures are inside their bounds', f'plot: demo_{name}.png'):
         assert text in output
     assert 'Traceback' not in errors

@@ -110,6 +110,15 @@ def test_table_shows_every_via_point_joint_and_limit(task):
     assert max(map(len, lines)) <= 99
 
 
+def test_table_shows_the_residual_vibration_of_the_planned_motion(task):
+    run = executed(task)
+    line, = (x for x in table(run, checked_values(run)).splitlines() if 'vibration' in x)
+    label, values = line.split(' Hz: ')
+    assert label == 'residual vibration [rad/s^2] at 16 / 32 / 64'
+    assert [float(x) for x in values.split(' / ')] == pytest.approx(
+        (0.057, 0.005, 0.002), abs=6e-4)  # the cycloid's, by a program of its own
+
+
 def test_plot_is_a_picture(task, tmp_path):
     for name in ('run.png', 'run.pdf'):
         draw(executed(task), tmp_path / name)
