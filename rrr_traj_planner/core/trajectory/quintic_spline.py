@@ -92,18 +92,23 @@ class QuinticSpline:
         x = np.asarray(fractions, dtype=float)[:, np.newaxis, np.newaxis] * widths[:, np.newaxis]
         return polynomial(c, x, 0), polynomial(c, x, 1), polynomial(c, x, 2)
 
-    def peak_jerks(self) -> Array:
+    def peak_jerks(self, segments: IntArray | slice = slice(None)) -> Array:
         """
         Return the largest jerk of each joint between each two points, exactly.
 
+        Parameters
+        ----------
+        segments : ndarray or slice
+            Indices of k of the n - 1 segments.
+
         Returns
         -------
-        ndarray, shape (n - 1, 3)
+        ndarray, shape (k, 3)
             [rad/s^3].
 
         """
-        widths = np.diff(self.knots)[:, np.newaxis]
-        c = np.moveaxis(self.coefficients, -1, 0)
+        widths = np.diff(self.knots)[segments, np.newaxis]
+        c = np.moveaxis(self.coefficients[segments], -1, 0)
         with np.errstate(divide='ignore', invalid='ignore'):
             vertex = -0.2 * c[4] / c[5]  # jerk is a parabola in time
         times = (0.0 * widths, widths, np.clip(np.nan_to_num(vertex), 0.0, widths))
