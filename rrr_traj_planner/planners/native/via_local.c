@@ -180,8 +180,12 @@ EXPORTED double via_local_step(ViaProblem *p, double weight, const LocalRules *r
         if (try_step(p, weight, scratch))
             return -1.0;
         const double change = change_of(p, weight, active);
-        if (!(p->decrement >= 0.0))
-            return -1.0;
+        if (!(p->decrement >= 0.0)) {  /* a step that was repaired too near to where it was bad */
+            if (!repair)
+                return -1.0;
+            memcpy(scratch, active, p->n * sizeof *scratch);
+            continue;
+        }
         if (change <= -rules->sufficient_decrease * p->decrement) {
             const double all = p->decrement + *left_out;
             FOR_RANGES(at, p, active)

@@ -49,6 +49,10 @@ from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 LEFT_OUT = 0.02
 MOST_STEPS = 50  # before the weight is raised; chosen, twice as many as of whole steps
 
+# Damping of a first step after the weight is raised: the tangent of the central path by 1 / weight
+# is as much shorter than Newton's step as the barrier's weight has become less.
+TANGENT = 1.0 / BARRIER_REDUCTION - 1.0
+
 KERNELS = declared({'via_local_step': (c_double, [c_void_p, c_double, *[c_void_p] * 4])})
 
 
@@ -84,6 +88,7 @@ def minimise_locally(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> So
     stopped = steps.centre(weight, CENTRED, should_stop)
     while not stopped and count / weight >= RELATIVE_GAP * found.objective:
         weight /= BARRIER_REDUCTION
+        np.maximum(barrier.arrays['damping'], TANGENT, out=barrier.arrays['damping'])
         stopped = steps.centre(weight, CENTRED, should_stop)
     if not stopped:
         steps.centre(weight, POLISHED, should_stop)
