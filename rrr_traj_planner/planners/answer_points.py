@@ -35,7 +35,7 @@ from rrr_traj_planner.core.trajectory.controller_spline import (
     RANGE_TOLERANCE,
     SplineExcess,
 )
-from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through, spline_where_divided
 from rrr_traj_planner.core.trajectory.sampling import (
     LEAST_GAP,
     NANOSECOND,
@@ -153,7 +153,8 @@ def _refined(problem: PlanningProblem, trajectory: Trajectory, min_spacing: floa
     times = sample_times(trajectory, request.sample_period, request.max_points)
     points = points_at(trajectory, times)
     request.should_stop()
-    found = checked_intervals(model, limits, spline_through(points), request.should_stop)
+    spline = spline_through(points)
+    found = checked_intervals(model, limits, spline, request.should_stop)
     while True:
         excess = found.excess(limits)
         index, cuts = _divisions(
@@ -164,8 +165,8 @@ def _refined(problem: PlanningProblem, trajectory: Trajectory, min_spacing: floa
         request.should_stop()
         points = with_states_at(points, trajectory, further, index + 1)
         request.should_stop()
-        found = checked_where_divided(
-            model, limits, spline_through(points), found, index, request.should_stop)
+        spline = spline_where_divided(spline, points, index)
+        found = checked_where_divided(model, limits, spline, found, index, request.should_stop)
 
 
 def _divisions(limits: JointLimits, times: SampleTimes, excess: SplineExcess, steps: Array,

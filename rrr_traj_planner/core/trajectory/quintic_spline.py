@@ -134,6 +134,38 @@ def spline_through(points: TrajectoryPoints) -> QuinticSpline:
     return QuinticSpline(points.times, coefficients, points.positions[-1])
 
 
+def spline_where_divided(before: QuinticSpline, points: TrajectoryPoints,
+                         divided: IntArray) -> QuinticSpline:
+    """
+    Return the spline through points of which some are new: only the polynomials beside them are.
+
+    Parameters
+    ----------
+    before : QuinticSpline
+        Through the others.
+    points : TrajectoryPoints
+        All points, each with velocity and acceleration.
+    divided : ndarray of int
+        Increasing indices of the intervals between the others that contain a new point, each one.
+
+    Returns
+    -------
+    QuinticSpline
+        As of `spline_through`.
+
+    """
+    copies = np.ones(len(before.coefficients), dtype=int)
+    copies[divided] = 2
+    coefficients = before.coefficients.repeat(copies, axis=0)
+    first = divided + np.arange(len(divided))
+    parts = np.stack((first, first + 1), axis=1).ravel()
+    states = points.positions, points.velocities, points.accelerations
+    coefficients[parts] = np.stack(hermite(
+        (points.times[parts + 1] - points.times[parts])[:, np.newaxis],
+        tuple(s[parts] for s in states), tuple(s[parts + 1] for s in states)), axis=-1)
+    return QuinticSpline(points.times, coefficients, points.positions[-1])
+
+
 def hermite(T: float | Array, start: tuple[Array, ...], end: tuple[Array, ...]) -> list[Array]:
     """
     Return the Hermite polynomial between two states: degree 1, 3 or 5.

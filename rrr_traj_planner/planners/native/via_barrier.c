@@ -232,8 +232,8 @@ int via_damp_segment(const ViaProblem *p, DampingRule rule, int k, int end)
     return found;
 }
 
-/* Raise the damping of the parts that were badly predicted on the last attempt. Raises all if there
- * is none. */
+/* Raise the damping of the parts that were badly predicted on the last attempt. Raises all if
+ * there is none. */
 EXPORTED void via_damp(const ViaProblem *p, double tolerated, double more_damping)
 {
     const DampingRule rule = {tolerated, more_damping, 0.0};

@@ -1,3 +1,17 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
 /* Newton steps of the via-point problem that touch only the segments that need them: a repair of a
  * step changes it around the parts that it predicted badly, and segments that are centred take no
  * further steps (transitions/local_steps.py). For durations that are free. */
@@ -6,14 +20,15 @@
 #include <math.h>
 #include <string.h>
 
-/* Segments on either side of one that changes, which may then change too. Chosen: with 2 or 6 the
+/* Segments on either side of one that changes, which may then change too. Chosen: with 3 or 6 the
  * steps through 1,000 via points take up to a fifth longer. */
-enum { HALO = 3 };
+enum { HALO = 2 };
 
 enum { PARTS = 2 * JOINTS + 1 };  /* of a segment, with the bounds of the velocities at its end */
 
-/* Part of the decrement squared that badly predicted parts may add together and still be left alone:
- * where a step is short they are so by rounding. Chosen: a sufficient decrease has room for 0.15. */
+/* Part of the decrement squared that badly predicted parts may add together and still be left
+ * alone: where a step is short they are so by rounding. Chosen: a sufficient decrease has room
+ * for 0.15. */
 static const double NEGLIGIBLE = 0.01;
 
 /* What a caller asks of a step; see solver/barrier_method.py. */
@@ -38,7 +53,8 @@ static Range next_range(const ViaProblem *p, const double *marked, int from)
 
 /* Run what follows for every range of marked segments. */
 #define FOR_RANGES(at, p, marked) \
-    for (Range at = next_range(p, marked, 0); at.begin < (p)->n; at = next_range(p, marked, at.end))
+    for (Range at = next_range(p, marked, 0); at.begin < (p)->n; \
+         at = next_range(p, marked, at.end))
 
 static void mark_around(double *marked, int k, Range within)
 {
@@ -64,8 +80,8 @@ static int try_step(const ViaProblem *p, double weight, const double *marked)
     return 0;
 }
 
-/* The numbers of a segment's parts, with those of the bounds of the velocities at its end unless its
- * range ends there; returns how many they are. */
+/* The numbers of a segment's parts, with those of the bounds of the velocities at its end unless
+ * its range ends there; returns how many they are. */
 static int parts_of_segment(const ViaProblem *p, int k, int end, int parts[PARTS])
 {
     const int segments = p->n * JOINTS, bounds = segments - JOINTS;
@@ -97,9 +113,10 @@ static double change_of(ViaProblem *p, double weight, const double *active)
     return change;
 }
 
-/* Damp the parts that the step predicted badly and mark what is around them; all, if there is none.
- */
-static void damp(const ViaProblem *p, const LocalRules *rules, const double *active, double *marked)
+/* Damp the parts that the step predicted badly and mark what is around them; all, if there is
+ * none. */
+static void damp(const ViaProblem *p, const LocalRules *rules, const double *active,
+                 double *marked)
 {
     const DampingRule rule = {rules->tolerated_rise, rules->more_damping,
                               NEGLIGIBLE * p->decrement / parts_of(p)};
@@ -144,8 +161,8 @@ static double sum_up_to(const double *values, int n, double bound)
     return sum;
 }
 
-/* Leave out of further steps the segments that add little to the decrement of this one, together at
- * most so much. Returns what they add. */
+/* Leave out of further steps the segments that add little to the decrement of this one, together
+ * at most so much. Returns what they add. */
 static double leave_out(const ViaProblem *p, double most, double *active, double *shares)
 {
     const Range all = {0, p->n};
@@ -167,11 +184,12 @@ static double leave_out(const ViaProblem *p, double most, double *active, double
     return left;
 }
 
-/* Take a damped Newton step of the active segments, repaired where it must be. Returns its decrement
- * squared with that of the segments left out before; negative where rounding allows no decrease.
- * Then active are the segments that need another, and left_out is what the others have added. */
-EXPORTED double via_local_step(ViaProblem *p, double weight, const LocalRules *rules, double *active,
-                               double *scratch, double *left_out)
+/* Take a damped Newton step of the active segments, repaired where it must be. Returns its
+ * decrement squared with that of the segments left out before; negative where rounding allows no
+ * decrease. Then active are the segments that need another, and left_out is what the others have
+ * added. */
+EXPORTED double via_local_step(ViaProblem *p, double weight, const LocalRules *rules,
+                               double *active, double *scratch, double *left_out)
 {
     memset(p->step, 0, unknowns_of(p) * sizeof(double));
     memcpy(p->next, p->point, unknowns_of(p) * sizeof(double));

@@ -49,7 +49,7 @@ static double entry(const ViaProblem *p, int i, int row, int column)
 
 enum { OWN = 1 + JOINTS };  /* unknowns of a segment, its duration and the velocities at its end */
 
-/* Subtract from the right-hand side of a range what the steps of the velocities at its ends add. */
+/* Subtract from a range's right-hand side what the steps of the velocities at its ends add. */
 static void subtract_steps_of_ends(const ViaProblem *p, Range at)
 {
     double *right = p->right + OWN * at.begin;

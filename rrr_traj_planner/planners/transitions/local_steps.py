@@ -45,8 +45,8 @@ from rrr_traj_planner.planners.solver.barrier_method import (
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 
 # Part of the Newton decrement squared that the segments without a step may have together; chosen:
-# 0.1 takes as long.
-LEFT_OUT = 0.02
+# 0.02 and 0.25 take as long.
+LEFT_OUT = 0.1
 MOST_STEPS = 50  # before the weight is raised; chosen, twice as many as of whole steps
 
 # Damping of a first step after the weight is raised: the tangent of the central path by 1 / weight

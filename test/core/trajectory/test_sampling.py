@@ -20,7 +20,7 @@ import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through, spline_where_divided
 from rrr_traj_planner.core.trajectory.sampling import (
     points_at,
     sample,
@@ -228,3 +228,5 @@ def test_points_added_between_are_those_of_all_times_together(trajectory, period
     expected = points_at(trajectory, together)
     for name in ('times', 'positions', 'velocities', 'accelerations'):
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-13, abs=1e-13)
+    spline = spline_where_divided(spline_through(points_at(trajectory, times)), found, index)
+    assert (spline.coefficients == spline_through(found).coefficients).all()
