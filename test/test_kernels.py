@@ -25,11 +25,12 @@ from rrr_traj_planner.core.kinematics.common_normal import CommonNormal
 from rrr_traj_planner.core.simulation.time_step import Load
 from rrr_traj_planner.planners.solver.timing_problem import _Problem, _Step
 from rrr_traj_planner.planners.solver.via_barrier import _ViaProblem
+from rrr_traj_planner.planners.transitions.local_steps import _LocalRules
 
 SOURCES = [path for layer in ('core', 'planners')
            for path in sorted((ROOT / 'rrr_traj_planner' / layer / 'native').glob('*.[ch]'))]
-REPEATED = {'arm': _Arm, 'common_normal': CommonNormal, 'load': Load, 'problem': _Problem,
-            'step': _Step, 'via_problem': _ViaProblem}
+REPEATED = {'arm': _Arm, 'common_normal': CommonNormal, 'load': Load, 'local_rules': _LocalRules,
+            'problem': _Problem, 'step': _Step, 'via_problem': _ViaProblem}
 C_TYPES = {'int32_t': 'c_int', 'double': 'c_double', 'Ramp': '_Ramp'}
 
 

@@ -27,14 +27,15 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.errors import ConvergenceError, TimingError
 from rrr_traj_planner.core.trajectory.controller_spline import (
+    checked_intervals,
+    checked_where_divided,
     RANGE_TOLERANCE,
-    spline_excess,
     SplineExcess,
 )
-from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through, spline_where_divided
 from rrr_traj_planner.core.trajectory.sampling import (
     LEAST_GAP,
     NANOSECOND,
@@ -42,6 +43,7 @@ from rrr_traj_planner.core.trajectory.sampling import (
     sample_times,
     SampleTimes,
     STEP_FRACTION,
+    with_states_at,
 )
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
@@ -147,24 +149,29 @@ def _refined(problem: PlanningProblem, trajectory: Trajectory, min_spacing: floa
 
     At steps of acceleration the quintic overshoots on the side with a margin, or before all steps.
     """
-    request, limits = problem.request, problem.limits
+    request, model, limits = problem.request, problem.model, problem.limits
     times = sample_times(trajectory, request.sample_period, request.max_points)
+    points = points_at(trajectory, times)
+    request.should_stop()
+    spline = spline_through(points)
+    found = checked_intervals(model, limits, spline, request.should_stop)
     while True:
-        request.should_stop()
-        points = points_at(trajectory, times)
-        request.should_stop()
-        excess = spline_excess(
-            problem.model, limits, spline_through(points), request.should_stop)
-        further = _between(
+        excess = found.excess(limits)
+        index, cuts = _divisions(
             limits, times, excess, trajectory.step_times, min_spacing, overshoot_before)
-        if not len(further) or len(times.stamps) + len(further) > request.max_points:
+        if not len(index) or len(times.stamps) + len(index) > request.max_points:
             return points, excess
-        times = times.with_further(further)
+        times, further = times.divided(index, cuts)
+        request.should_stop()
+        points = with_states_at(points, trajectory, further, index + 1)
+        request.should_stop()
+        spline = spline_where_divided(spline, points, index)
+        found = checked_where_divided(model, limits, spline, found, index, request.should_stop)
 
 
-def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, steps: Array,
-             min_spacing: float, overshoot_before: bool) -> Array:
-    """Return times at which to divide intervals that exceed limits, at least a spacing apart."""
+def _divisions(limits: JointLimits, times: SampleTimes, excess: SplineExcess, steps: Array,
+               min_spacing: float, overshoot_before: bool) -> tuple[IntArray, Array]:
+    """Return which intervals that exceed limits to divide, and when, at least a spacing apart."""
     begin, width = times.stamps[:-1] * NANOSECOND, np.diff(times.stamps) * NANOSECOND
     cut = begin + 0.5 * width
     outside = excess.outside > 0.0
@@ -180,7 +187,8 @@ def _between(limits: JointLimits, times: SampleTimes, excess: SplineExcess, step
         exceeds_jerk[index] = False  # a shorter interval would make the step's jerk larger
     least = np.where(outside, min(min_spacing, CLOSEST), min_spacing) - NANOSECOND
     far = np.minimum(cut - begin, begin + width - cut) >= least
-    return cut[far & (exceeds_jerk | (excess.time_scale > 1.0) | outside)]
+    index = np.flatnonzero(far & (exceeds_jerk | (excess.time_scale > 1.0) | outside))
+    return index, cut[index]
 
 
 def _note(problem: PlanningProblem, jerk: Array, time_scale: float) -> str:

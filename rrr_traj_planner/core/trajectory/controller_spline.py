@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array, IntArray
+from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.dynamics.motor_torque import (
     direction_of,
@@ -71,6 +71,61 @@ class SplineExcess(NamedTuple):
                    float(np.cbrt(outside / RANGE_TOLERANCE)))
 
 
+class CheckedIntervals(NamedTuple):
+    """What the checks of the quintics found, for each of n - 1 intervals."""
+
+    speed: Array          # largest of the coarse samples' velocities [rad/s], (n - 1,)
+    coarse_effort: Array  # largest torque of the coarse samples [N m], (n - 1, 3)
+    torque_bound: Array   # of the polynomial through these [N m], (n - 1, 3)
+    jerk: Array           # as in `SplineExcess`
+    doubtful: BoolArray   # whether a bound exceeds a limit other than torque's, (n - 1,)
+    dense: BoolArray      # whether the following come from a dense check, (n - 1,)
+    time_scale: Array     # as in `SplineExcess`
+    outside: Array
+    place: Array
+    dense_effort: Array   # largest torque [N m], (n - 1, 3)
+
+    def excess(self, limits: JointLimits) -> SplineExcess:
+        """
+        Return the excess over the limits.
+
+        Parameters
+        ----------
+        limits : JointLimits
+            Those of the checks.
+
+        Returns
+        -------
+        SplineExcess
+            For each interval.
+
+        """
+        to_see = self.to_check_densely(limits)
+        effort = np.maximum(self.coarse_effort.max(axis=0, initial=0.0),
+                            self.dense_effort[to_see].max(axis=0, initial=0.0))
+        return SplineExcess(
+            np.where(to_see, self.time_scale, 1.0), np.where(to_see, self.outside, 0.0),
+            np.where(to_see, self.place, 0.0), effort, self.jerk)
+
+    def to_check_densely(self, limits: JointLimits) -> BoolArray:
+        """
+        Return where a bound exceeds a limit, or the largest torque of all samples.
+
+        Parameters
+        ----------
+        limits : JointLimits
+            Those of the checks.
+
+        Returns
+        -------
+        ndarray of bool, shape (n - 1,)
+            Whether the coarse check leaves a doubt.
+
+        """
+        most = np.minimum(limits.max_effort, self.coarse_effort.max(axis=0, initial=0.0))
+        return np.asarray(self.doubtful | _exceeds(self.torque_bound, most))
+
+
 def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
                   should_stop: ShouldStop = never) -> SplineExcess:
     """
@@ -93,31 +148,103 @@ def spline_excess(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
         For each interval.
 
     """
-    fractions = np.linspace(0.0, 1.0, COARSE_STEPS + 1)
-    q, qd, qdd = spline.within(fractions)
+    return checked_intervals(model, limits, spline, should_stop).excess(limits)
+
+
+def checked_intervals(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
+                      should_stop: ShouldStop = never) -> CheckedIntervals:
+    """
+    Return what the checks of quintics through points found.
+
+    Parameters
+    ----------
+    model, limits, spline, should_stop
+        As in `spline_excess`.
+
+    Returns
+    -------
+    CheckedIntervals
+        Of all intervals.
+
+    """
+    found = _coarse_check(model, limits, spline, slice(None), should_stop)
+    return _checked_densely(model, limits, spline, found, should_stop)
+
+
+def checked_where_divided(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
+                          before: CheckedIntervals, divided: IntArray,
+                          should_stop: ShouldStop = never) -> CheckedIntervals:
+    """
+    Return what the checks found after some intervals were divided: only their parts are checked.
+
+    Parameters
+    ----------
+    model, limits, should_stop
+        As in `spline_excess`.
+    spline : QuinticSpline
+        The quintics after the division.
+    before : CheckedIntervals
+        Of the intervals before it.
+    divided : ndarray of int
+        Increasing indices of those that were divided, each in two.
+
+    Returns
+    -------
+    CheckedIntervals
+        As of `checked_intervals`, from which it differs by rounding.
+
+    """
+    copies = np.ones(len(before.speed), dtype=int)
+    copies[divided] = 2
+    found = CheckedIntervals._make(values.repeat(copies, axis=0) for values in before)
+    first = divided + np.arange(len(divided))
+    parts = np.stack((first, first + 1), axis=1).ravel()
+    fastest = float(before.speed.max())  # of the whole motion, by which a joint is at rest or not
+    for all_of_them, some in zip(found, _coarse_check(
+            model, limits, spline, parts, should_stop, fastest)):
+        all_of_them[parts] = some
+    return _checked_densely(model, limits, spline, found, should_stop)
+
+
+def _coarse_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
+                  index: IntArray | slice, should_stop: ShouldStop,
+                  fastest: float = 0.0) -> CheckedIntervals:
+    """Return what samples and Bernstein coefficients tell of some intervals of a motion."""
+    q, qd, qdd = spline.within(np.linspace(0.0, 1.0, COARSE_STEPS + 1), index)
     should_stop()
-    rest_speed = rest_speed_of(qd)
-    tau, push = _torque_and_push(model, q, qd, qdd, rest_speed)
-    effort = np.abs(tau + push).max(axis=(0, 1))
+    speeds = np.abs(qd).max(axis=(0, 2))
+    tau, push = _torque_and_push(
+        model, q, qd, qdd, rest_speed_of(np.append(speeds, fastest)))
     should_stop()
-    forms = bernstein_forms(spline.coefficients, np.diff(spline.knots))
-    bounds = [np.abs(form).max(axis=2) for form in forms[1:]]
-    bounds.append(np.abs(through_samples(tau)).max(axis=0) + model.friction.coulomb)
-    doubtful = np.zeros(q.shape[1], dtype=bool)
-    for most, limit in zip(bounds, (
-            limits.max_velocity, limits.max_acceleration, np.minimum(limits.max_effort, effort))):
-        doubtful |= (most > limit * (1.0 + SPLINE_TOLERANCE)).any(axis=1)
+    forms = bernstein_forms(spline.coefficients[index], np.diff(spline.knots)[index])
+    doubtful = _exceeds(np.abs(forms[1]).max(axis=2), limits.max_velocity)
+    doubtful |= _exceeds(np.abs(forms[2]).max(axis=2), limits.max_acceleration)
     doubtful |= (forms[0].max(axis=2) > limits.max_position + RANGE_TOLERANCE).any(axis=1)
     doubtful |= (forms[0].min(axis=2) < limits.min_position - RANGE_TOLERANCE).any(axis=1)
+    none = np.zeros(len(speeds))
+    return CheckedIntervals(
+        speeds, np.abs(tau + push).max(axis=0),
+        np.abs(through_samples(tau)).max(axis=0) + model.friction.coulomb,
+        spline.peak_jerks(index), doubtful, np.zeros(len(speeds), dtype=bool),
+        none + 1.0, none, none.copy(), np.zeros((len(speeds), 3)))
+
+
+def _exceeds(most: Array, limit: Array) -> BoolArray:
+    """Return in which intervals a bound, (n, 3), exceeds a limit by more than the tolerance."""
+    return np.asarray((most > limit * (1.0 + SPLINE_TOLERANCE)).any(axis=1))
+
+
+def _checked_densely(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
+                     found: CheckedIntervals, should_stop: ShouldStop) -> CheckedIntervals:
+    """Return the findings with those of the dense check wherever it is needed."""
     should_stop()
-    none = np.zeros(q.shape[1])
-    found = SplineExcess(none + 1.0, none, none.copy(), effort, spline.peak_jerks())
-    index = np.flatnonzero(doubtful)
+    index = np.flatnonzero(found.to_check_densely(limits) & ~found.dense)
     if len(index):
-        *fine, most = _dense_check(model, limits, spline, index, rest_speed)
-        for all_of_them, some in zip(found, fine):
+        fine = _dense_check(model, limits, spline, index, rest_speed_of(found.speed))
+        for all_of_them, some in zip(
+                (found.time_scale, found.outside, found.place, found.dense_effort), fine):
             all_of_them[index] = some
-        found = found._replace(effort=np.maximum(effort, most))
+        found.dense[index] = True
     return found
 
 
@@ -140,7 +267,7 @@ def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
     q = _at_reversals(q, qd, qdd, np.diff(spline.knots)[index] / FINE_STEPS)
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max(axis=(0, 2))
     return (factors.max(axis=0), np.where(outside > RANGE_TOLERANCE, outside, 0.0),
-            fractions[factors.argmax(axis=0)], effort.max(axis=(0, 1)))
+            fractions[factors.argmax(axis=0)], effort.max(axis=0))
 
 
 def _torque_and_push(model: RobotModel, q: Array, qd: Array, qdd: Array,

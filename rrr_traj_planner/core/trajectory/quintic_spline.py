@@ -92,18 +92,23 @@ class QuinticSpline:
         x = np.asarray(fractions, dtype=float)[:, np.newaxis, np.newaxis] * widths[:, np.newaxis]
         return polynomial(c, x, 0), polynomial(c, x, 1), polynomial(c, x, 2)
 
-    def peak_jerks(self) -> Array:
+    def peak_jerks(self, segments: IntArray | slice = slice(None)) -> Array:
         """
         Return the largest jerk of each joint between each two points, exactly.
 
+        Parameters
+        ----------
+        segments : ndarray or slice
+            Indices of k of the n - 1 segments.
+
         Returns
         -------
-        ndarray, shape (n - 1, 3)
+        ndarray, shape (k, 3)
             [rad/s^3].
 
         """
-        widths = np.diff(self.knots)[:, np.newaxis]
-        c = np.moveaxis(self.coefficients, -1, 0)
+        widths = np.diff(self.knots)[segments, np.newaxis]
+        c = np.moveaxis(self.coefficients[segments], -1, 0)
         with np.errstate(divide='ignore', invalid='ignore'):
             vertex = -0.2 * c[4] / c[5]  # jerk is a parabola in time
         times = (0.0 * widths, widths, np.clip(np.nan_to_num(vertex), 0.0, widths))
@@ -126,6 +131,38 @@ def spline_through(points: TrajectoryPoints) -> QuinticSpline:
 
     """
     coefficients = _segment_coefficients(points, segment_orders(points))
+    return QuinticSpline(points.times, coefficients, points.positions[-1])
+
+
+def spline_where_divided(before: QuinticSpline, points: TrajectoryPoints,
+                         divided: IntArray) -> QuinticSpline:
+    """
+    Return the spline through points of which some are new: only the polynomials beside them are.
+
+    Parameters
+    ----------
+    before : QuinticSpline
+        Through the others.
+    points : TrajectoryPoints
+        All points, each with velocity and acceleration.
+    divided : ndarray of int
+        Increasing indices of the intervals between the others that contain a new point, each one.
+
+    Returns
+    -------
+    QuinticSpline
+        As of `spline_through`.
+
+    """
+    copies = np.ones(len(before.coefficients), dtype=int)
+    copies[divided] = 2
+    coefficients = before.coefficients.repeat(copies, axis=0)
+    first = divided + np.arange(len(divided))
+    parts = np.stack((first, first + 1), axis=1).ravel()
+    states = points.positions, points.velocities, points.accelerations
+    coefficients[parts] = np.stack(hermite(
+        (points.times[parts + 1] - points.times[parts])[:, np.newaxis],
+        tuple(s[parts] for s in states), tuple(s[parts + 1] for s in states)), axis=-1)
     return QuinticSpline(points.times, coefficients, points.positions[-1])
 
 

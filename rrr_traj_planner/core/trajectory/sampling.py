@@ -19,7 +19,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, IntArray
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.scalars import positive, whole_number
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
@@ -49,25 +49,28 @@ class SampleTimes(NamedTuple):
     exact: Array   # [s]
     stamps: Array  # the same in whole nanoseconds, strictly increasing
 
-    def with_further(self, times: Array) -> SampleTimes:
+    def divided(self, index: IntArray, times: Array) -> tuple[SampleTimes, SampleTimes]:
         """
-        Return these times and additional ones between them.
+        Return these times with some intervals divided in two, and the further times alone.
 
         Parameters
         ----------
+        index : ndarray of int, shape (k,)
+            Increasing indices of intervals between these times.
         times : ndarray, shape (k,)
-            [s], at least two nanoseconds from these and from each other.
+            One within each of these intervals [s], two nanoseconds or more from its ends.
 
         Returns
         -------
-        SampleTimes
-            All of them, in order.
+        tuple of SampleTimes
+            All of them, in order, and the k further ones.
 
         """
         stamps = np.round(times / NANOSECOND)
         exact = np.interp(stamps, self.stamps, self.exact)  # see `sample_times` on rounding
-        return SampleTimes(np.sort(np.append(self.exact, exact)),
-                           np.sort(np.append(self.stamps, stamps)))
+        return (SampleTimes(np.insert(self.exact, index + 1, exact),
+                            np.insert(self.stamps, index + 1, stamps)),
+                SampleTimes(exact, stamps))
 
 
 def sample(trajectory: Trajectory, period: float,
@@ -119,6 +122,36 @@ def points_at(trajectory: Trajectory, times: SampleTimes) -> TrajectoryPoints:
     for derivative in (qd, qdd):
         derivative[[0, -1]] = 0.0
     return TrajectoryPoints(times.stamps * NANOSECOND, q, qd, qdd)
+
+
+def with_states_at(points: TrajectoryPoints, trajectory: Trajectory, times: SampleTimes,
+                   before: IntArray) -> TrajectoryPoints:
+    """
+    Return the points of a motion with further ones between them; the others remain as they are.
+
+    Parameters
+    ----------
+    points : TrajectoryPoints
+        Of the motion, as from `points_at`.
+    trajectory : Trajectory
+        The motion.
+    times : SampleTimes
+        Of the k further points.
+    before : ndarray of int, shape (k,)
+        Increasing indices of the points before which they come.
+
+    Returns
+    -------
+    TrajectoryPoints
+        All of them, in order.
+
+    """
+    q, qd, qdd, _ = trajectory(times.exact)
+    return TrajectoryPoints(
+        np.insert(points.times, before, times.stamps * NANOSECOND),
+        np.insert(points.positions, before, q, axis=0),
+        np.insert(points.velocities, before, qd, axis=0),
+        np.insert(points.accelerations, before, qdd, axis=0))
 
 
 def sample_times(trajectory: Trajectory, period: float,

@@ -39,14 +39,14 @@ static double barrier(double product, double least)
     return least > 0.0 ? -log(product) : INFINITY;
 }
 
-/* -sum log(slack) of each part at a point; infinite where a constraint does not hold strictly. */
-static void part_values(const ViaProblem *p, const double *point, double *values)
+/* -sum log(slack) of the parts at a point; infinite where a constraint does not hold strictly. */
+void via_part_values(const ViaProblem *p, const double *point, double *values, Range at)
 {
     const int n = p->n;
     const double *v = point, *T = point + (n - 1) * JOINTS;
     for (int j = 0; j < JOINTS; ++j) {
         const Law law = law_of(p, j);
-        for (int k = 0; k < n; ++k) {
+        for (int k = at.begin; k < at.end; ++k) {
             double v0, v1, *value = &values[k * JOINTS + j];
             *value = INFINITY;
             if (!(T[k] > 0.0))
@@ -63,18 +63,18 @@ static void part_values(const ViaProblem *p, const double *point, double *values
         }
     }
     values += n * JOINTS;
-    for (int i = 0; i < (n - 1) * JOINTS; ++i) {
+    for (int i = at.begin * JOINTS; i < (at.end - 1) * JOINTS; ++i) {
         const double low = v[i] - p->lowest[i], high = p->highest[i] - v[i];
         values[i] = barrier(low * high, fmin(low, high));
     }
     values += (n - 1) * JOINTS;
-    for (int k = 0; k < n; ++k) {
+    for (int k = at.begin; k < at.end; ++k) {
         const double slack = p->least_T ? T[k] - p->least_T[k] : 1.0;
         values[k] = barrier(slack, slack);
     }
 }
 
-static double objective(const ViaProblem *p, const double *point)
+double via_objective(const ViaProblem *p, const double *point)
 {
     const double *T = point + (p->n - 1) * JOINTS;
     double sum = 0.0;
@@ -116,21 +116,21 @@ static void add_displacement_derivatives(const Law *law, double sign, double v0,
     add_log_derivatives(slack, at.gradient, slope, block);
 }
 
-/* The parts' derivatives at the iterate. */
-static void differentiate(const ViaProblem *p)
+void via_differentiate(const ViaProblem *p, Range at)
 {
     const int n = p->n;
     const double *v = p->point, *T = p->point + (n - 1) * JOINTS;
-    memset(p->gradient, 0, n * JOINTS * sizeof *p->gradient);
-    memset(p->hessian, 0, n * JOINTS * sizeof *p->hessian);
+    const size_t first = at.begin * JOINTS, count = (at.end - at.begin) * JOINTS;
+    memset(p->gradient + first, 0, count * sizeof *p->gradient);
+    memset(p->hessian + first, 0, count * sizeof *p->hessian);
     for (int j = 0; j < JOINTS; ++j) {
         const Law law = law_of(p, j);
-        for (int k = 0; k < n; ++k) {
-            const int at = k * JOINTS + j;
-            double v0, v1, *slope = p->gradient[at];
-            double (*block)[3] = p->hessian[at];
+        for (int k = at.begin; k < at.end; ++k) {
+            const int i = k * JOINTS + j;
+            double v0, v1, *slope = p->gradient[i];
+            double (*block)[3] = p->hessian[i];
             ends(p, v, k, j, &v0, &v1);
-            const double D = p->displacements[at];
+            const double D = p->displacements[i];
             const double change = largest_change(&law, T[k]), rate = change_rate(&law, T[k]);
             const double up[3] = {1.0, -1.0, rate}, down[3] = {-1.0, 1.0, rate};
             add_displacement_derivatives(&law, 1.0, v0, v1, T[k], D, slope, block);
@@ -141,15 +141,16 @@ static void differentiate(const ViaProblem *p)
         }
     }
     double (*bound)[2] = p->bound;
-    for (int i = 0; i < (n - 1) * JOINTS; ++i, ++bound) {
+    for (int i = at.begin * JOINTS; i < (at.end - 1) * JOINTS; ++i) {
         const double low = 1.0 / (v[i] - p->lowest[i]), high = 1.0 / (p->highest[i] - v[i]);
-        (*bound)[0] = high - low;
-        (*bound)[1] = low * low + high * high;
+        bound[i][0] = high - low;
+        bound[i][1] = low * low + high * high;
     }
-    for (int k = 0; k < n; ++k, ++bound) {
+    bound += (n - 1) * JOINTS;
+    for (int k = at.begin; k < at.end; ++k) {
         const double slack = p->least_T ? 1.0 / (T[k] - p->least_T[k]) : 0.0;
-        (*bound)[0] = -slack;
-        (*bound)[1] = slack * slack;
+        bound[k][0] = -slack;
+        bound[k][1] = slack * slack;
     }
 }
 
@@ -159,9 +160,10 @@ EXPORTED const int64_t size_of_via_problem = sizeof(ViaProblem);
 /* Evaluate the barrier and its derivatives at the first iterate. */
 EXPORTED void via_begin(ViaProblem *p)
 {
-    p->objective = objective(p, p->point);
-    part_values(p, p->point, p->before);
-    differentiate(p);
+    const Range all = {0, p->n};
+    p->objective = via_objective(p, p->point);
+    via_part_values(p, p->point, p->before, all);
+    via_differentiate(p, all);
 }
 
 /* Try the damped Newton step; returns the change of weight * objective + barrier along it,
@@ -173,8 +175,8 @@ EXPORTED double via_attempt(ViaProblem *p, double weight)
         return INFINITY;
     for (int u = 0; u < unknowns_of(p); ++u)
         p->next[u] = p->point[u] + p->step[u];
-    part_values(p, p->next, p->after);
-    double change = weight * objective(p, p->next) - weight * p->objective;
+    via_part_values(p, p->next, p->after, (Range){0, p->n});
+    double change = weight * via_objective(p, p->next) - weight * p->objective;
     for (int i = 0; i < parts_of(p); ++i)
         change += p->after[i] - p->before[i];
     return change;
@@ -185,41 +187,59 @@ EXPORTED void via_accept(ViaProblem *p, double less_damping)
 {
     memcpy(p->point, p->next, unknowns_of(p) * sizeof(double));
     memcpy(p->before, p->after, parts_of(p) * sizeof(double));
-    p->objective = objective(p, p->point);
+    p->objective = via_objective(p, p->point);
     for (int i = 0; i < parts_of(p); ++i)
         p->damping[i] *= less_damping;
-    differentiate(p);
+    via_differentiate(p, (Range){0, p->n});
 }
 
-/* Raise the damping of the parts that increased on the last attempt by more than their derivatives
- * predict: by more than g's + tolerated * s'Hs, H damped. Raises all if there is none. */
+/* Raise the damping of a part if it was badly predicted; returns whether it was. */
+static int damp_part(const ViaProblem *p, DampingRule rule, int i)
+{
+    const int segments = p->n * JOINTS, bounds = segments - JOINTS;
+    const double *dv = p->step, *dT = p->step + bounds;
+    double first = 0.0, second = 0.0;
+    if (i < segments) {
+        double step[3] = {0.0, 0.0, dT[i / JOINTS]};
+        ends(p, dv, i / JOINTS, i % JOINTS, &step[0], &step[1]);
+        for (int a = 0; a < 3; ++a) {
+            first += p->gradient[i][a] * step[a];
+            for (int b = 0; b < 3; ++b)
+                second += step[a] * p->hessian[i][a][b] * step[b];
+        }
+    } else {
+        const int at = i - segments;
+        const double step = at < bounds ? dv[at] : dT[at - bounds];
+        first = p->bound[at][0] * step;
+        second = p->bound[at][1] * step * step;
+    }
+    const double rise = p->after[i] - p->before[i];
+    if (rise - first <= rule.tolerated * (1.0 + p->damping[i]) * second + rule.slack)
+        return 0;
+    p->damping[i] = p->damping[i] * rule.more_damping + 1.0;
+    return 1;
+}
+
+int via_damp_segment(const ViaProblem *p, DampingRule rule, int k, int end)
+{
+    const int segments = p->n * JOINTS, bounds = segments - JOINTS;
+    int found = damp_part(p, rule, segments + bounds + k);
+    for (int i = k * JOINTS; i < (k + 1) * JOINTS; ++i) {
+        found += damp_part(p, rule, i);
+        if (k < end - 1)
+            found += damp_part(p, rule, segments + i);
+    }
+    return found;
+}
+
+/* Raise the damping of the parts that were badly predicted on the last attempt. Raises all if
+ * there is none. */
 EXPORTED void via_damp(const ViaProblem *p, double tolerated, double more_damping)
 {
-    const int segments = p->n * JOINTS, bounds = segments - JOINTS, all = parts_of(p);
-    const double *dv = p->step, *dT = p->step + bounds;
+    const DampingRule rule = {tolerated, more_damping, 0.0};
     int found = 0;
-    for (int i = 0; i < all; ++i) {
-        double first = 0.0, second = 0.0;
-        if (i < segments) {
-            double step[3] = {0.0, 0.0, dT[i / JOINTS]};
-            ends(p, dv, i / JOINTS, i % JOINTS, &step[0], &step[1]);
-            for (int a = 0; a < 3; ++a) {
-                first += p->gradient[i][a] * step[a];
-                for (int b = 0; b < 3; ++b)
-                    second += step[a] * p->hessian[i][a][b] * step[b];
-            }
-        } else {
-            const int at = i - segments;
-            const double step = at < bounds ? dv[at] : dT[at - bounds];
-            first = p->bound[at][0] * step;
-            second = p->bound[at][1] * step * step;
-        }
-        const double rise = p->after[i] - p->before[i];
-        if (!(rise - first <= tolerated * (1.0 + p->damping[i]) * second)) {
-            p->damping[i] = p->damping[i] * more_damping + 1.0;
-            found = 1;
-        }
-    }
-    for (int i = 0; !found && i < all; ++i)
+    for (int k = 0; k < p->n; ++k)
+        found += via_damp_segment(p, rule, k, p->n);
+    for (int i = 0; !found && i < parts_of(p); ++i)
         p->damping[i] = p->damping[i] * more_damping + 1.0;
 }

@@ -47,39 +47,83 @@ static double entry(const ViaProblem *p, int i, int row, int column)
     return p->hessian[i][row][column] * (1.0 + p->damping[i]);
 }
 
-/* The step with all durations free, unknowns T0, v0 of three joints, T1, v1, ... Returns the
- * Newton decrement squared, negative where the matrix is not positive definite numerically. */
-static double free_step(const ViaProblem *p, double weight)
+enum { OWN = 1 + JOINTS };  /* unknowns of a segment, its duration and the velocities at its end */
+
+/* Subtract from a range's right-hand side what the steps of the velocities at its ends add. */
+static void subtract_steps_of_ends(const ViaProblem *p, Range at)
 {
-    enum { W = 5, OWN = 1 + JOINTS };
-    const int n = p->n, m = OWN * n - JOINTS;
-    memset(p->band, 0, (size_t)m * W * sizeof(double));
-    for (int k = 0; k < n; ++k) {
+    double *right = p->right + OWN * at.begin;
+    const int m = OWN * (at.end - at.begin) - JOINTS;
+    for (int j = 0; j < JOINTS; ++j) {
+        const int first = at.begin * JOINTS + j, last = (at.end - 1) * JOINTS + j;
+        if (at.begin > 0) {
+            const double before = p->step[first - JOINTS];
+            right[0] -= entry(p, first, 0, 2) * before;
+            if (m > 1)
+                right[1 + j] -= entry(p, first, 0, 1) * before;
+        }
+        if (at.end < p->n) {
+            const double after = p->step[last];
+            right[m - 1] -= entry(p, last, 1, 2) * after;
+            if (m > 1)
+                right[m - 1 - JOINTS + j] -= entry(p, last, 0, 1) * after;
+        }
+    }
+}
+
+int via_range_step(const ViaProblem *p, double weight, Range at)
+{
+    enum { W = 5 };
+    const int m = OWN * (at.end - at.begin) - JOINTS;
+    double *band = p->band + (size_t)OWN * at.begin * W, *right = p->right + OWN * at.begin;
+    double *dT = p->step + (p->n - 1) * JOINTS;
+    memset(band, 0, (size_t)m * W * sizeof(double));
+    for (int k = at.begin; k < at.end; ++k) {
         double first, *column = p->band + (size_t)OWN * k * W;
         by_duration(p, k, &first, column);
         p->total_gradient[OWN * k] = -(weight + first);
-        for (int j = 0; j < JOINTS && k < n - 1; ++j) {
+        for (int j = 0; j < JOINTS && k < at.end - 1; ++j) {
             const int i = k * JOINTS + j;
             double *own = column + (1 + j) * W;
             by_velocity(p, i, &first, own);
             p->total_gradient[OWN * k + 1 + j] = -first;
             column[1 + j] = entry(p, i, 1, 2);
             own[JOINTS - j] = entry(p, i + JOINTS, 0, 2);
-            if (k < n - 2)
+            if (k < at.end - 2)
                 own[OWN] = entry(p, i + JOINTS, 0, 1);
         }
     }
-    memcpy(p->right, p->total_gradient, m * sizeof(double));
-    if (solve_band(p->band, p->right, m, W, 1))
-        return -1.0;
-    double decrement = 0.0, *dT = p->step + (n - 1) * JOINTS;
-    for (int i = 0; i < m; ++i)
-        decrement += p->total_gradient[i] * p->right[i];
-    for (int k = 0; k < n; ++k) {
+    memcpy(right, p->total_gradient + OWN * at.begin, m * sizeof(double));
+    subtract_steps_of_ends(p, at);
+    if (solve_band(band, right, m, W, 1))
+        return 1;
+    for (int k = at.begin; k < at.end; ++k) {
         dT[k] = p->right[OWN * k];
-        for (int j = 0; j < JOINTS && k < n - 1; ++j)
+        for (int j = 0; j < JOINTS && k < at.end - 1; ++j)
             p->step[k * JOINTS + j] = p->right[OWN * k + 1 + j];
     }
+    return 0;
+}
+
+double via_share(const ViaProblem *p, int k, int end)
+{
+    const double *total = p->total_gradient + OWN * k;
+    double sum = total[0] * p->step[(p->n - 1) * JOINTS + k];
+    for (int j = 0; j < JOINTS && k < end - 1; ++j)
+        sum += total[1 + j] * p->step[k * JOINTS + j];
+    return sum;
+}
+
+/* The step with all durations free. Returns the Newton decrement squared, negative where the
+ * matrix is not positive definite numerically. */
+static double free_step(const ViaProblem *p, double weight)
+{
+    const Range all = {0, p->n};
+    double decrement = 0.0;
+    if (via_range_step(p, weight, all))
+        return -1.0;
+    for (int k = 0; k < p->n; ++k)
+        decrement += via_share(p, k, p->n);
     return decrement;
 }
 

@@ -52,4 +52,32 @@ static inline int parts_of(const ViaProblem *p) { return 7 * p->n - 3; }
  * decrement squared, negative where the matrix is not positive definite numerically. */
 double via_newton(const ViaProblem *p, double weight);
 
+/* Consecutive segments: their durations, and the velocities at the via points between them. */
+typedef struct {
+    int begin, end;
+} Range;
+
+/* The damped Newton step of a range with durations free, where the velocities at its ends have the
+ * steps that they have already. Returns 1 where the matrix is not positive definite, else 0. */
+int via_range_step(const ViaProblem *p, double weight, Range at);
+
+/* What a segment, of a range that ends at a segment, adds to the decrement of the last step. */
+double via_share(const ViaProblem *p, int k, int end);
+
+/* The barrier's parts in a range at a point; its derivatives there, at the iterate. */
+void via_part_values(const ViaProblem *p, const double *point, double *values, Range at);
+void via_differentiate(const ViaProblem *p, Range at);
+
+double via_objective(const ViaProblem *p, const double *point);
+
+/* When a part counts as badly predicted by its derivatives, g and H damped, on a step s: where it
+ * rises by more than g's + tolerated * s'Hs + slack; its damping is then raised. */
+typedef struct {
+    double tolerated, more_damping, slack;
+} DampingRule;
+
+/* Raise the damping of the badly predicted parts of a segment, and of the velocities at its end
+ * unless its range ends there. Returns of how many. */
+int via_damp_segment(const ViaProblem *p, DampingRule rule, int k, int end);
+
 #endif

@@ -20,8 +20,11 @@ from helpers.pinocchio_arm import PinocchioArm
 from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.trajectory.controller_spline import (
+    checked_intervals,
+    checked_where_divided,
     RANGE_TOLERANCE,
     spline_excess,
     SPLINE_TOLERANCE,
@@ -204,3 +207,35 @@ def test_peak_jerk_is_exact():
         t = np.linspace(0.0, 0.7, 4001)
         dense = np.abs(np.gradient(spline.at(t)[2], t, axis=0, edge_order=2)).max(axis=0)
         assert spline.peak_jerks()[0] == pytest.approx(dense, rel=1e-4)
+
+
+def swinging(rng, times):
+    """Return quintics through points of a motion of sines, slow or quick at random."""
+    amplitude, rate = rng.uniform(0.2, 0.6, (2, 3)) * [[1.0], [6.0]]
+    angle = np.outer(times, rate)
+    return spline_through(TrajectoryPoints(
+        times, FROM + amplitude * np.sin(angle), amplitude * rate * np.cos(angle),
+        -amplitude * rate ** 2 * np.sin(angle)))
+
+
+@pytest.mark.parametrize('seed', range(30))
+def test_checking_only_what_was_divided_finds_what_checking_everything_does(seed):
+    rng = np.random.default_rng(seed)
+    friction = Friction(viscous=[5.0] * 3, coulomb=[2.0] * 3)
+    model = replace(ARM, friction=friction) if seed % 2 else ARM
+    times = np.cumsum(rng.uniform(0.05, 1.0, 30))
+    limits = replace(
+        WIDE, max_velocity=rng.uniform(0.3, 2.0, 3), max_acceleration=rng.uniform(0.5, 4.0, 3),
+        max_effort=rng.choice([np.inf, 60.0, 150.0]) + np.zeros(3),
+        max_position=FROM + rng.uniform(0.3, 0.8, 3))
+    motion = rng.bit_generator.state  # the same motion, whatever its points
+    known = checked_intervals(model, limits, swinging(rng, times))
+    for share in (0.5, 0.2, 0.0):
+        divided = np.flatnonzero(rng.random(len(times) - 1) < share)
+        times = np.insert(times, divided + 1, 0.5 * (times[divided] + times[divided + 1]))
+        again = np.random.default_rng()
+        again.bit_generator.state = motion
+        spline = swinging(again, times)
+        known = checked_where_divided(model, limits, spline, known, divided)
+        for found, expected in zip(known.excess(limits), spline_excess(model, limits, spline)):
+            assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)

@@ -20,8 +20,13 @@ import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
-from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
-from rrr_traj_planner.core.trajectory.sampling import sample, sample_times
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through, spline_where_divided
+from rrr_traj_planner.core.trajectory.sampling import (
+    points_at,
+    sample,
+    sample_times,
+    with_states_at,
+)
 
 # Times are rounded to whole nanoseconds, by half of one at most.
 NANOSECOND = 1e-9
@@ -205,3 +210,23 @@ def test_more_points_than_memory_holds_are_refused_before_they_are_made():
     trajectory = cruising(1.0, duration=1e9)
     with pytest.raises(InvalidInputError, match='has more than 200000 points'):
         sample(trajectory, 0.01)
+
+
+@pytest.mark.parametrize(('trajectory', 'period'), CASES)
+def test_points_added_between_are_those_of_all_times_together(trajectory, period):
+    times = sample_times(trajectory, period)
+    rng = np.random.default_rng(len(times.stamps))
+    width = np.diff(times.stamps)
+    index = np.flatnonzero((width > 10.0) & (rng.random(len(width)) < 0.4))
+    cuts = (times.stamps[index] + rng.uniform(0.3, 0.7, len(index)) * width[index]) * NANOSECOND
+    together, further = times.divided(index, cuts)
+    assert (np.diff(together.stamps) > 0.0).all()
+    assert (np.diff(together.exact) > 0.0).all()
+    assert set(together.stamps) == {*times.stamps, *further.stamps}
+    assert np.abs(together.exact - together.stamps * NANOSECOND).max() <= HALF
+    found = with_states_at(points_at(trajectory, times), trajectory, further, index + 1)
+    expected = points_at(trajectory, together)
+    for name in ('times', 'positions', 'velocities', 'accelerations'):
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-13, abs=1e-13)
+    spline = spline_where_divided(spline_through(points_at(trajectory, times)), found, index)
+    assert (spline.coefficients == spline_through(found).coefficients).all()
