@@ -1,0 +1,82 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Least-time problems of joint motions on a mesh that suits the motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import chain
+
+from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
+from rrr_traj_planner.planners.joint_timing.margins import Margins
+from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem
+from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint
+from rrr_traj_planner.planners.solver.refinement import moved, refined
+from rrr_traj_planner.planners.solver.splines import time_scaled, Variables
+from rrr_traj_planner.planners.tasks import JointTask
+
+# Relative gaps of the rough solutions after which the mesh is refined; chosen: see time_optimal.
+ROUGH_GAPS = (0.03, 0.01)
+
+# Factors by which a motion is slowed on another mesh, until it is strictly feasible; chosen.
+SLOWER = (1.003, 1.01, 1.02, 1.04, 1.08, 1.16, 1.3, 1.6)
+
+
+def meshed(problem: JointProblem,
+           initial_motion: InitialMotion) -> tuple[JointProblem, InitialMotion]:
+    """
+    Return the problem on a refined mesh, and a motion on it to start from.
+
+    Parameters
+    ----------
+    problem : JointProblem
+        On any mesh.
+    initial_motion : callable
+        Returns a motion to start from on any mesh, or None.
+
+    Returns
+    -------
+    problem : JointProblem
+        The same, on another mesh.
+    initial_motion : callable
+        Returns a motion near the fastest where that is within the constraints, else as given.
+
+    """
+    task, margins = problem.task, Margins.none(problem.mesh, len(problem.durations.free))
+    constraints = problem.constraints(margins)
+    first = initial_motion(task, constraints)
+    if first is None:
+        return problem, initial_motion
+    for gap in ROUGH_GAPS:
+        if task.should_stop():
+            break
+        outcome = problem.minimised(
+            constraints, margins, CentralPathPoint(first, None), relative_gap=gap)
+        mesh, motion = refined(problem.mesh, task.points, outcome.motion, task.limits.max_jerk,
+                               task.least_jerk_rise)
+        remeshed = replace(problem, mesh=mesh)
+        constraints = remeshed.constraints(margins)
+        farther = (moved(problem.mesh, mesh, task.points, c.motion)
+                   for c in reversed(outcome.centres))  # from limits
+        slower = (time_scaled(motion, f) for f in SLOWER if problem.durations.may_scale)
+        found = next(filter(constraints.is_within, chain(slower, farther)), None)
+        if found is None:
+            break
+        problem, first = remeshed, found
+
+    def near_the_fastest(planned: JointTask, within: JointConstraints) -> Variables | None:
+        return first if within.is_within(first) else initial_motion(planned, within)
+
+    return problem, near_the_fastest
