@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Splines whose durations, all or some, are prescribed."""
+"""Motions of ramps whose durations, all or some, are prescribed."""
 
 from __future__ import annotations
 
@@ -25,14 +25,13 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.margins import Margins
-from rrr_traj_planner.planners.joint_timing.meshing import meshed
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
-from rrr_traj_planner.planners.joint_timing.start import rest_to_rest, with_durations
+from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.joint_timing.tightening import tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
 from rrr_traj_planner.planners.short_durations import durations_too_short, least_feasible
-from rrr_traj_planner.planners.solver.limits import DurationConstraints, fixed_ends
-from rrr_traj_planner.planners.solver.splines import Mesh, time_scaled, Variables
+from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled, Variables, with_durations
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import DURATION_TOLERANCE
 
@@ -47,7 +46,7 @@ class PrescribedProblem(NamedTuple):
     """Via points and limits, the family of motions, and prescribed durations."""
 
     task: JointTask
-    mesh: Mesh
+    grid: Grid
     durations: Array  # [s], NaN where free
 
     @property
@@ -75,8 +74,9 @@ class PrescribedProblem(NamedTuple):
             Of motions that need not stop at any via point.
 
         """
-        return JointProblem(self.task, self.mesh, DurationConstraints(
-            self.free, proportions, weights, fixed_ends(len(self.durations), 3)), least_T)
+        no_stops = np.zeros((len(self.durations) - 1, 3), dtype=bool)
+        return JointProblem(self.task, self.grid, DurationConstraints(
+            self.free, proportions, weights, no_stops), least_T)
 
     def scaling(self, solved: Solved) -> float:
         """
@@ -113,7 +113,7 @@ class PrescribedProblem(NamedTuple):
         return solved is not None and self.scaling(solved) <= 1.0 + DURATION_TOLERANCE
 
 
-def prescribed(task: JointTask, mesh: Mesh, durations: Array) -> Solved | None:
+def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
     """
     Return a motion of prescribed durations.
 
@@ -124,8 +124,8 @@ def prescribed(task: JointTask, mesh: Mesh, durations: Array) -> Solved | None:
     ----------
     task : JointTask
         The via points, the arm and its limits.
-    mesh : Mesh
-        Its n intervals in each segment.
+    grid : Grid
+        Discretisation: n ramps per segment.
     durations : ndarray, shape (N,)
         [s], NaN where free.
 
@@ -142,7 +142,7 @@ def prescribed(task: JointTask, mesh: Mesh, durations: Array) -> Solved | None:
         If they are too short, and no feasible ones are found.
 
     """
-    problem = PrescribedProblem(task, mesh, durations)
+    problem = PrescribedProblem(task, grid, durations)
     solved = _least_scaled(problem)
     if solved is None:
         return None
@@ -166,9 +166,8 @@ def _least_scaled(problem: PrescribedProblem) -> Solved | None:
         scaling = float((m.T / durations)[~free].max())
         return with_durations(m, np.where(free, m.T, scaling * proportions))
 
-    refined, start = meshed(problem.problem(
-        proportions, weights, LEAST_SCALING * proportions), initial_motion)
-    return tightened(refined, start, initial_motion)
+    return tightened(problem.problem(proportions, weights, LEAST_SCALING * proportions),
+                     initial_motion)
 
 
 def _in_time(problem: PrescribedProblem, found: list[Solved]) -> Solved | None:
@@ -187,17 +186,17 @@ def _in_time(problem: PrescribedProblem, found: list[Solved]) -> Solved | None:
 
 def _stopping(problem: PrescribedProblem) -> Solved | None:
     """Return the motion that stops at every via point; None where none is found."""
-    task, mesh, durations = problem
+    task, grid, durations = problem
     segments = len(durations)
-    stops = JointProblem(task, mesh, DurationConstraints.all_free(segments, 3))
-    motion = rest_to_rest(task, stops.constraints(Margins.none(mesh, segments)))
+    stops = JointProblem(task, grid, DurationConstraints.all_free(segments, 3))
+    motion = rest_to_rest(task, stops.constraints(Margins.none(grid, segments)))
     if motion is None:
         return None
     T = np.where(problem.free, motion.T, durations)
     if (motion.T > T).any():
         raise durations_too_short(durations, np.maximum(T, motion.T))
-    return Solved(mesh.trajectory(task.points, with_durations(motion, T)), motion,
-                  mesh, float(T.sum()), np.inf)
+    return Solved(grid.trajectory(task.points, with_durations(motion, T)), motion,
+                  float(T.sum()), np.inf)
 
 
 def _least_peak_acceleration(problem: PrescribedProblem, solved: Solved) -> Solved | None:
@@ -227,21 +226,19 @@ def _least_peak_acceleration(problem: PrescribedProblem, solved: Solved) -> Solv
 def _fastest_of_free(problem: PrescribedProblem, solved: Solved) -> Solved | None:
     """Return the motion with the least sum of free durations, the others as prescribed."""
     free, durations = problem.free, problem.durations
-    problem, m = problem._replace(mesh=solved.mesh), solved.motion
+    m = solved.motion
     m = time_scaled(m, float(1.0 / np.nanmax(m.T / durations)))
-    start = problem.mesh.restored(
+    start = problem.grid.restored(
         problem.task.points, m._replace(T=np.where(free, m.T, durations)))
-    fastest_of = problem.problem(np.zeros(len(free)), free.astype(float))
-    given = fastest_of.mesh
-    found = tightened(*meshed(fastest_of, lambda _, within: (
-        start if within.mesh is given else None)))
+    found = tightened(problem.problem(np.zeros(len(free)), free.astype(float)),
+                      lambda planned, _: start)
     return found if problem.is_met_by(found) else _in_time(problem, [solved])
 
 
 def _too_short(problem: PrescribedProblem) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
     durations, least_T = problem.durations, np.nan_to_num(problem.durations)
-    found = fastest(problem.task, problem.mesh, least_T)
+    found = fastest(problem.task, problem.grid, least_T)
     least = np.maximum(np.diff(found.trajectory.via_times), least_T) if found else least_T
 
     def is_feasible(T: Array) -> bool:

@@ -27,14 +27,9 @@ from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.within_limits import fitted
-from rrr_traj_planner.planners.solver.interior_point import (
-    CentralPathPoint,
-    minimise,
-    Outcome,
-    RELATIVE_GAP,
-)
+from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise, Outcome
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.splines import Mesh, Variables
+from rrr_traj_planner.planners.solver.ramps import Grid, Variables
 from rrr_traj_planner.planners.solver.timing_problem import Workspace
 from rrr_traj_planner.planners.tasks import JointTask
 
@@ -47,7 +42,6 @@ class Solved(NamedTuple):
 
     trajectory: PiecewiseTrajectory
     motion: Variables  # the solver's; the trajectory is this motion, slowed where necessary
-    mesh: Mesh         # the motion's
     cost: float        # the trajectory's weighted sum of durations [s]
     gap: float         # bound on the cost that the optimum saves [s]
 
@@ -61,8 +55,8 @@ class JointProblem(ReadOnlyArrays):
     ----------
     task : JointTask
         The via points, the arm and its limits.
-    mesh : Mesh
-        Its n intervals in each segment.
+    grid : Grid
+        Discretisation: n ramps per segment.
     durations : DurationConstraints
         Which durations may change, and their weights.
     least_T : ndarray, shape (N,), optional
@@ -71,7 +65,7 @@ class JointProblem(ReadOnlyArrays):
     """
 
     task: JointTask
-    mesh: Mesh
+    grid: Grid
     durations: DurationConstraints
     least_T: Array | None = None
     _workspace: Workspace = field(default_factory=Workspace)
@@ -93,12 +87,11 @@ class JointProblem(ReadOnlyArrays):
         """
         task = self.task
         return JointConstraints(
-            task.model, task.limits, self.mesh, task.points, margins.positions,
-            margins.velocities, margins.accelerations, margins.efforts, self.least_T,
-            self._workspace, margins.stays)
+            task.model, task.limits, self.grid, task.points, margins.positions,
+            margins.velocities, margins.efforts, self.least_T, self._workspace)
 
     def minimised(self, constraints: JointConstraints, margins: Margins, start: CentralPathPoint,
-                  least_barrier: float = 0.0, relative_gap: float = RELATIVE_GAP) -> Outcome:
+                  least_barrier: float = 0.0) -> Outcome:
         """
         Return the fastest motion within constraints.
 
@@ -112,8 +105,6 @@ class JointProblem(ReadOnlyArrays):
             Strictly within the constraints.
         least_barrier : float
             The barrier parameter at which the method ends.
-        relative_gap : float
-            The gap at which it ends, as a part of the objective.
 
         Returns
         -------
@@ -121,10 +112,9 @@ class JointProblem(ReadOnlyArrays):
             See `interior_point.minimise`.
 
         """
-        fixed = self.durations.fixed.copy()
-        fixed[1:-1] |= margins.stays
-        return minimise(constraints.problem, start, self.durations._replace(fixed=fixed),
-                        self.task.should_stop, least_barrier, relative_gap)
+        durations = self.durations._replace(fixed_velocities=margins.at_rest)
+        return minimise(constraints.problem, start, durations, self.task.should_stop,
+                        least_barrier)
 
     def fitting(self, outcome: Outcome, motion: Variables) -> Solved | None:
         """
@@ -144,10 +134,11 @@ class JointProblem(ReadOnlyArrays):
 
         """
         durations = self.durations
-        trajectory = fitted(self.task, self.mesh.trajectory(self.task.points, motion),
-                            durations.may_scale)
+        may_scale = bool((durations.free | (durations.proportions > 0.0)).all())
+        trajectory = fitted(self.task, self.grid.trajectory(self.task.points, motion),
+                            may_scale)
         if trajectory is None:
             return None
         cost = durations.cost(np.diff(trajectory.via_times))
-        return Solved(trajectory, motion, self.mesh, cost,
+        return Solved(trajectory, motion, cost,
                       outcome.gap + cost - durations.cost(outcome.motion.T))

@@ -26,7 +26,7 @@ from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
-from rrr_traj_planner.planners.solver.splines import Variables
+from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 
 # Chosen values, without unit.
@@ -38,8 +38,7 @@ BARRIER_INCREASE = 10.0  # factor on the barrier parameter from one to the next
 RESTARTED_SEGMENTS = 60  # number of restarts from rest, times segments, at most
 
 
-def tightened(problem: JointProblem, initial_motion: InitialMotion,
-              slow_motion: InitialMotion | None = None) -> Solved | None:
+def tightened(problem: JointProblem, initial_motion: InitialMotion) -> Solved | None:
     """
     Solve, and solve again with larger margins where the motion exceeds a limit between points.
 
@@ -49,9 +48,6 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion,
         Via points, limits and durations.
     initial_motion : callable
         Returns a motion to start from, strictly within the constraints, or None.
-    slow_motion : callable, optional
-        Returns a motion far from the ends of ranges, which bounds margins; by default, the first
-        start.
 
     Returns
     -------
@@ -59,7 +55,7 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion,
         The best motion found; None where there is none to start from.
 
     """
-    rounds = _Rounds(problem, initial_motion, slow_motion)
+    rounds = _Rounds(problem, initial_motion)
     if rounds.start_from_rest():
         tighten(rounds, SCHEDULE, problem.task.should_stop)
     return rounds.best or rounds.best_that_fits()
@@ -68,15 +64,14 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion,
 class _Rounds:
     """The rounds of one problem; see `solver.tightening.TightenedProblem`."""
 
-    def __init__(self, problem: JointProblem, initial_motion: InitialMotion,
-                 slow_motion: InitialMotion | None) -> None:
+    def __init__(self, problem: JointProblem, initial_motion: InitialMotion) -> None:
         self._problem, self._initial_motion = problem, initial_motion
-        self._slow_motion = slow_motion
         durations = problem.durations
-        self._margins = Margins.none(problem.mesh, len(durations.free))
+        self._margins = Margins.none(problem.grid, len(durations.free))._replace(
+            at_rest=durations.fixed_velocities)
         self._constraints = problem.constraints(self._margins)
         self._start: CentralPathPoint | None = None
-        self._slow: Variables | None = None
+        self._slow: Variables | None = None  # the first start
         self._centres: list[CentralPathPoint] = []
         self._retries, self._restarts = 0, RESTARTED_SEGMENTS
         self._outcomes: list[tuple[Outcome, Variables]] = []  # each with its start
@@ -95,8 +90,7 @@ class _Rounds:
         if start is None:
             return None
         self._start, self._retries = None, 0
-        if self._slow_motion is None:
-            self._slow = self._slow or start.motion
+        self._slow = self._slow or start.motion
         outcome = self._problem.minimised(self._constraints, self._margins, start)
         self._outcomes.append((outcome, start.motion))
         return outcome
@@ -113,7 +107,7 @@ class _Rounds:
 
     def accept(self, outcome: Outcome, tolerance: float) -> bool:
         task, durations = self._problem.task, self._problem.durations
-        self._check = check = JointCheck(task, self._problem.mesh, outcome.motion)
+        self._check = check = JointCheck(task, self._problem.grid, outcome.motion)
         if check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any():
             task.should_stop()
             fits = self._problem.fitting(outcome, outcome.motion)
@@ -127,11 +121,8 @@ class _Rounds:
 
     def tighten(self) -> bool:
         problem, before = self._problem, self._margins
-        if self._slow is None and self._slow_motion is not None:
-            self._slow = self._slow_motion(problem.task, problem.constraints(
-                Margins.none(problem.mesh, len(problem.durations.free))))
         assert self._slow is not None and self._check is not None
-        self._margins = before.widened(problem.task, problem.mesh, self._slow, self._check)
+        self._margins = before.widened(problem.task, problem.grid, self._slow, self._check)
         self._constraints = problem.constraints(self._margins)
         segments = len(problem.durations.free)
         # where a joint leaves its range the solution is not near the former one
@@ -160,7 +151,7 @@ class _Rounds:
 
 def _last_within(constraints: JointConstraints,
                  centres: list[CentralPathPoint]) -> CentralPathPoint | None:
-    return next((c for c in reversed(centres) if constraints.is_within(c.motion)), None)
+    return next((c for c in reversed(centres) if constraints.problem.is_within(c.motion)), None)
 
 
 def _nearer(problem: JointProblem, margins: Margins, centres: list[CentralPathPoint],
@@ -190,6 +181,6 @@ def _start_from_rest(problem: JointProblem, margins: Margins, initial_motion: In
         motion = initial_motion(problem.task, constraints)
         if motion is None:
             return None
-        if constraints.is_within(motion):
+        if constraints.problem.is_within(motion):
             return reduced, constraints, CentralPathPoint(motion, None)
     return None

@@ -43,7 +43,7 @@ from rrr_traj_planner.planners.solver.line_search import (
     predicted_decrease_of,
     TO_BOUNDARY,
 )
-from rrr_traj_planner.planners.solver.splines import Variables
+from rrr_traj_planner.planners.solver.ramps import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
 # Chosen values, without unit. RELATIVE_GAP decides accuracy, the others the number of iterations:

@@ -52,29 +52,9 @@ class Limits(NamedTuple):
         return self.arm is None and self.table is None
 
 
-def fixed_ends(segments: int, joints: int) -> BoolArray:
-    """
-    Return that velocities, accelerations and jerks do not change at both ends of a motion.
-
-    Parameters
-    ----------
-    segments, joints : int
-        Their numbers.
-
-    Returns
-    -------
-    ndarray of bool, shape (segments + 1, 3, joints)
-        See `DurationConstraints`.
-
-    """
-    fixed = np.zeros((segments + 1, 3, joints), bool)
-    fixed[[0, -1]] = True
-    return fixed
-
-
 class DurationConstraints(NamedTuple):
     """
-    Which durations are free, fixed or in fixed proportions; what is fixed at via points.
+    Which durations are free, fixed or in fixed proportions; which via velocities are fixed.
 
     A duration that is not free changes by its proportion times a common unknown.
     """
@@ -82,12 +62,12 @@ class DurationConstraints(NamedTuple):
     free: BoolArray     # (N,)
     proportions: Array  # (N,), 0 where free or fixed
     weights: Array      # (N,), in the objective
-    fixed: BoolArray    # (N + 1, 3, J), which velocities, accelerations and jerks do not change
+    fixed_velocities: BoolArray  # (N - 1, J), whether a joint's via velocity does not change
 
     @classmethod
     def all_free(cls, segments: int, joints: int) -> DurationConstraints:
         """
-        Return free durations, with their sum as the objective, and fixed ends of the motion.
+        Return free durations and via velocities, with the sum of durations as the objective.
 
         Parameters
         ----------
@@ -97,16 +77,11 @@ class DurationConstraints(NamedTuple):
         Returns
         -------
         DurationConstraints
-            Free states at the via points between the ends.
+            No constraint at all.
 
         """
         return cls(np.ones(segments, bool), np.zeros(segments), np.ones(segments),
-                   fixed_ends(segments, joints))
-
-    @property
-    def may_scale(self) -> bool:
-        """Return whether a motion may be slowed: no duration is fixed."""
-        return bool((self.free | (self.proportions > 0.0)).all())
+                   np.zeros((segments - 1, joints), bool))
 
     def cost(self, T: Array) -> float:
         """
