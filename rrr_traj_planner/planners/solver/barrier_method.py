@@ -72,14 +72,38 @@ def minimise(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> Solution:
         Within RELATIVE_GAP of the optimum, where the problem is convex and it is not cancelled.
 
     """
+    def centre(weight: float, decrement: float) -> bool:
+        return _centre(barrier, weight, decrement, should_stop)
+
+    return along_central_path(barrier, centre)
+
+
+def along_central_path(barrier: ViaBarrier, centre: Callable[[float, float], bool]) -> Solution:
+    """
+    Return the minimiser of the objective, by centring with larger and larger weights.
+
+    Parameters
+    ----------
+    barrier : ViaBarrier
+        The problem, at a strictly feasible point.
+    centre : callable
+        Minimises weight * objective + barrier up to a Newton decrement squared, given the weight
+        and the decrement; returns whether it was cancelled.
+
+    Returns
+    -------
+    Solution
+        As of `minimise`.
+
+    """
     count, found = barrier.constraints, barrier.structure
     weight = count / found.objective
-    stopped = _centre(barrier, weight, CENTRED, should_stop)
+    stopped = centre(weight, CENTRED)
     while not stopped and count / weight >= RELATIVE_GAP * found.objective:
         weight /= BARRIER_REDUCTION
-        stopped = _centre(barrier, weight, CENTRED, should_stop)
+        stopped = centre(weight, CENTRED)
     if not stopped:
-        _centre(barrier, weight, POLISHED, should_stop)
+        centre(weight, POLISHED)
     return Solution(barrier.velocities, barrier.durations, count / weight)
 
 

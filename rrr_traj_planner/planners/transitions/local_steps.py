@@ -31,12 +31,10 @@ from ctypes import c_double, c_void_p
 import numpy as np
 from rrr_traj_planner.core.kernels import declared, same_size_as
 from rrr_traj_planner.planners.solver.barrier_method import (
+    along_central_path,
     BARRIER_REDUCTION,
-    CENTRED,
     LESS_DAMPING,
     MORE_DAMPING,
-    POLISHED,
-    RELATIVE_GAP,
     ROUNDING,
     Solution,
     SUFFICIENT_DECREASE,
@@ -83,16 +81,11 @@ def minimise_locally(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> So
 
     """
     steps = LocalSteps(barrier)
-    count, found = barrier.constraints, barrier.structure
-    weight = count / found.objective
-    stopped = steps.centre(weight, CENTRED, should_stop)
-    while not stopped and count / weight >= RELATIVE_GAP * found.objective:
-        weight /= BARRIER_REDUCTION
-        np.maximum(barrier.arrays['damping'], TANGENT, out=barrier.arrays['damping'])
-        stopped = steps.centre(weight, CENTRED, should_stop)
-    if not stopped:
-        steps.centre(weight, POLISHED, should_stop)
-    return Solution(barrier.velocities, barrier.durations, count / weight)
+
+    def centre(weight: float, decrement: float) -> bool:
+        return steps.centre(weight, decrement, should_stop)
+
+    return along_central_path(barrier, centre)
 
 
 class LocalSteps:
@@ -113,7 +106,7 @@ class LocalSteps:
 
     def __init__(self, barrier: ViaBarrier) -> None:
         self.active, self._scratch = np.ones((2, len(barrier.durations)))
-        self._barrier, self._left_out = barrier, np.zeros(1)
+        self._barrier, self._left_out, self._weight = barrier, np.zeros(1), np.inf
         self._addresses = [x.ctypes.data for x in (self.active, self._scratch, self._left_out)]
 
     def centre(self, weight: float, decrement: float, should_stop: Callable[[], bool]) -> bool:
@@ -136,6 +129,10 @@ class LocalSteps:
 
         """
         self._activate_all()
+        if weight > self._weight:
+            damping = self._barrier.arrays['damping']
+            np.maximum(damping, TANGENT, out=damping)
+        self._weight = weight
         for _ in range(MOST_STEPS):
             if should_stop():
                 return True
