@@ -20,20 +20,11 @@ from math import pi
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.arm.limits import JointLimits
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
-from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.residual_vibration import residual_vibration
-from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import PlanningRequest
-from scipy.integrate import solve_ivp
 
-ROUNDING = 1e-8    # of the largest acceleration: the quadrature of smooth pieces
-INTEGRATED = 2e-4  # relative: of solve_ivp, and of the samples of its free vibration
-STEPS_INSIDE = 1e-6  # of the largest acceleration, where jerk bends between knots
+ROUNDING = 1e-8  # of the largest acceleration: the quadrature of smooth pieces
 MODES = (8.0, 16.0, 32.0, 64.0)
 
 
@@ -43,35 +34,6 @@ def motion_of(acceleration):
         nothing = np.full((len(t), 1), np.nan)
         return nothing, nothing, acceleration(t[:, np.newaxis]), nothing
     return motion
-
-
-def planned(planner_id, seed):
-    """Return a plan through 2 to 5 random points of the thesis arm."""
-    rng = np.random.default_rng(seed)
-    q = rng.uniform((0.1, 0.5, -0.3), (1.4, 1.2, 0.4), (2 + seed % 4, 3))
-    points = forward_kinematics(RobotModel(), q)
-    return plan(RobotModel(), JointLimits(), PlanningRequest(points, planner_id=planner_id))
-
-
-def integrated(motion, knots, frequencies, damping):
-    """Return the residual vibration by integrating the modes' equations, a slow second method."""
-    w = 2.0 * pi * np.array(frequencies)[:, np.newaxis]  # (modes, 1), joints beside
-
-    def slope(acceleration):
-        def f(t, state):
-            y, v = state.reshape(2, len(frequencies), 3)
-            return np.stack((v, -2.0 * damping * w * v - w * w * y - acceleration(t))).ravel()
-        return f
-
-    state = np.zeros(6 * len(frequencies))
-    for begin, end in zip(knots[:-1], knots[1:]):
-        state = solve_ivp(slope(lambda t: motion(np.array([t]))[2][0]), (begin, end), state,
-                          method='DOP853', rtol=1e-9, atol=1e-12).y[:, -1]
-    period = 1.0 / min(frequencies)
-    free = solve_ivp(slope(lambda t: np.zeros(3)), (0.0, period), state, method='DOP853',
-                     rtol=1e-9, atol=1e-12, t_eval=np.linspace(0.0, period, 4001)).y
-    y = free.reshape(2, len(frequencies), 3, -1)[0]
-    return np.abs(y).max(axis=-1) * w * w
 
 
 @pytest.mark.parametrize('seed', range(5))
@@ -110,46 +72,6 @@ def test_damped_pulse_swings_to_its_first_extremum():
     x = np.arctan2(s, z) / (s * w)  # where tan(s w x) = s / z
     expected = w * change / s * np.exp(-z * w * x) * np.sin(s * w * x)
     assert found == pytest.approx(expected, rel=1e-5)  # width over period
-
-
-@pytest.mark.parametrize(('planner_id', 'seed', 'damping'), [
-    ('cycloid', 1, 0.01), ('time_optimal', 2, 0.01), ('poly_434', 3, 0.05), ('line_arc', 4, 0.01),
-    ('time_optimal', 5, 0.0)])
-def test_plans_leave_what_the_integrated_mode_keeps(planner_id, seed, damping):
-    found = planned(planner_id, seed)
-    expected = integrated(found.trajectory, found.trajectory.knots, MODES, damping)
-    residual = residual_vibration(found.trajectory, found.trajectory.knots, MODES, damping)
-    peak = found.peaks.acceleration.max()
-    assert residual == pytest.approx(expected, rel=INTEGRATED, abs=peak * STEPS_INSIDE)
-
-
-@pytest.mark.parametrize('seed', range(3))
-def test_a_controller_s_quintics_leave_what_the_integrated_mode_keeps(seed):
-    spline = spline_through(planned('cycloid', seed).points)
-    residual = residual_vibration(spline.at, spline.knots, MODES)
-    assert residual == pytest.approx(integrated(spline.at, spline.knots, MODES, 0.01),
-                                     rel=INTEGRATED, abs=STEPS_INSIDE)
-
-
-@pytest.mark.parametrize('seed', range(4))
-def test_a_slower_motion_leaves_less_of_a_slower_mode(seed):
-    """A motion and a mode slowed down alike do the same, with accelerations less by a square."""
-    factor = np.random.default_rng(seed).uniform(0.3, 5.0)
-    one = planned('cycloid', seed).trajectory
-    other = one.time_scaled(factor)
-    assert factor ** 2 * residual_vibration(
-        other, other.knots, np.array(MODES) / factor) == pytest.approx(
-            residual_vibration(one, one.knots, MODES), abs=ROUNDING)
-
-
-def test_finer_knots_change_nothing():
-    for planner_id in ('cycloid', 'time_optimal', 'line_polynomial'):
-        found = planned(planner_id, 1)
-        t = found.trajectory
-        finer = np.union1d(t.knots, np.linspace(0.0, t.duration, 3001))
-        assert residual_vibration(t, finer, MODES) == pytest.approx(
-            residual_vibration(t, t.knots, MODES),
-            abs=found.peaks.acceleration.max() * STEPS_INSIDE), planner_id
 
 
 def test_what_damping_has_ended_is_not_looked_at():
