@@ -37,6 +37,8 @@ from rrr_traj_planner.core.kinematics.travel_time import (
 )
 
 RESTS = 8  # sets of joints: joint j, from 0, belongs to the sets whose bit j is 1
+MEMBERS = (np.arange(RESTS)[:, np.newaxis] >> np.arange(3)) & 1  # (sets, joints)
+AT_ENDS = MEMBERS[:, np.newaxis] + MEMBERS  # ends at which a joint rests, by the sets at both
 
 
 def least_time_chain(limits: JointLimits, options: Sequence[Array], passing: ViaPointBehaviour,
@@ -64,8 +66,9 @@ def least_time_chain(limits: JointLimits, options: Sequence[Array], passing: Via
     if len(options) == 1 or all(len(q) == 1 for q in options):
         return [0] * len(options)
     q, cost = _padded(options)
-    travel = np.nan_to_num(q[1:, np.newaxis] - q[:-1, :, np.newaxis])
-    travel = np.where(turning, travel - TURN * np.round(travel / TURN), travel)
+    travel = q[1:, np.newaxis] - q[:-1, :, np.newaxis]
+    travel[np.isnan(travel)] = 0.0
+    travel -= np.where(turning, TURN * np.round(travel / TURN), 0.0)
     times = _times(limits, travel, motion_ends(len(travel)), passing)
     # Axes of the cost: option at the point before, option at this point, rests at the former.
     best = np.full((*travel.shape[1:3], RESTS), np.inf)
@@ -106,24 +109,25 @@ def _times(limits: JointLimits, travel: Array, ends: IntArray,
     With a tie-breaker for travel. Shape (n, m, m, 8, 8).
     """
     length = np.abs(travel)
-    by_count = np.stack([joint_travel_time(
-        limits, slice(None), length, ends[:, np.newaxis, np.newaxis, np.newaxis], n, passing)
-        for n in range(3)])
-    rests = (np.arange(RESTS)[:, np.newaxis] >> np.arange(3)) & 1
-    counts = rests[:, np.newaxis] + rests  # of each joint, by the sets at both ends
-    slowest = np.maximum.reduce([by_count[counts[..., j], ..., j] for j in range(3)])
-    return np.asarray(np.moveaxis(slowest, (0, 1), (3, 4))
-                      + TRAVEL * length.sum(axis=-1)[..., np.newaxis, np.newaxis])
+    by_count = joint_travel_time(
+        limits, slice(None), length[..., np.newaxis, :],
+        ends[:, np.newaxis, np.newaxis, np.newaxis, np.newaxis],
+        np.arange(3)[:, np.newaxis], passing)
+    # Axes: segment, option before, option after, number of rests, joint.
+    by_count = np.broadcast_to(by_count, (*length.shape[:-1], 3, 3))
+    slowest = np.maximum.reduce([by_count[..., AT_ENDS[..., j], j] for j in range(3)])
+    return np.asarray(slowest + TRAVEL * length.sum(axis=-1)[..., np.newaxis, np.newaxis])
 
 
 def _step(best: Array, times: Array, rests: IntArray, cost: Array) -> tuple[Array, IntArray]:
     """Return least costs at the next stage, and the predecessors that attain them."""
-    a, b = np.ogrid[:rests.shape[0], :rests.shape[1]]
+    a, b = np.arange(rests.shape[0])[:, np.newaxis], np.arange(rests.shape[1])
     total = best[:, :, np.newaxis] + np.swapaxes(times, 2, 3)[
         a[..., np.newaxis], b[..., np.newaxis], rests]  # option before, this, next; rests before
     former, least = total.argmin(axis=-1), total.min(axis=-1)
     of_rest = np.where(rests[..., np.newaxis] == np.arange(RESTS), least[..., np.newaxis], np.inf)
     from_option = of_rest.argmin(axis=0)  # option at this point, next, rests at this point
-    this, following, _ = np.ogrid[tuple(map(slice, from_option.shape))]
+    this, following = (np.arange(rests.shape[1])[:, np.newaxis, np.newaxis],
+                       np.arange(rests.shape[2])[:, np.newaxis])
     origin = RESTS * from_option + former[from_option, this, following]
     return of_rest.min(axis=0) + cost[:, np.newaxis], origin

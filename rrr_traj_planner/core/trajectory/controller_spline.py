@@ -212,7 +212,7 @@ def _coarse_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
     """Return what samples and Bernstein coefficients tell of some intervals of a motion."""
     q, qd, qdd = spline.within(np.linspace(0.0, 1.0, COARSE_STEPS + 1), index)
     should_stop()
-    speeds = np.abs(qd).max(axis=(0, 2))
+    speeds = np.abs(qd).max(axis=0).max(axis=1)
     tau, push = _torque_and_push(
         model, q, qd, qdd, rest_speed_of(np.append(speeds, fastest)))
     should_stop()
@@ -271,10 +271,11 @@ def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
 
 
 def _torque_and_push(model: RobotModel, q: Array, qd: Array, qdd: Array,
-                     rest_speed: float) -> tuple[Array, Array]:
+                     rest_speed: float) -> tuple[Array, Array | float]:
     """Return the motors' torques without Coulomb friction, and for Coulomb friction [N m]."""
-    return (smooth_motor_torque(model, q, qd, qdd),
-            model.friction.coulomb * direction_of(qd, rest_speed))
+    coulomb = model.friction.coulomb
+    push = coulomb * direction_of(qd, rest_speed) if coulomb.any() else 0.0
+    return smooth_motor_torque(model, q, qd, qdd), push
 
 
 def _at_reversals(q: Array, qd: Array, qdd: Array, step: Array) -> Array:

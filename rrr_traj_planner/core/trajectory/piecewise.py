@@ -94,8 +94,8 @@ class JointProfile(ReadOnlyArrays):
     @cached_property
     def peak_velocity(self) -> float:
         """Largest magnitude of velocity [rad/s]."""
-        s = self.pieces.turning_points()
-        return float(np.abs(self._columns().at(s)[1]).max())
+        _, _, velocity = self._turning_points
+        return float(np.abs(velocity).max())
 
     @cached_property
     def begins(self) -> Array:
@@ -110,8 +110,7 @@ class JointProfile(ReadOnlyArrays):
     @cached_property
     def piece_ranges(self) -> tuple[Array, Array]:
         """Least and largest position within each piece, shape (n,) [rad]."""
-        s = self.pieces.turning_points()
-        position, velocity = self._columns().at(s)[:2]
+        s, position, velocity = self._turning_points
         least, most = position.min(axis=1), position.max(axis=1)
         speed = np.abs(velocity)
         sign = np.where(speed > AT_REST * speed.max(), np.sign(velocity), 0.0)
@@ -176,6 +175,14 @@ class JointProfile(ReadOnlyArrays):
 
         """
         return JointProfile(self.pieces.time_scaled(time_factor(factor)))
+
+    @cached_property
+    def _turning_points(self) -> tuple[Array, Array, Array]:
+        """Return `Pieces.turning_points`, and the positions and velocities there, (n, k) each."""
+        s = self.pieces.turning_points()
+        position, velocity = self._columns().at(s)[:2]
+        make_read_only((s, position, velocity))
+        return s, position, velocity
 
     def _at(self, index: Any) -> Pieces:
         return self.pieces.with_parameters(f[index] for f in self.pieces.parameters().values())
