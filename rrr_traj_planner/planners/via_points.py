@@ -146,6 +146,8 @@ def can_hold(model: RobotModel, limits: JointLimits, q: Array) -> BoolArray:
 
     """
     most = limits.max_effort * (1.0 + TORQUE_ROUNDING)
+    if np.isinf(most).all():
+        return np.ones(len(q), dtype=bool)
     return np.asarray((np.abs(gravity_torque(model, q)) <= most).all(axis=1))
 
 

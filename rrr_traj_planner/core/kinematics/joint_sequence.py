@@ -189,6 +189,8 @@ def _options(model: RobotModel, limits: JointLimits, points: Array, posture: Pos
 def _chosen(limits: JointLimits, options: _Options, free: BoolArray, start: Array | None,
             passing: ViaPointBehaviour) -> IntArray:
     """Return which of the solutions is the one at each point, whole turns aside."""
+    if len(options.q) == options.points:
+        return np.arange(options.points)
     q = options.q.copy()
     q[free[options.of_point], 0] = np.nan
     compared = options._replace(q=q).at_each_point()
@@ -236,9 +238,13 @@ def _needs_search(limits: JointLimits, q: Array, passing: ViaPointBehaviour) -> 
         saved = 2.0 * limits.max_velocity ** 2 / (
             passing.mean_acceleration * limits.max_acceleration)
     long = (travel != 0.0) & (2.0 * (np.pi - np.abs(travel)) < saved)
-    other = TURN * np.sign(travel)
-    possible = (~out_of_range(q[:-1] + other, limits)) | (~out_of_range(q[1:] - other, limits))
-    return np.asarray(out_of_range(q, limits).any(axis=0) | (long & possible).any(axis=0))
+    sought = out_of_range(q, limits).any(axis=0)
+    if long.any():
+        other = TURN * np.sign(travel)
+        possible = (~out_of_range(q[:-1] + other, limits)
+                    | ~out_of_range(q[1:] - other, limits))
+        sought |= (long & possible).any(axis=0)
+    return np.asarray(sought)
 
 
 def _elapsed(limits: JointLimits, q: Array, joint: int, passing: ViaPointBehaviour) -> Array:
