@@ -160,11 +160,11 @@ def _arm_path(task: Task) -> ArmPath:
 
 def _timed(task: Task, arm_path: ArmPath) -> float:
     """Return how long our motion along a path that is ready takes [s]."""
-    limits, cruise = limits_for_sampling(task.model, task.limits, arm_path(arm_path.path.via_s).q,
-                                         task.request.sample_period)
+    limits = limits_for_sampling(task.model, task.limits, arm_path(arm_path.path.via_s).q,
+                                 task.request.sample_period)
     fresh = replace(arm_path)  # with nothing remembered
     return fastest_along(PathTask(
-        fresh, limits, cruise, task.request.max_tip_speed, task.request.steady_zones,
+        fresh, limits, task.request.max_tip_speed, task.request.steady_zones,
         never)).trajectory.duration
 
 

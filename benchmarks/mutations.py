@@ -61,8 +61,6 @@ FAULTS = {
         ('peak_acceleration=15.0 / 8.0', 'peak_acceleration=15.0 / 9.0'),
         ('mean = np.abs(self.change) / self.duration',
          'mean = np.abs(self.change) * self.duration'),
-        ('self.peak_jerk = 1.0 / (constant_jerk_fraction + 4.0 * self._rise / pi)',
-         'self.peak_jerk = 1.0 / (constant_jerk_fraction + 2.0 * self._rise / pi)'),
     ),
     'test/core/simulation': (
         ('slope ** 2 - 4.0 * half * self.acceleration',
@@ -100,7 +98,7 @@ FAULTS = {
         ('x[i] += product[i] + g.first[i] +', 'x[i] += product[i] - g.first[i] +'),
         ('+ product[j][i] - product[i][j];', '+ product[j][i] + product[i][j];'),
         ('by_w[l][j] + by_w[j][l] - w[1]', 'by_w[l][j] + by_w[j][l] + w[1]'),
-        # constraints, ramps
+        # constraints
         ('to[1] = xk[i] - lower[i];', 'to[1] = xk[i] + lower[i];'),
         ('p->least_T ? T[k] - p->least_T[k] : 1.0;\n        duration_slack[0]',
          'p->least_T ? T[k] : 1.0;\n        duration_slack[0]'),

@@ -159,7 +159,7 @@ def _plan_through(method: Registered, problem: PlanningProblem, q: Array) -> Pla
     assert method.plan is not None
     trajectory = method.plan(JointTask(
         model, limits, distinct, durations, _spacing(request), np.flatnonzero(~same),
-        request.should_stop, request.half_transition))
+        request.should_stop, request.half_transition, request.least_jerk_rise))
     answer = _checked(problem, trajectory, _via_times(request, trajectory, same))
     return _with_miss_note(model, answer, q) if method.misses_via_points else answer
 

@@ -38,7 +38,7 @@ from rrr_traj_planner.core.scalars import (
     whole_number,
 )
 from rrr_traj_planner.core.trajectory.sampling import check_size, MOST_POINTS, NANOSECOND
-from rrr_traj_planner.planners.tasks import T_ACC
+from rrr_traj_planner.planners.tasks import LEAST_JERK_RISE, T_ACC
 
 # The check of each field that is not an array: a function of its name and its value.
 CHECKS: dict[str, Callable[[str, Any], Any]] = {
@@ -47,6 +47,7 @@ CHECKS: dict[str, Callable[[str, Any], Any]] = {
     'sample_period': partial(positive, unit='s'), 'max_deviation': partial(positive, unit='m'),
     'max_tip_speed': partial(positive, unit='m/s', may_be_infinite=True), 'steady_zones': truth,
     'half_transition': partial(positive, unit='s', least=NANOSECOND),
+    'least_jerk_rise': partial(positive, unit='s', least=NANOSECOND),
     'max_points': partial(whole_number, least=1),
     'start_state_tolerance': partial(not_negative, unit='rad')}
 
@@ -84,6 +85,9 @@ class PlanningRequest(ReadOnlyArrays):
         Whether the tip keeps its speed on the curved zones of a Cartesian path.
     half_transition : float
         Half the length of a transition of `poly_414` [s], its t_acc.
+    least_jerk_rise : float
+        Shortest time in which jerk goes from zero to its limit [s]; used by `time_optimal`. Where
+        a joint has no jerk limit it is at most the sample period.
     should_stop : callable
         Cancellation callback, called repeatedly; once it returns True, the best motion so far is
         the answer.
@@ -113,6 +117,7 @@ class PlanningRequest(ReadOnlyArrays):
     max_tip_speed: float = np.inf
     steady_zones: bool = False
     half_transition: float = T_ACC
+    least_jerk_rise: float = LEAST_JERK_RISE
     should_stop: ShouldStop = never
     max_points: int = MOST_POINTS
     start_state_tolerance: float = JOINT_ROUNDING

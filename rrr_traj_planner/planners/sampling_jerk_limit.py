@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -34,25 +33,13 @@ SAMPLES, SAMPLES_OF_LIMITED = 2.0, 4.0
 # through them keep the limits; chosen.
 SAMPLES_PER_TRANSITION = 5.0
 
-# Part of a ramp during which jerk is constant, and the ratio of the sampling's jerk limit to the
-# joints' own from which on ramps have that part: jerk then changes slowly enough for the samples.
-# Chosen: on 56 random tasks motions then took 1.009 times the limit, instead of 1.022.
-CONSTANT_JERK_FRACTION, SLOW_ENOUGH = 0.6, 7.5
-
 
 # Part of the arm's largest inertia up to which a joint's is none: rounding of the tables. Chosen.
 NO_INERTIA = 1e-12
 
 
-class SamplingLimits(NamedTuple):
-    """Limits with the jerk limit due to sampling, and the shape of ramps."""
-
-    limits: JointLimits  # with finite limits on jerk
-    constant_jerk_fraction: float        # part of a ramp during which jerk is constant
-
-
 def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
-                        sample_period: float) -> SamplingLimits:
+                        sample_period: float) -> JointLimits:
     """
     Return limits with jerk bounded so that every change of acceleration lasts several samples.
 
@@ -69,9 +56,8 @@ def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
 
     Returns
     -------
-    SamplingLimits
-        With a constant-jerk phase in each ramp where the joints' jerk limits are much tighter
-        than the sampling's.
+    JointLimits
+        With finite limits on jerk.
 
     Raises
     ------
@@ -81,9 +67,7 @@ def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
     """
     samples = np.where(np.isinf(limits.max_acceleration), SAMPLES, SAMPLES_OF_LIMITED)
     jerk = jerk_over_samples(np.pi, acceleration_scale(model, limits, q), samples, sample_period)
-    is_slow = (SLOW_ENOUGH * limits.max_jerk <= jerk).all()
-    return SamplingLimits(replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk)),
-                          CONSTANT_JERK_FRACTION if is_slow else 0.0)
+    return replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk))
 
 
 def jerk_over_samples(peak_jerk: float, acceleration: Array, samples: Array | float,

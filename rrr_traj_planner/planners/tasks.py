@@ -25,6 +25,7 @@ from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
 T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
+LEAST_JERK_RISE = 0.02  # s, in which jerk may go from zero to its limit; chosen: two samples
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +53,8 @@ class JointTask(ReadOnlyArrays):
         As in `PlanningRequest`.
     half_transition : float
         Half the length of the transitions of 4-1-4, as in `PlanningRequest` [s].
+    least_jerk_rise : float
+        As in `PlanningRequest` [s].
 
     """
 
@@ -63,6 +66,7 @@ class JointTask(ReadOnlyArrays):
     segment_numbers: IntArray | None = None
     should_stop: ShouldStop = never
     half_transition: float = T_ACC
+    least_jerk_rise: float = LEAST_JERK_RISE
 
     def segment_number(self, segment: int) -> int:
         """

@@ -15,11 +15,11 @@
 """
 Number of coefficients of a motion, as the thesis counts them (6.5 a).
 
-A transition of the thesis's function has five: a, b, c, d and e (3.4-3.7). So has a ramp, since
-the fraction of constant jerk is common to all ramps. A seventh-order transition has eight (C.1), a
-fourth-order one five (6.1), Gauss's function five: mu, sigma and C0 to C2 (appendix A, closed
-form). A piece at constant velocity has two (4.11), the cubic cruise of a 4-3-4 four. For a motion
-along a path of the tip, the pieces of the path coordinate s(t) are counted, not the geometry.
+A transition of the thesis's function has five: a, b, c, d and e (3.4-3.7). So has an interval of a
+quartic spline. A seventh-order transition has eight (C.1), a fourth-order one five (6.1), Gauss's
+function five: mu, sigma and C0 to C2 (appendix A, closed form). A piece at constant velocity has
+two (4.11), the cubic cruise of a 4-3-4 four. For a motion along a path of the tip, the pieces of
+the path coordinate s(t) are counted, not the geometry.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ import numpy as np
 from rrr_traj_planner.core.arrays import BoolArray
 from rrr_traj_planner.core.motion_laws.cycloid import CycloidPiece
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
-from rrr_traj_planner.core.motion_laws.ramps import Ramps
 from rrr_traj_planner.core.motion_laws.transition_shape import ShapedPiece
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.trajectory.pieces import Pieces
@@ -133,7 +132,7 @@ def _per_cruise(pieces: Any) -> int:
 def _function(pieces: Any) -> str:
     if isinstance(pieces, PolynomialPiece):
         return 'quartic'
-    if isinstance(pieces, (CycloidPiece, Ramps)):
+    if isinstance(pieces, CycloidPiece):
         return 'cycloid'
     if isinstance(pieces, ShapedPiece) and pieces.shape.name in PER_TRANSITION:
         return pieces.shape.name

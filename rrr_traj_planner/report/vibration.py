@@ -35,9 +35,9 @@ TEXT = (f'What a flexible mode of {100.0 * DAMPING:g} % damping keeps after the 
 
 IN_TABLE = (8.0, 16.0, 24.0, 32.0, 48.0, 64.0)  # Hz
 
-# The figure's frequencies [Hz], in equal ratios of 0.8 %, and how many of them on either side
+# The figure's frequencies [Hz], in equal ratios of 0.4 %, and how many of them on either side
 # count: single frequencies would show lobes, which are narrower than a structure is known.
-IN_FIGURE, BESIDE = np.geomspace(4.0, 100.0, 401), 6
+IN_FIGURE, BESIDE = np.geomspace(4.0, 100.0, 801), 12
 FLOOR = 1e-5  # lower end of the figure, over the largest value
 
 

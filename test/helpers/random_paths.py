@@ -36,6 +36,7 @@ from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
+from rrr_traj_planner.planners.solver.splines import Mesh
 
 PLANNERS = ('line_arc', 'line_polynomial')
 NONE = np.full(3, np.inf)
@@ -64,17 +65,15 @@ class PathCase:
                          for p in self.request.via_points])
 
     @property
-    def constant_jerk_fraction(self):
-        """Return `sampling_jerk_limit` of the case's limits."""
+    def sampled_limits(self):
+        """Return the limits with the jerk limit due to sampling, which the planner keeps too."""
         q = self.arm_path(self.arm_path.path.via_s).q
-        return limits_for_sampling(
-            self.model, self.limits, q, self.request.sample_period).constant_jerk_fraction
+        return limits_for_sampling(self.model, self.limits, q, self.request.sample_period)
 
     def timed(self, max_tip_speed=np.inf, **limits):
         """Return the fastest motion along the path, with limits changed."""
         return fastest_along(PathTask(
-            self.arm_path, replace(self.limits, **limits), self.constant_jerk_fraction,
-            max_tip_speed, False, never)).trajectory
+            self.arm_path, replace(self.limits, **limits), max_tip_speed, False, never)).trajectory
 
     def planned(self, **changes):
         """Return the plan of the request, changed."""
@@ -103,6 +102,12 @@ def random_case(seed, points=None):
         max_jerk=drawn(5.0, 200.0) if rng.random() < 0.7 else NONE,
         max_effort=drawn(1.1, 4.0) * np.maximum(holding, 5.0) if rng.random() < 0.8 else NONE)
     return PathCase(model, limits, request)
+
+
+def random_mesh(seed, pieces, n):
+    """Return a mesh of n intervals in each piece, equal ones for even seeds."""
+    parts = 1.0 + seed % 2 * np.random.default_rng(95_000 + seed).uniform(-0.5, 1.0, (pieces, n))
+    return Mesh(parts / parts.sum(axis=1, keepdims=True))
 
 
 def _tips(rng, model, n):

@@ -14,7 +14,7 @@
 
 """Random joint-space timing problems, solved."""
 
-from helpers.ramp_cases import all_free, slow_start
+from helpers.spline_cases import all_free, slow_start
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise
 
 
@@ -22,8 +22,8 @@ def never():
     return False
 
 
-def solve(limits, grid, points, should_stop=never, durations=None):
-    constraints, m = slow_start(limits, grid, points)
+def solve(limits, mesh, points, should_stop=never, durations=None):
+    constraints, m = slow_start(limits, mesh, points)
     problem, seen = constraints.problem, []
 
     def stop():  # at every iterate

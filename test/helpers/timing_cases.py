@@ -16,9 +16,9 @@
 
 from dataclasses import replace
 
-from helpers.ramp_cases import bounds, FREE, LIMITS, nodes_of, random_motion, slow_start
 from helpers.random_cases import central_difference
 from helpers.random_paths import random_case
+from helpers.spline_cases import bounds, FREE, LIMITS, random_motion, slow_start
 import numpy as np
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.planners.path_timing.constraints import PathConstraints, QUANTITIES
@@ -26,7 +26,7 @@ from rrr_traj_planner.planners.path_timing.start import motion_with_speeds
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled
+from rrr_traj_planner.planners.solver.splines import time_scaled, uniform_mesh
 
 BARRIER = 1e-3
 STEP = 1e-6       # of differences by a motion's own unknowns
@@ -53,16 +53,15 @@ class Case:
 
     def states(self, x):
         """Return position, velocity, acceleration and jerk at the points, (N, P, 4, J)."""
-        at = self.problem.grid.states(self.problem.points, self.problem.motion(x))
+        at = self.problem.mesh.states(self.problem.points, self.problem.motion(x))
         return np.stack(at, axis=2)
 
     def ends(self, x):
-        """Return what must stay 0: position and velocity at segments' ends beside the points'."""
-        n, m = self.problem.grid.n, self.problem.motion(x)
+        """Return what must stay 0: states at segments' ends less those of the via points."""
+        n, m = self.problem.mesh.n, self.problem.motion(x)
         at = self.states(x)[:, n]
-        v1 = nodes_of(m)[2]
-        return np.concatenate(((at[:, 0] - self.problem.points[1:]).ravel(),
-                               (at[:, 1] - v1).ravel()))
+        return np.concatenate([(at[:, k] - own).ravel() for k, own in enumerate(
+            (self.problem.points[1:], m.v[1:], m.a[1:]))])
 
     def by_unknowns(self, function):
         """Return a function's derivatives by every unknown, as columns."""
@@ -106,17 +105,18 @@ class Case:
         N, d = len(self.motion.T), self.durations
         start = len(self.x) - N
         fixed = [start + k for k in range(N) if not d.free[k]]
-        fixed += [self.motion.inner.size + i for i in np.flatnonzero(d.fixed_velocities.ravel())]
+        fixed += [self.motion.inner.size + i for i in np.flatnonzero(
+            np.swapaxes(d.fixed, 0, 1).ravel())]
         basis = np.delete(np.eye(len(self.x)), fixed, axis=1)
         tie = np.concatenate((np.zeros(start), d.proportions))
         return np.column_stack((basis, tie)) if d.proportions.any() else basis
 
 
 def joint_problem(limits, seed, segments=None, least_T=False):
-    grid, points, _ = random_motion(seed, n=5 + seed % 3, segments=segments or 1 + seed % 3)
-    constraints, m = slow_start(limits, grid, points)
+    mesh, points, _ = random_motion(seed, n=5 + seed % 3, segments=segments or 1 + seed % 3)
+    constraints, m = slow_start(limits, mesh, points)
     if least_T:
-        constraints = bounds(limits, grid, points, 0.8 * m.T)
+        constraints = bounds(limits, mesh, points, 0.8 * m.T)
     return constraints.problem, m
 
 
@@ -126,12 +126,13 @@ def path_problem(seed, rubbing=False):
     if rubbing:
         arm_path = replace(arm_path, model=replace(
             arm_path.model, friction=Friction([60.0, 90.0, 40.0])))
-    table, grid = PathTable(arm_path), Grid(6, (0.0, 0.6)[seed % 2])
+    table = PathTable(arm_path)
     N = len(table.ends) - 1
+    mesh = uniform_mesh(N, 6)
     constraints = PathConstraints(
-        table, replace(case.limits, max_jerk=[30.0] * 3), 0.7, grid,
-        np.zeros((N, 2 * grid.n + 1, QUANTITIES)), np.zeros(N, bool))
-    m = motion_with_speeds(grid, table.ends, np.concatenate(([0.0], np.full(N - 1, 0.3), [0.0])))
+        table, replace(case.limits, max_jerk=[30.0] * 3), 0.7, mesh,
+        np.zeros((N, 2 * mesh.n + 1, QUANTITIES)), np.zeros(N, bool))
+    m = motion_with_speeds(mesh, table.ends, np.concatenate(([0.0], np.full(N - 1, 0.3), [0.0])))
     while not constraints.problem.is_within(m):
         m = time_scaled(m, 1.3)
     return constraints.problem, m

@@ -25,6 +25,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.postures import posture_of
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.planners.path_timing.planner import SMALLER, WORTH_IT
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
@@ -34,6 +35,8 @@ VIA_POINT = 1e-11     # m
 ON_PATH = 1e-9        # m
 REST = 1e-9           # rad/s^3
 STEP = 1e-5           # rad/s^2, within BESIDE
+QUINTIC_JERK = 1.15   # of the limit, as the answer's points are divided from 1.1 on
+PER_INTERVAL = 20     # evaluations between two points
 SLOWEST = 0.02        # of the tip's largest speed, at a via point
 
 TABLES = {  # tips [m] and torques [N m]
@@ -90,6 +93,17 @@ def test_accelerations_step_by_what_the_motion_reports(m):
     assert steps == pytest.approx(np.broadcast_to(wanted, steps.shape), abs=STEP)
 
 
+@pytest.mark.parametrize('seed', seeds_for('line_polynomial'))
+def test_a_controller_s_quintics_keep_the_jerk_limit_where_acceleration_is_continuous(seed):
+    # Jerk steps at joins, by up to twice its limit: without a point there it would be 1.74 of it.
+    m = planned_motions('line_polynomial')[seed]
+    times = m.plan.points.times
+    share = np.arange(PER_INTERVAL) / PER_INTERVAL
+    t = (times[:-1, np.newaxis] + np.diff(times)[:, np.newaxis] * share).ravel()
+    jerk = np.abs(spline_through(m.plan.points).at(t)[3])
+    assert (jerk <= QUINTIC_JERK * m.task.sampled_limits.max_jerk).all()
+
+
 def test_radii_are_the_largest_or_smaller_where_that_is_faster(m):
     largest = m.task.arm_path.path.radii
     if not len(largest):
@@ -97,7 +111,8 @@ def test_radii_are_the_largest_or_smaller_where_that_is_faster(m):
     part = m.trajectory.arm_path.path.radii / largest
     steps = np.log(part[0]) / np.log(SMALLER)
     assert part == pytest.approx(SMALLER ** round(steps), rel=1e-6)
-    gained = 1.0 - m.trajectory.duration / m.task.timed().duration
+    along_largest = m.task.timed(max_jerk=m.task.sampled_limits.max_jerk).duration
+    gained = 1.0 - m.trajectory.duration / along_largest
     assert gained >= (0.5 * WORTH_IT * round(steps) if round(steps) else -2.0 * WORTH_IT)
 
 

@@ -21,7 +21,7 @@ import pytest
 # Of some 40 motions. Of 600 random tasks, 11 to 15 of time_optimal's end before they converge:
 # which ones is decided by rounding.
 MOST_REMARKS = {'poly_434': 5, 'time_optimal': 3}
-REMARKS = 'reach a jerk of', '0.1 % slower', 'planning ended before it converged'
+REMARKS = 'reach a jerk of', '% slower: a controller', 'planning ended before it converged'
 
 
 @pytest.fixture(scope='module', params=JOINT_SPACE)

@@ -25,7 +25,6 @@ from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.planners.sampling_jerk_limit import (
     acceleration_scale,
-    CONSTANT_JERK_FRACTION,
     limits_for_sampling,
 )
 
@@ -41,7 +40,7 @@ def random_poses(seed):
 def test_a_jerk_limit_that_is_low_enough_stays():
     model, q = random_poses(0)
     limits = JointLimits(max_jerk=[10.0, 20.0, 30.0])
-    jerk = limits_for_sampling(model, limits, q, PERIOD).limits.max_jerk
+    jerk = limits_for_sampling(model, limits, q, PERIOD).max_jerk
     assert jerk.tolist() == [10.0, 20.0, 30.0]
 
 
@@ -49,7 +48,7 @@ def test_a_ramp_from_one_limit_to_the_other_lasts_four_samples():
     # Half a cosine of 2 A in four periods: jerk pi A / (4 periods).
     model, q = random_poses(1)
     limits = JointLimits(max_acceleration=[1.0, 2.0, 3.0], max_jerk=NONE)
-    found = limits_for_sampling(model, replace(limits, max_effort=NONE), q, PERIOD).limits.max_jerk
+    found = limits_for_sampling(model, replace(limits, max_effort=NONE), q, PERIOD).max_jerk
     assert found == pytest.approx(np.pi * np.array((1.0, 2.0, 3.0)) / (4.0 * PERIOD))
 
 
@@ -58,7 +57,7 @@ def test_without_an_acceleration_limit_torque_decides_and_two_samples_are_enough
     model, q = random_poses(seed)
     limits = JointLimits(max_acceleration=NONE, max_jerk=NONE, max_effort=[90.0, 150.0, 70.0])
     scale = acceleration_scale(model, limits, q)
-    assert limits_for_sampling(model, limits, q, PERIOD).limits.max_jerk == pytest.approx(
+    assert limits_for_sampling(model, limits, q, PERIOD).max_jerk == pytest.approx(
         np.pi * scale / (2.0 * PERIOD))
     # No joint that moves alone can be accelerated more, at any of the poses.
     for p in q:
@@ -70,24 +69,10 @@ def test_without_an_acceleration_limit_torque_decides_and_two_samples_are_enough
                 assert abs(torque) > limits.max_effort[j] or not against
 
 
-def test_jerk_cruises_where_every_joint_s_limit_lets_a_swing_last_thirty_samples():
-    # At jerk pi A / (30 periods) half a cosine of 2 A lasts 30 periods.
-    model, q = random_poses(3)
-    slow = np.pi * np.array((1.0, 2.0, 3.0)) / (30.0 * PERIOD)
-    limits = JointLimits(max_acceleration=[1.0, 2.0, 3.0], max_effort=NONE, max_jerk=slow)
-    shorter, longer = (limits_for_sampling(model, limits, q, PERIOD * factor)
-                       for factor in (1.0 - 1e-9, 1.0 + 1e-9))
-    assert shorter.constant_jerk_fraction == CONSTANT_JERK_FRACTION
-    assert longer.constant_jerk_fraction == 0.0
-    for joint in range(3):
-        fast = replace(limits, max_jerk=np.where(np.arange(3) == joint, np.inf, slow))
-        assert limits_for_sampling(model, fast, q, 0.5 * PERIOD).constant_jerk_fraction == 0.0
-
-
 def test_all_limits_but_jerk_stay():
     model, q = random_poses(2)
     limits = JointLimits(max_jerk=NONE)
-    found = limits_for_sampling(model, limits, q, PERIOD).limits
+    found = limits_for_sampling(model, limits, q, PERIOD)
     for name in ('min_position', 'max_position', 'max_velocity', 'max_acceleration', 'max_effort'):
         assert getattr(found, name).tolist() == getattr(limits, name).tolist()
     assert np.isfinite(found.max_jerk).all()

@@ -133,6 +133,11 @@ class PathTrajectory(Trajectory):
         make_read_only((found,))
         return found
 
+    @property
+    def jerk_step_times(self) -> Array:
+        """Return when joins are passed at which acceleration does not step [s]."""
+        return np.setdiff1d(self.join_times, self.step_times)
+
     def peaks(self) -> Peaks:
         """Return the extremes over the continuous motion, including one-sided limits at knots."""
         return self._measured().peaks

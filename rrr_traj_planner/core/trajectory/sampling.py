@@ -159,8 +159,10 @@ def sample_times(trajectory: Trajectory, period: float,
     """
     Return the sampling times of a motion: every period, every via time and the end.
 
-    A regular point nearer than a tenth of a period to a via time is dropped. One nearer than three
-    tenths to a step of acceleration is replaced by points half a period before and after the step.
+    Also where jerk steps: a quintic across a step of jerk in its interval overshoots it by up to
+    37 % of it, however short the interval is, one that begins or ends there not at all. A regular
+    point nearer than a tenth of a period to one of these is dropped. One nearer than three tenths
+    to a step of acceleration is replaced by points half a period before and after the step.
     See `STEP_FRACTION` for quintics across steps.
 
     Parameters
@@ -192,8 +194,11 @@ def sample_times(trajectory: Trajectory, period: float,
     regular: Array = period * np.arange(1.0, int(trajectory.duration / period) + 1)
     gap, steps = LEAST_GAP * period, trajectory.step_times
     beside = _beside_steps(steps, regular, period)
-    retained = regular[_distance(regular, steps) >= STEP_GAP * period]
-    between = np.round(np.sort(np.concatenate((retained, beside))) / NANOSECOND) * NANOSECOND
+    bends = _apart(trajectory.jerk_step_times, beside, steps, period)
+    retained = regular[(_distance(regular, steps) >= STEP_GAP * period)
+                       & (_distance(regular, bends) >= gap)]
+    between = np.round(np.sort(np.concatenate((retained, beside, bends))) / NANOSECOND)
+    between *= NANOSECOND
     between = between[(_distance(between, fixed) >= gap) & (between > 0.0)
                       & (between < trajectory.duration)]
     # Regular points share the rounding of the via points' stamps, which a controller would
@@ -211,6 +216,14 @@ def _beside_steps(steps: Array, regular: Array, period: float) -> Array:
     beside = np.sort(np.concatenate((near - 0.5 * period, near + 0.5 * period)))
     beside = beside[_distance(beside, steps) >= LEAST_GAP * period]
     return beside[np.diff(beside, prepend=-np.inf) >= LEAST_GAP * period]
+
+
+def _apart(bends: Array, beside: Array, steps: Array, period: float) -> Array:
+    """Return those steps of jerk that are away from each other and from steps of acceleration."""
+    gap = LEAST_GAP * period
+    bends = bends[(_distance(bends, beside) >= gap)
+                  & (_distance(bends, steps) >= STEP_GAP * period)]
+    return bends[np.diff(bends, prepend=-np.inf) >= gap]
 
 
 def _distance(times: Array, others: Array) -> Array:

@@ -161,6 +161,11 @@ class Trajectory(ReadOnlyArrays, ABC):
         """Return the times [s] at which acceleration steps, increasing; usually none."""
         return np.zeros(0)
 
+    @property
+    def jerk_step_times(self) -> Array:
+        """Return times [s] at which jerk steps that want a point, increasing; usually none."""
+        return np.zeros(0)
+
     @abstractmethod
     def peaks(self) -> Peaks:
         """Return the exact extremes over the continuous motion."""

@@ -69,6 +69,7 @@ class PlannerConfig:
     max_tip_speed: float  # 0: none
     steady_zones: bool
     half_transition: float
+    least_jerk_rise: float
     planning_time_limit: float
     max_points: int
     max_via_points: int
@@ -114,8 +115,8 @@ class PlannerConfig:
             half_transition=values['poly_414.t_acc'], urdf=values['robot_description'],
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
-                'max_deviation', 'start_state_tolerance', 'max_tip_speed', 'steady_zones',
-                'planning_time_limit', 'max_points', 'max_via_points')})
+                'max_deviation', 'least_jerk_rise', 'start_state_tolerance', 'max_tip_speed',
+                'steady_zones', 'planning_time_limit', 'max_points', 'max_via_points')})
 
     def limits_for(self, *planner_ids: str) -> JointLimits:
         """

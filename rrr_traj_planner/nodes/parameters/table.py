@@ -130,6 +130,9 @@ TABLE: tuple[Row, ...] = (
         'm/s', 0.0, 100.0, nodes=(PLANNER,)),
     Row('steady_zones', False, 'whether the speed of the tip is constant on the curved zones of a '
         'Cartesian path', nodes=(PLANNER,)),
+    Row('least_jerk_rise', 0.02, 'shortest time in which jerk goes from zero to its limit, in '
+        'motions of planner time_optimal; without a jerk limit at most sample_period', 's', 0.001,
+        10.0, nodes=(PLANNER,)),
     Row('poly_414.t_acc', 0.5, 'half the duration of a transition of planner poly_414', 's', 0.001,
         100.0, nodes=(PLANNER,)),
     Row('planning_time_limit', 1.0, 'time after which planning stops with the best motion so far, '

@@ -104,6 +104,7 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
             max_deviation=_or_default(message.max_deviation, config.max_deviation),
             max_tip_speed=_or_default(config.max_tip_speed, inf),
             steady_zones=config.steady_zones, half_transition=config.half_transition,
+            least_jerk_rise=config.least_jerk_rise,
             should_stop=should_stop, max_points=config.max_points,
             start_state_tolerance=config.start_state_tolerance)
 

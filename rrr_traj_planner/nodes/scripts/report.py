@@ -118,7 +118,7 @@ def _plan(options: argparse.Namespace, ros_arguments: list[str]) -> int:
         file.via_points, sample_period=config.sample_period, max_deviation=config.max_deviation,
         segment_durations=file.segment_durations if len(file.segment_durations) else None,
         max_tip_speed=config.max_tip_speed or float('inf'), steady_zones=config.steady_zones,
-        half_transition=config.half_transition)
+        half_transition=config.half_transition, least_jerk_rise=config.least_jerk_rise)
     ids = options.planner or [file.planner_id or config.default_planner_id]
     print('planning and drawing ...', flush=True)
     ids = planner_ids() if 'all' in ids else ids

@@ -25,12 +25,17 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.solver.limits import FAR, Limits
-from rrr_traj_planner.planners.solver.ramps import Grid
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 
 # Relaxation of position bounds so that joints resting at a range's end have an interior [rad];
 # below JOINT_ROUNDING.
 EDGE = 5e-10
+
+# Acceleration, over its limit, or without one in rad/s^2, that a joint may have towards the end of
+# its range where it rests there: a barrier method needs an interior. Its excursion is of the third
+# power, below JOINT_ROUNDING. Chosen.
+OUTWARDS = 1e-4
 
 
 class JointConstraints:
@@ -43,20 +48,25 @@ class JointConstraints:
         The arm.
     limits : JointLimits
         Infinite where there is none.
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each segment.
     points : ndarray, shape (N + 1, 3)
         Via points [rad].
     margins : ndarray, shape (2, N, 2 n + 1, 3)
         Distance to keep from the ends of each joint's range at each point, upper and lower [rad].
     velocity_margins : ndarray, shape (N, 2 n + 1, 3)
         Subtracted from each joint's velocity limit at each point [rad/s].
+    acceleration_margins : ndarray, shape (N, 2 n + 1, 3)
+        Subtracted from each joint's acceleration limit at each point [rad/s^2].
     effort_margins : ndarray, shape (N, 2 n + 1, 3)
         Subtracted from each joint's effort limit at each point [N m].
     least_T : ndarray, shape (N,), optional
         Least durations of the segments [s].
     workspace : Workspace, optional
         Memory shared by problems that are solved one after the other.
+    stays : ndarray of bool, shape (N - 1, 3, 3), optional
+        Which of velocity, acceleration and jerk are zero at the via points, for each joint. Where
+        velocity alone is, the joint is near an end of its range, and accelerates away from it.
 
     Attributes
     ----------
@@ -68,15 +78,17 @@ class JointConstraints:
 
     """
 
-    def __init__(self, model: RobotModel, limits: JointLimits, grid: Grid, points: Array,
-                 margins: Array, velocity_margins: Array, effort_margins: Array,
-                 least_T: Array | None = None, workspace: Workspace | None = None) -> None:
-        self.grid, self.points, self.limits, self.least_T = grid, points, limits, least_T
+    def __init__(self, model: RobotModel, limits: JointLimits, mesh: Mesh, points: Array,
+                 margins: Array, velocity_margins: Array, acceleration_margins: Array,
+                 effort_margins: Array, least_T: Array | None = None,
+                 workspace: Workspace | None = None, stays: BoolArray | None = None) -> None:
+        self.mesh, self.points, self.limits, self.least_T = mesh, points, limits, least_T
         self.with_torque = bool(np.isfinite(limits.max_effort).any())
         effort = effort_less_friction(model, limits)
         self.effort = (np.minimum(effort, FAR) - effort_margins)[:, 1:]
-        self._workspace = workspace
-        self._model, self._margins, self._velocity_margins = model, margins, velocity_margins
+        self._workspace, self._stays = workspace, stays
+        self._model, self._margins = model, margins
+        self._velocity_margins, self._acceleration_margins = velocity_margins, acceleration_margins
 
     @cached_property
     def problem(self) -> TimingProblem:
@@ -87,24 +99,52 @@ class JointConstraints:
         general[1:] = self.with_torque
         effort = np.concatenate((np.full((N, 1, 3), FAR), self.effort), axis=1)
         arm = compiled(self._model) if self.with_torque else None
-        return TimingProblem(self.grid, self.points, Limits(
+        return TimingProblem(self.mesh, self.points, Limits(
             lower, upper, bounded, -effort, effort, general, self.least_T, arm), self._workspace)
+
+    def is_within(self, motion: Variables) -> bool:
+        """
+        Return whether a motion is strictly within the constraints, to start from.
+
+        Parameters
+        ----------
+        motion : Variables
+            On this mesh.
+
+        Returns
+        -------
+        bool
+            False also where a joint that is to stay at a via point does not.
+
+        """
+        via = np.stack((motion.v, motion.a, motion.j), axis=1)[1:-1]
+        stays = self._stays is None or not via[self._stays].any()
+        return stays and self.problem.is_within(motion)
 
     def _bounds(self) -> tuple[Array, Array, BoolArray]:
         """Return lower and upper bounds on states (N, P, 12), and which are limited (P, 12)."""
-        limits, n, N = self.limits, self.grid.n, len(self.points) - 1
+        limits, n, N = self.limits, self.mesh.n, len(self.points) - 1
         bounds, bounded = np.zeros((2, N, 2 * n + 1, 4, 3)), np.zeros((2 * n + 1, 4, 3), bool)
         inside = np.r_[1:n, n + 1:2 * n + 1]  # not at the via points, where position is given
         fastest = limits.max_velocity - self._velocity_margins[:, 1:]
+        hardest = limits.max_acceleration - self._acceleration_margins[:, 1:]
         above, below = self._margins[:, :, inside]
         for column, points, lowest, highest in (
                 (0, inside, limits.min_position - EDGE + below,
                  limits.max_position + EDGE - above),
                 (1, np.arange(1, 2 * n + 1), -fastest, fastest),
-                (2, np.arange(1, n + 1), -limits.max_acceleration, limits.max_acceleration),
-                (3, np.arange(n + 1, 2 * n + 1), -limits.max_jerk, limits.max_jerk)):
+                (2, np.arange(1, 2 * n + 1), -hardest, hardest),
+                (3, np.arange(1, n + 1), -limits.max_jerk, limits.max_jerk)):
             bounds[0][:, points, column] = np.maximum(lowest, -FAR)
             bounds[1][:, points, column] = np.minimum(highest, FAR)
             bounded[points, column] = np.isfinite(highest).any() or np.isfinite(lowest).any()
+        if self._stays is not None and self._stays.any():
+            via, largest = self.points[1:-1], OUTWARDS * limits.max_acceleration
+            largest = np.where(np.isfinite(largest), largest, OUTWARDS)
+            is_low = via - limits.min_position < limits.max_position - via
+            for side, sign, there in ((0, -1.0, is_low), (1, 1.0, ~is_low)):
+                at = bounds[side][:-1, n, 2]
+                at[:] = np.where(self._stays[:, 0] & there, sign * largest, at)
+            bounded[n, 2] |= self._stays[:, 0].any(axis=0)
         lower, upper = bounds.reshape(2, N, 2 * n + 1, 12)
         return lower, upper, bounded.reshape(-1, 12)

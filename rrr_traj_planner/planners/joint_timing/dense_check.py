@@ -24,12 +24,16 @@ from functools import cached_property
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.motor_torque import smooth_motor_torque
+from rrr_traj_planner.core.dynamics.motor_torque import (
+    direction_of,
+    rest_speed_of,
+    smooth_motor_torque,
+)
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, torque_parts
 from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.solver.excess import excess_near_points, rise_between_samples
-from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
@@ -46,8 +50,8 @@ class JointCheck:
     ----------
     task : JointTask
         The via points, the arm and its limits.
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each segment.
     m : Variables
         The motion.
 
@@ -58,11 +62,11 @@ class JointCheck:
 
     """
 
-    def __init__(self, task: JointTask, grid: Grid, m: Variables) -> None:
+    def __init__(self, task: JointTask, mesh: Mesh, m: Variables) -> None:
         self._task, self._effort = task, effort_less_friction(task.model, task.limits)
         self.q, self.qd, self.qdd, jerk = np.moveaxis(
-            grid.samples(task.points, m, 2 * CHECKS), 2, 0)
-        self._peak_jerk = np.abs(jerk).max(axis=(0, 1))  # a ramp's is sampled at its middle
+            mesh.samples(task.points, m, 2 * CHECKS), 2, 0)
+        self._peak_jerk = np.abs(jerk).max(axis=(0, 1))  # it is at a node
 
     @cached_property
     def tau(self) -> Array | None:
@@ -100,27 +104,31 @@ class JointCheck:
         Shape (2, N, 3), upper and lower end [rad]; 0 within.
         """
         limits, q = self._task.limits, self.q
-        turns, rise = self.qd[:, :-1] * self.qd[:, 1:] < 0.0, rise_between_samples(q)
+        # At rest at a sample, a joint does not reverse beside it.
+        way = direction_of(self.qd, rest_speed_of(self.qd))
+        turns, rise = way[:, :-1] * way[:, 1:] < 0.0, rise_between_samples(q)
         rise = np.where(turns, np.maximum(rise[:, :-1], rise[:, 1:]), 0.0)
         most, least = (f(q[:, :-1], q[:, 1:]) for f in (np.maximum, np.minimum))
         beyond = np.stack(((most + rise - limits.max_position).max(axis=1),
                            (limits.min_position - least + rise).max(axis=1)))
         return np.where(beyond > JOINT_ROUNDING, beyond, 0.0)
 
-    def excess(self) -> tuple[Array, Array]:
+    def excess(self) -> tuple[Array, Array, Array]:
         """
-        Return by how much velocities and torques exceed their limits near each point.
+        Return by how much velocities, accelerations and torques exceed limits near each point.
 
         Returns
         -------
         tuple of ndarray, shape (N, 2 n + 1, 3)
-            [rad/s], [N m].
+            [rad/s], [rad/s^2], [N m].
 
         """
-        velocity = _near_points(self.qd, self._task.limits.max_velocity)
+        limits = self._task.limits
+        velocity = _near_points(self.qd, limits.max_velocity)
+        acceleration = _near_points(self.qdd, limits.max_acceleration)
         if self.tau is None:
-            return velocity, np.zeros_like(velocity)
-        return velocity, _near_points(self.tau, self._effort)
+            return velocity, acceleration, np.zeros_like(velocity)
+        return velocity, acceleration, _near_points(self.tau, self._effort)
 
 
 def _near_points(x: Array, limit: Array) -> Array:

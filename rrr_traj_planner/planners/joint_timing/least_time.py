@@ -20,12 +20,14 @@ from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.joint_timing.meshing import meshed
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.joint_timing.tightening import SCHEDULE, tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled
+from rrr_traj_planner.planners.solver.refinement import moved
+from rrr_traj_planner.planners.solver.splines import Mesh, time_scaled
 from rrr_traj_planner.planners.tasks import JointTask
 
 # Restarts from the best motion so far. On 28 random tasks half and twice of each value change no
@@ -34,7 +36,7 @@ POOR = 1e-2            # gap, as a part of the time, above which it is solved ag
 SLOWER = (1e-6, 0.02)  # part by which a restart is slower: first just strictly feasible; chosen
 
 
-def fastest(task: JointTask, grid: Grid, least_T: Array | None = None) -> Solved | None:
+def fastest(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> Solved | None:
     """
     Return the fastest motion.
 
@@ -45,8 +47,8 @@ def fastest(task: JointTask, grid: Grid, least_T: Array | None = None) -> Solved
     ----------
     task : JointTask
         The via points, the arm and its limits.
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each segment.
     least_T : ndarray, shape (N,), optional
         Least durations of the segments [s].
 
@@ -57,39 +59,48 @@ def fastest(task: JointTask, grid: Grid, least_T: Array | None = None) -> Solved
 
     """
     durations = DurationConstraints.all_free(len(task.points) - 1, 3)
-    whole = JointProblem(task, grid, durations, least_T)
+    whole = JointProblem(task, mesh, durations, least_T)
     if np.isfinite(task.limits.max_acceleration).all():
         without_torque = replace(whole, task=replace(
             task, limits=replace(task.limits, max_effort=np.full(3, np.inf))))
-        found = tightened(without_torque, rest_to_rest)
+        without_torque, initial_motion = meshed(without_torque, rest_to_rest)
+        whole = replace(whole, mesh=without_torque.mesh)
+        found = tightened(without_torque, initial_motion, rest_to_rest)
         task.should_stop()
         if found is not None and torque_fits(task, found.trajectory):
             better = _refined(without_torque, found)
             return better if torque_fits(task, better.trajectory) else _refined(whole, found)
-    found = tightened(whole, rest_to_rest)
+    whole, initial_motion = meshed(whole, rest_to_rest)
+    found = tightened(whole, initial_motion, rest_to_rest)
     return None if found is None else _refined(whole, found)
 
 
 def _refined(problem: JointProblem, solved: Solved) -> Solved:
     """Return the best motion of repeated solutions, each from the best so far, until converged."""
-    tries = list(SLOWER)
+    tries = [(slower, False) for slower in SLOWER] + [(SLOWER[0], True)]
     for _ in range(8):  # restarts, at most
         if not tries or solved.gap < POOR * solved.cost or problem.task.should_stop():
             break
-        again = _solved_from(problem, solved, tries[0])
+        again = _solved_from(problem, solved, *tries[0])
         if again is None or again.cost > (1.0 - SCHEDULE.tolerance) * solved.cost:
             tries.pop(0)
         solved = min((s for s in (solved, again) if s is not None), key=lambda s: s.cost)
     return solved
 
 
-def _solved_from(problem: JointProblem, solved: Solved, slower: float) -> Solved | None:
+def _solved_from(problem: JointProblem, solved: Solved, slower: float,
+                 finer: bool) -> Solved | None:
     """
     Return the solution that starts from a motion within every limit, slowed by a part.
 
     Such a start can satisfy margins that a start with stops at the via points cannot: near the
-    ends of ranges, and between via points that are close together.
+    ends of ranges, and between via points that are close together. On a finer mesh, of twice as
+    many intervals, less can be exceeded between the points.
     """
+    mesh = Mesh(np.repeat(0.5 * solved.mesh.parts, 2, axis=1)) if finer else solved.mesh
+    problem = replace(problem, mesh=mesh)
     factor = (1.0 + slower) * solved.cost / problem.durations.cost(solved.motion.T)
     start = time_scaled(solved.motion, factor)
+    if finer:
+        start = moved(solved.mesh, mesh, problem.task.points, start)
     return tightened(problem, lambda planned, constraints: start)

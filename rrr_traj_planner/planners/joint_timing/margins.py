@@ -29,11 +29,11 @@ from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
-from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 
 LARGER = 1.2                # enlargement of a margin, over the excess; chosen
-MOST_VELOCITY_MARGIN = 0.1  # part of a velocity limit; chosen
+MOST_MARGIN = 0.1           # part of a limit on velocity or acceleration; chosen
 
 
 class Margins(NamedTuple):
@@ -41,19 +41,20 @@ class Margins(NamedTuple):
 
     positions: Array   # upper and lower [rad], (2, N, 2 n + 1, 3)
     velocities: Array  # [rad/s], (N, 2 n + 1, 3)
+    accelerations: Array  # [rad/s^2], likewise
     efforts: Array     # [N m], (N, 2 n + 1, 3)
     gravity_margins: Array  # half the torque that is left to a slow motion [N m], likewise
-    at_rest: BoolArray  # whether a via velocity is fixed to zero, (N - 1, 3)
+    stays: BoolArray  # which of via velocity, acceleration and jerk are zero, (N - 1, 3, 3)
 
     @classmethod
-    def none(cls, grid: Grid, segments: int) -> Margins:
+    def none(cls, mesh: Mesh, segments: int) -> Margins:
         """
         Return zero margins.
 
         Parameters
         ----------
-        grid : Grid
-            Discretisation: n ramps per segment.
+        mesh : Mesh
+            Its n intervals in each segment.
         segments : int
             Their number.
 
@@ -63,8 +64,9 @@ class Margins(NamedTuple):
             Zero everywhere.
 
         """
-        zero = np.zeros((segments, 2 * grid.n + 1, 3))
-        return cls(np.stack((zero, zero)), zero, zero, zero, np.zeros((segments - 1, 3), bool))
+        zero = np.zeros((segments, 2 * mesh.n + 1, 3))
+        return cls(np.stack((zero, zero)), zero, zero, zero, zero,
+                   np.zeros((segments - 1, 3, 3), bool))
 
     def part(self, part: float) -> Margins:
         """
@@ -82,6 +84,7 @@ class Margins(NamedTuple):
 
         """
         return self._replace(positions=part * self.positions, velocities=part * self.velocities,
+                             accelerations=part * self.accelerations,
                              efforts=part * self.efforts)
 
     def is_same(self, other: Margins) -> bool:
@@ -114,7 +117,7 @@ class Margins(NamedTuple):
         """
         return self._replace(efforts=np.minimum(self.efforts, self.gravity_margins))
 
-    def widened(self, task: JointTask, grid: Grid, slow: Variables, check: JointCheck) -> Margins:
+    def widened(self, task: JointTask, mesh: Mesh, slow: Variables, check: JointCheck) -> Margins:
         """
         Return margins enlarged where a motion exceeds limits.
 
@@ -122,8 +125,8 @@ class Margins(NamedTuple):
         ----------
         task : JointTask
             The via points, the arm and its limits.
-        grid : Grid
-            Discretisation: n ramps per segment.
+        mesh : Mesh
+            Its n intervals in each segment.
         slow : Variables
             With stops at the via points; margins of positions are at most half its distance to
             the ends of the ranges.
@@ -136,18 +139,20 @@ class Margins(NamedTuple):
             Unchanged where no limit is exceeded.
 
         """
-        q = grid.states(task.points, slow).q
-        positions, at_rest = self._positions(task, q, check.beyond_range)
+        q = mesh.states(task.points, slow).q
+        positions, stays = self._positions(task, q, check.beyond_range)
         gravity_margins = (effort_less_friction(task.model, task.limits)
                            - np.abs(gravity_torque(task.model, q)))
-        velocity, effort = check.excess()
+        velocity, acceleration, effort = check.excess()
         return Margins(
             positions, np.minimum(self.velocities + LARGER * velocity,
-                                  MOST_VELOCITY_MARGIN * task.limits.max_velocity),
-            self.efforts + LARGER * effort, 0.5 * np.maximum(gravity_margins, 0.0), at_rest)
+                                  MOST_MARGIN * task.limits.max_velocity),
+            np.minimum(self.accelerations + LARGER * acceleration,
+                       MOST_MARGIN * task.limits.max_acceleration),
+            self.efforts + LARGER * effort, 0.5 * np.maximum(gravity_margins, 0.0), stays)
 
     def _positions(self, task: JointTask, q: Array, beyond: Array) -> tuple[Array, BoolArray]:
-        """Return margins of positions, and which joints rest at via points near a range's end."""
+        """Return margins of positions, and which joints stay at via points near a range's end."""
         distance = np.stack((task.limits.max_position - q, q - task.limits.min_position))
         needed = self.positions.max(axis=2) + LARGER * beyond
         target = np.where((beyond > 0.0)[:, :, np.newaxis], needed[:, :, np.newaxis],
@@ -156,4 +161,6 @@ class Margins(NamedTuple):
         ends = np.stack((task.points[:-1], task.points[1:]))
         distance = np.stack((task.limits.max_position - ends, ends - task.limits.min_position))
         at_start, at_end = ((beyond > 0.0) & (distance[:, k] <= 2.0 * needed) for k in (0, 1))
-        return positions, self.at_rest | (at_end[:, :-1] | at_start[:, 1:]).any(axis=0)
+        near = (at_end[:, :-1] | at_start[:, 1:]).any(axis=0)[:, np.newaxis]
+        # First the velocity is zero; where that is not enough, acceleration and jerk too.
+        return positions, self.stays | (near & (self.stays[:, :1] | [[[True], [False], [False]]]))

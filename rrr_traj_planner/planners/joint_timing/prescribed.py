@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motions of ramps whose durations, all or some, are prescribed."""
+"""Splines whose durations, all or some, are prescribed."""
 
 from __future__ import annotations
 
@@ -25,13 +25,14 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.margins import Margins
+from rrr_traj_planner.planners.joint_timing.meshing import meshed
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
-from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
+from rrr_traj_planner.planners.joint_timing.start import rest_to_rest, with_durations
 from rrr_traj_planner.planners.joint_timing.tightening import tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
 from rrr_traj_planner.planners.short_durations import durations_too_short, least_feasible
-from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, time_scaled, Variables, with_durations
+from rrr_traj_planner.planners.solver.limits import DurationConstraints, fixed_ends
+from rrr_traj_planner.planners.solver.splines import Mesh, time_scaled, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import DURATION_TOLERANCE
 
@@ -46,7 +47,7 @@ class PrescribedProblem(NamedTuple):
     """Via points and limits, the family of motions, and prescribed durations."""
 
     task: JointTask
-    grid: Grid
+    mesh: Mesh
     durations: Array  # [s], NaN where free
 
     @property
@@ -74,9 +75,8 @@ class PrescribedProblem(NamedTuple):
             Of motions that need not stop at any via point.
 
         """
-        no_stops = np.zeros((len(self.durations) - 1, 3), dtype=bool)
-        return JointProblem(self.task, self.grid, DurationConstraints(
-            self.free, proportions, weights, no_stops), least_T)
+        return JointProblem(self.task, self.mesh, DurationConstraints(
+            self.free, proportions, weights, fixed_ends(len(self.durations), 3)), least_T)
 
     def scaling(self, solved: Solved) -> float:
         """
@@ -113,7 +113,7 @@ class PrescribedProblem(NamedTuple):
         return solved is not None and self.scaling(solved) <= 1.0 + DURATION_TOLERANCE
 
 
-def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
+def prescribed(task: JointTask, mesh: Mesh, durations: Array) -> Solved | None:
     """
     Return a motion of prescribed durations.
 
@@ -124,8 +124,8 @@ def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
     ----------
     task : JointTask
         The via points, the arm and its limits.
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each segment.
     durations : ndarray, shape (N,)
         [s], NaN where free.
 
@@ -142,7 +142,7 @@ def prescribed(task: JointTask, grid: Grid, durations: Array) -> Solved | None:
         If they are too short, and no feasible ones are found.
 
     """
-    problem = PrescribedProblem(task, grid, durations)
+    problem = PrescribedProblem(task, mesh, durations)
     solved = _least_scaled(problem)
     if solved is None:
         return None
@@ -166,8 +166,9 @@ def _least_scaled(problem: PrescribedProblem) -> Solved | None:
         scaling = float((m.T / durations)[~free].max())
         return with_durations(m, np.where(free, m.T, scaling * proportions))
 
-    return tightened(problem.problem(proportions, weights, LEAST_SCALING * proportions),
-                     initial_motion)
+    refined, start = meshed(problem.problem(
+        proportions, weights, LEAST_SCALING * proportions), initial_motion)
+    return tightened(refined, start, initial_motion)
 
 
 def _in_time(problem: PrescribedProblem, found: list[Solved]) -> Solved | None:
@@ -186,17 +187,17 @@ def _in_time(problem: PrescribedProblem, found: list[Solved]) -> Solved | None:
 
 def _stopping(problem: PrescribedProblem) -> Solved | None:
     """Return the motion that stops at every via point; None where none is found."""
-    task, grid, durations = problem
+    task, mesh, durations = problem
     segments = len(durations)
-    stops = JointProblem(task, grid, DurationConstraints.all_free(segments, 3))
-    motion = rest_to_rest(task, stops.constraints(Margins.none(grid, segments)))
+    stops = JointProblem(task, mesh, DurationConstraints.all_free(segments, 3))
+    motion = rest_to_rest(task, stops.constraints(Margins.none(mesh, segments)))
     if motion is None:
         return None
     T = np.where(problem.free, motion.T, durations)
     if (motion.T > T).any():
         raise durations_too_short(durations, np.maximum(T, motion.T))
-    return Solved(grid.trajectory(task.points, with_durations(motion, T)), motion,
-                  float(T.sum()), np.inf)
+    return Solved(mesh.trajectory(task.points, with_durations(motion, T)), motion,
+                  mesh, float(T.sum()), np.inf)
 
 
 def _least_peak_acceleration(problem: PrescribedProblem, solved: Solved) -> Solved | None:
@@ -226,19 +227,21 @@ def _least_peak_acceleration(problem: PrescribedProblem, solved: Solved) -> Solv
 def _fastest_of_free(problem: PrescribedProblem, solved: Solved) -> Solved | None:
     """Return the motion with the least sum of free durations, the others as prescribed."""
     free, durations = problem.free, problem.durations
-    m = solved.motion
+    problem, m = problem._replace(mesh=solved.mesh), solved.motion
     m = time_scaled(m, float(1.0 / np.nanmax(m.T / durations)))
-    start = problem.grid.restored(
+    start = problem.mesh.restored(
         problem.task.points, m._replace(T=np.where(free, m.T, durations)))
-    found = tightened(problem.problem(np.zeros(len(free)), free.astype(float)),
-                      lambda planned, _: start)
+    fastest_of = problem.problem(np.zeros(len(free)), free.astype(float))
+    given = fastest_of.mesh
+    found = tightened(*meshed(fastest_of, lambda _, within: (
+        start if within.mesh is given else None)))
     return found if problem.is_met_by(found) else _in_time(problem, [solved])
 
 
 def _too_short(problem: PrescribedProblem) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
     durations, least_T = problem.durations, np.nan_to_num(problem.durations)
-    found = fastest(problem.task, problem.grid, least_T)
+    found = fastest(problem.task, problem.mesh, least_T)
     least = np.maximum(np.diff(found.trajectory.via_times), least_T) if found else least_T
 
     def is_feasible(T: Array) -> bool:

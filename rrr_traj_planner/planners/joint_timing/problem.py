@@ -27,13 +27,21 @@ from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.within_limits import fitted
-from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise, Outcome
-from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.solver.interior_point import (
+    CentralPathPoint,
+    minimise,
+    MOST_ITERATIONS,
+    Outcome,
+    RELATIVE_GAP,
+)
+from rrr_traj_planner.planners.solver.limits import DurationConstraints, Limits
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.solver.timing_problem import Workspace
 from rrr_traj_planner.planners.tasks import JointTask
 
 # Returns a motion strictly within constraints, to start from, or None.
+MOST_TO_RETURN = 40  # iterations from beyond the limits, which usually take two to five; chosen
+
 InitialMotion = Callable[[JointTask, JointConstraints], Variables | None]
 
 
@@ -42,6 +50,7 @@ class Solved(NamedTuple):
 
     trajectory: PiecewiseTrajectory
     motion: Variables  # the solver's; the trajectory is this motion, slowed where necessary
+    mesh: Mesh         # the motion's
     cost: float        # the trajectory's weighted sum of durations [s]
     gap: float         # bound on the cost that the optimum saves [s]
 
@@ -55,8 +64,8 @@ class JointProblem(ReadOnlyArrays):
     ----------
     task : JointTask
         The via points, the arm and its limits.
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each segment.
     durations : DurationConstraints
         Which durations may change, and their weights.
     least_T : ndarray, shape (N,), optional
@@ -65,7 +74,7 @@ class JointProblem(ReadOnlyArrays):
     """
 
     task: JointTask
-    grid: Grid
+    mesh: Mesh
     durations: DurationConstraints
     least_T: Array | None = None
     _workspace: Workspace = field(default_factory=Workspace)
@@ -87,11 +96,13 @@ class JointProblem(ReadOnlyArrays):
         """
         task = self.task
         return JointConstraints(
-            task.model, task.limits, self.grid, task.points, margins.positions,
-            margins.velocities, margins.efforts, self.least_T, self._workspace)
+            task.model, task.limits, self.mesh, task.points, margins.positions,
+            margins.velocities, margins.accelerations, margins.efforts, self.least_T,
+            self._workspace, margins.stays)
 
     def minimised(self, constraints: JointConstraints, margins: Margins, start: CentralPathPoint,
-                  least_barrier: float = 0.0) -> Outcome:
+                  relative_gap: float = RELATIVE_GAP,
+                  wider: Limits | None = None) -> Outcome:
         """
         Return the fastest motion within constraints.
 
@@ -102,9 +113,11 @@ class JointProblem(ReadOnlyArrays):
         margins : Margins
             For the joints that rest at a via point.
         start : CentralPathPoint
-            Strictly within the constraints.
-        least_barrier : float
-            The barrier parameter at which the method ends.
+            Strictly within the constraints, or within the wider limits.
+        relative_gap : float
+            The gap at which the method ends, as a part of the objective.
+        wider : Limits, optional
+            See `interior_point.minimise`.
 
         Returns
         -------
@@ -112,9 +125,11 @@ class JointProblem(ReadOnlyArrays):
             See `interior_point.minimise`.
 
         """
-        durations = self.durations._replace(fixed_velocities=margins.at_rest)
-        return minimise(constraints.problem, start, durations, self.task.should_stop,
-                        least_barrier)
+        fixed = self.durations.fixed.copy()
+        fixed[1:-1] |= margins.stays
+        return minimise(constraints.problem, start, self.durations._replace(fixed=fixed),
+                        self.task.should_stop, relative_gap=relative_gap, wider=wider,
+                        most_iterations=MOST_TO_RETURN if wider else MOST_ITERATIONS)
 
     def fitting(self, outcome: Outcome, motion: Variables) -> Solved | None:
         """
@@ -134,11 +149,10 @@ class JointProblem(ReadOnlyArrays):
 
         """
         durations = self.durations
-        may_scale = bool((durations.free | (durations.proportions > 0.0)).all())
-        trajectory = fitted(self.task, self.grid.trajectory(self.task.points, motion),
-                            may_scale)
+        trajectory = fitted(self.task, self.mesh.trajectory(self.task.points, motion),
+                            durations.may_scale)
         if trajectory is None:
             return None
         cost = durations.cost(np.diff(trajectory.via_times))
-        return Solved(trajectory, motion, cost,
+        return Solved(trajectory, motion, self.mesh, cost,
                       outcome.gap + cost - durations.cost(outcome.motion.T))

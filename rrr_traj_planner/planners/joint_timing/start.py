@@ -27,12 +27,12 @@ from rrr_traj_planner.planners.joint_timing.feasible_path import (
     gravity_ratio,
     statically_feasible_path,
 )
-from rrr_traj_planner.planners.solver.ramps import Grid, Variables, with_durations
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables, with_stops
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN, START_SCALING
 
-# Chosen: on 28 random tasks half and twice of LEAST_RAMPS and SLOW change a duration by 0.2 %.
-LEAST_RAMPS = 4        # of a motion from rest to rest: two up, two down
+# Chosen: on 28 random tasks half and twice of LEAST_INTERVALS and SLOW change a duration by 0.2 %.
+LEAST_INTERVALS = 4    # of a motion from rest to rest: one in which jerk rises or falls, each
 SLOW = 3.0             # factor by which torque slows a straight path before another is sought
 
 
@@ -56,43 +56,42 @@ def rest_to_rest(task: JointTask, constraints: JointConstraints) -> Variables | 
         None where no path is found along which the motors can hold the arm.
 
     """
-    grid = constraints.grid
-    nodes, T = _fastest_paths(task, constraints)
+    mesh = constraints.mesh
+    jerks, T = _fastest_paths(task, constraints)
     if np.isinf(T).any():
         return None
-    rest = np.zeros((len(nodes) - 1, 3))
-    m = Variables(nodes[:, 1:-1], rest, rest, np.ones(len(nodes)))
-    return grid.restored(task.points, with_durations(m, T))
+    m = with_durations(with_stops(jerks, np.ones(len(jerks))), T)
+    return mesh.restored(task.points, m)
 
 
 def _fastest_paths(task: JointTask, constraints: JointConstraints) -> tuple[Array, Array]:
-    """Return node accelerations for durations of 1 s, and least durations, of all segments."""
-    grid = constraints.grid
-    nodes = rest_to_rest_shapes(grid, task.points)
-    T, without_torque = _least_durations(task, constraints, nodes)
+    """Return inner jerks for durations of 1 s, and least durations, of all segments."""
+    mesh = constraints.mesh
+    jerks = rest_to_rest_shapes(mesh, task.points)
+    T, without_torque = _least_durations(task, constraints, jerks)
     for k in np.flatnonzero(T > SLOW * without_torque):
         task.should_stop()
         corners = statically_feasible_path(task, task.points[k], task.points[k + 1],
-                                           grid.n // LEAST_RAMPS)
+                                           mesh.n // LEAST_INTERVALS)
         if corners is None:
             continue
-        detoured = nodes.copy()
-        detoured[k] = rest_to_rest_legs(grid, corners)
+        detoured = jerks.copy()
+        detoured[k] = rest_to_rest_legs(mesh.parts[k], corners)
         duration = _least_durations(task, constraints, detoured)[0][k]
         if duration < T[k]:
-            nodes[k], T[k] = detoured[k], duration
-    return nodes, T
+            jerks[k], T[k] = detoured[k], duration
+    return jerks, T
 
 
 def _least_durations(task: JointTask, constraints: JointConstraints,
-                     nodes: Array) -> tuple[Array, Array]:
+                     jerks: Array) -> tuple[Array, Array]:
     """
     Return the least durations by all limits, and by all but torque's, each (N,), plus a margin.
 
-    Infinite where gravity blocks the path. Node accelerations are those of segments of 1 s.
+    Infinite where gravity blocks the path. Inner jerks are those of segments of 1 s.
     """
-    limits, grid, rest = task.limits, constraints.grid, np.zeros((len(nodes) - 1, 3))
-    at = grid.states(task.points, Variables(nodes[:, 1:-1], rest, rest, np.ones(len(nodes))))
+    limits, mesh = task.limits, constraints.mesh
+    at = mesh.states(task.points, with_stops(jerks, np.ones(len(jerks))))
     T = np.max([(np.abs(at.qd) / limits.max_velocity).max(axis=(1, 2)),
                 np.sqrt((np.abs(at.qdd) / limits.max_acceleration).max(axis=(1, 2))),
                 np.cbrt((np.abs(at.jerk) / limits.max_jerk).max(axis=(1, 2)))], axis=0)
@@ -110,58 +109,80 @@ def _least_durations(task: JointTask, constraints: JointConstraints,
     return np.maximum(T, START_SCALING * by_torque), T
 
 
-def rest_to_rest_shapes(grid: Grid, points: Array) -> Array:
+def rest_to_rest_shapes(mesh: Mesh, points: Array) -> Array:
     """
-    Return node accelerations, a full sine, of straight motions of 1 s from rest to rest.
+    Return inner jerks, those of the septic, of straight motions of 1 s from rest to rest.
 
     Parameters
     ----------
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each segment.
     points : ndarray, shape (N + 1, 3)
         Via points [rad].
 
     Returns
     -------
-    ndarray, shape (N, n + 1, 3)
-        [rad/s^2]; those of a motion of T seconds are 1 / T^2 as large.
+    ndarray, shape (N, n - 1, 3)
+        [rad/s^3]; those of a motion of T seconds are 1 / T^3 as large.
 
     """
-    shape = np.sin(2.0 * np.pi * np.arange(grid.n + 1) / grid.n)
-    shape *= grid.n ** 2 / (grid.displacement @ shape[1:-1])
-    return shape[:, np.newaxis] * np.diff(points, axis=0)[:, np.newaxis]
+    s = mesh.starts[:, 1:-1, np.newaxis]
+    septic = 840.0 * s * (1.0 - s * (6.0 - s * (10.0 - 5.0 * s)))
+    motion = with_stops(septic * np.diff(points, axis=0)[:, np.newaxis], np.ones(len(s)))
+    return mesh.restored(points, motion).inner
 
 
-def rest_to_rest_legs(grid: Grid, points: Array) -> Array:
+def with_durations(m: Variables, T: Array) -> Variables:
     """
-    Return node accelerations of a segment of 1 s that stops at the corners of its path.
+    Return a motion that rests at every via point along the same path in other durations.
 
     Parameters
     ----------
-    grid : Grid
-        Discretisation: n ramps per segment.
-    points : ndarray, shape (legs + 1, 3)
-        The start, the corners and the end [rad]; longer legs have more of the n ramps.
+    m : Variables
+        The motion.
+    T : ndarray, shape (N,)
+        The durations [s].
 
     Returns
     -------
-    ndarray, shape (n + 1, 3)
-        [rad/s^2].
+    Variables
+        Each segment scaled in time by itself.
 
     """
-    legs = len(points) - 1
-    long = np.sqrt(np.abs(np.diff(points, axis=0)).max(axis=1))
-    spare = (grid.n - LEAST_RAMPS * legs) * np.cumsum(long) / long.sum()
-    ends = np.concatenate(([0], LEAST_RAMPS * np.arange(1, legs + 1)
+    return m._replace(inner=m.inner * ((m.T / T) ** 3)[:, np.newaxis, np.newaxis], T=T)
+
+
+def rest_to_rest_legs(parts: Array, points: Array) -> Array:
+    """
+    Return inner jerks of a segment of 1 s that stops at the corners of its path.
+
+    Parameters
+    ----------
+    parts : ndarray, shape (n,)
+        Durations of the segment's intervals [s].
+    points : ndarray, shape (legs + 1, 3)
+        The start, the corners and the end [rad]; longer legs have more of the n intervals.
+
+    Returns
+    -------
+    ndarray, shape (n - 1, 3)
+        [rad/s^3].
+
+    """
+    n, legs = len(parts), len(points) - 1
+    long = np.cbrt(np.abs(np.diff(points, axis=0)).max(axis=1))
+    spare = (n - LEAST_INTERVALS * legs) * np.cumsum(long) / long.sum()
+    ends = np.concatenate(([0], LEAST_INTERVALS * np.arange(1, legs + 1)
                            + np.round(spare).astype(int)))
-    nodes = np.zeros((grid.n + 1, 3))
+    jerks = np.zeros((n + 1, 3))
     for leg, (first, last) in enumerate(zip(ends[:-1], ends[1:])):
-        part = rest_to_rest_shapes(Grid(last - first), points[leg:leg + 2])[0]
-        nodes[first:last + 1] += part * (grid.n / (last - first)) ** 2
-    return nodes
+        T = parts[first:last].sum()
+        own = Mesh(parts[np.newaxis, first:last] / T)
+        jerks[first + 1:last] = rest_to_rest_shapes(own, points[leg:leg + 2])[0] / T ** 3
+    return jerks[1:-1]
 
 
-def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
+def cannot_be_held(task: JointTask, mesh: Mesh) -> LimitViolationError:
     """
     Return the error of a segment without a path along which the motors can hold the arm.
 
@@ -169,8 +190,8 @@ def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
     ----------
     task : JointTask
         The arm, its limits and the via points.
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each segment.
 
     Returns
     -------
@@ -182,7 +203,7 @@ def cannot_be_held(task: JointTask, grid: Grid) -> LimitViolationError:
     straight = np.array([np.linspace(start, end, 100) for start, end in ends])
     needs = np.abs(gravity_torque(task.model, straight)).max(axis=1) + task.model.friction.coulomb
     blocked = (k for k, (start, end) in enumerate(zip(task.points[:-1], task.points[1:]))
-               if statically_feasible_path(task, start, end, grid.n // LEAST_RAMPS) is None)
+               if statically_feasible_path(task, start, end, mesh.n // LEAST_INTERVALS) is None)
     k = next(blocked, int((needs / task.limits.max_effort).max(axis=1).argmax()))
     torque = needs[k]
     joint = int((torque / task.limits.max_effort).argmax())

@@ -15,30 +15,30 @@
 """
 Joint motions that keep their limits between the points too: margins, starts, the best so far.
 
-Each round starts from the last point near the central path that satisfies its margins
-(an exchange method: Hettich & Kortanek, SIAM Review 35, 1993).
+Each round continues from the last point near the central path, although it may exceed the new
+margins; where that fails, from the last point that satisfies them, or from rest (an exchange
+method: Hettich & Kortanek, SIAM Review 35, 1993).
 """
 
 from __future__ import annotations
 
+import numpy as np
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
-from rrr_traj_planner.planners.solver.ramps import Variables
+from rrr_traj_planner.planners.solver.limits import Limits
+from rrr_traj_planner.planners.solver.splines import Variables
 from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 
 # Chosen values, without unit.
 SCHEDULE = Schedule(rounds=20, tolerance=1e-3, patience=4, growth=2.0)
 PARTS_OF_MARGINS = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)  # tried in turn where the whole is infeasible
-# Retries with a larger barrier parameter when no stored iterate satisfies the new margins:
-RETRIES = 5              # at most
-BARRIER_INCREASE = 10.0  # factor on the barrier parameter from one to the next
-RESTARTED_SEGMENTS = 60  # number of restarts from rest, times segments, at most
 
 
-def tightened(problem: JointProblem, initial_motion: InitialMotion) -> Solved | None:
+def tightened(problem: JointProblem, initial_motion: InitialMotion,
+              slow_motion: InitialMotion | None = None) -> Solved | None:
     """
     Solve, and solve again with larger margins where the motion exceeds a limit between points.
 
@@ -48,6 +48,9 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion) -> Solved | 
         Via points, limits and durations.
     initial_motion : callable
         Returns a motion to start from, strictly within the constraints, or None.
+    slow_motion : callable, optional
+        Returns a motion far from the ends of ranges, which bounds margins; by default, the first
+        start.
 
     Returns
     -------
@@ -55,7 +58,7 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion) -> Solved | 
         The best motion found; None where there is none to start from.
 
     """
-    rounds = _Rounds(problem, initial_motion)
+    rounds = _Rounds(problem, initial_motion, slow_motion)
     if rounds.start_from_rest():
         tighten(rounds, SCHEDULE, problem.task.should_stop)
     return rounds.best or rounds.best_that_fits()
@@ -64,16 +67,17 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion) -> Solved | 
 class _Rounds:
     """The rounds of one problem; see `solver.tightening.TightenedProblem`."""
 
-    def __init__(self, problem: JointProblem, initial_motion: InitialMotion) -> None:
+    def __init__(self, problem: JointProblem, initial_motion: InitialMotion,
+                 slow_motion: InitialMotion | None) -> None:
         self._problem, self._initial_motion = problem, initial_motion
+        self._slow_motion = slow_motion
         durations = problem.durations
-        self._margins = Margins.none(problem.grid, len(durations.free))._replace(
-            at_rest=durations.fixed_velocities)
+        self._margins = Margins.none(problem.mesh, len(durations.free))
         self._constraints = problem.constraints(self._margins)
+        self._wider: Limits | None = None  # which the start keeps, if not these
         self._start: CentralPathPoint | None = None
-        self._slow: Variables | None = None  # the first start
+        self._slow: Variables | None = None
         self._centres: list[CentralPathPoint] = []
-        self._retries, self._restarts = 0, RESTARTED_SEGMENTS
         self._outcomes: list[tuple[Outcome, Variables]] = []  # each with its start
         self._check: JointCheck | None = None  # of the last outcome
         self.best: Solved | None = None
@@ -86,28 +90,27 @@ class _Rounds:
         return started is not None
 
     def solve(self) -> Outcome | None:
-        start = self._start or _last_within(self._constraints, self._centres)
+        start, wider = self._start, self._wider
+        self._start = self._wider = None
         if start is None:
             return None
-        self._start, self._retries = None, 0
-        self._slow = self._slow or start.motion
-        outcome = self._problem.minimised(self._constraints, self._margins, start)
+        if self._slow_motion is None:
+            self._slow = self._slow or start.motion
+        outcome = self._problem.minimised(
+            self._constraints, self._margins, start, wider=wider)
+        if not outcome.within:
+            return None
         self._outcomes.append((outcome, start.motion))
         return outcome
 
     def relax(self) -> bool:
-        if self._centres and self._retries < RETRIES:
-            nearer = _nearer(self._problem, self._margins, self._centres,
-                             BARRIER_INCREASE ** self._retries)
-            if nearer:
-                self._centres = self._centres + nearer
-                self._retries += 1
-                return True
-        return self.start_from_rest()
+        self._start = next((c for c in reversed(self._centres)
+                            if self._constraints.is_within(c.motion)), None)
+        return self._start is not None or self.start_from_rest()
 
     def accept(self, outcome: Outcome, tolerance: float) -> bool:
         task, durations = self._problem.task, self._problem.durations
-        self._check = check = JointCheck(task, self._problem.grid, outcome.motion)
+        self._check = check = JointCheck(task, self._problem.mesh, outcome.motion)
         if check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any():
             task.should_stop()
             fits = self._problem.fitting(outcome, outcome.motion)
@@ -120,16 +123,20 @@ class _Rounds:
         return self.best is not None
 
     def tighten(self) -> bool:
-        problem, before = self._problem, self._margins
+        problem, before, wider = self._problem, self._margins, self._constraints.problem.limits
+        if self._slow is None and self._slow_motion is not None:
+            self._slow = self._slow_motion(problem.task, problem.constraints(
+                Margins.none(problem.mesh, len(problem.durations.free))))
         assert self._slow is not None and self._check is not None
-        self._margins = before.widened(problem.task, problem.grid, self._slow, self._check)
+        self._margins = before.widened(problem.task, problem.mesh, self._slow, self._check)
         self._constraints = problem.constraints(self._margins)
-        segments = len(problem.durations.free)
-        # where a joint leaves its range the solution is not near the former one
-        if self._check.beyond_range.any() and self._restarts >= segments:
-            self._centres, self._restarts = [], self._restarts - segments
-        else:
-            self._centres = self._centres + self._outcomes[-1][0].centres
+        centres = self._outcomes[-1][0].centres
+        if np.array_equal(self._margins.stays, before.stays):
+            self._centres = self._centres + centres
+            if centres:
+                self._start, self._wider = centres[-1], wider
+        else:  # the solution is not near the former one
+            self._centres = []
         return bool(self._centres) or not self._margins.is_same(before)
 
     def best_that_fits(self) -> Solved | None:
@@ -149,29 +156,6 @@ class _Rounds:
         return best
 
 
-def _last_within(constraints: JointConstraints,
-                 centres: list[CentralPathPoint]) -> CentralPathPoint | None:
-    return next((c for c in reversed(centres) if constraints.problem.is_within(c.motion)), None)
-
-
-def _nearer(problem: JointProblem, margins: Margins, centres: list[CentralPathPoint],
-            factor: float) -> list[CentralPathPoint]:
-    """
-    Return centres nearer to satisfying the margins, where no known one satisfies all of them.
-
-    They are those of a problem with a part of the margins, the largest that a known centre
-    satisfies. The larger the barrier parameter, the further they are from all limits.
-    """
-    for part in PARTS_OF_MARGINS[1:]:
-        constraints = problem.constraints(margins.part(part))
-        centre = _last_within(constraints, centres)
-        if centre is not None:
-            barrier = None if centre.barrier is None else factor * centre.barrier
-            start = CentralPathPoint(centre.motion, barrier)
-            return problem.minimised(constraints, margins, start, barrier or 0.0).centres
-    return []
-
-
 def _start_from_rest(problem: JointProblem, margins: Margins, initial_motion: InitialMotion,
                      ) -> tuple[Margins, JointConstraints, CentralPathPoint] | None:
     """Return an initial motion, and as large a part of the margins as it satisfies."""
@@ -181,6 +165,6 @@ def _start_from_rest(problem: JointProblem, margins: Margins, initial_motion: In
         motion = initial_motion(problem.task, constraints)
         if motion is None:
             return None
-        if constraints.problem.is_within(motion):
+        if constraints.is_within(motion):
             return reduced, constraints, CentralPathPoint(motion, None)
     return None

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-Motions of ramps fitted to their limits exactly, by peaks in closed form instead of samples.
+Motions fitted to their limits exactly, by peaks in closed form instead of samples.
 
 Time scaling: Hollerbach, Dynamic scaling of manipulator trajectories, 1984.
 """

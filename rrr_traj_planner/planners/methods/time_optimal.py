@@ -15,11 +15,11 @@
 """
 `time_optimal`: as fast as velocity, acceleration, jerk and torque allow, with continuous jerk.
 
-The acceleration is a sequence of the thesis's half-period ramps (6.3), with constant jerk around
-the middle where the jerk limit is active (`core.motion_laws.ramps`). Node accelerations, via
-velocities and durations are optimised together (direct transcription: Betts, Practical Methods for
-Optimal Control, 2010) by a feasible interior-point method (`solver.interior_point`), starting from
-a motion with stops at every via point.
+Jerk is linear in each interval of a mesh and continuous everywhere, also through via points
+(`solver.splines`). Node jerks, the states at via points and durations are optimised together
+(direct transcription: Betts, Practical Methods for Optimal Control, 2010) by a feasible
+interior-point method (`solver.interior_point`), starting from a motion with stops at every via
+point; between two rough solutions and the last one the mesh is refined (`solver.refinement`).
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ from rrr_traj_planner.planners.joint_timing.start import cannot_be_held
 from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
-from rrr_traj_planner.planners.solver.ramps import grid_of
+from rrr_traj_planner.planners.solver.splines import uniform_mesh
 from rrr_traj_planner.planners.tasks import JointTask
 
-# Numbers of ramps, chosen; on 28 random tasks half as many make motions 1.7, 0.3 and 0.1 % slower
-# in the mean, twice as many 0.3, 0.1 and 0.01 % faster.
-RAMPS = 20        # in a segment
-RAMPS_ALONE = 32  # in a motion's only segment, with both acceleration and deceleration
-MOST_RAMPS = 40   # in a segment where the jerk limit allows short ramps
-SHAPED = 0.1      # acceleration reversal / segment, by duration: RAMPS suffice above it; chosen
+# Numbers of intervals, chosen.
+INTERVALS = 24        # in a segment
+INTERVALS_ALONE = 40  # in a motion's only segment, with both acceleration and deceleration,
+ALONE_BY_TORQUE = 60  # and where torque alone limits them
+MOST_INTERVALS = 40   # in a segment where the jerk limit allows short changes of acceleration
+SHAPED = 0.1          # acceleration reversal / segment, by duration: INTERVALS suffice above it
 MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps are about a tenth of it
 
 
@@ -73,25 +73,30 @@ def plan(task: JointTask) -> Trajectory:
         If no path between two via points is found along which the motors can hold the arm.
 
     """
-    limits, constant_jerk = limits_for_sampling(
-        task.model, task.limits, task.points, task.sample_period)
-    task = replace(task, limits=limits)
-    grid = grid_of(_ramps(task), constant_jerk)
-    found = fastest(task, grid) if task.durations is None else prescribed(
-        task, grid, task.durations)
+    limits = limits_for_sampling(task.model, task.limits, task.points, task.sample_period)
+    rise = task.least_jerk_rise
+    if np.isinf(task.limits.max_jerk).any():  # else there is no limit to rise to
+        rise = min(rise, task.sample_period)
+    task = replace(task, limits=limits, least_jerk_rise=rise)
+    mesh = uniform_mesh(len(task.points) - 1, _intervals(task))
+    found = fastest(task, mesh) if task.durations is None else prescribed(
+        task, mesh, task.durations)
     if found is None:
-        raise cannot_be_held(task, grid)
+        raise cannot_be_held(task, mesh)
     return found.trajectory.noted(unconverged_note(found.gap, found.cost))
 
 
-def _ramps(task: JointTask) -> int:
-    """Return the number of ramps of a segment: more where the jerk limit allows short ones."""
+def _intervals(task: JointTask) -> int:
+    """Return the number of a segment's intervals: more where the jerk limit allows short ones."""
     scale = acceleration_scale(task.model, task.limits, task.points)
     D = np.abs(np.diff(task.points, axis=0))
     T = float(np.median(np.maximum(2.0 * np.sqrt(D / scale),
                                    D / task.limits.max_velocity).max(axis=1)))
     swing = float((np.pi * scale / task.limits.max_jerk).max())
-    ramps = RAMPS_ALONE if len(D) == 1 else RAMPS
+    n = INTERVALS
+    if len(D) == 1:
+        by_torque = np.isinf(task.limits.max_acceleration).any()
+        n = ALONE_BY_TORQUE if by_torque else INTERVALS_ALONE
     if swing >= SHAPED * T:
-        return ramps
-    return int(np.clip(T / task.sample_period, ramps, MOST_RAMPS))  # none below a sample period
+        return n
+    return int(np.clip(T / task.sample_period, n, max(n, MOST_INTERVALS)))  # no shorter than it

@@ -12,10 +12,10 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-/* One Newton step on a sequence of ramps. Each segment is condensed to the states at its ends and
- * its duration (Schur complement), free durations are eliminated, and the velocities and
- * accelerations at the via points follow from a banded system. The cost is linear in ramps and
- * segments. */
+/* One Newton step on a motion of piecewise linear jerk. Each segment is condensed to the states at
+ * its ends and its duration (Schur complement), free durations are eliminated, and the velocities,
+ * accelerations and jerks at the via points follow from a banded system. The cost is linear in
+ * intervals and segments. */
 #include "timing_problem.h"
 
 #include <math.h>
@@ -45,15 +45,15 @@ static size_t rows_size(const Problem *p)
 
 static size_t band_size(const Problem *p)
 {
-    return (size_t)p->N * 2 * p->J * (4 * p->J + 3);
+    return (size_t)(p->N + 1) * ORDERS * p->J * (2 * ORDERS * p->J + 3);
 }
 
 /* The size of the scratch memory of newton_step, in doubles. */
 EXPORTED int64_t timing_newton_size(const Problem *p)
 {
-    const size_t B = 4 * p->J, P = 2 * p->n + 1;
+    const size_t B = 2 * ORDERS * p->J, P = 2 * p->n + 1;
     return p->N * ((B + 1) * (B + 2) + rows_size(p)) + 2 * band_size(p)
-        + P * (4 + 16 + 4 + 4) + (size_t)p->n + (p->N + 1) * 2 * p->J;
+        + P * (4 + 16 + 4 + 4) + (size_t)p->n + (p->N + 1) * ORDERS * p->J;
 }
 
 /* Copy one coordinate's states and its first and second derivatives. */
@@ -72,18 +72,18 @@ static void extract_coordinate(const Problem *p, int j, const double *z, const d
         }
 }
 
-/* Scratch memory of a step; W = 4 J + 1 unknowns of a condensed segment. */
+/* Scratch memory of a step; W = 6 J + 1 unknowns of a condensed segment. */
 typedef struct {
     double *S, *right;               /* (N, W, W) and (N, W): the condensed segments */
     double *rows;                    /* of their eliminations */
     double *z, *Q, *r, *dz, *inner;  /* of one coordinate */
-    double *via_step;                /* (N + 1, 2 J) */
+    double *via_step;                /* (N + 1, 3 J) */
     double *band;                    /* the system of the via points, twice */
 } Scratch;
 
 static Scratch scratch_of(const Problem *p)
 {
-    const size_t N = p->N, P = points_of(p), W = 4 * (size_t)p->J + 1;
+    const size_t N = p->N, P = points_of(p), W = 2 * ORDERS * (size_t)p->J + 1;
     Scratch s;
     s.S = p->newton;
     s.right = s.S + N * W * W;
@@ -94,29 +94,32 @@ static Scratch scratch_of(const Problem *p)
     s.dz = s.r + 4 * P;
     s.inner = s.dz + 4 * P;
     s.via_step = s.inner + p->n;
-    s.band = s.via_step + (N + 1) * 2 * p->J;
+    s.band = s.via_step + (N + 1) * ORDERS * p->J;
     return s;
 }
 
 /* Condense a segment whose coordinates are coupled through its duration only. */
-static int condense_decoupled(const Problem *p, const Scratch *s, double T, const double *z,
-                              const double *Q, const double *r, double *S, double *right,
-                              double *rows)
+static int condense_decoupled(const Problem *p, const Scratch *s, int k, double T,
+                              const double *z, const double *Q, const double *r, double *S,
+                              double *right, double *rows)
 {
-    const int J = p->J, B = 4 * J, W = B + 1;
+    enum { BORDER = 2 * ORDERS + 1 };
+    const int J = p->J, B = 2 * ORDERS * J, W = B + 1;
     memset(S, 0, (size_t)W * W * sizeof(double));
     memset(right, 0, (size_t)W * sizeof(double));
     for (int j = 0; j < J; ++j) {
-        double one[25], one_r[5];
-        const int at[5] = {j, J + j, 2 * J + j, 3 * J + j, B};
+        double one[BORDER * BORDER], one_r[BORDER];
+        int at[BORDER] = {0};
+        for (int i = 0; i < BORDER; ++i)
+            at[i] = i < BORDER - 1 ? i * J + j : B;
         extract_coordinate(p, j, z, Q, r, s->z, s->Q, s->r);
-        if (one_condense(p, T, s->z, s->Q, s->r, one, one_r,
+        if (one_condense(p, k, T, s->z, s->Q, s->r, one, one_r,
                          (one_Rows *)(rows + j * one_rows_size(p->n))))
             return 1;
-        for (int a = 0; a < 5; ++a) {
+        for (int a = 0; a < BORDER; ++a) {
             right[at[a]] += one_r[a];
-            for (int b = 0; b < 5; ++b)
-                S[at[a] * W + at[b]] += one[5 * a + b];
+            for (int b = 0; b < BORDER; ++b)
+                S[at[a] * W + at[b]] += one[BORDER * a + b];
         }
     }
     return 0;
@@ -127,15 +130,15 @@ static int condense_segments(const Problem *p, const Scratch *s, const double *Q
                              const double *r_T)
 {
     const double *T = variables_at(p, p->variables).T;
-    const int B = 4 * p->J, W = B + 1;
+    const int B = 2 * ORDERS * p->J, W = B + 1;
     const size_t states = points_of(p) * 4 * p->J;
     for (int k = 0; k < p->N; ++k) {
         double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
         double *rows = s->rows + k * rows_size(p);
         const double *z = p->states + k * states, *Qk = Q + k * hessian_size(p);
         const int singular = is_decoupled(p)
-            ? condense_decoupled(p, s, T[k], z, Qk, r + k * states, S, right, rows)
-            : three_condense(p, T[k], z, Qk, r + k * states, S, right, (three_Rows *)rows);
+            ? condense_decoupled(p, s, k, T[k], z, Qk, r + k * states, S, right, rows)
+            : three_condense(p, k, T[k], z, Qk, r + k * states, S, right, (three_Rows *)rows);
         if (singular)
             return 1;
         S[B * W + B] += p->hessian_T[k];
@@ -148,7 +151,7 @@ static int condense_segments(const Problem *p, const Scratch *s, const double *Q
 static void eliminate_durations(const Problem *p, const Scratch *s, double *common_hessian,
                                 double *common_gradient)
 {
-    const int B = 4 * p->J, W = B + 1;
+    const int B = 2 * ORDERS * p->J, W = B + 1;
     *common_hessian = *common_gradient = 0.0;
     for (int k = 0; k < p->N; ++k) {
         double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
@@ -165,11 +168,11 @@ static void eliminate_durations(const Problem *p, const Scratch *s, double *comm
     }
 }
 
-/* The step of a segment's duration, from those of its border v0, a0, v1, a1. */
+/* The step of a segment's duration, from those of its border v0, a0, j0, v1, a1, j1. */
 static double duration_step(const Problem *p, const Scratch *s, int k, const double *border,
                             double common)
 {
-    const int B = 4 * p->J, W = B + 1;
+    const int B = 2 * ORDERS * p->J, W = B + 1;
     const double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
     if (!p->free[k])
         return p->proportions[k] * common;
@@ -182,17 +185,19 @@ static double duration_step(const Problem *p, const Scratch *s, int k, const dou
 }
 
 /* Back substitution in a segment whose coordinates are coupled through its duration only. */
-static void expand_decoupled(const Problem *p, const Scratch *s, double T, const double *z,
+static void expand_decoupled(const Problem *p, const Scratch *s, int k, double T, const double *z,
                              const double *border, double dT, const double *rows, double *inner,
                              double *dz)
 {
     const int J = p->J, Z = 4 * J, n = p->n, P = 2 * n + 1;
     for (int j = 0; j < J; ++j) {
-        const double own[4] = {border[j], border[J + j], border[2 * J + j], border[3 * J + j]};
+        double own[2 * ORDERS];
+        for (int i = 0; i < 2 * ORDERS; ++i)
+            own[i] = border[i * J + j];
         for (int i = 0; i < P; ++i)
             for (int a = 0; a < 4; ++a)
                 s->z[4 * i + a] = z[i * Z + a * J + j];
-        one_expand(p, T, s->z, own, dT, (const one_Rows *)(rows + j * one_rows_size(n)), s->inner,
+        one_expand(p, k, T, s->z, own, dT, (const one_Rows *)(rows + j * one_rows_size(n)), s->inner,
                    s->dz);
         for (int i = 0; i < n - 1; ++i)
             inner[i * J + j] = s->inner[i];
@@ -202,7 +207,7 @@ static void expand_decoupled(const Problem *p, const Scratch *s, double T, const
     }
 }
 
-/* The steps of all durations, inner accelerations and states, from those of the via points;
+/* The steps of all durations, inner jerks and states, from those of the via points;
  * returns the predicted decrease. */
 static double expand_segments(const Problem *p, const Scratch *s, const double *r,
                               const double *r_T, double common, Variables step, double *dz)
@@ -212,15 +217,15 @@ static double expand_segments(const Problem *p, const Scratch *s, const double *
     const size_t states = points_of(p) * 4 * J;
     double decrease = 0.0;
     for (int k = 0; k < p->N; ++k) {
-        const double *border = s->via_step + (size_t)k * 2 * J;  /* v0, a0, v1, a1 in a row */
+        const double *border = s->via_step + (size_t)k * ORDERS * J;  /* of both ends in a row */
         const double *z = p->states + k * states, *rows = s->rows + k * rows_size(p);
         const double *gradient = r + k * states;
         double *to = dz + k * states, *inner = step.inner + (size_t)k * (p->n - 1) * J;
         const double dT = step.T[k] = duration_step(p, s, k, border, common);
         if (is_decoupled(p))
-            expand_decoupled(p, s, T[k], z, border, dT, rows, inner, to);
+            expand_decoupled(p, s, k, T[k], z, border, dT, rows, inner, to);
         else
-            three_expand(p, T[k], z, border, dT, (const three_Rows *)rows, inner, to);
+            three_expand(p, k, T[k], z, border, dT, (const three_Rows *)rows, inner, to);
         for (size_t i = 0; i < states; ++i)
             decrease -= gradient[i] * to[i];
         decrease -= (r_T[k] + p->weights[k]) * dT;
@@ -240,10 +245,12 @@ int newton_step(const Problem *p, const double *Q, const double *r, const double
     const double common = solve_via_points(p, s.S, s.right, common_hessian, common_gradient,
                                            s.via_step, s.band);
     *predicted_decrease = expand_segments(p, &s, r, r_T, common, step, dz);
-    for (int k = 0; k < p->N - 1; ++k)
+    for (int k = 0; k <= p->N; ++k)
         for (int j = 0; j < p->J; ++j) {
-            step.v[k * p->J + j] = s.via_step[(size_t)(k + 1) * 2 * p->J + j];
-            step.a[k * p->J + j] = s.via_step[(size_t)(k + 1) * 2 * p->J + p->J + j];
+            const double *own = s.via_step + (size_t)k * ORDERS * p->J + j;
+            step.v[k * p->J + j] = own[0];
+            step.a[k * p->J + j] = own[p->J];
+            step.j[k * p->J + j] = own[2 * p->J];
         }
     return 0;
 }

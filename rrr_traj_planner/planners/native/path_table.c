@@ -20,6 +20,15 @@
 /* Those limited: 12 of the joints (joint_quantities), then the tip's speed and acceleration. */
 enum { SPEED = 12, ALONG, QUANTITIES };
 
+/* Last intervals of a segment in which a controller's quintic may overshoot a step at its end. */
+enum { OVERSHOOTING = 2 };
+
+static int is_near_end(int point, int n)
+{
+    const int last = point <= n ? n : 2 * n;  /* node, or middle between two */
+    return point > last - OVERSHOOTING;
+}
+
 /* Columns of the table at position s of a segment, and their derivatives by s up to an order. */
 static void table_at(const Problem *p, int segment, int point, double s, int order,
                      double found[3][KINDS][3])
@@ -39,7 +48,7 @@ static void table_at(const Problem *p, int segment, int point, double s, int ord
     if (order > 1)
         for (int k = 0; k < COLUMNS; ++k)
             second[k] = (6.0 * c3[k] * x + 2.0 * c2[k]) * per * per;
-    if (point == p->n) {  /* margin for the overshoot of a controller's quintic */
+    if (is_near_end(point, p->n)) {
         const double *more = p->overshoot + 6 * (size_t)segment;
         for (int j = 0; j < 3; ++j)
             found[0][DDQ][j] += more[j], found[0][C][j] += more[3 + j];

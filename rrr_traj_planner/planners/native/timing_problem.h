@@ -18,14 +18,13 @@
  *
  * At each of the P = 2 n + 1 points of a segment, first the n + 1 nodes, then the middles between
  * them, the state z has position, velocity, acceleration and jerk of all J coordinates: Z = 4 J
- * values, by kind, then by coordinate. Jerk is limited at the middles, where it peaks; at the
- * nodes it is zero. */
+ * values, by kind, then by coordinate. Jerk is limited at the nodes, where it peaks. */
 #ifndef RRR_TRAJ_PLANNER_TIMING_PROBLEM_H
 #define RRR_TRAJ_PLANNER_TIMING_PROBLEM_H
 
 #include "arm.h"
 #include "export.h"
-#include "ramps.h"
+#include "spline.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -36,13 +35,13 @@ enum { MOST_JOINTS = 3, MOST_GENERAL = 12 };
  * multipliers and shifts are (N, bounds + general, 2), upper and lower, then (N, 2) for least
  * durations. */
 typedef struct {
-    int32_t J, N, n;        /* coordinates, segments, ramps in a segment */
+    int32_t J, N, n;        /* coordinates, segments, intervals in a segment */
     int32_t E;              /* greatest number of general constraints at a point */
     int32_t bounds, general;  /* numbers of constraints of a segment */
     int32_t intervals;      /* of a path's table, in a segment */
-    Ramp ramp;
     const double *points;   /* (N + 1, J) */
-    const double *restore;  /* (n - 1, 2) */
+    const double *parts;    /* (N, n), of the intervals in their segment's duration */
+    const double *restore;  /* (N, n - 1, 3) */
     const double *lower, *upper;                  /* (N, P, Z) */
     const double *general_lower, *general_upper;  /* (N, P, E) */
     const int32_t *bound_at, *general_at;  /* the limited ones: offsets into (P, Z) and (P, E) */
@@ -53,11 +52,11 @@ typedef struct {
     const uint8_t *free;    /* (N) */
     const double *proportions;      /* (N) */
     const double *weights;  /* (N), of the durations in the objective */
-    const uint8_t *fixed_velocity;  /* (N - 1, J), whether a via velocity does not change */
+    const uint8_t *fixed;   /* (N + 1, 3, J), which of v, a and j at via points do not change */
     /* General constraints are limits on torque, or on motion along a path; NULL where not so: */
     const Arm *arm;
     const double *table;    /* (N, 4, intervals, COLUMNS), cubic coefficients */
-    const double *overshoot;  /* (N, 2, 3), added to ddq and to c at the segments' ends */
+    const double *overshoot;  /* (N, 2, 3), added to ddq and to c near the segments' ends */
     const double *viscous;  /* (3), friction of the joints along a path [N m s/rad] */
 
     double *variables;      /* the iterate; see Variables */
@@ -111,7 +110,7 @@ static inline size_t slacks_size(const Problem *p)
 
 static inline size_t variables_size(const Problem *p)
 {
-    return ((size_t)p->N * (p->n - 1) + 2 * (size_t)(p->N - 1)) * p->J + p->N;
+    return ((size_t)p->N * (p->n - 1) + ORDERS * (size_t)(p->N + 1)) * p->J + p->N;
 }
 
 static inline Variables variables_at(const Problem *p, double *memory)
@@ -119,7 +118,7 @@ static inline Variables variables_at(const Problem *p, double *memory)
     return variables_of(p->J, p->N, p->n, memory);
 }
 
-/* ramps.c: the states of a motion, and a step of its variables after which it meets the via
+/* spline.c: the states of a motion, and a step of its variables after which it meets the via
  * points. */
 void motion_states(const Problem *p, Variables m, double *z);
 int step_motion(const Problem *p, Variables m, Variables step, double size, Variables moved);
@@ -138,9 +137,9 @@ void weighted_gradient(const Problem *p, const double *weights, double *gradient
                        double *gradient_T);
 double timing_log_sum(const Problem *p, const double *slack);
 
-/* via_points.c: from the condensed segments S (N, 4 J + 1, 4 J + 1) and right-hand sides r, the
- * steps of velocities and accelerations at the via points, (N + 1, 2 J), and, returned, that of
- * the factor common to the durations of fixed proportions. */
+/* via_points.c: from the condensed segments S (N, 6 J + 1, 6 J + 1) and right-hand sides r, the
+ * steps of velocities, accelerations and jerks at the via points, (N + 1, 3 J), and, returned, that
+ * of the factor common to the durations of fixed proportions. */
 double solve_via_points(const Problem *p, const double *S, const double *r,
                         double common_hessian, double common_gradient, double *via_step,
                         double *band);

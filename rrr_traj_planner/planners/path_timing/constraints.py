@@ -34,7 +34,7 @@ from rrr_traj_planner.core.trajectory.time_scaling import (
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import FAR, Limits
-from rrr_traj_planner.planners.solver.ramps import Grid
+from rrr_traj_planner.planners.solver.splines import Mesh
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 
 QUANTITIES = 14  # three each of velocity, acceleration, jerk and torque, then:
@@ -80,8 +80,8 @@ class PathConstraints:
         Infinite where there is none.
     max_tip_speed : float
         [m/s], infinite where there is none.
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each piece.
     margins : ndarray, shape (N, 2 n + 1, QUANTITIES)
         Subtracted from each quantity's limit.
     steady : ndarray of bool, shape (N,)
@@ -98,9 +98,9 @@ class PathConstraints:
 
     """
 
-    def __init__(self, table: PathTable, limits: JointLimits, max_tip_speed: float, grid: Grid,
+    def __init__(self, table: PathTable, limits: JointLimits, max_tip_speed: float, mesh: Mesh,
                  margins: Array, steady: BoolArray, workspace: Workspace | None = None) -> None:
-        self.table, self.grid, self.points = table, grid, table.ends[:, np.newaxis]
+        self.table, self.mesh, self.points = table, mesh, table.ends[:, np.newaxis]
         self.margins, self._workspace = margins, workspace
         bounds = all_bounds(limits, max_tip_speed)
         upper = np.minimum(bounds, FAR) - margins
@@ -108,7 +108,7 @@ class PathConstraints:
         upper[steady, :, ALONG] = STEADY
         lower = -upper
         lower[..., SPEED] = 0.0  # the tip moves forward; it rests at the start and the end
-        lower[0, 0, SPEED] = lower[-1, grid.n, SPEED] = -FAR
+        lower[0, 0, SPEED] = lower[-1, mesh.n, SPEED] = -FAR
         is_limited = np.isfinite(bounds)
         is_limited[SPEED], is_limited[ALONG] = True, steady.any()
         self._lower, self._upper, self._limited = lower, upper, is_limited
@@ -121,7 +121,7 @@ class PathConstraints:
         along = slice(1, 3)  # the states' columns of the tip's speed and acceleration
         lower[..., along], upper[..., along] = self._lower[..., SPEED:], self._upper[..., SPEED:]
         bounded[:, along] = self._limited[SPEED:]
-        return TimingProblem(self.grid, self.points, Limits(
+        return TimingProblem(self.mesh, self.points, Limits(
             lower, upper, bounded, self._lower[..., :SPEED], self._upper[..., :SPEED],
             np.tile(self._limited[:SPEED], (P, 1)), table=self.table.coefficients,
             overshoot=self.table.overshoot, viscous=self.table.friction.viscous),
@@ -142,8 +142,8 @@ def limited_quantities(problem: TimingProblem, z: Array, at_points: bool) -> tup
     z : ndarray, shape (N, p, 4)
         Position [m], speed, acceleration and jerk along it; row k is on piece k.
     at_points : bool
-        Whether these are the problem's points, at the last of which, on each piece, a quintic's
-        overshoot is added.
+        Whether these are the problem's points, in the last two intervals of which, on each piece,
+        a quintic's overshoot is added.
 
     Returns
     -------

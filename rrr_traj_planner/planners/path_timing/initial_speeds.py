@@ -33,7 +33,10 @@ from rrr_traj_planner.planners.path_timing.constraints import (
 )
 from rrr_traj_planner.planners.path_timing.table import PathTable
 
-PART = 0.25  # of each limit, used by the constant speed and by its changes alike; chosen
+# Of each limit, used by the constant speed and by its changes alike; chosen: of 80 random paths
+# the motion of these speeds uses at most 0.4 of a limit on velocity, acceleration or jerk, so that
+# the piecewise linear jerk, up to 1.06 times the cycloid's, has room (`start.motion_with_speeds`).
+PART = 0.25
 
 
 def initial_speeds_of(table: PathTable, bounds: Array) -> Array:

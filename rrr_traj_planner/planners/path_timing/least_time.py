@@ -16,8 +16,8 @@
 The fastest motion along a given path (Bobrow, Dubowsky & Gibson 1985; Shin & McKay 1985).
 
 The method is that of `time_optimal`, direct transcription and an interior-point method, with one
-coordinate, the path length s, instead of the joints: its acceleration is a sequence of ramps, the
-pieces of the path are its segments, and the joints' limits are functions of s, sd, sdd and sddd.
+coordinate, the path length s, instead of the joints: its jerk is continuous and piecewise linear,
+the pieces of the path are its segments, and the joints' limits are functions of s, sd, sdd, sddd.
 `fastest_along` is both steps in one, for tests and benchmarks; the planner takes them one by one.
 """
 
@@ -33,18 +33,13 @@ from rrr_traj_planner.core.trajectory.time_scaling import TORQUE_ROUNDING
 from rrr_traj_planner.core.trajectory.torque import time_scale_for_torque
 from rrr_traj_planner.planners.effort_errors import holding_error, moving_error
 from rrr_traj_planner.planners.effort_limits import check_friction
+from rrr_traj_planner.planners.path_timing.mesh import path_mesh
 from rrr_traj_planner.planners.path_timing.problem import PathProblem
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.path_timing.tightening import tightened
-from rrr_traj_planner.planners.solver.ramps import Grid, grid_of, Variables
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN
-
-# Chosen values, without unit. On 7 random paths half of MOST_RAMPS makes motions 0.4 % slower in
-# the mean, twice as many 0.4 % faster; more ramps for many pieces (half the exponent, twice
-# FEWEST_RAMPS or PIECES) 0.1 to 0.2 % faster.
-MOST_RAMPS, FEWEST_RAMPS = 16, 8  # in a piece of the path: the most for up to
-PIECES, RAMP_EXPONENT = 11, 2.0   # so many pieces, beyond fewer by this power of their number
 
 
 class Timed(NamedTuple):
@@ -101,18 +96,13 @@ def nearly_fastest_along(task: PathTask) -> Timed:
     table = PathTable(task.arm_path)
     task.should_stop()
     N = len(table.ends) - 1
-    grid = grid_of(_ramps(N), task.constant_jerk_fraction)
+    mesh = path_mesh(N)
     _check_held(task, table)
     steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
     task.should_stop()
-    motion, gap = tightened(PathProblem(task, table, grid, steady))
+    motion, gap = tightened(PathProblem(task, table, mesh, steady))
     task.should_stop()
-    return Timed(_trajectory(task, table, grid, motion), gap)
-
-
-def _ramps(pieces: int) -> int:
-    """Return the number of ramps in a piece."""
-    return max(int(MOST_RAMPS * min(PIECES / pieces, 1.0) ** RAMP_EXPONENT), FEWEST_RAMPS)
+    return Timed(_trajectory(task, table, mesh, motion), gap)
 
 
 def fitted(task: PathTask, timed: Timed) -> Timed:
@@ -181,10 +171,10 @@ def _exact_time_scale(task: PathTask, trajectory: PathTrajectory) -> float:
                float(speed / task.max_tip_speed), float(torque.max()))
 
 
-def _trajectory(task: PathTask, table: PathTable, grid: Grid, m: Variables) -> PathTrajectory:
+def _trajectory(task: PathTask, table: PathTable, mesh: Mesh, m: Variables) -> PathTrajectory:
     times = np.concatenate(([0.0], np.cumsum(m.T)))
     joins = np.searchsorted(table.ends, task.arm_path.path.joins)
-    progress, = grid.profiles(table.ends[:, np.newaxis], m)
+    progress, = mesh.profiles(table.ends[:, np.newaxis], m)
     via_times = np.concatenate((
         [0.0], progress.passed(task.arm_path.path.via_s[1:-1]), [progress.duration]))
     return PathTrajectory(task.arm_path, progress, via_times, times[joins])

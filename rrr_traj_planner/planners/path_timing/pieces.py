@@ -16,10 +16,10 @@
 The pieces into which a path is divided for its timing: short near singular positions of the arm.
 
 Near a singular position joint positions change over a length of the path as short as the distance
-to it. They are analytic functions of the path length except there, so that splines and ramps
-approximate them well on pieces no longer than the distance to the singularity in the complex plane
-(Trefethen, Approximation Theory and Approximation Practice, 2013, chapter 8). Pieces are halved
-until they are: their number grows with the logarithm of the distance.
+to it. They are analytic functions of the path length except there, so that splines approximate
+them well on pieces no longer than the distance to the singularity in the complex plane (Trefethen,
+Approximation Theory and Approximation Practice, 2013, chapter 8). Pieces are halved until they
+are: their number grows with the logarithm of the distance.
 """
 
 from __future__ import annotations
@@ -30,8 +30,9 @@ from rrr_traj_planner.core.kinematics.along_path import singular_distance
 from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 
-# Chosen: on 7 random paths half of PARTS makes motions 0.2 % slower in the mean, twice 0.05 %
-# faster; half and twice of NEAR change none.
+# Chosen: on 48 random paths half of PARTS makes motions 0.05 % faster in the mean, 0.6 % slower at
+# most, twice 0.15 % slower: pieces then have fewer intervals (`mesh`). Half and twice of NEAR
+# change them by 0.01 % in the mean, by 0.5 % at most.
 PARTS = 8        # least number of pieces of equal length
 NEAR = 1.5       # largest ratio of a piece's length to the distance of its middle to a singularity
 

@@ -192,10 +192,9 @@ def _path_task(task: CartesianTask, path: CartesianPath) -> PathTask:
     failure = holding_failure(task.model, task.limits, arm_path(path.via_s).q)
     if failure is not None:
         raise failure
-    limits, fraction = limits_for_sampling(
+    limits = limits_for_sampling(
         task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
-    return PathTask(
-        arm_path, limits, fraction, task.max_tip_speed, task.steady_zones, task.should_stop)
+    return PathTask(arm_path, limits, task.max_tip_speed, task.steady_zones, task.should_stop)
 
 
 def _note(task: CartesianTask, timed: Timed, cut_short: bool) -> str:

@@ -30,7 +30,7 @@ from rrr_traj_planner.planners.path_timing.constraints import (
 )
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
-from rrr_traj_planner.planners.solver.ramps import Grid
+from rrr_traj_planner.planners.solver.splines import Mesh
 from rrr_traj_planner.planners.solver.timing_problem import Workspace
 
 
@@ -45,8 +45,8 @@ class PathProblem(ReadOnlyArrays):
         Path and limits.
     table : PathTable
         The path's.
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each piece.
     steady : ndarray of bool, shape (N,)
         Pieces along which the tip's speed is constant.
 
@@ -54,7 +54,7 @@ class PathProblem(ReadOnlyArrays):
 
     task: PathTask
     table: PathTable
-    grid: Grid
+    mesh: Mesh
     steady: BoolArray
     _workspace: Workspace = field(default_factory=Workspace)
 
@@ -85,5 +85,5 @@ class PathProblem(ReadOnlyArrays):
             As the solver takes them.
 
         """
-        return PathConstraints(self.table, self.task.limits, self.task.max_tip_speed, self.grid,
+        return PathConstraints(self.table, self.task.limits, self.task.max_tip_speed, self.mesh,
                                margins, self.steady, self._workspace)

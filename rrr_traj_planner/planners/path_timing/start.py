@@ -18,17 +18,17 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables, with_stops
 
 
-def motion_with_speeds(grid: Grid, ends: Array, speeds: Array) -> Variables:
+def motion_with_speeds(mesh: Mesh, ends: Array, speeds: Array) -> Variables:
     """
-    Return a motion of given speeds where pieces meet, with cycloidal transitions between them.
+    Return a motion of given speeds where pieces meet, with cycloidal changes between them.
 
     Parameters
     ----------
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each piece.
     ends : ndarray, shape (N + 1,)
         Path lengths where the pieces meet [m].
     speeds : ndarray, shape (N + 1,)
@@ -37,24 +37,24 @@ def motion_with_speeds(grid: Grid, ends: Array, speeds: Array) -> Variables:
     Returns
     -------
     Variables
-        From rest to rest where the outer speeds are 0.
+        From rest to rest where the outer speeds are 0. Jerk is linear between samples of a sine.
 
     """
     T = 2.0 * np.diff(ends) / (speeds[1:] + speeds[:-1])
-    N, share = len(T), np.arange(1, grid.n) / grid.n
-    rise = (np.diff(speeds) / T)[:, np.newaxis] * (1.0 - np.cos(2.0 * np.pi * share))
-    return grid.restored(ends[:, np.newaxis], Variables(
-        rise[..., np.newaxis], speeds[1:-1, np.newaxis], np.zeros((N - 1, 1)), T))
+    change = 2.0 * np.pi * (np.diff(speeds) / T ** 2)[:, np.newaxis]
+    jerks = change * np.sin(2.0 * np.pi * mesh.starts[:, 1:-1])
+    m = with_stops(jerks[..., np.newaxis], T)._replace(v=speeds[:, np.newaxis])
+    return mesh.restored(ends[:, np.newaxis], m)
 
 
-def uniform_along(grid: Grid, ends: Array) -> Variables:
+def uniform_along(mesh: Mesh, ends: Array) -> Variables:
     """
     Return a motion of 1 m/s, except on the first and the last piece (5.61-5.62).
 
     Parameters
     ----------
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each piece.
     ends : ndarray, shape (N + 1,)
         Path lengths where the pieces meet [m], at least three.
 
@@ -66,6 +66,7 @@ def uniform_along(grid: Grid, ends: Array) -> Variables:
     """
     T = np.diff(ends)
     T[[0, -1]] *= 2.0
-    N = len(T)
-    return grid.restored(ends[:, np.newaxis], Variables(
-        np.zeros((N, grid.n - 1, 1)), np.ones((N - 1, 1)), np.zeros((N - 1, 1)), T))
+    speeds = np.ones((len(ends), 1))
+    speeds[[0, -1]] = 0.0
+    m = with_stops(np.zeros((len(T), mesh.n - 1, 1)), T)._replace(v=speeds)
+    return mesh.restored(ends[:, np.newaxis], m)

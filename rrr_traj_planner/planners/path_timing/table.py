@@ -34,8 +34,8 @@ from rrr_traj_planner.core.trajectory.sampling import STEP_OVERSHOOT
 from rrr_traj_planner.planners.path_timing.pieces import piece_ends
 from scipy.interpolate import CubicSpline
 
-# Of each piece, between the table's positions; chosen: half and twice as many change 26 random
-# motions by 0.01 % in the mean, by 0.24 % at most.
+# Of each piece, between the table's positions; chosen: half and twice as many change 48 random
+# motions by 0.001 % in the mean, by 0.02 % at most.
 INTERVALS = 64
 
 
@@ -80,8 +80,9 @@ class PathTable:
     coefficients : ndarray, shape (N, 4, INTERVALS, 18)
         Of the cubic splines of all terms, highest power first, by the part of a piece.
     overshoot : ndarray, shape (N, 2, 3)
-        At each piece's end, by how much a controller's quintic overshoots steps of ddq and c
-        (`core.trajectory.sampling.STEP_OVERSHOOT`).
+        Near each piece's end, by how much a controller's quintic overshoots steps of ddq and c
+        there (`core.trajectory.sampling.STEP_OVERSHOOT`); in the last two intervals of its mesh,
+        as the quintic overshoots up to a sample before the step.
 
     """
 

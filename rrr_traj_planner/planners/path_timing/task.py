@@ -28,7 +28,6 @@ class PathTask(NamedTuple):
 
     arm_path: ArmPath
     limits: JointLimits
-    constant_jerk_fraction: float      # of a ramp of sdd
     max_tip_speed: float               # [m/s], infinite: none
     steady_zones: bool                 # whether the tip keeps its speed on curved zones (5.58)
     should_stop: Callable[[], bool]

@@ -55,7 +55,7 @@ def excess_near_points(x: Array, limit: Array, checks: int, reach: int) -> Array
     Parameters
     ----------
     x : ndarray, shape (N, 2 n checks + 1, K)
-        Samples of n ramps in each segment, in the order of time.
+        Samples of n intervals in each segment, in the order of time.
     limit : ndarray, shape (K,)
         On magnitudes; infinite where there is none.
     checks : int

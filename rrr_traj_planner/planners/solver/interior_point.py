@@ -25,7 +25,7 @@ Optimization, 11.2.2), plus the decrease that the Newton step predicts; where to
 problem nonconvex it is an estimate.
 
 When limits are tightened so that the last iterate violates them, the constraints are first shifted
-out to the previous limits, and the steps reduce the shifts to zero (shifted barriers: Freund,
+out to wider limits, and the steps reduce the shifts to zero (shifted barriers: Freund,
 Linear Algebra and its Applications 152, 1991).
 """
 
@@ -37,13 +37,13 @@ from typing import NamedTuple
 
 from rrr_traj_planner.planners.solver.convergence import CONVERGED
 from rrr_traj_planner.planners.solver.library import KERNELS
-from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.limits import DurationConstraints, Limits
 from rrr_traj_planner.planners.solver.line_search import (
     best_step,
     predicted_decrease_of,
     TO_BOUNDARY,
 )
-from rrr_traj_planner.planners.solver.ramps import Variables
+from rrr_traj_planner.planners.solver.splines import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
 # Chosen values, without unit. RELATIVE_GAP decides accuracy, the others the number of iterations:
@@ -58,6 +58,7 @@ START = 0.3                  # first barrier * constraints / objective
 FAR_FROM_CENTRE = 1e5        # predicted decrease / barrier at which the first barrier is raised
 DUAL_CORRIDOR = 1e6          # largest ratio of a multiplier to barrier / slack, and its inverse
 SMALL_SHIFT = 0.5            # part of its slack below which a shift is removed at once
+MOST_ITERATIONS = 200        # by default
 
 
 class CentralPathPoint(NamedTuple):
@@ -79,7 +80,8 @@ class Outcome(NamedTuple):
 
 def minimise(problem: TimingProblem, start: CentralPathPoint, durations: DurationConstraints,
              should_stop: Callable[[], bool], least_barrier: float = 0.0,
-             relative_gap: float = RELATIVE_GAP, previous: TimingProblem | None = None) -> Outcome:
+             relative_gap: float = RELATIVE_GAP, wider: Limits | None = None,
+             most_iterations: int = MOST_ITERATIONS) -> Outcome:
     """
     Return the motion whose weighted sum of durations is least.
 
@@ -88,7 +90,7 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
     problem : TimingProblem
         The limits.
     start : CentralPathPoint
-        Strictly within them, or within the previous ones.
+        Strictly within them, or within the wider ones.
     durations : DurationConstraints
         Which durations are free, and their weights in the objective.
     should_stop : callable
@@ -98,8 +100,10 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
         The method ends when it has converged for this barrier parameter,
     relative_gap : float
         or when the gap is this part of the objective.
-    previous : TimingProblem, optional
-        Wider limits, which the start keeps; None: it keeps those of the problem.
+    wider : Limits, optional
+        Wider limits on the same quantities; None: the start is within those of the problem.
+    most_iterations : int
+        The method ends after as many.
 
     Returns
     -------
@@ -108,8 +112,8 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
 
     """
     problem.begin(start.motion, durations)
-    run = _Run(problem, start.barrier, previous)
-    for _ in range(200):  # at most
+    run = _Run(problem, start.barrier, wider)
+    for _ in range(most_iterations):
         if should_stop():
             break
         run.iterate()
@@ -122,7 +126,7 @@ class _Run:
     """The iterates of one problem, and the best motion so far."""
 
     def __init__(self, problem: TimingProblem, barrier: float | None,
-                 previous: TimingProblem | None) -> None:
+                 wider: Limits | None) -> None:
         self._problem, self._address = problem, problem.address
         self._count = KERNELS.timing_constraint_count(problem.address)
         self._cost = self._best_cost = KERNELS.timing_cost(
@@ -130,10 +134,10 @@ class _Run:
         self._best, self._gap = problem.arrays['variables'].copy(), math.inf
         self._centres: list[CentralPathPoint] = []
         self._barrier = barrier or START * self._cost / self._count
-        if previous is None:
+        if wider is None:
             self._barrier = _first_barrier(problem, self._barrier)
         else:
-            problem.shift(previous.limits)
+            problem.shift(wider)
             _central(problem, self._barrier)
         self._merits: list[float] = []  # at this barrier
         self._log = math.nan            # of the iterate's slacks, summed; not known yet

@@ -46,15 +46,56 @@ class Limits(NamedTuple):
     overshoot: Array | None = None  # (N, 2, 3), added to ddq and to c at its segments' ends
     viscous: Array | None = None    # (3,), friction along it [N m s/rad]; as table
 
+    def widened(self, part: float) -> Limits:
+        """
+        Return wider limits.
+
+        Parameters
+        ----------
+        part : float
+            Of half the distance between a lower and an upper limit, by which both are moved out.
+
+        Returns
+        -------
+        Limits
+            On the same quantities.
+
+        """
+        more, more_general = (0.5 * part * (high - low) for low, high in (
+            (self.lower, self.upper), (self.general_lower, self.general_upper)))
+        return self._replace(lower=self.lower - more, upper=self.upper + more,
+                             general_lower=self.general_lower - more_general,
+                             general_upper=self.general_upper + more_general)
+
     @property
     def bounds_alone(self) -> bool:
         """Return whether there are no general constraints."""
         return self.arm is None and self.table is None
 
 
+def fixed_ends(segments: int, joints: int) -> BoolArray:
+    """
+    Return that velocities, accelerations and jerks do not change at both ends of a motion.
+
+    Parameters
+    ----------
+    segments, joints : int
+        Their numbers.
+
+    Returns
+    -------
+    ndarray of bool, shape (segments + 1, 3, joints)
+        See `DurationConstraints`.
+
+    """
+    fixed = np.zeros((segments + 1, 3, joints), bool)
+    fixed[[0, -1]] = True
+    return fixed
+
+
 class DurationConstraints(NamedTuple):
     """
-    Which durations are free, fixed or in fixed proportions; which via velocities are fixed.
+    Which durations are free, fixed or in fixed proportions; what is fixed at via points.
 
     A duration that is not free changes by its proportion times a common unknown.
     """
@@ -62,12 +103,12 @@ class DurationConstraints(NamedTuple):
     free: BoolArray     # (N,)
     proportions: Array  # (N,), 0 where free or fixed
     weights: Array      # (N,), in the objective
-    fixed_velocities: BoolArray  # (N - 1, J), whether a joint's via velocity does not change
+    fixed: BoolArray    # (N + 1, 3, J), which velocities, accelerations and jerks do not change
 
     @classmethod
     def all_free(cls, segments: int, joints: int) -> DurationConstraints:
         """
-        Return free durations and via velocities, with the sum of durations as the objective.
+        Return free durations, with their sum as the objective, and fixed ends of the motion.
 
         Parameters
         ----------
@@ -77,11 +118,16 @@ class DurationConstraints(NamedTuple):
         Returns
         -------
         DurationConstraints
-            No constraint at all.
+            Free states at the via points between the ends.
 
         """
         return cls(np.ones(segments, bool), np.zeros(segments), np.ones(segments),
-                   np.zeros((segments - 1, joints), bool))
+                   fixed_ends(segments, joints))
+
+    @property
+    def may_scale(self) -> bool:
+        """Return whether a motion may be slowed: no duration is fixed."""
+        return bool((self.free | (self.proportions > 0.0)).all())
 
     def cost(self, T: Array) -> float:
         """

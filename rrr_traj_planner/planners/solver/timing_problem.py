@@ -15,7 +15,7 @@
 """
 The least-time problem over segments between via points, as the compiled kernels see it.
 
-The decision variables are those of `ramps` (direct transcription: Betts, Practical Methods for
+The decision variables are those of `splines` (direct transcription: Betts, Practical Methods for
 Optimal Control, 2010). Bounds hold for the states at the points of every segment, general
 constraints for functions of a state: torques, or the joints' velocities, accelerations, jerks and
 torques while the tip follows a path. Durations may be free, fixed or in fixed proportions, and
@@ -33,13 +33,9 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kernels import contiguous, same_size_as
 from rrr_traj_planner.planners.solver.library import Arena, KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints, FAR, Limits
-from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 
 STEPS = 4  # of one iteration: two Newton steps, each followed by its second-order correction
-
-
-class _Ramp(ctypes.Structure):
-    _fields_ = [(name, ctypes.c_double) for name in ('end_q', 'mid_q', 'mid_qd', 'peak_jerk')]
 
 
 @same_size_as('size_of_problem')
@@ -47,13 +43,12 @@ class _Problem(ctypes.Structure):  # as in native/timing_problem.h
     _fields_ = [
         *((name, ctypes.c_int32) for name in (
             'J', 'N', 'n', 'E', 'bounds', 'general', 'intervals')),
-        ('ramp', _Ramp),
         *((name, ctypes.c_void_p) for name in (
-            'points', 'restore', 'lower', 'upper', 'general_lower', 'general_upper', 'bound_at',
-            'general_at', 'has_general', 'least_T')),
+            'points', 'parts', 'restore', 'lower', 'upper', 'general_lower', 'general_upper',
+            'bound_at', 'general_at', 'has_general', 'least_T')),
         ('longest', ctypes.c_double),
         *((name, ctypes.c_void_p) for name in (
-            'free', 'proportions', 'weights', 'fixed_velocity', 'arm', 'table', 'overshoot',
+            'free', 'proportions', 'weights', 'fixed', 'arm', 'table', 'overshoot',
             'viscous', 'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual',
             'shift', 'hessian', 'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables',
             'trial_states', 'trial_values', 'trial_slack', 'trial_gradient', 'trial_gradient_T',
@@ -112,8 +107,8 @@ class TimingProblem:
 
     Parameters
     ----------
-    grid : Grid
-        Discretisation: n ramps per segment.
+    mesh : Mesh
+        Its n intervals in each segment.
     points : ndarray, shape (N + 1, J)
         Via points.
     limits : Limits
@@ -123,28 +118,27 @@ class TimingProblem:
 
     Attributes
     ----------
-    grid, points, limits
+    mesh, points, limits
         As given.
     address : object
         Of the problem, for the kernels.
 
     """
 
-    def __init__(self, grid: Grid, points: Array, limits: Limits,
+    def __init__(self, mesh: Mesh, points: Array, limits: Limits,
                  workspace: Workspace | None = None) -> None:
-        self.grid, self.points, self.limits = grid, points, limits
+        self.mesh, self.points, self.limits = mesh, points, limits
         self._workspace = workspace or Workspace()
-        N, n, J = len(points) - 1, grid.n, points.shape[1]
-        (mid_q, mid_qd, _, _), end_q = grid.shape(0.5), grid.shape(1.0)[0]
+        N, n, J = len(points) - 1, mesh.n, points.shape[1]
         self._problem = _Problem(
             J=J, N=N, n=n, E=limits.general_lower.shape[-1], longest=FAR,
-            intervals=0 if limits.table is None else limits.table.shape[2],
-            ramp=_Ramp(float(end_q), float(mid_q), float(mid_qd), grid.shape.peak_jerk))
+            intervals=0 if limits.table is None else limits.table.shape[2])
         self._bound_arrays: dict[str, Array] = {}
         bound_at, general_at = map(np.flatnonzero, (limits.bounded, limits.general))
         self._problem.bounds, self._problem.general = len(bound_at), len(general_at)
         for name, values in (
-                ('points', points), ('restore', grid.restore), ('lower', limits.lower),
+                ('points', points), ('parts', mesh.parts), ('restore', mesh.restore),
+                ('lower', limits.lower),
                 ('upper', limits.upper), ('general_lower', limits.general_lower),
                 ('general_upper', limits.general_upper), ('least_T', limits.least_T),
                 *zip(('table', 'overshoot', 'viscous'), limits[-3:])):
@@ -167,7 +161,7 @@ class TimingProblem:
         """Return the kernels' arrays, under the names of native/timing_problem.h."""
         (N, n, J), p = self._shape, self._problem
         P, Z, E = 2 * n + 1, 4 * J, p.E
-        unknowns = N * (n - 1) * J + 2 * (N - 1) * J + N
+        unknowns = N * (n - 1) * J + 3 * (N + 1) * J + N
         slacks, states, values = 2 * N * (p.bounds + p.general + 1), (N, P, Z), (N, P, E)
         hessian = states if self.limits.bounds_alone else (N, P, Z, Z)
         shapes: dict[str, tuple[int, ...]] = {
@@ -206,7 +200,7 @@ class TimingProblem:
         motion : Variables
             The iterate.
         durations : DurationConstraints
-            Which durations and via velocities may change.
+            Which durations and values at via points may change.
 
         """
         self.arrays['variables'][:] = motion.flat()
@@ -215,27 +209,27 @@ class TimingProblem:
         self._bind('free', durations.free.astype(np.uint8))
         self._bind('proportions', contiguous(durations.proportions))
         self._bind('weights', contiguous(durations.weights))
-        self._bind('fixed_velocity', durations.fixed_velocities.astype(np.uint8))
+        self._bind('fixed', durations.fixed.astype(np.uint8))
 
-    def shift(self, previous: Limits) -> None:
+    def shift(self, wider: Limits) -> None:
         """
-        Relax every constraint to the previous limits where those are wider.
+        Relax every constraint to other limits where those are wider.
 
         Parameters
         ----------
-        previous : Limits
+        wider : Limits
             On the same quantities.
 
         """
         now = self.limits
-        above = np.concatenate(((previous.upper - now.upper)[:, now.bounded],
-                                (previous.general_upper - now.general_upper)[:, now.general]),
+        above = np.concatenate(((wider.upper - now.upper)[:, now.bounded],
+                                (wider.general_upper - now.general_upper)[:, now.general]),
                                axis=1)
-        below = np.concatenate(((now.lower - previous.lower)[:, now.bounded],
-                                (now.general_lower - previous.general_lower)[:, now.general]),
+        below = np.concatenate(((now.lower - wider.lower)[:, now.bounded],
+                                (now.general_lower - wider.general_lower)[:, now.general]),
                                axis=1)
-        wider = np.maximum(np.stack((above, below), axis=-1), 0.0).ravel()
-        self.arrays['shift'][:wider.size] = wider
+        shift = np.maximum(np.stack((above, below), axis=-1), 0.0).ravel()
+        self.arrays['shift'][:shift.size] = shift
         self._problem.shifted = 1
 
     @property
@@ -296,5 +290,6 @@ class TimingProblem:
 
         """
         N, n, J = self._shape
-        via = np.empty((N - 1, J))
-        return Variables(np.empty((N, n - 1, J)), via, via, np.empty(N)).with_values(variables)
+        via = np.empty((N + 1, J))
+        return Variables(
+            np.empty((N, n - 1, J)), via, via, via, np.empty(N)).with_values(variables)

@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
+from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through, spline_where_divided
 from rrr_traj_planner.core.trajectory.sampling import (
@@ -189,6 +190,38 @@ def test_regular_point_is_left_out_within_a_tenth_of_the_period_of_a_via_point()
 def test_regular_point_is_left_out_beside_the_end_too():
     assert sample(cruising(1.5, duration=3.04), 0.5).times[-2:] == pytest.approx(
         [2.5, 3.04], abs=1e-12)
+
+
+class Bent(PiecewiseTrajectory):
+    """From rest with a jerk of 1 rad/s^3, which turns to -1 at given times, and so on."""
+
+    def __init__(self, bends, duration):
+        pieces, state = [], (0.0, 0.0, 0.0)
+        for k, h in enumerate(np.diff([0.0, *bends, duration])):
+            pieces.append(PolynomialPiece(h, *state, (-1.0) ** k, 0.0))
+            state = pieces[-1].at(1.0)[:3]
+        profile = JointProfile(PolynomialPiece(*map(np.array, zip(*pieces))))
+        super().__init__([profile] * 3, [0.0, duration])
+        self._bends = bends
+
+    @property
+    def jerk_step_times(self):
+        return self._bends
+
+
+def test_a_point_stands_where_jerk_steps_unless_a_tenth_of_the_period_from_another():
+    bends = np.array([0.03, 0.61, 1.34, 1.36, 2.98])
+    assert sample(Bent(bends, 3.0), 0.5).times == pytest.approx(
+        [0.0, 0.5, 0.61, 1.0, 1.34, 1.5, 2.0, 2.5, 3.0], abs=1e-12)
+
+
+def test_quintics_beside_a_step_of_jerk_keep_to_the_jerk_on_both_sides():
+    # Across it a quintic would overshoot by up to 0.37 of the step of 2 rad/s^3.
+    bend = 1.0 + 0.645 * 0.1
+    quintic = spline_through(sample(Bent(np.array([bend]), 3.0), 0.1))
+    t = np.linspace(0.05, 2.85, 20001)  # the end is not at rest, but set so
+    jerk = quintic.at(t)[3]
+    assert np.abs(jerk).max() <= 1.0 + 1e-6
 
 
 @pytest.mark.parametrize('period', [0.0, -0.01, np.nan, np.inf])

@@ -12,12 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Statically feasible paths, against the connected parts of a fine grid and dense evaluation."""
+"""Statically feasible paths, against the connected parts of a fine mesh and dense evaluation."""
 
 from dataclasses import replace
 from functools import cache
 
-from helpers.ramp_cases import ARM, blocked_task, is_connected, LIMITS, NONE, share_of
+from helpers.spline_cases import ARM, blocked_task, is_connected, LIMITS, NONE, share_of
 import numpy as np
 import pytest
 from rrr_traj_planner.planners.joint_timing.feasible_path import (
@@ -31,7 +31,7 @@ LEGS = 8
 RANGE = 1e-9    # rad
 GAP = 0.03      # of an effort limit
 # How much longer than another path the one that is found may be, lengths weighted by the margin to
-# the torque limits: by the eight directions of a grid's steps (1.082), and by the margin along
+# the torque limits: by the eight directions of a mesh's steps (1.082), and by the margin along
 # legs that replace steps, at least 0.7 of the steps' where possible.
 LONGER = 1.082 / np.sqrt(0.7)
 
@@ -127,7 +127,7 @@ def test_paths_are_hardly_longer_than_others_weighted_by_the_margin_to_the_limit
         task, path = found(seed)
         if path is None:
             continue
-        # others of two and three legs, not through gaps narrower than the cells of a coarse grid
+        # others of two and three legs, not through gaps narrower than the cells of a coarse mesh
         rng = np.random.default_rng(seed)
         low, high = task.limits.min_position, task.limits.max_position
         others = [np.vstack((task.points[0], rng.uniform(low, high, (corners, 3)),

@@ -16,7 +16,7 @@
 
 from dataclasses import replace
 
-from helpers.ramp_cases import ARM, bounds, LIMITS, NONE, random_motion
+from helpers.spline_cases import ARM, bounds, LIMITS, NONE, random_motion
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -28,7 +28,7 @@ SEEDS = range(6)
 
 def slacks_of(constraints, m):
     """Return q, qd, qdd, jerk and torque's slacks, (2, N, P, 3) each, NaN where there is none."""
-    problem, N, P = constraints.problem, len(m.T), 2 * constraints.grid.n + 1
+    problem, N, P = constraints.problem, len(m.T), 2 * constraints.mesh.n + 1
     limits, found = problem.limits, problem.slacks(m)[:-2 * N].reshape(N, -1, 2)
     states, tau = np.full((2, N, P, 12), np.nan), np.full((2, N, P, 3), np.nan)
     bounded = int(limits.bounded.sum())
@@ -39,54 +39,53 @@ def slacks_of(constraints, m):
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_slacks_are_limits_less_states(seed):
-    grid, points, m = random_motion(seed)
-    at, n = grid.states(points, m), grid.n
-    q, qd, qdd, jerk, tau = slacks_of(bounds(LIMITS, grid, points), m)
+    mesh, points, m = random_motion(seed)
+    at, n = mesh.states(points, m), mesh.n
+    q, qd, qdd, jerk, tau = slacks_of(bounds(LIMITS, mesh, points), m)
     inside = np.delete(np.arange(2 * n + 1), (0, n))
     for found, value, limit, where in (
             (qd, at.qd, LIMITS.max_velocity, np.arange(1, 2 * n + 1)),
-            (qdd, at.qdd, LIMITS.max_acceleration, np.arange(1, n + 1)),
+            (qdd, at.qdd, LIMITS.max_acceleration, np.arange(1, 2 * n + 1)),
+            (jerk, at.jerk, LIMITS.max_jerk, np.arange(1, n + 1)),
             (tau, inverse_dynamics(ARM, at.q, at.qd, at.qdd), LIMITS.max_effort,
              np.arange(1, 2 * n + 1))):
         assert found[0][:, where] == pytest.approx(limit - value[:, where])
         assert found[1][:, where] == pytest.approx(limit + value[:, where])
         assert np.isnan(np.delete(found, where, axis=2)).all()
-    assert jerk[0][:, n + 1:] == pytest.approx(LIMITS.max_jerk - at.jerk[:, n + 1:])
-    assert np.isnan(jerk[:, :, :n + 1]).all()
     assert q[0][:, inside] == pytest.approx(LIMITS.max_position - at.q[:, inside], abs=1e-9)
     assert q[1][:, inside] == pytest.approx(at.q[:, inside] - LIMITS.min_position, abs=1e-9)
 
 
 def test_least_durations_count_three_times_and_are_durations_less_their_least():
-    grid, points, m = random_motion(2)
+    mesh, points, m = random_motion(2)
     least_T, N = 0.5 * m.T, len(m.T)
-    problem = bounds(LIMITS, grid, points, least_T).problem
+    problem = bounds(LIMITS, mesh, points, least_T).problem
     assert problem.slacks(m)[-2 * N:].reshape(N, 2)[:, 1] == pytest.approx(m.T - least_T)
 
 
 @pytest.mark.parametrize('seed', SEEDS)
-def test_margins_of_velocity_torque_and_position_count_at_their_own_points(seed):
-    grid, points, m = random_motion(seed)
+def test_margins_count_at_their_own_points(seed):
+    mesh, points, m = random_motion(seed)
     rng = np.random.default_rng(seed)
-    shape = (len(m.T), 2 * grid.n + 1, 3)
-    q, qd, tau = rng.random((2, *shape)), rng.random(shape), rng.random(shape)
-    plain = slacks_of(bounds(LIMITS, grid, points), m)
-    found = slacks_of(JointConstraints(ARM, LIMITS, grid, points, q, qd, tau), m)
-    for before, after, margin in zip(plain, found, (q, qd, 0.0, 0.0, tau)):
+    shape = (len(m.T), 2 * mesh.n + 1, 3)
+    q, qd, qdd, tau = rng.random((2, *shape)), *rng.random((3, *shape))
+    plain = slacks_of(bounds(LIMITS, mesh, points), m)
+    found = slacks_of(JointConstraints(ARM, LIMITS, mesh, points, q, qd, qdd, tau), m)
+    for before, after, margin in zip(plain, found, (q, qd, qdd, 0.0, tau)):
         taken = before - after
         there = np.isfinite(taken)
         assert taken[there] == pytest.approx(np.broadcast_to(margin, taken.shape)[there])
 
 
 def test_limits_that_are_infinite_never_bind():
-    grid, points, m = random_motion(2)
+    mesh, points, m = random_motion(2)
     limits = JointLimits([-9.0] * 3, [9.0] * 3, NONE, NONE, NONE, NONE)
-    found = bounds(limits, grid, points)
+    found = bounds(limits, mesh, points)
     assert not found.with_torque
     assert found.problem.limits.bounds_alone
     assert found.problem.limits.bounded.reshape(-1, 4, 3).any(axis=(0, 2)).tolist() == [
         True, False, False, False]  # the ranges
     some = replace(limits, max_effort=[np.inf, 200.0, np.inf], max_jerk=[np.inf, 5.0, np.inf])
-    *_, jerk, tau = slacks_of(bounds(some, grid, points), m)
+    *_, jerk, tau = slacks_of(bounds(some, mesh, points), m)
     for slack in (jerk, tau):
         assert np.nanmin(slack[..., [0, 2]]) > 1e5

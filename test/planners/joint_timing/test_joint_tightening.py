@@ -17,7 +17,7 @@
 from dataclasses import replace
 from itertools import product
 
-from helpers.ramp_cases import all_free, ARM, LIMITS, NONE, random_motion
+from helpers.spline_cases import all_free, ARM, LIMITS, NONE, random_motion
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.joint_timing.tightening import tightened
@@ -37,12 +37,12 @@ def test_the_fastest_of_all_motions_that_keep_the_limits_is_returned(monkeypatch
 
     monkeypatch.setattr(JointProblem, 'fitting', noted)
     for seed, calls in product(SEEDS, (5, 20, 40)):
-        grid, points, _ = random_motion(seed, n=8)
+        mesh, points, _ = random_motion(seed, n=8)
         left = iter(range(calls))
         task = JointTask(ARM, TORQUE, points, None, 0.01,
                          should_stop=lambda left=left: next(left, None) is None)
         costs.clear()
-        best = tightened(JointProblem(task, grid, all_free(len(points) - 1)), rest_to_rest)
+        best = tightened(JointProblem(task, mesh, all_free(len(points) - 1)), rest_to_rest)
         assert best.cost == min(costs)
         several += len(set(costs)) > 1
     assert several > 1

@@ -12,11 +12,11 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Whether chains of ramps keep their limits, against dense evaluation of the motions."""
+"""Whether motions of piecewise linear jerk keep their limits, against dense evaluation."""
 
 from dataclasses import replace
 
-from helpers.ramp_cases import ARM, LIMITS, NONE, random_motion, share_of
+from helpers.spline_cases import ARM, LIMITS, NONE, random_motion, share_of
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -37,11 +37,11 @@ RANGE = 1e-4           # rad, likewise
 
 
 class Case:
-    """Random ramps in a row, and what they require on a dense grid."""
+    """A random motion, and what it requires on a dense grid."""
 
     def __init__(self, seed):
-        self.grid, self.points, self.motion = random_motion(seed)
-        self.trajectory = self.grid.trajectory(self.points, self.motion)
+        self.mesh, self.points, self.motion = random_motion(seed)
+        self.trajectory = self.mesh.trajectory(self.points, self.motion)
         self.q, self.qd, self.qdd, self.jerk, self.torque = dense(self.trajectory)
 
     def task(self, **limits):
@@ -52,14 +52,14 @@ class Case:
 
 
 def dense(trajectory):
-    """Return position, velocity, acceleration, jerk and torque on a dense grid."""
+    """Return position, velocity, acceleration, jerk and torque on a dense mesh."""
     t = np.union1d(np.linspace(0.0, trajectory.duration, SAMPLES), trajectory.knots)
     q, qd, qdd, jerk = trajectory(t)
     return q, qd, qdd, jerk, inverse_dynamics(ARM, q, qd, qdd)
 
 
 def within(task, trajectory, factor=1.0):
-    """Return whether a motion keeps all limits but the ranges on a dense grid."""
+    """Return whether a motion keeps all limits but the ranges on a dense mesh."""
     _, *values = dense(trajectory)
     limits = task.limits
     bounds = (limits.max_velocity, limits.max_acceleration, limits.max_jerk, limits.max_effort)

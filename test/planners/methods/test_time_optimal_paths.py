@@ -19,8 +19,8 @@ import re
 
 from helpers.measured_motions import HIT, LIMIT_MARGIN, Measured, outcomes
 from helpers.planning_cases import ARM, LIMITS, NONE
-from helpers.ramp_cases import blocked_task, is_connected
 from helpers.random_tasks import Task
+from helpers.spline_cases import blocked_task, is_connected
 from helpers.time_optimal_cases import durations_of, GAP, KEPT, measured, through
 import numpy as np
 import pytest

@@ -30,10 +30,10 @@ from rrr_traj_planner.planners.path_timing.constraints import (
     VELOCITY,
 )
 from rrr_traj_planner.planners.path_timing.initial_speeds import initial_speeds_of, PART
+from rrr_traj_planner.planners.path_timing.mesh import path_mesh
 from rrr_traj_planner.planners.path_timing.start import motion_with_speeds
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.request import PlanningRequest
-from rrr_traj_planner.planners.solver.ramps import Grid
 
 SEEDS = range(12)
 
@@ -52,11 +52,12 @@ def test_speeds_are_zero_at_both_ends_only(seed):
 
 @pytest.mark.parametrize('seed', SEEDS)
 def test_a_motion_of_these_speeds_is_within_every_limit(seed):
-    case, grid = random_case(seed), Grid(12)
+    case = random_case(seed)
     limits = limits_of(case)
     table, bounds = PathTable(case.arm_path), all_bounds(limits, np.inf)
-    m = motion_with_speeds(grid, table.ends, initial_speeds_of(table, bounds))
-    at = np.concatenate(grid.states(table.ends[:, np.newaxis], m), axis=-1)
+    mesh = path_mesh(len(table.ends) - 1)
+    m = motion_with_speeds(mesh, table.ends, initial_speeds_of(table, bounds))
+    at = np.concatenate(mesh.states(table.ends[:, np.newaxis], m), axis=-1)
     demand = terms_at(table, at[..., 0])
     x = np.abs(demands(demand, at))
     for kind in (VELOCITY, ACCELERATION, JERK):

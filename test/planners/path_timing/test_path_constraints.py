@@ -17,7 +17,7 @@
 from dataclasses import replace
 
 from helpers.path_terms import demands, terms_at
-from helpers.random_paths import NONE, random_case
+from helpers.random_paths import NONE, random_case, random_mesh
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
@@ -27,7 +27,7 @@ from rrr_traj_planner.planners.path_timing.constraints import (
     QUANTITIES,
 )
 from rrr_traj_planner.planners.path_timing.table import PathTable
-from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.solver.splines import with_stops
 
 SEEDS = range(12)
 LIMITS = JointLimits(max_jerk=[10.0] * 3, max_effort=[300.0] * 3)
@@ -38,21 +38,24 @@ KINDS = ('velocity', 'acceleration', 'jerk', 'torque')
 def random_problem(seed, limits=LIMITS, max_tip_speed=TIP_SPEED, margin=0.0, steady=False):
     """Return constraints on a random path and a motion along it that never stops."""
     rng = np.random.default_rng(4400 + seed)
-    table, grid = PathTable(random_case(seed, points=3).arm_path), Grid(8)
+    table = PathTable(random_case(seed, points=3).arm_path)
     N = len(table.ends) - 1
+    mesh = random_mesh(seed, N, 8)
     constraints = PathConstraints(
-        table, limits, max_tip_speed, grid, np.full((N, 2 * grid.n + 1, QUANTITIES), margin),
+        table, limits, max_tip_speed, mesh, np.full((N, 2 * mesh.n + 1, QUANTITIES), margin),
         np.full(N, steady))
-    L, speed = np.diff(table.ends), rng.uniform(0.8, 1.2, N - 1)
-    inner = rng.normal(0.0, 0.05, (N, grid.n - 1, 1))
-    m = Variables(inner, speed[:, np.newaxis], rng.normal(0.0, 0.05, (N - 1, 1)), L.copy())
-    m.T[[0, -1]] *= 2.0
-    return constraints, grid.restored(constraints.points, m)
+    T, (v, a, j) = np.diff(table.ends), np.zeros((3, N + 1, 1))
+    T[[0, -1]] *= 2.0
+    v[1:-1, 0] = rng.uniform(0.8, 1.2, N - 1)
+    a[1:-1], j[1:-1] = rng.normal(0.0, 0.05, (2, N - 1, 1))
+    inner = rng.normal(0.0, 0.05, (N, mesh.n - 1, 1))
+    m = with_stops(inner, T)._replace(v=v, a=a, j=j)
+    return constraints, mesh.restored(constraints.points, m)
 
 
 def slacks_of(constraints, m):
     """Return what is left above and below, (2, N, p, K): of joints, then the tip's speed."""
-    N, p = len(m.T), 2 * constraints.grid.n + 1
+    N, p = len(m.T), 2 * constraints.mesh.n + 1
     limits = constraints.problem.limits
     found = constraints.problem.slacks(m)[:-2 * N].reshape(N, -1, 2)
     tip = int(limits.bounded.sum())
@@ -62,7 +65,7 @@ def slacks_of(constraints, m):
 
 def demands_of(constraints, m):
     """Return the states at the points, (N, p, 4), and the limited quantities by the kernel."""
-    at = np.concatenate(constraints.grid.states(constraints.points, m), axis=-1)
+    at = np.concatenate(constraints.mesh.states(constraints.points, m), axis=-1)
     return at, limited_quantities(constraints.problem, at, at_points=True)[0]
 
 
@@ -84,13 +87,14 @@ def test_slacks_are_limits_less_quantities(seed):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_quantities_are_those_of_the_table_s_terms(seed, at_points):
     constraints, m = random_problem(seed)
-    table, n = constraints.table, constraints.grid.n
-    at = np.concatenate(constraints.grid.states(constraints.points, m), axis=-1)
+    table, n = constraints.table, constraints.mesh.n
+    at = np.concatenate(constraints.mesh.states(constraints.points, m), axis=-1)
     at[..., 0] = np.clip(at[..., 0], table.ends[:-1, np.newaxis], table.ends[1:, np.newaxis])
     terms = terms_at(table, at[..., 0])
-    if at_points:  # the last of each piece, where a quintic's overshoot is added
-        terms.ddq[:, n] += table.overshoot[:, 0]
-        terms.c[:, n] += table.overshoot[:, 1]
+    if at_points:  # in the last two intervals of each piece a quintic's overshoot is added
+        for point in (n - 1, n, 2 * n - 1, 2 * n):  # nodes, then middles
+            terms.ddq[:, point] += table.overshoot[:, 0]
+            terms.c[:, point] += table.overshoot[:, 1]
     x, gravity = limited_quantities(constraints.problem, at, at_points)
     expected = demands(terms, at)
     assert x == pytest.approx(expected, abs=1e-11 * (1.0 + np.abs(expected).max()))
@@ -102,7 +106,7 @@ def test_quantities_are_those_of_the_exact_motion(seed):
     # Joint motion by the chain rule from the path itself, without the table.
     constraints, m = random_problem(seed)
     at, x = demands_of(constraints, m)
-    inside = slice(1, constraints.grid.n)
+    inside = slice(1, constraints.mesh.n - 1)  # before a quintic's overshoot is added
     s, v, a, j = (at[:, inside, k, np.newaxis] for k in range(4))
     q, dq, ddq, dddq = (f.reshape(*s.shape[:2], 3) for f in random_case(
         seed, points=3).arm_path(s.ravel()))

@@ -114,7 +114,7 @@ def test_planning_stopped_early_gives_a_motion_within_limits_that_never_stops(se
         return left[0] < 0
 
     found = fastest_along(PathTask(
-        case.arm_path, case.limits, case.constant_jerk_fraction, np.inf, False, should_stop))
+        case.arm_path, case.limits, np.inf, False, should_stop))
     m = Measured(case, trajectory=found.trajectory)
     assert m.utilisation().max() <= 1.0 + 1e-6
     assert m.trajectory.progress(m.t)[1].min() >= -1e-12

@@ -17,9 +17,9 @@
 from __future__ import annotations
 
 from helpers.friction_arms import with_friction
-from helpers.ramp_cases import LIMITS, random_motion
 from helpers.random_cases import central_difference
 from helpers.random_chains import random_arm
+from helpers.spline_cases import LIMITS, random_motion
 from helpers.timing_cases import BARRIER, path_problem
 import numpy as np
 import pytest
@@ -41,9 +41,10 @@ def smooth_torque(arm, z):
 def linearised(seed):
     """Return an arm with friction, its limits on a motion, and the problem linearised there."""
     arm = with_friction(random_arm(seed), seed, viscous=50.0)
-    grid, points, m = random_motion(seed)
-    zero = np.zeros((len(m.T), 2 * grid.n + 1, 3))
-    constraints = JointConstraints(arm, LIMITS, grid, points, np.stack((zero, zero)), zero, zero)
+    mesh, points, m = random_motion(seed)
+    zero = np.zeros((len(m.T), 2 * mesh.n + 1, 3))
+    constraints = JointConstraints(
+        arm, LIMITS, mesh, points, np.stack((zero, zero)), zero, zero, zero)
     problem = constraints.problem
     problem.begin(m, DurationConstraints.all_free(len(m.T), 3))
     problem.arrays['slack'][:] = problem.slacks(m)
@@ -78,7 +79,7 @@ def test_coulomb_friction_is_taken_off_both_limits(seed):
 @pytest.mark.parametrize('seed', SEEDS)
 def test_torque_along_a_path_has_viscous_friction(seed):
     (rubbing, m), (plain, _) = (path_problem(seed, rubbing) for rubbing in (True, False))
-    z = rubbing.grid.samples(rubbing.points, m, 8)[..., 0]
+    z = rubbing.mesh.samples(rubbing.points, m, 8)[..., 0]
     (found, gravity), (without, same) = (
         limited_quantities(p, z, at_points=False) for p in (rubbing, plain))
     viscous = np.array([60.0, 90.0, 40.0])

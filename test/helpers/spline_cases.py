@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Seeded random motions of ramps, and constraints, for tests of the solver."""
+"""Seeded random motions of piecewise linear jerk, and constraints, for tests of the solver."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.ramps import Grid, Variables
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 from scipy import ndimage
 
@@ -33,24 +33,32 @@ NONE = np.full(3, np.inf)
 ARM = RobotModel()
 LIMITS = JointLimits(min_position=[-2.9] * 3, max_position=[3.1] * 3)  # not symmetric
 FREE = replace(LIMITS, max_effort=NONE)
-COARSE, FINE = 61, 601  # cells of joints 2 and 3 of the grid in which a path is searched
+COARSE, FINE = 61, 601  # cells of joints 2 and 3 of the mesh in which a path is searched
 
 
 def random_motion(seed, n=None, segments=None):
-    """Return a grid, via points and a motion through them."""
+    """Return a mesh, half of them with unequal intervals, via points and a motion through them."""
     rng = np.random.default_rng(7000 + seed)
-    grid = Grid(n or int(rng.integers(4, 13)), constant_jerk_fraction=(0.0, 0.6)[seed % 2])
-    N = segments or int(rng.integers(1, 5))
+    n, N = n or int(rng.integers(5, 13)), segments or int(rng.integers(1, 5))
+    parts = 1.0 + seed % 2 * rng.uniform(-0.5, 1.0, (N, n))
+    mesh = Mesh(parts / parts.sum(axis=1, keepdims=True))
     points = rng.uniform([-1.0, 0.8, -0.8], [1.0, 1.8, 0.8], (N + 1, 3))
-    m = Variables(rng.normal(0.0, 1.0, (N, grid.n - 1, 3)), rng.normal(0.0, 0.3, (N - 1, 3)),
-                  rng.normal(0.0, 0.5, (N - 1, 3)), rng.uniform(0.7, 2.5, N))
-    return grid, points, grid.restored(points, m)
+    m = Variables(rng.normal(0.0, 3.0, (N, n - 1, 3)), *(
+        at_rest_at_the_ends(rng.normal(0.0, scale, (N + 1, 3))) for scale in (0.3, 0.5, 1.0)),
+        rng.uniform(0.7, 2.5, N))
+    return mesh, points, mesh.restored(points, m)
+
+
+def at_rest_at_the_ends(values):
+    values[[0, -1]] = 0.0
+    return values
 
 
 def random_step(seed, m):
-    """Return a change of every unknown."""
+    """Return a change of every unknown, not of the motion's ends."""
     rng = np.random.default_rng(8000 + seed)
-    return Variables(*(rng.normal(0.0, 1.0, f.shape) for f in m))
+    step = Variables(*(rng.normal(0.0, 1.0, f.shape) for f in m))
+    return step._replace(**{name: at_rest_at_the_ends(getattr(step, name)) for name in 'vaj'})
 
 
 def shifted(m, step, size):
@@ -58,11 +66,11 @@ def shifted(m, step, size):
     return Variables(*(f + size * s for f, s in zip(m, step)))
 
 
-def bounds(limits, grid, points, least_T=None, margin=0.0):
+def bounds(limits, mesh, points, least_T=None, margin=0.0):
     """Return constraints without margins, or with margins of positions."""
-    N, p = len(points) - 1, 2 * grid.n + 1
-    return JointConstraints(ARM, limits, grid, points, np.full((2, N, p, 3), margin),
-                            np.zeros((N, p, 3)), np.zeros((N, p, 3)), least_T)
+    N, p = len(points) - 1, 2 * mesh.n + 1
+    return JointConstraints(ARM, limits, mesh, points, np.full((2, N, p, 3), margin),
+                            np.zeros((N, p, 3)), np.zeros((N, p, 3)), np.zeros((N, p, 3)), least_T)
 
 
 def closer(limits, part):
@@ -76,9 +84,9 @@ def all_free(N):
     return DurationConstraints.all_free(N, 3)
 
 
-def slow_start(limits, grid, points, least_T=None):
+def slow_start(limits, mesh, points, least_T=None):
     """Return constraints, and the motion with a stop at every point."""
-    constraints = bounds(limits, grid, points, least_T)
+    constraints = bounds(limits, mesh, points, least_T)
     task = JointTask(ARM, limits, points, None, 0.01)
     return constraints, rest_to_rest(task, constraints)
 
@@ -129,7 +137,7 @@ def blocked_task(seed):
 
 def is_connected(task, margin):
     """
-    Return whether holdable poses connect a task's two poses, on a grid of joints 2 and 3.
+    Return whether holdable poses connect a task's two poses, on a mesh of joints 2 and 3.
 
     The margin is subtracted from the torque limits, in multiples of the largest change of gravity
     torque between neighbouring cells.
@@ -157,8 +165,5 @@ def _parts_of(task, cells, most, poses):
 
 
 def nodes_of(m):
-    """Return accelerations of all nodes, (N, n + 1, J), and velocities at segments' ends."""
-    rest = np.zeros((1, m.inner.shape[-1]))
-    a, v = np.concatenate((rest, m.a, rest)), np.concatenate((rest, m.v, rest))
-    nodes = np.concatenate((a[:-1, np.newaxis], m.inner, a[1:, np.newaxis]), axis=1)
-    return nodes, v[:-1], v[1:]
+    """Return the jerks of all nodes, (N, n + 1, J)."""
+    return np.concatenate((m.j[:-1, np.newaxis], m.inner, m.j[1:, np.newaxis]), axis=1)

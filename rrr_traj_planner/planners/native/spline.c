@@ -1,0 +1,144 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* Motions of piecewise linear jerk: their states, and steps after which they meet the via points
+ * again. */
+#include "timing_problem.h"
+
+/* The jerk at node i of segment k. */
+static double node(int J, int n, Variables m, int k, int i, int j)
+{
+    return i == 0 ? m.j[k * J + j] : i == n ? m.j[(k + 1) * J + j]
+        : m.inner[((size_t)k * (n - 1) + i - 1) * J + j];
+}
+
+static State via_state(int J, const double *points, Variables m, int k, int j)
+{
+    const int at = k * J + j;
+    return (State){points[at], m.v[at], m.a[at], m.j[at]};
+}
+
+static void put(double *to, int J, State s)
+{
+    to[0] = s.q, to[J] = s.v, to[2 * J] = s.a, to[3 * J] = s.j;
+}
+
+void motion_samples(int J, int N, int n, const double *parts, const double *points, Variables m,
+                    Samples at, double *z)
+{
+    const int per = at.per_interval, first = at.nodes_first;
+    const size_t Z = 4 * (size_t)J, step = Z * (first ? 1 : per);  /* from node to node */
+    for (int k = 0; k < N; ++k, parts += n, z += ((size_t)n * per + 1) * Z)
+        for (int j = 0; j < J; ++j) {
+            State s = via_state(J, points, m, k, j);
+            for (int i = 0; i <= n; ++i) {
+                put(z + i * step + j, J, s);
+                if (i == n)
+                    break;
+                const double h = parts[i] * m.T[k], u = node(J, n, m, k, i + 1, j);
+                double *to = z
+                    + (first ? n + 1 + (size_t)i * (per - 1) : (size_t)i * per + 1) * Z + j;
+                for (int r = 1; r < per; ++r, to += Z)
+                    put(to, J, advanced(s, u, h, (double)r / per));
+                s = advanced(s, u, h, 1.0);
+            }
+        }
+}
+
+/* For solver/splines.py. */
+EXPORTED void spline_sample(int32_t J, int32_t N, int32_t n, const double *parts,
+                            const double *points, double *variables, int32_t per_interval,
+                            int32_t nodes_first, double *z)
+{
+    motion_samples(J, N, n, parts, points, variables_of(J, N, n, variables),
+                   (Samples){per_interval, nodes_first}, z);
+}
+
+void motion_states(const Problem *p, Variables m, double *z)
+{
+    motion_samples(p->J, p->N, p->n, p->parts, p->points, m, (Samples){2, 1}, z);
+}
+
+void meet_points(int J, int N, int n, const double *parts, const double *points,
+                 const double *shapes, Variables m)
+{
+    for (int k = 0; k < N; ++k, parts += n, shapes += (size_t)(n - 1) * ORDERS) {
+        const double T = m.T[k], to_v = T * T, to_q = to_v * T;
+        for (int j = 0; j < J; ++j) {
+            State s = via_state(J, points, m, k, j);
+            const State end = via_state(J, points, m, k + 1, j);
+            for (int i = 0; i < n; ++i)
+                s = advanced(s, node(J, n, m, k, i + 1, j), parts[i] * T, 1.0);
+            const double by[ORDERS] = {
+                (end.a - s.a) / T, (end.v - s.v) / to_v, (end.q - s.q) / to_q};
+            for (int i = 0; i < n - 1; ++i)
+                for (int o = 0; o < ORDERS; ++o)
+                    m.inner[((size_t)k * (n - 1) + i) * J + j] += shapes[ORDERS * i + o] * by[o];
+        }
+    }
+}
+
+/* For solver/splines.py. */
+EXPORTED void spline_meet_points(int32_t J, int32_t N, int32_t n, const double *parts,
+                                 const double *points, const double *shapes, double *variables)
+{
+    meet_points(J, N, n, parts, points, shapes, variables_of(J, N, n, variables));
+}
+
+/* Take a step of the values of order o (1: velocities, ...) at a via point, where time is scaled
+ * at a rate: fixed ones do not change. */
+static void step_via(const Problem *p, int k, int o, const double *from, const double *step,
+                     double size, double rate, double *to)
+{
+    const uint8_t *fixed = p->fixed + ((size_t)k * ORDERS + o - 1) * p->J;
+    double slower = 1.0;
+    for (int i = 0; i < o; ++i)
+        slower *= 1.0 + size * rate;
+    for (int j = 0; j < p->J; ++j) {
+        const int i = k * p->J + j;
+        to[i] = fixed[j] ? from[i] : (from[i] + size * (step[i] + o * rate * from[i])) / slower;
+    }
+}
+
+/* Take a step of the variables in normalised time: velocities times T, accelerations times T^2 and
+ * jerks times T^3 change linearly with its size. Returns 0 where a duration would not be positive.
+ */
+int step_motion(const Problem *p, Variables m, Variables step, double size, Variables moved)
+{
+    const int J = p->J, n = p->n, N = p->N;
+    for (int k = 0; k < N; ++k) {
+        moved.T[k] = m.T[k] + size * step.T[k];
+        if (!(moved.T[k] > 0.0))
+            return 0;
+    }
+    for (int k = 0; k < N; ++k) {
+        const double rate = step.T[k] / m.T[k], slower = 1.0 + size * rate;
+        for (size_t i = (size_t)k * (n - 1) * J; i < (size_t)(k + 1) * (n - 1) * J; ++i)
+            moved.inner[i] = (m.inner[i] + size * (step.inner[i] + 3.0 * rate * m.inner[i]))
+                / (slower * slower * slower);
+    }
+    for (int k = 0; k <= N; ++k) {
+        /* time scale at a via point: mean of both segments', the shorter one's counting more */
+        const int before = k > 0 ? k - 1 : 0, after = k < N ? k : N - 1;
+        const double one = m.T[before] * m.T[before] * m.T[before];
+        const double other = m.T[after] * m.T[after] * m.T[after];
+        const double rate = (step.T[before] / m.T[before] * other
+                             + step.T[after] / m.T[after] * one) / (one + other);
+        step_via(p, k, 1, m.v, step.v, size, rate, moved.v);
+        step_via(p, k, 2, m.a, step.a, size, rate, moved.a);
+        step_via(p, k, 3, m.j, step.j, size, rate, moved.j);
+    }
+    meet_points(J, N, n, p->parts, p->points, p->restore, moved);
+    return 1;
+}
