@@ -17,14 +17,17 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 
 from limit import limit_of
 from measuring import compared, Row, setting, table
 import numpy as np
 from peers import ruckig_duration, toppra_duration
 from rrr_traj_planner.core.errors import RrrPlannerError
+from rrr_traj_planner.planners.joint_timing.moving_start import limits_of_moving_start
 from rrr_traj_planner.planners.planning import plan
-from tasks import full_torque, gentle, random_tasks, Task, thesis_tasks, WEAK
+from rrr_traj_planner.planners.tasks import JointTask, StartRates
+from tasks import full_torque, gentle, random_task, random_tasks, Task, thesis_tasks, WEAK
 
 SEED = 20
 TASKS = 56
@@ -32,8 +35,8 @@ PEER_TASKS = 49
 MOST_SECONDS = (2.22, 2.67, 1.10, 1.60, 0.935)  # on the thesis's tables
 MEDIAN, WORST = 'median', 'worst'
 TARGETS = {  # of random tasks: limits, target of the median, of the worst
-    'v, a, jerk 10': (gentle(), 1.025, 1.05),
-    'v, jerk 100, torque': (full_torque(WEAK), 1.035, 1.06),
+    'v, a, jerk 10': (gentle(), 1.0065, 1.0125),
+    'v, jerk 100, torque': (full_torque(WEAK), 1.013, 1.022),
 }
 
 
@@ -77,7 +80,29 @@ def peers(count: int = PEER_TASKS, seed: int = SEED) -> list[Row]:
                        key=lambda t: t[0] / t[1])
         rows.append(compared(f'{len(chosen)} random tasks, v, a, jerk 10: time_optimal / {name}, '
                              f'{MEDIAN}', target, *times[len(times) // 2], count=len(times)))
+    times = sorted((_moving(seed, k) for k in range(count)), key=lambda t: t[0] / t[1])
+    for name, target, (ours, theirs) in ((MEDIAN, 1.01, times[len(times) // 2]),
+                                         (WORST, 1.03, times[-1])):
+        rows.append(compared(f'{count} random moving starts, jerk 10: time_optimal / Ruckig, '
+                             f'{name}', target, ours, theirs, count=count))
     return rows
+
+
+def _moving(seed: int, k: int) -> tuple[float, float]:
+    """Return our time and Ruckig's from a random state of a planned motion to a target."""
+    rng = np.random.default_rng((seed, k))
+    task, other = (random_task(rng, gentle(), 2, f'{seed}/{k}') for _ in range(2))
+    before = plan(task.model, task.limits, task.asked_of('time_optimal')).trajectory
+    q, *rates, _ = (f[0] for f in before(rng.uniform(0.0, before.duration, 1)))
+    request = replace(
+        other.asked_of('time_optimal'), via_points=other.request.via_points[:1], start=q,
+        start_velocity=rates[0], start_acceleration=rates[1], elbow=None, shoulder=None)
+    answer = plan(task.model, task.limits, request)
+    limits = limits_of_moving_start(task.model, task.limits, q, StartRates(*rates))
+    target = answer.points.positions[-1]
+    return answer.trajectory.duration, ruckig_duration(JointTask(
+        task.model, limits, np.stack((q, target)), None, request.sample_period,
+        start_rates=StartRates(*rates)))
 
 
 def _own(task: Task) -> float:

@@ -56,6 +56,9 @@ def toppra_duration(task: JointTask) -> float:
 def ruckig_duration(task: JointTask) -> float:
     """Return how long Ruckig's motion from the first via point to the last takes [s]."""
     limits, requested = task.limits, ruckig.InputParameter(3)
+    if task.start_rates is not None:
+        requested.current_velocity = task.start_rates.velocity.tolist()
+        requested.current_acceleration = task.start_rates.acceleration.tolist()
     requested.current_position, requested.target_position = task.points[0].tolist(), task.points[
         -1].tolist()
     requested.max_velocity = limits.max_velocity.tolist()

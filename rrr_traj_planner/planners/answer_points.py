@@ -106,7 +106,8 @@ def answer_points(problem: PlanningProblem, trajectory: Trajectory) -> AnswerPoi
         if factor <= 1.0:
             return AnswerPoints(trajectory, points, excess.effort, time_scale, _note(
                 problem, excess.jerk.max(axis=0), time_scale))
-        cannot_be_slower = request.segment_durations is not None or np.isinf(
+        given = request.segment_durations is not None or request.start_rates is not None
+        cannot_be_slower = given or np.isinf(
             time_scale_for_torque(problem.model, problem.limits, trajectory).value).any()
         if cannot_be_slower or np.isinf(factor):
             if min_spacing == closest:
@@ -151,7 +152,7 @@ def _refined(problem: PlanningProblem, trajectory: Trajectory, min_spacing: floa
     """
     request, model, limits = problem.request, problem.model, problem.limits
     times = sample_times(trajectory, request.sample_period, request.max_points)
-    points = points_at(trajectory, times)
+    points = points_at(trajectory, times, from_rest=request.start_rates is None)
     request.should_stop()
     spline = spline_through(points)
     found = checked_intervals(model, limits, spline, request.should_stop)

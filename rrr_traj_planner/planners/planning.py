@@ -105,18 +105,23 @@ def plan(model: RobotModel, limits: JointLimits, request: PlanningRequest) -> Pl
         else:
             answer = _planned_joints(method, problem)
     return answer if problem.start is None else _with_exact_start(
-        problem.start, answer, request.planner_id)
+        problem.start, answer, request)
 
 
-def _with_exact_start(start: Array, answer: Plan, planner_id: str) -> Plan:
+def _with_exact_start(start: Array, answer: Plan, request: PlanningRequest) -> Plan:
     """Return a plan with the start state as its first point, to the last bit."""
-    positions = answer.points.positions.copy()
+    points, planner_id = answer.points, request.planner_id
+    positions, velocities, accelerations = (
+        f.copy() for f in (points.positions, points.velocities, points.accelerations))
     if np.abs(positions[0] - start).max() > JOINT_ROUNDING:
         raise ConvergenceError(
             f'planner {planner_id} began at {positions[0].tolist()} rad, not at the start state '
             f'{start.tolist()} rad')
     positions[0] = start
-    return replace(answer, points=replace(answer.points, positions=positions))
+    if request.start_rates is not None:
+        velocities[0], accelerations[0] = request.start_rates
+    return replace(answer, points=replace(points, positions=positions, velocities=velocities,
+                                          accelerations=accelerations))
 
 
 def _planned_joints(method: Registered, problem: PlanningProblem) -> Plan:
@@ -153,13 +158,16 @@ def _plan_through(method: Registered, problem: PlanningProblem, q: Array) -> Pla
     if durations is not None:  # where a stay is prescribed, a point counts twice
         same &= np.isnan(durations)
         durations = None if np.isnan(durations[~same]).all() else durations[~same]
+    rates = request.start_rates
+    if rates is not None and same.all():  # it comes back
+        same[-1] = False
     distinct = q[np.concatenate(([True], ~same))]
     if len(distinct) == 1:
         return _rest(problem, q)
     assert method.plan is not None
     trajectory = method.plan(JointTask(
         model, limits, distinct, durations, _spacing(request), np.flatnonzero(~same),
-        request.should_stop, request.half_transition, request.least_jerk_rise))
+        request.should_stop, request.half_transition, request.least_jerk_rise, rates))
     answer = _checked(problem, trajectory, _via_times(request, trajectory, same))
     return _with_miss_note(model, answer, q) if method.misses_via_points else answer
 

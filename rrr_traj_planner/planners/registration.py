@@ -36,6 +36,7 @@ class Registered(NamedTuple):
     misses_via_points: bool = False  # whether it blends around via points instead of reaching them
     passing: ViaPointBehaviour = THROUGH  # at via points, for the choice of whole turns
     needs_acceleration_limit: bool = True  # of a joint that has an effort limit too
+    starts_moving: bool = False  # whether a motion may start from any state, else from rest
 
 
 REGISTERED: dict[str, Registered] = {}  # by id
@@ -43,7 +44,8 @@ REGISTERED: dict[str, Registered] = {}  # by id
 
 def register(planner_id: str, some_durations: bool = False,
              misses_via_points: bool = False, passing: ViaPointBehaviour = THROUGH,
-             needs_acceleration_limit: bool = True) -> Callable[[JointPlanner], JointPlanner]:
+             needs_acceleration_limit: bool = True, starts_moving: bool = False,
+             ) -> Callable[[JointPlanner], JointPlanner]:
     """
     Return a decorator that makes a function the planner of an id.
 
@@ -60,6 +62,8 @@ def register(planner_id: str, some_durations: bool = False,
         How it passes via points, for the estimate of time by which whole turns are chosen.
     needs_acceleration_limit : bool
         Whether every joint needs an acceleration limit; else an effort limit does as well.
+    starts_moving : bool
+        Whether a motion may start from any state; else it starts from rest.
 
     Returns
     -------
@@ -70,7 +74,7 @@ def register(planner_id: str, some_durations: bool = False,
     def remember(planner: JointPlanner) -> JointPlanner:
         REGISTERED[planner_id] = Registered(
             planner, some_durations, misses_via_points=misses_via_points, passing=passing,
-            needs_acceleration_limit=needs_acceleration_limit)
+            needs_acceleration_limit=needs_acceleration_limit, starts_moving=starts_moving)
         return planner
 
     return remember

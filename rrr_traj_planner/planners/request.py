@@ -38,7 +38,7 @@ from rrr_traj_planner.core.scalars import (
     whole_number,
 )
 from rrr_traj_planner.core.trajectory.sampling import check_size, MOST_POINTS, NANOSECOND
-from rrr_traj_planner.planners.tasks import LEAST_JERK_RISE, T_ACC
+from rrr_traj_planner.planners.tasks import LEAST_JERK_RISE, StartRates, T_ACC
 
 # The check of each field that is not an array: a function of its name and its value.
 CHECKS: dict[str, Callable[[str, Any], Any]] = {
@@ -62,7 +62,7 @@ class PlanningRequest(ReadOnlyArrays):
     via_points : array_like, shape (n, 3)
         Tip positions in the base frame [m]; at least two, or one with a start.
     start : array_like, shape (3,), optional
-        Joint positions [rad] where the motion starts, at rest; None: at the first via point.
+        Joint positions [rad] where the motion starts; None: at the first via point.
     planner_id : str
         The method.
     segment_durations : array_like, optional
@@ -96,6 +96,8 @@ class PlanningRequest(ReadOnlyArrays):
     start_state_tolerance : float
         Distance by which the start may be outside a joint's range [rad]: the motion then starts
         at the end of the range.
+    start_velocity, start_acceleration : array_like, shape (3,), optional
+        With which the motion starts [rad/s], [rad/s^2]; None: zero.
 
     Raises
     ------
@@ -121,13 +123,18 @@ class PlanningRequest(ReadOnlyArrays):
     should_stop: ShouldStop = never
     max_points: int = MOST_POINTS
     start_state_tolerance: float = JOINT_ROUNDING
+    start_velocity: Array | None = None
+    start_acceleration: Array | None = None
 
     def __post_init__(self) -> None:
         """Check every value and make the arrays read-only."""
         points = finite_array('via_points', self.via_points, (-1, 3))
         object.__setattr__(self, 'via_points', points)
-        if self.start is not None:
-            object.__setattr__(self, 'start', finite_array('start', self.start, (3,)))
+        for name in ('start', 'start_velocity', 'start_acceleration'):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, finite_array(name, getattr(self, name), (3,)))
+        if self.start is None and self.start_rates is not None:
+            raise InvalidInputError('start_velocity and start_acceleration need a start')
         needed = 2 if self.start is None else 1
         if len(points) < needed:
             raise InvalidInputError(
@@ -164,3 +171,10 @@ class PlanningRequest(ReadOnlyArrays):
     def segments(self) -> int:
         """Return the number of segments: between via points, and from the start to the first."""
         return len(self.via_points) - (self.start is None)
+
+    @property
+    def start_rates(self) -> StartRates | None:
+        """Return how the joints move at the start, None if they rest."""
+        rates = StartRates(*(np.zeros(3) if f is None else f
+                             for f in (self.start_velocity, self.start_acceleration)))
+        return rates if any(f.any() for f in rates) else None

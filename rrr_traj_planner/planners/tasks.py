@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
@@ -26,6 +27,13 @@ from rrr_traj_planner.core.read_only import ReadOnlyArrays
 
 T_ACC = 0.5  # s, half the length of a transition of 4-1-4 (table 6.2)
 LEAST_JERK_RISE = 0.02  # s, in which jerk may go from zero to its limit; chosen: two samples
+
+
+class StartRates(NamedTuple):
+    """How the joints move where a motion starts."""
+
+    velocity: Array      # [rad/s], (3,)
+    acceleration: Array  # [rad/s^2], (3,)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +63,8 @@ class JointTask(ReadOnlyArrays):
         Half the length of the transitions of 4-1-4, as in `PlanningRequest` [s].
     least_jerk_rise : float
         As in `PlanningRequest` [s].
+    start_rates : StartRates, optional
+        Of a motion that starts moving; None: at rest.
 
     """
 
@@ -67,6 +77,7 @@ class JointTask(ReadOnlyArrays):
     should_stop: ShouldStop = never
     half_transition: float = T_ACC
     least_jerk_rise: float = LEAST_JERK_RISE
+    start_rates: StartRates | None = None
 
     def segment_number(self, segment: int) -> int:
         """

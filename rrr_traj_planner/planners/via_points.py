@@ -81,7 +81,7 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
 
 
 def check_start(model: RobotModel, limits: JointLimits, start: Array,
-                tolerance: float = JOINT_ROUNDING) -> Array:
+                tolerance: float = JOINT_ROUNDING, rests: bool = True) -> Array:
     """
     Return a start state, checked.
 
@@ -96,6 +96,8 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
     tolerance : float
         Start state tolerance, for measurement noise: by how much a joint may be outside its
         range [rad].
+    rests : bool
+        Whether the arm must be able to rest there.
 
     Returns
     -------
@@ -121,7 +123,7 @@ def check_start(model: RobotModel, limits: JointLimits, start: Array,
                               f'{lowest} to {highest} rad{allowed}{hint}')
     start = np.clip(start, low, high)
     failure = holding_failure(model, limits, start[np.newaxis], ['start state'])
-    if failure is not None:
+    if rests and failure is not None:
         raise StartStateError(str(failure))
     return start
 

@@ -101,7 +101,8 @@ def sample(trajectory: Trajectory, period: float,
     return points_at(trajectory, sample_times(trajectory, period, most_points))
 
 
-def points_at(trajectory: Trajectory, times: SampleTimes) -> TrajectoryPoints:
+def points_at(trajectory: Trajectory, times: SampleTimes,
+              from_rest: bool = True) -> TrajectoryPoints:
     """
     Return the states of a motion as points.
 
@@ -111,16 +112,18 @@ def points_at(trajectory: Trajectory, times: SampleTimes) -> TrajectoryPoints:
         The motion.
     times : SampleTimes
         Sampling times, from start to end.
+    from_rest : bool
+        Whether the motion starts at rest.
 
     Returns
     -------
     TrajectoryPoints
-        Times in whole nanoseconds; the first and the last point exactly at rest.
+        Times in whole nanoseconds; the last point exactly at rest, the first one from rest.
 
     """
     q, qd, qdd, _ = trajectory(times.exact)
     for derivative in (qd, qdd):
-        derivative[[0, -1]] = 0.0
+        derivative[[0, -1] if from_rest else -1] = 0.0
     return TrajectoryPoints(times.stamps * NANOSECOND, q, qd, qdd)
 
 

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from math import inf, isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
@@ -35,7 +35,6 @@ from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.error_names import named
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
-from sensor_msgs.msg import JointState
 
 # Range of sample_period [s]: no controller can use points closer together or further apart.
 MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD = 1e-4, 10.0
@@ -44,7 +43,11 @@ MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD = 1e-4, 10.0
 MIN_DEVIATION, MAX_DEVIATION = 1e-6, 100.0
 
 # Arguments of `PlanningRequest` with other names in the service or the node's parameters.
-FIELDS = {'start': 'start_state', 'velocity_scaling': 'max_velocity_scaling_factor',
+# rad/s^2, up to which an arm that does not move is at rest: rounding. Chosen.
+ACCELERATION_ROUNDING = 1e-6
+
+FIELDS = {'start': 'start_state', 'start_velocity': 'start_state',
+          'velocity_scaling': 'max_velocity_scaling_factor',
           'acceleration_scaling': 'max_acceleration_scaling_factor',
           'half_transition': 'poly_414.t_acc'}
 
@@ -77,7 +80,7 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
     FrameError
         If the via points are not in the base frame.
     StartStateError
-        If the start state is incomplete or moves.
+        If the start state is incomplete or not finite.
     InvalidInputError
         If another field is malformed.
 
@@ -90,10 +93,12 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
             raise InvalidInputError(
                 f'{name} is {quoted(getattr(message, name))}, must be '
                 f"'{choices[0]}', '{choices[1]}' or empty")
+    start = _start(message, config)
     with named(FIELDS):
         return PlanningRequest(
             via_points=_tip_positions(message.via_points.poses),
-            start=_start(message.start_state, config),
+            start=start.position, start_velocity=start.velocity,
+            start_acceleration=start.acceleration,
             planner_id=message.planner_id or config.default_planner_id,
             segment_durations=np.array(message.segment_durations) if len(
                 message.segment_durations) else None,
@@ -152,31 +157,46 @@ def _at_via_point(error: InvalidInputError, via_point: int) -> InvalidInputError
     return error
 
 
-def _start(state: JointState, config: PlannerConfig) -> Array | None:
-    """Return the start state's joint positions in the model's order, None if it is empty."""
-    model, tolerance = config.model, config.start_state_tolerance
-    names, position, velocity = list(state.name), list(state.position), list(state.velocity)
-    if not (names or position or velocity):
-        return None
+class _StartState(NamedTuple):
+    """Joint positions in the model's order, and how they change where the arm moves."""
+
+    position: Array | None = None      # [rad]
+    velocity: Array | None = None      # [rad/s]
+    acceleration: Array | None = None  # [rad/s^2]
+
+
+def _start(message: PlanTrajectory.Request, config: PlannerConfig) -> _StartState:
+    """Return the start state; without velocity and acceleration where the arm rests."""
+    model, state = config.model, message.start_state
+    names, given = list(state.name), {
+        'position': list(state.position), 'velocity': list(state.velocity),
+        'acceleration': list(message.start_acceleration)}
+    if not (names or given['position'] or given['velocity']):
+        if given['acceleration']:
+            raise StartStateError('start_acceleration is given without a start_state')
+        return _StartState()
     for name in model.joint_names:
         if names.count(name) != 1:
             raise StartStateError(f'start state names {name} {names.count(name)} times, must '
                                   f"name each of {', '.join(model.joint_names)} once")
-    if len(position) != len(names) or len(velocity) not in (0, len(names)):
+    if len(given['position']) != len(names) or len(given['velocity']) not in (0, len(names)):
         raise StartStateError(
             f'start state has {counted(len(names), "name")}, '
-            f'{counted(len(position), "position")} and '
-            f'{counted(len(velocity), "velocity", "velocities")}, must have a position '
+            f'{counted(len(given["position"]), "position")} and '
+            f'{counted(len(given["velocity"]), "velocity", "velocities")}, must have a position '
             'for each name, and a velocity for each or none')
+    if len(given['acceleration']) not in (0, len(names)):
+        raise StartStateError(
+            f'start_acceleration has {counted(len(given["acceleration"]), "value")}, must have '
+            f'one for each of the {counted(len(names), "name")} in start_state, or none')
     order = [names.index(n) for n in model.joint_names]
-    q = [position[i] for i in order]
-    qd = [velocity[i] for i in order] if velocity else [0.0] * len(order)
-    for name, x, v in zip(model.joint_names, q, qd):
-        if not isfinite(x):
-            raise StartStateError(f'start state: {name} is at {x:g} rad, must be finite')
-        if not abs(v) <= tolerance:
-            _, most, speed = format_distinct(abs(v), tolerance, v)
-            raise StartStateError(
-                f'start state: {name} moves at {speed} rad/s, must be at rest (no faster than '
-                f'start_state_tolerance, {most} rad/s)')
-    return np.array(q)
+    q, qd, qdd = (np.array([f[i] for i in order] if f else [0.0] * len(order))
+                  for f in given.values())
+    for what, values, unit in (('is at', q, 'rad'), ('moves at', qd, 'rad/s'),
+                               ('accelerates with', qdd, 'rad/s^2')):
+        for name, x in zip(model.joint_names, values):
+            if not isfinite(x):
+                raise StartStateError(f'start state: {name} {what} {x:g} {unit}, must be finite')
+    rests = (np.abs(qd) <= config.start_state_tolerance).all() and (
+        np.abs(qdd) <= ACCELERATION_ROUNDING).all()
+    return _StartState(q) if rests else _StartState(q, qd, qdd)

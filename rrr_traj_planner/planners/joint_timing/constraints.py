@@ -24,7 +24,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.planners.effort_limits import effort_less_friction
-from rrr_traj_planner.planners.solver.limits import FAR, Limits
+from rrr_traj_planner.planners.solver.limits import DurationConstraints, FAR, Limits
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 
@@ -67,6 +67,8 @@ class JointConstraints:
     stays : ndarray of bool, shape (N - 1, 3, 3), optional
         Which of velocity, acceleration and jerk are zero at the via points, for each joint. Where
         velocity alone is, the joint is near an end of its range, and accelerates away from it.
+    starts_moving : bool
+        Whether jerk at the start is unknown; else it is zero.
 
     Attributes
     ----------
@@ -81,12 +83,14 @@ class JointConstraints:
     def __init__(self, model: RobotModel, limits: JointLimits, mesh: Mesh, points: Array,
                  margins: Array, velocity_margins: Array, acceleration_margins: Array,
                  effort_margins: Array, least_T: Array | None = None,
-                 workspace: Workspace | None = None, stays: BoolArray | None = None) -> None:
+                 workspace: Workspace | None = None, stays: BoolArray | None = None,
+                 starts_moving: bool = False) -> None:
         self.mesh, self.points, self.limits, self.least_T = mesh, points, limits, least_T
         self.with_torque = bool(np.isfinite(limits.max_effort).any())
         effort = effort_less_friction(model, limits)
         self.effort = (np.minimum(effort, FAR) - effort_margins)[:, 1:]
         self._workspace, self._stays = workspace, stays
+        self._first_jerk = 0 if starts_moving else 1
         self._model, self._margins = model, margins
         self._velocity_margins, self._acceleration_margins = velocity_margins, acceleration_margins
 
@@ -121,6 +125,48 @@ class JointConstraints:
         stays = self._stays is None or not via[self._stays].any()
         return stays and self.problem.is_within(motion)
 
+    def staying(self, motion: Variables) -> Variables:
+        """
+        Return a motion on which joints that are to stay at a via point do.
+
+        Parameters
+        ----------
+        motion : Variables
+            On this mesh.
+
+        Returns
+        -------
+        Variables
+            The same where none is to; else it may exceed other constraints.
+
+        """
+        if self._stays is None or not self._stays.any():
+            return motion
+        via = np.stack((motion.v, motion.a, motion.j), axis=1)
+        via[1:-1][self._stays] = 0.0
+        v, a, j = np.moveaxis(via, 1, 0)
+        return self.mesh.restored(self.points, motion._replace(v=v, a=a, j=j))
+
+    def fixing(self, durations: DurationConstraints) -> DurationConstraints:
+        """
+        Return what is fixed in a problem, and where joints are to stay at via points.
+
+        Parameters
+        ----------
+        durations : DurationConstraints
+            Of the problem.
+
+        Returns
+        -------
+        DurationConstraints
+            For the solver.
+
+        """
+        fixed = durations.fixed.copy()
+        if self._stays is not None:
+            fixed[1:-1] |= self._stays
+        return durations._replace(fixed=fixed)
+
     def _bounds(self) -> tuple[Array, Array, BoolArray]:
         """Return lower and upper bounds on states (N, P, 12), and which are limited (P, 12)."""
         limits, n, N = self.limits, self.mesh.n, len(self.points) - 1
@@ -134,7 +180,7 @@ class JointConstraints:
                  limits.max_position + EDGE - above),
                 (1, np.arange(1, 2 * n + 1), -fastest, fastest),
                 (2, np.arange(1, 2 * n + 1), -hardest, hardest),
-                (3, np.arange(1, n + 1), -limits.max_jerk, limits.max_jerk)):
+                (3, np.arange(self._first_jerk, n + 1), -limits.max_jerk, limits.max_jerk)):
             bounds[0][:, points, column] = np.maximum(lowest, -FAR)
             bounds[1][:, points, column] = np.minimum(highest, FAR)
             bounded[points, column] = np.isfinite(highest).any() or np.isfinite(lowest).any()

@@ -20,13 +20,21 @@ from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.planners.joint_timing.from_motion import (
+    after_a_stop,
+    from_motion,
+)
 from rrr_traj_planner.planners.joint_timing.meshing import meshed
-from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
+from rrr_traj_planner.planners.joint_timing.problem import (
+    InitialMotion,
+    JointProblem,
+    Solved,
+)
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
 from rrr_traj_planner.planners.joint_timing.tightening import SCHEDULE, tightened
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
-from rrr_traj_planner.planners.solver.refinement import moved
+from rrr_traj_planner.planners.solver.refinement import halved, moved
 from rrr_traj_planner.planners.solver.splines import Mesh, time_scaled
 from rrr_traj_planner.planners.tasks import JointTask
 
@@ -59,24 +67,37 @@ def fastest(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> Solved
 
     """
     durations = DurationConstraints.all_free(len(task.points) - 1, 3)
-    whole = JointProblem(task, mesh, durations, least_T)
+    if task.start_rates is None:
+        return _fastest(JointProblem(task, mesh, durations, least_T), rest_to_rest)
+    durations = durations.from_motion()
+    for own in (mesh, halved(mesh)):
+        found = _fastest(JointProblem(task, own, durations, least_T), from_motion(durations))
+        if found is not None:
+            return found
+    return after_a_stop(task, lambda from_rest: fastest(from_rest, mesh, least_T))
+
+
+def _fastest(whole: JointProblem, start: InitialMotion) -> Solved | None:
+    task = whole.task
     if np.isfinite(task.limits.max_acceleration).all():
         without_torque = replace(whole, task=replace(
             task, limits=replace(task.limits, max_effort=np.full(3, np.inf))))
-        without_torque, initial_motion = meshed(without_torque, rest_to_rest)
+        without_torque, first = meshed(without_torque, start)
         whole = replace(whole, mesh=without_torque.mesh)
-        found = tightened(without_torque, initial_motion, rest_to_rest)
+        found = tightened(without_torque, first, start)
         task.should_stop()
         if found is not None and torque_fits(task, found.trajectory):
             better = _refined(without_torque, found)
             return better if torque_fits(task, better.trajectory) else _refined(whole, found)
-    whole, initial_motion = meshed(whole, rest_to_rest)
-    found = tightened(whole, initial_motion, rest_to_rest)
+    whole, first = meshed(whole, start)
+    found = tightened(whole, first, start)
     return None if found is None else _refined(whole, found)
 
 
 def _refined(problem: JointProblem, solved: Solved) -> Solved:
     """Return the best motion of repeated solutions, each from the best so far, until converged."""
+    if not problem.durations.may_scale:
+        return solved
     tries = [(slower, False) for slower in SLOWER] + [(SLOWER[0], True)]
     for _ in range(8):  # restarts, at most
         if not tries or solved.gap < POOR * solved.cost or problem.task.should_stop():
@@ -97,7 +118,7 @@ def _solved_from(problem: JointProblem, solved: Solved, slower: float,
     ends of ranges, and between via points that are close together. On a finer mesh, of twice as
     many intervals, less can be exceeded between the points.
     """
-    mesh = Mesh(np.repeat(0.5 * solved.mesh.parts, 2, axis=1)) if finer else solved.mesh
+    mesh = halved(solved.mesh) if finer else solved.mesh
     problem = replace(problem, mesh=mesh)
     factor = (1.0 + slower) * solved.cost / problem.durations.cost(solved.motion.T)
     start = time_scaled(solved.motion, factor)

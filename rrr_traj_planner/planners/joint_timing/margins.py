@@ -117,7 +117,8 @@ class Margins(NamedTuple):
         """
         return self._replace(efforts=np.minimum(self.efforts, self.gravity_margins))
 
-    def widened(self, task: JointTask, mesh: Mesh, slow: Variables, check: JointCheck) -> Margins:
+    def widened(self, task: JointTask, mesh: Mesh, slow: Variables | None,
+                check: JointCheck) -> Margins:
         """
         Return margins enlarged where a motion exceeds limits.
 
@@ -127,9 +128,9 @@ class Margins(NamedTuple):
             The via points, the arm and its limits.
         mesh : Mesh
             Its n intervals in each segment.
-        slow : Variables
+        slow : Variables, optional
             With stops at the via points; margins of positions are at most half its distance to
-            the ends of the ranges.
+            the ends of the ranges, those of efforts half of what gravity leaves. None: no bound.
         check : JointCheck
             Of a motion that exceeds limits.
 
@@ -139,10 +140,11 @@ class Margins(NamedTuple):
             Unchanged where no limit is exceeded.
 
         """
-        q = mesh.states(task.points, slow).q
+        q = None if slow is None else mesh.states(task.points, slow).q
         positions, stays = self._positions(task, q, check.beyond_range)
-        gravity_margins = (effort_less_friction(task.model, task.limits)
-                           - np.abs(gravity_torque(task.model, q)))
+        gravity_margins = effort_less_friction(task.model, task.limits) - (
+            0.0 if q is None else np.abs(gravity_torque(task.model, q)))
+        gravity_margins = np.broadcast_to(gravity_margins, self.efforts.shape)
         velocity, acceleration, effort = check.excess()
         return Margins(
             positions, np.minimum(self.velocities + LARGER * velocity,
@@ -151,9 +153,11 @@ class Margins(NamedTuple):
                        MOST_MARGIN * task.limits.max_acceleration),
             self.efforts + LARGER * effort, 0.5 * np.maximum(gravity_margins, 0.0), stays)
 
-    def _positions(self, task: JointTask, q: Array, beyond: Array) -> tuple[Array, BoolArray]:
+    def _positions(self, task: JointTask, q: Array | None,
+                   beyond: Array) -> tuple[Array, BoolArray]:
         """Return margins of positions, and which joints stay at via points near a range's end."""
-        distance = np.stack((task.limits.max_position - q, q - task.limits.min_position))
+        distance = np.full((2, 1, 1, 1), np.inf) if q is None else np.stack(
+            (task.limits.max_position - q, q - task.limits.min_position))
         needed = self.positions.max(axis=2) + LARGER * beyond
         target = np.where((beyond > 0.0)[:, :, np.newaxis], needed[:, :, np.newaxis],
                           self.positions)

@@ -21,7 +21,11 @@ from itertools import chain
 
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.margins import Margins
-from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem
+from rrr_traj_planner.planners.joint_timing.problem import (
+    brought_within,
+    InitialMotion,
+    JointProblem,
+)
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint
 from rrr_traj_planner.planners.solver.refinement import moved, refined
 from rrr_traj_planner.planners.solver.splines import time_scaled, Variables
@@ -32,7 +36,6 @@ from rrr_traj_planner.planners.tasks import JointTask
 REFINEMENTS = 2
 ROUGH_GAP = 0.1  # of the solutions before them, as a part of the objective
 SLOWER = (1.003, 1.01, 1.02, 1.04, 1.08, 1.16, 1.3, 1.6)  # factors on all durations, tried in turn
-EXCEEDED = 0.1   # part of a limit by which a motion on a new mesh may exceed it
 
 
 def meshed(problem: JointProblem,
@@ -64,7 +67,7 @@ def meshed(problem: JointProblem,
         if task.should_stop():
             break
         outcome = problem.minimised(
-            constraints, margins, CentralPathPoint(first, None), ROUGH_GAP)
+            constraints, CentralPathPoint(first, None), ROUGH_GAP)
         mesh, motion = refined(problem.mesh, task.points, outcome.motion, task.limits.max_jerk,
                                task.least_jerk_rise)
         remeshed = replace(problem, mesh=mesh)
@@ -73,7 +76,8 @@ def meshed(problem: JointProblem,
         farther = (moved(problem.mesh, mesh, task.points, c.motion)
                    for c in reversed(outcome.centres))  # from limits
         found = (next(filter(constraints.is_within, chain(slower, farther)), None)
-                 or _brought_within(remeshed, constraints, margins, motion))
+                 or brought_within(
+                     constraints, motion, problem.durations, task.should_stop))
         if found is None:
             break
         problem, first = remeshed, found
@@ -82,11 +86,3 @@ def meshed(problem: JointProblem,
         return first if within.is_within(first) else initial_motion(planned, within)
 
     return problem, near_the_fastest
-
-
-def _brought_within(problem: JointProblem, constraints: JointConstraints, margins: Margins,
-                    motion: Variables) -> Variables | None:
-    """Return a motion within constraints near one that exceeds them; None if none is found."""
-    outcome = problem.minimised(constraints, margins, CentralPathPoint(motion, None), ROUGH_GAP,
-                                constraints.problem.limits.widened(EXCEEDED))
-    return outcome.centres[0].motion if outcome.within and outcome.centres else None

@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import ShouldStop
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
@@ -36,10 +37,13 @@ from rrr_traj_planner.planners.solver.interior_point import (
 )
 from rrr_traj_planner.planners.solver.limits import DurationConstraints, Limits
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
-from rrr_traj_planner.planners.solver.timing_problem import Workspace
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 from rrr_traj_planner.planners.tasks import JointTask
 
 # Returns a motion strictly within constraints, to start from, or None.
+# Chosen values.
+WIDER = (0.1, 1.0, 10.0, 100.0)  # parts by which limits are first exceeded, tried in turn
+ROUGH_GAP = 0.3   # as a part of the objective, to which a motion is brought within them
 MOST_TO_RETURN = 40  # iterations from beyond the limits, which usually take two to five; chosen
 
 InitialMotion = Callable[[JointTask, JointConstraints], Variables | None]
@@ -98,9 +102,9 @@ class JointProblem(ReadOnlyArrays):
         return JointConstraints(
             task.model, task.limits, self.mesh, task.points, margins.positions,
             margins.velocities, margins.accelerations, margins.efforts, self.least_T,
-            self._workspace, margins.stays)
+            self._workspace, margins.stays, not self.durations.from_rest)
 
-    def minimised(self, constraints: JointConstraints, margins: Margins, start: CentralPathPoint,
+    def minimised(self, constraints: JointConstraints, start: CentralPathPoint,
                   relative_gap: float = RELATIVE_GAP,
                   wider: Limits | None = None) -> Outcome:
         """
@@ -109,9 +113,7 @@ class JointProblem(ReadOnlyArrays):
         Parameters
         ----------
         constraints : JointConstraints
-            With these margins.
-        margins : Margins
-            For the joints that rest at a via point.
+            Of this problem.
         start : CentralPathPoint
             Strictly within the constraints, or within the wider limits.
         relative_gap : float
@@ -125,9 +127,7 @@ class JointProblem(ReadOnlyArrays):
             See `interior_point.minimise`.
 
         """
-        fixed = self.durations.fixed.copy()
-        fixed[1:-1] |= margins.stays
-        return minimise(constraints.problem, start, self.durations._replace(fixed=fixed),
+        return minimise(constraints.problem, start, constraints.fixing(self.durations),
                         self.task.should_stop, relative_gap=relative_gap, wider=wider,
                         most_iterations=MOST_TO_RETURN if wider else MOST_ITERATIONS)
 
@@ -156,3 +156,40 @@ class JointProblem(ReadOnlyArrays):
         cost = durations.cost(np.diff(trajectory.via_times))
         return Solved(trajectory, motion, self.mesh, cost,
                       outcome.gap + cost - durations.cost(outcome.motion.T))
+
+
+def brought_within(constraints: JointConstraints, motion: Variables,
+                   durations: DurationConstraints, should_stop: ShouldStop) -> Variables | None:
+    """
+    Return a motion strictly within constraints, near one that may exceed them.
+
+    Parameters
+    ----------
+    constraints : JointConstraints
+        The constraints.
+    motion : Variables
+        On their mesh.
+    durations : DurationConstraints
+        Which durations and values at via points may change.
+    should_stop : callable
+        Cancellation callback.
+
+    Returns
+    -------
+    Variables or None
+        None where none is found.
+
+    """
+    if constraints.is_within(motion):
+        return motion
+    motion, problem = constraints.staying(motion), constraints.problem
+    for part in WIDER:
+        wider = problem.limits.widened(part)
+        if TimingProblem(problem.mesh, problem.points, wider).is_within(motion):
+            outcome = minimise(problem, CentralPathPoint(motion, None),
+                               constraints.fixing(durations), should_stop,
+                               relative_gap=ROUGH_GAP, wider=wider)
+            if outcome.within and outcome.centres:
+                return outcome.centres[0].motion
+            break
+    return None

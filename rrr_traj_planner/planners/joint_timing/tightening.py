@@ -31,9 +31,11 @@ from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Ou
 from rrr_traj_planner.planners.solver.limits import Limits
 from rrr_traj_planner.planners.solver.splines import Variables
 from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
 # Chosen values, without unit.
 SCHEDULE = Schedule(rounds=20, tolerance=1e-3, patience=4, growth=2.0)
+EXCEEDED = 30.0  # slacks by which a centre may exceed tighter limits: more take many steps
 PARTS_OF_MARGINS = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)  # tried in turn where the whole is infeasible
 
 
@@ -97,7 +99,7 @@ class _Rounds:
         if self._slow_motion is None:
             self._slow = self._slow or start.motion
         outcome = self._problem.minimised(
-            self._constraints, self._margins, start, wider=wider)
+            self._constraints, start, wider=wider)
         if not outcome.within:
             return None
         self._outcomes.append((outcome, start.motion))
@@ -111,7 +113,8 @@ class _Rounds:
     def accept(self, outcome: Outcome, tolerance: float) -> bool:
         task, durations = self._problem.task, self._problem.durations
         self._check = check = JointCheck(task, self._problem.mesh, outcome.motion)
-        if check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any():
+        within = check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any()
+        if within or not durations.may_scale:  # the check is a little stricter than `fitting`
             task.should_stop()
             fits = self._problem.fitting(outcome, outcome.motion)
             if fits is not None and fits.cost <= (1.0 + tolerance) * durations.cost(
@@ -123,18 +126,21 @@ class _Rounds:
         return self.best is not None
 
     def tighten(self) -> bool:
-        problem, before, wider = self._problem, self._margins, self._constraints.problem.limits
-        if self._slow is None and self._slow_motion is not None:
+        problem, before = self._problem, self._margins
+        if not problem.durations.from_rest:
+            self._slow = None  # there is none
+        elif self._slow is None and self._slow_motion is not None:
             self._slow = self._slow_motion(problem.task, problem.constraints(
                 Margins.none(problem.mesh, len(problem.durations.free))))
-        assert self._slow is not None and self._check is not None
+        assert self._check is not None
+        former = self._constraints
         self._margins = before.widened(problem.task, problem.mesh, self._slow, self._check)
         self._constraints = problem.constraints(self._margins)
         centres = self._outcomes[-1][0].centres
         if np.array_equal(self._margins.stays, before.stays):
             self._centres = self._centres + centres
-            if centres:
-                self._start, self._wider = centres[-1], wider
+            self._start = _near(centres, former.problem, self._constraints.problem)
+            self._wider = former.problem.limits
         else:  # the solution is not near the former one
             self._centres = []
         return bool(self._centres) or not self._margins.is_same(before)
@@ -154,6 +160,16 @@ class _Rounds:
                 if fits is not None and (best is None or fits.cost < best.cost):
                     best = fits
         return best
+
+
+def _near(centres: list[CentralPathPoint], former: TimingProblem,
+          tighter: TimingProblem) -> CentralPathPoint | None:
+    """Return the last centre that exceeds tighter limits by little, over its former slacks."""
+    for centre in reversed(centres):
+        slacks, before = (problem.slacks(centre.motion) for problem in (tighter, former))
+        if (slacks >= -EXCEEDED * before).all():
+            return centre
+    return centres[0] if centres else None
 
 
 def _start_from_rest(problem: JointProblem, margins: Margins, initial_motion: InitialMotion,

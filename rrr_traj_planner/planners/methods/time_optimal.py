@@ -48,7 +48,7 @@ MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps are abo
 
 
 @register('time_optimal', some_durations=True, needs_acceleration_limit=False,
-          passing=ViaPointBehaviour(mean_acceleration=MEAN_ACCELERATION))
+          starts_moving=True, passing=ViaPointBehaviour(mean_acceleration=MEAN_ACCELERATION))
 def plan(task: JointTask) -> Trajectory:
     """
     Return the fastest motion, or that of prescribed durations and least peak acceleration.

@@ -104,6 +104,7 @@ class DurationConstraints(NamedTuple):
     proportions: Array  # (N,), 0 where free or fixed
     weights: Array      # (N,), in the objective
     fixed: BoolArray    # (N + 1, 3, J), which velocities, accelerations and jerks do not change
+    from_rest: bool = True  # whether the motion begins at rest; else it cannot be scaled in time
 
     @classmethod
     def all_free(cls, segments: int, joints: int) -> DurationConstraints:
@@ -124,10 +125,24 @@ class DurationConstraints(NamedTuple):
         return cls(np.ones(segments, bool), np.zeros(segments), np.ones(segments),
                    fixed_ends(segments, joints))
 
+    def from_motion(self) -> DurationConstraints:
+        """
+        Return the same for a motion that begins with given velocities and accelerations.
+
+        Returns
+        -------
+        DurationConstraints
+            With free jerk at the start.
+
+        """
+        fixed = self.fixed.copy()
+        fixed[0, 2] = False
+        return self._replace(fixed=fixed, from_rest=False)
+
     @property
     def may_scale(self) -> bool:
-        """Return whether a motion may be slowed: no duration is fixed."""
-        return bool((self.free | (self.proportions > 0.0)).all())
+        """Return whether a motion may be slowed: it begins at rest, and no duration is fixed."""
+        return self.from_rest and bool((self.free | (self.proportions > 0.0)).all())
 
     def cost(self, T: Array) -> float:
         """

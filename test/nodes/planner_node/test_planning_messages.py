@@ -17,6 +17,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import nan
+import re
 
 from builtin_interfaces.msg import Time
 from helpers.plan_requests import NAMES, plan_request, points_of, stamps, START, TABLE_6_1
@@ -87,24 +89,47 @@ def test_start_is_brought_into_the_arm_s_order(config):
     assert request.start.tolist() == [0.1, 0.2, 0.3]
 
 
-def test_start_at_rest_within_noise_and_no_faster(config):
-    def start(speed):
-        return plan_request(start={'position': START, 'velocity': [0.0, speed, 0.0]})
+def moving(*velocity, **more):
+    return plan_request(start={'position': START, 'velocity': list(velocity)}, **more)
 
-    assert planning_request(start(-0.01), config).start is not None
-    with pytest.raises(StartStateError, match='joint_2 moves at -0.011 rad/s, must be at rest '):
-        planning_request(start(-0.011), config)
+
+def test_start_at_rest_within_noise_and_no_faster(config):
+    assert planning_request(moving(0.0, -0.01, 0.0), config).start_rates is None
+    found = planning_request(moving(0.0, -0.011, 0.002), config).start_rates
+    assert found.velocity.tolist() == [0.0, -0.011, 0.002]
+    assert found.acceleration.tolist() == [0.0] * 3
+    loose = replace(config, start_state_tolerance=0.2)
+    assert planning_request(moving(0.0, -0.2, 0.0), loose).start_rates is None
+
+
+def test_start_accelerations_are_brought_into_the_arm_s_order(config):
+    found = planning_request(plan_request(
+        start={'name': [NAMES[2], 'tool', NAMES[0], NAMES[1]], 'position': [0.3, 9.0, 0.1, 0.2]},
+        start_acceleration=[3.0, 9.0, 1.0, 2.0]), config).start_rates
+    assert found.velocity.tolist() == [0.0] * 3  # it reverses
+    assert found.acceleration.tolist() == [1.0, 2.0, 3.0]
 
 
 def test_speed_slightly_above_the_tolerance_is_shown_with_enough_digits(config):
     with pytest.raises(StartStateError, match=(
             r'^start state: joint_2 moves at -0\.0100000001 rad/s, must be at rest \(no faster '
-            r'than start_state_tolerance, 0\.01 rad/s\)$')):
-        planning_request(plan_request(
-            start={'position': START, 'velocity': [0.0, -0.0100000001, 0.0]}), config)
-    loose = replace(config, start_state_tolerance=0.2)
-    assert planning_request(plan_request(
-        start={'position': START, 'velocity': [0.0, -0.2, 0.0]}), loose).start is not None
+            r'than start_state_tolerance, 0\.01 rad/s\) for planner cycloid; from any state: '
+            'time_optimal$')):
+        plan(config.model, config.limits,
+             planning_request(moving(0.0, -0.0100000001, 0.0), config))
+
+
+@pytest.mark.parametrize('request_, text', [
+    (plan_request(start_acceleration=[1.0, 0.0, 0.0]),
+     'start_acceleration is given without a start_state'),
+    (moving(0.1, 0.0, 0.0, start_acceleration=[1.0]),
+     'start_acceleration has 1 value, must have one for each of the 3 names in start_state, or '
+     'none'),
+    (moving(0.1, 0.0, 0.0, start_acceleration=[nan, 0.0, 0.0]),
+     'start state: joint_1 accelerates with nan rad/s^2, must be finite')])
+def test_wrong_start_accelerations_are_refused(config, request_, text):
+    with pytest.raises(StartStateError, match=f'^{re.escape(text)}$'):
+        planning_request(request_, config)
 
 
 @pytest.mark.parametrize('encoder', [

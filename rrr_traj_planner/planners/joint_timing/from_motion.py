@@ -1,0 +1,230 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Motions that start moving: first iterates, and the motion that stops first where none leads on.
+
+First iterates go straight to the first via point, in a time that exceeds limits least. Shifted
+barriers bring them within limits (`problem.brought_within`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import StartStateError
+from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
+from rrr_traj_planner.core.stopping.stop import stop
+from rrr_traj_planner.core.stopping.task import from_state
+from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.quintic_spline import hermite, polynomial
+from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
+from rrr_traj_planner.planners.joint_timing.margins import Margins
+from rrr_traj_planner.planners.joint_timing.problem import (
+    brought_within,
+    InitialMotion,
+    JointProblem,
+    ROUGH_GAP,
+    Solved,
+)
+from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
+from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale
+from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint
+from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.splines import Mesh, Variables
+from rrr_traj_planner.planners.tasks import JointTask, StartRates
+from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
+
+# Chosen values.
+DURATIONS = 1.1 ** np.arange(-30.0, 8.0)  # of the first segment, over that from rest to rest
+WITHOUT_TORQUE = 0.5  # of the acceleration that torque allows
+DIRECT = 1e-3         # part of the way by which a direct motion may overshoot
+STEP = 1e-6           # rad/s^2, of acceleration, above which it is no rounding
+STOP_ROOM = 2e-4  # part of its limits that a stop leaves, for it is checked at samples
+
+
+def from_motion(durations: DurationConstraints) -> InitialMotion:
+    """
+    Return how motions that start moving are found.
+
+    Parameters
+    ----------
+    durations : DurationConstraints
+        Of the problem.
+
+    Returns
+    -------
+    callable
+        Returns the fastest motion within constraints that the first iterates lead to; None where
+        none does.
+
+    """
+    def found(task: JointTask, constraints: JointConstraints) -> Variables | None:
+        motions = [brought_within(constraints, m, durations, task.should_stop)
+                   for m in straight_on(task, constraints.mesh)]
+        best = min(filter(None, motions), key=lambda m: durations.cost(m.T), default=None)
+        if best is not None or not constraints.with_torque:
+            return best
+        without = _without_torque(task, constraints.mesh, durations)
+        return without and brought_within(constraints, without, durations, task.should_stop)
+
+    return found
+
+
+def _without_torque(task: JointTask, mesh: Mesh,
+                    durations: DurationConstraints) -> Variables | None:
+    """Return a motion within limits on acceleration in place of those on torque."""
+    scale = WITHOUT_TORQUE * acceleration_scale(task.model, task.limits, task.points)
+    limits = replace(task.limits, max_effort=np.full(3, np.inf), max_acceleration=np.maximum(
+        scale, 2.0 * np.abs(_rates(task).acceleration)))
+    problem = JointProblem(replace(task, limits=limits), mesh, durations)
+    margins = Margins.none(mesh, len(durations.free))
+    constraints = problem.constraints(margins)
+    first = from_motion(durations)(problem.task, constraints)
+    return None if first is None else problem.minimised(
+        constraints, CentralPathPoint(first, None), ROUGH_GAP).motion
+
+
+def straight_on(task: JointTask, mesh: Mesh) -> Iterator[Variables]:
+    """
+    Give motions straight to the first via point, which stop at later ones; they exceed limits.
+
+    One family stops there too, by quintics; the other passes it with the velocity and acceleration
+    of cubics. Each with the duration that exceeds limits and overshoots least, and the longest
+    without an overshoot.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm, its limits, the via points and how the joints move at the start.
+    mesh : Mesh
+        Of the motions.
+
+    Yields
+    ------
+    Variables
+        The motions.
+
+    """
+    (v, a), D, N = _rates(task), task.points[1] - task.points[0], len(task.points) - 1
+    m = _rest_to_rest(task, mesh)
+    T, zero = m.T[0] * DURATIONS[:, np.newaxis], np.zeros(3)
+    families = [hermite(T, (zero, v, a), (D, zero, zero)),
+                [zero, v, 0.5 * a, (D - T * (v + 0.5 * T * a)) / T ** 3]]
+    s = mesh.starts[0][:, np.newaxis, np.newaxis]
+    for family in families[:N]:
+        c = np.stack(np.broadcast_arrays(*family))
+        for i in _durations(task, c, s * T, float((np.abs(D) + np.abs(v) * m.T[0]).max())):
+            rates = [polynomial(c[:, i], s[:, 0] * T[i], k) for k in (1, 2, 3)]
+            inner, via = m.inner.copy(), (m.v.copy(), m.a.copy(), m.j.copy())
+            inner[0] = rates[2][1:-1]
+            for own, f in zip(via, rates):
+                own[0] = f[0]
+                if N > 1:
+                    own[1] = f[-1]
+            yield mesh.restored(task.points, Variables(
+                inner, *via, T=np.concatenate((T[i], m.T[1:]))))
+
+
+def _rest_to_rest(task: JointTask, mesh: Mesh) -> Variables:
+    """Return a motion with stops at all points, without torque limits where these forbid it."""
+    N = len(task.points) - 1
+    for max_effort in (task.limits.max_effort, np.full(3, np.inf)):
+        problem = JointProblem(
+            replace(task, limits=replace(task.limits, max_effort=max_effort), start_rates=None),
+            mesh, DurationConstraints.all_free(N, 3))
+        m = rest_to_rest(problem.task, problem.constraints(Margins.none(mesh, N)))
+        if m is not None:
+            break
+    assert m is not None
+    return m
+
+
+def _rates(task: JointTask) -> StartRates:
+    assert task.start_rates is not None
+    return task.start_rates
+
+
+def _durations(task: JointTask, c: Array, t: Array, way: float) -> set[int]:
+    """Return the first segment's durations, of K: of least excess, the longest that is direct."""
+    limits, D = task.limits, task.points[1] - task.points[0]
+    q, qd, qdd, jerk = (polynomial(c, t, k) for k in range(4))
+    factor = np.max([np.abs(qd) / limits.max_velocity,
+                     np.sqrt(np.abs(qdd) / limits.max_acceleration),
+                     np.cbrt(np.abs(jerk) / limits.max_jerk)], axis=(0, 1, 3))
+    over = np.maximum(q - np.maximum(D, 0.0), np.minimum(D, 0.0) - q).max(axis=(0, 2))
+    found = {int((factor + over / way).argmin())}
+    direct = np.flatnonzero(over <= DIRECT * way)
+    return found | set(direct[-1:].tolist())
+
+
+def after_a_stop(task: JointTask, fastest: Callable[[JointTask], Solved | None]) -> Solved | None:
+    """
+    Return a motion that stops first, as fast as the arm's `hold`, then goes on from rest.
+
+    Parameters
+    ----------
+    task : JointTask
+        The arm, its limits, the via points and how the joints move at the start.
+    fastest : callable
+        Returns the fastest motion of a task that starts at rest.
+
+    Returns
+    -------
+    Solved or None
+        None where there is no motion from rest.
+
+    Raises
+    ------
+    StartStateError
+        If the arm cannot stop within its limits.
+
+    """
+    kept = replace(task.limits, **{name: (1.0 - STOP_ROOM) * getattr(task.limits, name)
+                                   for name in ('max_velocity', 'max_effort')})
+    state = np.concatenate((task.points[0], *_rates(task)))
+    stopping, warnings = stop(from_state(tuple(state.tolist()), 0), 0.0, kept, task.model)
+    h, c = np.diff(stopping.knots), np.moveaxis(stopping.coefficients, 1, 0)
+    if not warnings:
+        warnings = _jerk_warnings(task, h, c)
+    if warnings:
+        raise StartStateError(f'start state: the arm cannot stop within its limits: {warnings[0]}')
+    solved = fastest(replace(
+        task, points=np.vstack((stopping.final, task.points[1:])), start_rates=None))
+    if solved is None:
+        return None
+    profiles = []
+    for own, profile in zip(c, solved.trajectory.profiles):
+        braking = h, own[:, 0], own[:, 1], 2.0 * own[:, 2], 6.0 * own[:, 3], 24.0 * own[:, 4]
+        going = profile.pieces.parameters().values()
+        profiles.append(JointProfile(PolynomialPiece(*map(np.concatenate, zip(braking, going)))))
+    via_times = np.concatenate(([0.0], solved.trajectory.via_times[1:] + h.sum()))
+    return solved._replace(trajectory=PiecewiseTrajectory(profiles, via_times),
+                           cost=float(via_times[-1]), gap=np.inf)
+
+
+def _jerk_warnings(task: JointTask, h: Array, c: Array) -> tuple[str, ...]:
+    """Return a warning for each joint that stops with more jerk than its limit."""
+    before = np.concatenate((_rates(task).acceleration[:, np.newaxis],
+                             2.0 * c[..., 2] + 6.0 * c[..., 3] * h), axis=1)
+    after = np.concatenate((2.0 * c[..., 2], np.zeros((3, 1))), axis=1)
+    steps = np.abs(after - before).max(axis=1) > STEP
+    jerk = 6.0 * np.abs(c[..., 3]).max(axis=1)
+    limit = task.limits.max_jerk
+    return tuple(f'{name} would need more jerk than {most:.6g} rad/s^3' for name, most, beyond in
+                 zip(task.model.joint_names, limit.tolist(),
+                     steps | (jerk > limit * (1.0 + LIMIT_ROUNDING))) if beyond)

@@ -1,0 +1,148 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Replanning in motion, as docs/replanning.md does it: the arm joins new plans without a step."""
+
+from __future__ import annotations
+
+import re
+import sys
+
+from helpers.arm_in_ros import ALL, Arm, SECOND, stamp
+from helpers.places import DOCS
+from helpers.plan_requests import points_of
+from helpers.planner_in_ros import start_planner
+from helpers.scripts import DEADLINE, Script, script
+import numpy as np
+from rclpy.duration import Duration
+from rclpy.time import Time
+from rosgraph_msgs.msg import Clock as ClockMessage
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from trajectory_msgs.msg import JointTrajectory
+
+CODE, = re.findall(r'^```python\n(.*?)^```', (DOCS / 'replanning.md').read_text(),
+                   re.DOTALL | re.MULTILINE)
+INSTANTS, TICK = 100, SECOND // 200
+LIMITS = JointLimits()
+STEP = 1e-9     # rad, rad/s, rad/s^2: between what ends and what begins at a point
+ROUNDING = 1e-6  # rad, rad/s: of stamps, a nanosecond each, and of the fields of a message
+MORE = 1.1      # times jerk's limit, by a quintic between two points
+
+
+def the_document_s():
+    """Return the functions of the document's example."""
+    names = {'__name__': 'example'}
+    exec(CODE, names)
+    return names
+
+
+def random_places(rng, model):
+    """Return one to three tip positions that the arm can reach and hold."""
+    while True:
+        q = rng.uniform([0.1, 0.6, -0.6], [1.4, 1.8, 0.6], (rng.integers(1, 4), 3))
+        if (np.abs(gravity_torque(model, q)) < 0.9 * LIMITS.max_effort).all():
+            return forward_kinematics(model, q).tolist()
+
+
+class SteppedClock:
+    """A clock that goes on when the arm has followed: no message is late, however busy it is."""
+
+    def __init__(self, ros):
+        self.time = 100 * SECOND
+        self._publisher = ros.publisher(ClockMessage, '/clock')
+
+    def now(self):
+        """Return the time, as a node's clock does."""
+        return Time(nanoseconds=self.time)
+
+    def advance(self, arm, seconds):
+        """Let time pass."""
+        for _ in range(round(seconds * SECOND / TICK)):
+            self.time += TICK
+            self._publisher.publish(ClockMessage(clock=self.now().to_msg()))
+            arm.desired.wait_for(lambda m: stamp(m) > self.time - TICK,
+                                 max(len(arm.desired.messages) - 5, 0))
+
+
+def test_the_arm_joins_plans_made_in_motion_without_a_step(ros):
+    rng, model, example = np.random.default_rng(4), RobotModel(), the_document_s()
+    arm = Arm(ros, use_sim_time=True)
+    start_planner(ros)
+    clock = SteppedClock(ros)
+    publisher = ros.publisher(JointTrajectory, 'joint_trajectory')
+    client = ros.node.create_client(PlanTrajectory, 'plan_trajectory')
+    assert client.wait_for_service(DEADLINE)
+    clock.advance(arm, 0.1)
+    joined, running = 0, None
+    while joined < INSTANTS:
+        k = example['joint'](running, clock.now()) if running else None
+        places = random_places(rng, model)
+        if k is not None:
+            request = example['onward'](running, k, places)
+        else:
+            if running:  # it ends soon
+                clock.advance(arm, 2.0 * example['AHEAD'])
+            request = PlanTrajectory.Request(
+                via_points=example['poses'](places), planner_id='time_optimal',
+                start_state=arm.actual.messages[-1])
+        answer = client.call(request, timeout_sec=DEADLINE)
+        assert answer.error_code == answer.SUCCESS, answer.message
+        clock.advance(arm, rng.uniform(0.0, 0.1))  # as planning takes
+        if k is None:
+            running = answer.trajectory
+            running.header.stamp = (clock.now() + Duration(seconds=0.1)).to_msg()
+        elif example['is_in_time'](running, k, clock.now()):
+            before = points_of(running)
+            running = example['spliced'](running, k, answer.trajectory, clock.now())
+            assert_continues(before, points_of(running), k)
+            joined += 1
+        publisher.publish(running)
+        clock.advance(arm, rng.uniform(0.02, 0.2))
+    assert_steady(arm.desired.messages[:])  # more may arrive
+
+
+def assert_continues(before, after, k):
+    """Assert that a motion has the points of one before up to point k, with the same states."""
+    first = int(np.searchsorted(before.times, after.times[0] - STEP))
+    for field in ('times', 'positions', 'velocities', 'accelerations'):
+        expected = getattr(before, field)[first:k + 1]
+        assert np.abs(getattr(after, field)[:len(expected)] - expected).max() <= STEP
+
+
+def assert_steady(messages):
+    """Assert that what the controller follows has no step in position, velocity, acceleration."""
+    t = np.array([stamp(m) for m in messages]) / SECOND
+    q, v = (np.array([getattr(m, f) for m in messages]) for f in ('position', 'velocity'))
+    dt = np.diff(t)[:, np.newaxis]
+    jerk = MORE * LIMITS.max_jerk
+    # the error of the trapezoidal rule is at most jerk dt^3 / 12
+    assert (np.abs(np.diff(q, axis=0) - 0.5 * dt * (v[1:] + v[:-1]))
+            <= jerk * dt ** 3 / 12.0 + ROUNDING).all()
+    mean = np.diff(v, axis=0) / dt  # acceleration, somewhere between two messages
+    assert (np.abs(np.diff(mean, axis=0))
+            <= 0.5 * jerk * (dt[1:] + dt[:-1]) + ROUNDING / dt.min()).all()
+
+
+def test_the_document_s_example_replans_in_motion(ros):
+    with Script(script('planner')), Script(script('simulated_arm')):
+        desired = ros.listen(JointTrajectory, 'joint_trajectory', ALL)
+        with Script([sys.executable, '-c', CODE]) as example:
+            status, text, _ = example.ended()
+    assert status == 0
+    assert len(re.findall(r'^turn \d: joined at point \d+$', text, re.MULTILINE)) >= 3
+    assert len(desired.messages) >= 4

@@ -1,0 +1,162 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""`time_optimal` from states at which the arm moves."""
+
+from dataclasses import replace
+from unittest.mock import patch
+
+from helpers.measured_motions import Measured, planned_motions
+from helpers.planning_cases import ARM, FREE, LIMITS
+from helpers.time_optimal_cases import A, B, C, EITHER_LIMITS, through
+import numpy as np
+import pytest
+from rrr_traj_planner.core.errors import InvalidInputError, StartStateError
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.stopping.stop import stop
+from rrr_traj_planner.core.stopping.task import from_state
+from rrr_traj_planner.planners.joint_timing import least_time
+from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.registry import planner_ids
+from rrr_traj_planner.planners.request import PlanningRequest
+
+SAME = 1e-9      # rad, rad/s, rad/s^2
+ALLOWED = 1.001  # times a limit: what a state may need
+RAISED = ('max_velocity', 'max_acceleration', 'max_effort')
+
+
+def state(motion, t):
+    """Return position, velocity and acceleration."""
+    return [f[0] for f in motion(np.array([t]))[:3]]
+
+
+def moving(q, points, velocity=(0.0, 0.0, 0.0), acceleration=(0.0, 0.0, 0.0), **request):
+    """Return a request from a moving state through joint positions."""
+    return PlanningRequest(**{
+        'via_points': forward_kinematics(ARM, np.asarray(points, float)), 'start': q,
+        'start_velocity': velocity, 'start_acceleration': acceleration,
+        'planner_id': 'time_optimal', **request})
+
+
+def onward(m, t):
+    """Return the measured plan from a motion's state through the points that are left."""
+    q, qd, qdd = state(m.trajectory, t)
+    left = np.flatnonzero(m.plan.via_times > t)
+    request = replace(
+        m.task.request, via_points=m.task.request.via_points[left], start=q, start_velocity=qd,
+        start_acceleration=qdd, elbow=None, shoulder=None)
+    limits = replace(m.task.limits, **{f: ALLOWED * getattr(m.task.limits, f) for f in RAISED})
+    points = m.task.q[len(m.task.q) - len(m.plan.via_times):][left]
+    return Measured(replace(m.task, request=request, limits=limits, q=points),
+                    plan(m.task.model, m.task.limits, request))
+
+
+def test_motions_go_on_from_any_of_their_states_within_limits_and_no_later():
+    rng, late = np.random.default_rng(17), {}
+    for seed, m in planned_motions('time_optimal').items():
+        t = rng.uniform(0.0, m.trajectory.duration)
+        if not m.plan.via_times[-1] > t:
+            continue  # it stays where it is
+        found = onward(m, t)
+        assert found.violations() == [], seed
+        first = found.plan.points
+        for given, asked in zip((first.positions, first.velocities, first.accelerations),
+                                state(m.trajectory, t)):
+            assert given[0] == pytest.approx(asked, abs=SAME)
+        late[seed] = found.trajectory.duration / (m.trajectory.duration - t) - 1.0
+    assert len(late) > 40
+    assert np.median(list(late.values())) <= 1e-3
+    assert sum(x > 0.01 for x in late.values()) <= 3, late
+
+
+@pytest.mark.parametrize('limits', EITHER_LIMITS, ids=['acceleration', 'torque'])
+def test_other_points_are_reached_from_a_motion_s_states(limits):
+    before = plan(ARM, limits, through([A, B, C])).trajectory
+    for t in np.linspace(0.1, 0.9, 5) * before.duration:
+        q, *rates = state(before, t)
+        found = plan(ARM, limits, moving(q, [B, A], *rates))
+        ends = found.trajectory(found.via_times)[0]
+        assert ends == pytest.approx(np.array([B, A]), abs=SAME)
+        assert np.array(state(found.trajectory, 0.0)) == pytest.approx(
+            np.array(state(before, t)), abs=SAME)
+
+
+def test_jerk_is_continuous_after_the_start():
+    before = plan(ARM, LIMITS, through([A, B])).trajectory
+    q, qd, qdd = state(before, 0.4 * before.duration)
+    motion = plan(ARM, LIMITS, moving(q, [C], qd, qdd)).trajectory
+    knots = motion.knots[1:-1]
+    assert motion(knots - 1e-9)[3] == pytest.approx(motion(knots + 1e-9)[3], abs=1e-4)
+
+
+def test_a_moving_arm_comes_back_to_where_it_was():
+    found = plan(ARM, FREE, moving(A, [A], velocity=[0.5, -0.3, 0.2]))
+    assert found.points.positions[-1] == pytest.approx(A, abs=SAME)
+    assert np.abs(found.points.positions - A).max() > 0.05
+    assert found.points.velocities[0].tolist() == [0.5, -0.3, 0.2]
+
+
+def test_a_point_where_the_moving_arm_is_is_passed_at_once():
+    found = plan(ARM, FREE, moving(A, [A, B], velocity=[0.3, 0.1, 0.1]))
+    assert found.via_times[0] == 0.0
+    assert found.points.positions[-1] == pytest.approx(B, abs=SAME)
+
+
+def test_without_a_way_on_the_arm_stops_first_as_when_held():
+    q, qd, qdd = np.array(A), np.array([0.6, -0.4, 0.5]), np.array([0.5, 0.2, -0.3])
+    request = moving(q, [B], qd, qdd)
+    with patch.object(least_time, '_fastest', lambda problem, start: (
+            None if problem.task.start_rates is not None else FASTEST(problem, start))):
+        found = plan(ARM, LIMITS, request)
+    held = stop(from_state((*q, *qd, *qdd), 0), 0.0, LIMITS, ARM).motion
+    t = np.linspace(0.0, held.end, 50)[:-1]
+    assert found.trajectory(t)[0] == pytest.approx(held.at(t)[0], abs=2e-4)
+    rest = plan(ARM, LIMITS, through([held.final, B])).trajectory
+    assert found.trajectory.duration == pytest.approx(held.end + rest.duration, rel=5e-3)
+    assert plan(ARM, LIMITS, request).trajectory.duration < found.trajectory.duration
+
+
+FASTEST = least_time._fastest
+
+
+@pytest.mark.parametrize(('velocity', 'acceleration', 'text'), [
+    ([1.01, 0.0, 0.0], [0.0] * 3, 'joint_1 cannot but reach 1.01 rad/s, limit 1 rad/s'),
+    # 0.99 + 0.8^2 / (2 * 10)
+    ([0.0, 0.99, 0.0], [0.0, 0.8, 0.0], 'joint_2 cannot but reach 1.022 rad/s, limit 1 rad/s'),
+    ([0.0] * 3, [0.0, 0.0, -1.2], 'joint_3 accelerates with 1.2 rad/s^2, limit 1 rad/s^2'),
+    # 1 rad/s: 0.1 s of falling acceleration, then v^2 / 2 from 0.95 rad/s: 0.5498333 rad
+    ([1.0, 0.0, 0.0], [0.0] * 3,
+     r'joint_1 is at 1.3 rad and moves at 1 rad/s, too fast towards the end of its range at '
+     r'1.5708 rad: within its limits it goes at least 0.279 rad beyond')])
+def test_a_start_beyond_limits_is_refused(velocity, acceleration, text):
+    with pytest.raises(StartStateError, match=f'^start state: {text}'.replace('^2', r'\^2')):
+        plan(ARM, LIMITS, moving([1.3, 1.8, 0.3], [A], velocity, acceleration))
+
+
+@pytest.mark.parametrize('planner_id', [i for i in planner_ids() if i != 'time_optimal'])
+def test_other_planners_start_from_rest_and_say_so(planner_id):
+    with pytest.raises(StartStateError, match=(
+            rf'^start state: joint_2 moves at -0\.2 rad/s, must be at rest .* for planner '
+            rf'{planner_id}; from any state: time_optimal$')):
+        plan(ARM, LIMITS, moving(A, [B], velocity=[0.0, -0.2, 0.0], planner_id=planner_id))
+
+
+def test_durations_are_prescribed_from_rest_only():
+    with pytest.raises(InvalidInputError, match='^segment_durations are given, and the start '):
+        plan(ARM, LIMITS, moving(A, [B], velocity=[0.1, 0.0, 0.0], segment_durations=[3.0]))
+
+
+def test_rates_need_a_start():
+    with pytest.raises(InvalidInputError, match='^start_velocity and start_acceleration need '):
+        through([A, B], start_velocity=[0.1, 0.0, 0.0])
