@@ -190,7 +190,7 @@ def at_points(case, unknowns, x):
 
 @pytest.mark.parametrize('free', [('max_jerk', 'max_effort'), ('max_jerk',), ()],
                          ids=['acceleration', 'torque', 'all'])
-@pytest.mark.parametrize('seed', [2, 3])
+@pytest.mark.parametrize('seed', [3])
 def test_no_general_solver_finds_less_time_along_a_line(seed, free):
     case = random_case(seed, points=2)
     case = replace(case, limits=replace(case.limits, **dict.fromkeys(free, NONE)))
