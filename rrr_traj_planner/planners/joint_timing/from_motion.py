@@ -36,9 +36,9 @@ from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import (
     brought_within,
+    FIRST_GAP,
     InitialMotion,
     JointProblem,
-    ROUGH_GAP,
     Solved,
 )
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
@@ -54,7 +54,7 @@ DURATIONS = 1.1 ** np.arange(-30.0, 8.0)  # of the first segment, over that from
 WITHOUT_TORQUE = 0.5  # of the acceleration that torque allows
 DIRECT = 1e-3         # part of the way by which a direct motion may overshoot
 STEP = 1e-6           # rad/s^2, of acceleration, above which it is no rounding
-STOP_ROOM = 2e-4  # part of its limits that a stop leaves, for it is checked at samples
+STOP_ROOM = 2e-4      # part of its limits that a stop leaves, for it is checked at samples
 
 
 def from_motion(durations: DurationConstraints) -> InitialMotion:
@@ -96,7 +96,7 @@ def _without_torque(task: JointTask, mesh: Mesh,
     constraints = problem.constraints(margins)
     first = from_motion(durations)(problem.task, constraints)
     return None if first is None else problem.minimised(
-        constraints, CentralPathPoint(first, None), ROUGH_GAP).motion
+        constraints, CentralPathPoint(first, None), FIRST_GAP).motion
 
 
 def straight_on(task: JointTask, mesh: Mesh) -> Iterator[Variables]:

@@ -40,12 +40,12 @@ from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
 from rrr_traj_planner.planners.tasks import JointTask
 
-# Returns a motion strictly within constraints, to start from, or None.
 # Chosen values.
 WIDER = (0.1, 1.0, 10.0, 100.0)  # parts by which limits are first exceeded, tried in turn
-ROUGH_GAP = 0.3   # as a part of the objective, to which a motion is brought within them
-MOST_TO_RETURN = 40  # iterations from beyond the limits, which usually take two to five; chosen
+FIRST_GAP = 0.3      # as a part of the objective, to which a motion is brought within them
+MOST_TO_RETURN = 40  # iterations from beyond the limits, which usually take two to five
 
+# Returns a motion strictly within constraints, to start from, or None.
 InitialMotion = Callable[[JointTask, JointConstraints], Variables | None]
 
 
@@ -188,7 +188,7 @@ def brought_within(constraints: JointConstraints, motion: Variables,
         if TimingProblem(problem.mesh, problem.points, wider).is_within(motion):
             outcome = minimise(problem, CentralPathPoint(motion, None),
                                constraints.fixing(durations), should_stop,
-                               relative_gap=ROUGH_GAP, wider=wider)
+                               relative_gap=FIRST_GAP, wider=wider)
             if outcome.within and outcome.centres:
                 return outcome.centres[0].motion
             break

@@ -16,7 +16,7 @@
 Joint motions that keep their limits between the points too: margins, starts, the best so far.
 
 Each round continues from the last point near the central path, although it may exceed the new
-margins; where that fails, from the last point that satisfies them, or from rest (an exchange
+margins; where that fails, from the last point that satisfies them, or anew (an exchange
 method: Hettich & Kortanek, SIAM Review 35, 1993).
 """
 
@@ -61,7 +61,7 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion,
 
     """
     rounds = _Rounds(problem, initial_motion, slow_motion)
-    if rounds.start_from_rest():
+    if rounds.start_anew():
         tighten(rounds, SCHEDULE, problem.task.should_stop)
     return rounds.best or rounds.best_that_fits()
 
@@ -84,9 +84,9 @@ class _Rounds:
         self._check: JointCheck | None = None  # of the last outcome
         self.best: Solved | None = None
 
-    def start_from_rest(self) -> bool:
-        """Start from a motion from rest to rest; return whether there is one."""
-        started = _start_from_rest(self._problem, self._margins, self._initial_motion)
+    def start_anew(self) -> bool:
+        """Start from the initial motion; return whether there is one."""
+        started = _start_anew(self._problem, self._margins, self._initial_motion)
         if started is not None:
             self._margins, self._constraints, self._start = started
         return started is not None
@@ -108,7 +108,7 @@ class _Rounds:
     def relax(self) -> bool:
         self._start = next((c for c in reversed(self._centres)
                             if self._constraints.is_within(c.motion)), None)
-        return self._start is not None or self.start_from_rest()
+        return self._start is not None or self.start_anew()
 
     def accept(self, outcome: Outcome, tolerance: float) -> bool:
         task, durations = self._problem.task, self._problem.durations
@@ -172,8 +172,8 @@ def _near(centres: list[CentralPathPoint], former: TimingProblem,
     return centres[0] if centres else None
 
 
-def _start_from_rest(problem: JointProblem, margins: Margins, initial_motion: InitialMotion,
-                     ) -> tuple[Margins, JointConstraints, CentralPathPoint] | None:
+def _start_anew(problem: JointProblem, margins: Margins, initial_motion: InitialMotion,
+                ) -> tuple[Margins, JointConstraints, CentralPathPoint] | None:
     """Return an initial motion, and as large a part of the margins as it satisfies."""
     for part in (*PARTS_OF_MARGINS, 0.0):
         reduced = margins.of_slow_motion().part(part)
