@@ -62,6 +62,26 @@ class ArcZones(ReadOnlyArrays):
         """
         return np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2
 
+    def outline(self, zone: IntArray, part: Array) -> tuple[Array, Array]:
+        """
+        Return points of arcs, see `cartesian_path.Zones`.
+
+        Parameters
+        ----------
+        zone : ndarray of int, shape (m,)
+            Indices of the arcs.
+        part : ndarray, shape (m,)
+            Of the arc before the via point, negative, or after it.
+
+        Returns
+        -------
+        tuple of ndarray, shape (m,)
+            x and y, in radii.
+
+        """
+        angle = np.where(part < 0.0, self.before[zone], self.after[zone]) * part
+        return np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2
+
     def at(self, zone: IntArray, sigma: Array) -> Array:
         """
         Return points of arcs and their derivatives.

@@ -41,6 +41,24 @@ class Zones(Protocol):
     before: Array  # length before the middle, in least radii, shape (k,)
     after: Array
 
+    def outline(self, zone: IntArray, part: Array) -> tuple[Array, Array]:
+        """
+        Return x along the tangent and y along the normal.
+
+        Parameters
+        ----------
+        zone : ndarray of int, shape (m,)
+            Which zone.
+        part : ndarray, shape (m,)
+            Where: -1 and 1 are its ends, 0 is its middle; monotonic, not the length.
+
+        Returns
+        -------
+        tuple of ndarray, shape (m,)
+            x and y, in least radii.
+
+        """
+
     def at(self, zone: IntArray, sigma: Array) -> Array:
         """
         Return x along the tangent and y along the normal, and three derivatives.
@@ -168,7 +186,7 @@ class CartesianPath(ReadOnlyArrays):
     @cached_property
     def deviation(self) -> Array:
         """Largest distance from the polyline near each interior via point [m]."""
-        return polyline_deviation(self.points, lambda s: self(s)[0], self.via_s, self.zone_ends)
+        return polyline_deviation(self.points, self._outline)
 
     def __call__(self, s: ArrayLike, left: bool | BoolArray = False) -> tuple[
             Array, Array, Array, Array]:
@@ -205,6 +223,12 @@ class CartesianPath(ReadOnlyArrays):
         if given.ndim == 0:
             values = values[:, 0]
         return values[0], values[1], values[2], values[3]
+
+    def _outline(self, zone: IntArray, part: Array) -> Array:
+        """Return points in zones [m], see `Zones.outline`."""
+        x, y = (self.radii[zone] * f for f in self.zones.outline(zone, part))
+        return np.asarray(self._origins[zone] + x[:, np.newaxis] * self.tangent[zone]
+                          + y[:, np.newaxis] * self.normal[zone])
 
     def _on_path(self, s: Array) -> Array:
         """Return path coordinates, clipped to the path's ends where rounding put them beyond."""

@@ -30,8 +30,7 @@ ZOOM_SAMPLES = 9    # each round narrows the bracket of the largest distance to 
 ZOOM_ROUNDS = 8     # to 1e-5 of the distance between two samples; the error is its square
 
 
-def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s: Array,
-                       zone_ends: Array) -> Array:
+def polyline_deviation(points: Array, position: Callable[[IntArray, Array], Array]) -> Array:
     """
     Return the largest distance between each zone and the legs that meet at its via point.
 
@@ -43,11 +42,8 @@ def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s:
     points : ndarray, shape (n, 3)
         Via points [m].
     position : callable
-        Points of the path, shape (m, 3), at path coordinates of shape (m,) [m].
-    via_s : ndarray, shape (n,)
-        Path coordinates of the via points [m].
-    zone_ends : ndarray, shape (n - 2, 2)
-        Path coordinates of both ends of each zone [m].
+        Points in zones, shape (m, 3), from the zones' numbers and parts, each of shape (m,): -1
+        and 1 are a zone's ends, 0 is its middle [m].
 
     Returns
     -------
@@ -55,25 +51,22 @@ def polyline_deviation(points: Array, position: Callable[[Array], Array], via_s:
         Distances [m].
 
     """
-    k = len(zone_ends)
+    k = len(points) - 2
     if k == 0:
         return np.zeros(0)
-    middle = via_s[1:-1]
-    # A row for each half of a zone: first those before the via points, then those after.
-    low = np.concatenate((zone_ends[:, 0], middle))
-    high = np.concatenate((middle, zone_ends[:, 1]))
-    corner = np.tile(np.arange(1, k + 1), 2)
-    largest = np.zeros(2 * k)
-    left, right, count = low, high, FIRST_SAMPLES
+    # A row for each half of a zone.
+    zone, low = np.tile(np.arange(k), 2), np.repeat([-1.0, 0.0], k)
+    rows, largest = np.arange(2 * k), np.zeros(2 * k)
+    left, right, count = low, low + 1.0, FIRST_SAMPLES
     for _ in range(1 + ZOOM_ROUNDS):
-        s = left[:, np.newaxis] + np.linspace(0.0, 1.0, count) * (right - left)[:, np.newaxis]
-        distance = _leg_distance(points, position(s.ravel()).reshape(s.shape + (3,)), corner)
+        part = left[:, np.newaxis] + np.linspace(0.0, 1.0, count) * (right - left)[:, np.newaxis]
+        at = position(np.repeat(zone, count), part.ravel())
+        distance = _leg_distance(points, at.reshape(part.shape + (3,)), zone + 1)
         best = distance.argmax(axis=1)
-        rows = np.arange(2 * k)
         largest = np.maximum(largest, distance[rows, best])
         width = (right - left) / (count - 1)
-        left = np.maximum(s[rows, best] - width, low)
-        right = np.minimum(s[rows, best] + width, high)
+        left = np.maximum(part[rows, best] - width, low)
+        right = np.minimum(part[rows, best] + width, low + 1.0)
         count = ZOOM_SAMPLES
     return np.asarray(largest.reshape(2, k).max(axis=0))
 

@@ -111,6 +111,14 @@ def fit_radii(points: Array, radii: Array, kind: ZoneKind,
 def _grown(points: Array, radii: Array, kind: ZoneKind, least: Fitted,
            should_stop: ShouldStop) -> Fitted:
     """Return radii grown from smaller ones until zones touch."""
+    grown, lines = (_grown_alone if len(radii) == 1 else _grown_together)(
+        points, radii, kind, least, should_stop)
+    return _shrunk(points, grown, least.radii, kind, lines.direction, should_stop) or least
+
+
+def _grown_together(points: Array, radii: Array, kind: ZoneKind, least: Fitted,
+                    should_stop: ShouldStop) -> Fitted:
+    """Return radii grown from feasible ones until zones touch; feasible but for rounding."""
     fraction, lines = least.radii / radii, least.lines
     steps = min(GROWTH_STEPS, MOST_ZONE_STEPS // len(fraction))
     for first_growth in (MAX_GROWTH, REGROWTH):
@@ -129,8 +137,21 @@ def _grown(points: Array, radii: Array, kind: ZoneKind, least: Fitted,
             touching = blocked & ~_free_alone(points, radii, kind, fraction, lines, blocked)
             growing &= ~(touching if touching.any() else _tightest(points, lines, blocked))
             factor[slower] = np.maximum(np.sqrt(factor[slower]), MIN_GROWTH)
-    return _shrunk(points, fraction * radii, least.radii, kind, lines.direction,
-                   should_stop) or least
+    return Fitted(fraction * radii, lines)
+
+
+def _grown_alone(points: Array, radii: Array, kind: ZoneKind, least: Fitted,
+                 should_stop: ShouldStop) -> Fitted:
+    """Return the largest radius of the only zone, between a feasible and an infeasible one."""
+    feasible, infeasible = least, radii
+    while (infeasible > MIN_GROWTH * feasible.radii).any() and not should_stop():
+        tried = np.sqrt(feasible.radii * infeasible)
+        lines, too_large = _lines_for(points, tried, kind, feasible.lines.direction, COARSE)
+        if too_large.any():
+            infeasible = tried
+        else:
+            feasible = Fitted(tried, lines)
+    return feasible
 
 
 def _shrunk(points: Array, radii: Array, least: Array, kind: ZoneKind, near: Array,

@@ -106,6 +106,25 @@ class PolynomialZones(ReadOnlyArrays):
         zone = _quintic(angle)
         return zone.along.sum(axis=0), zone.across.sum(axis=0)
 
+    def outline(self, zone: IntArray, part: Array) -> tuple[Array, Array]:
+        """
+        Return points of zones, see `cartesian_path.Zones`.
+
+        Parameters
+        ----------
+        zone : ndarray of int, shape (m,)
+            Indices of the zones.
+        part : ndarray, shape (m,)
+            The quintic's parameter u.
+
+        Returns
+        -------
+        tuple of ndarray, shape (m,)
+            x and y, in least radii.
+
+        """
+        return _derivative(_Quintic(*(c[:, zone] for c in self._quintic)), 0, part)
+
     def at(self, zone: IntArray, sigma: Array) -> Array:
         """
         Return points of zones and their derivatives by arc length.

@@ -21,7 +21,7 @@ from dataclasses import replace
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import format_distinct, StartStateError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
@@ -122,24 +122,33 @@ def _check_direction(planes: AxisPlanes, model: RobotModel, start: Array) -> Non
 
 def _with_extremes(arm_path: ArmPath, limits: JointLimits, should_stop: ShouldStop) -> ArmPath:
     """Return a path with joint positions known wherever one of them may be an extreme."""
-    s = arm_path.s
+    s, leaving, reaching = arm_path.s, arm_path(arm_path.s), arm_path(arm_path.s, left=True)
+    # position; derivatives as the path leaves and as it reaches each of them
+    q, rates, second = leaving.q, np.stack((leaving.dq, reaching.dq)), np.stack(
+        (leaving.ddq, reaching.ddq))
     for _ in range(BISECTIONS):
         should_stop()
-        leaving, reaching = arm_path(s), arm_path(s, left=True)
-        q, h = leaving.q, np.diff(s)[:, np.newaxis]
-        second_derivative = np.maximum(np.abs(leaving.ddq[:-1]), np.abs(reaching.ddq[1:]))
-        excursion = 0.125 * SAFETY * h ** 2 * second_derivative
-        low = np.minimum(q[:-1], q[1:]) - excursion
-        high = np.maximum(q[:-1], q[1:]) + excursion
-        least, most = q.min(axis=0), q.max(axis=0)
-        # Only where an extreme may be higher than the highest sample is a finer grid needed.
-        open_ = ((low < least - _resolution(least, limits.min_position))
-                 | (high > most + _resolution(most, limits.max_position))).any(axis=1)
-        open_ &= h[:, 0] > SHORTEST_STEP
+        open_ = _may_exceed(q, np.diff(s)[:, np.newaxis], second, limits)
         if not open_.any():
             break
-        s = np.sort(np.concatenate((s, 0.5 * (s[:-1] + s[1:])[open_])))
-    return replace(arm_path, s=s, q=q, rates=np.stack((leaving.dq, reaching.dq)))
+        middles, after = 0.5 * (s[:-1] + s[1:])[open_], np.flatnonzero(open_) + 1
+        between = arm_path(middles)  # none of them is a join
+        s, q = np.insert(s, after, middles), np.insert(q, after, between.q, axis=0)
+        rates = np.insert(rates, after, between.dq, axis=1)
+        second = np.insert(second, after, between.ddq, axis=1)
+    return replace(arm_path, s=s, q=q, rates=rates)
+
+
+def _may_exceed(q: Array, h: Array, second: Array, limits: JointLimits) -> BoolArray:
+    """Return in which intervals of length h a joint may go beyond the farthest known position."""
+    excursion = 0.125 * SAFETY * h ** 2 * np.maximum(
+        np.abs(second[0, :-1]), np.abs(second[1, 1:]))
+    low = np.minimum(q[:-1], q[1:]) - excursion
+    high = np.maximum(q[:-1], q[1:]) + excursion
+    least, most = q.min(axis=0), q.max(axis=0)
+    farther = ((low < least - _resolution(least, limits.min_position))
+               | (high > most + _resolution(most, limits.max_position))).any(axis=1)
+    return np.asarray(farther & (h[:, 0] > SHORTEST_STEP))
 
 
 def _resolution(extreme: Array, end: Array) -> Array:

@@ -18,7 +18,7 @@ The fastest motion along a given path (Bobrow, Dubowsky & Gibson 1985; Shin & Mc
 The method is that of `time_optimal`, direct transcription and an interior-point method, with one
 coordinate, the path length s, instead of the joints: its jerk is continuous and piecewise linear,
 the pieces of the path are its segments, and the joints' limits are functions of s, sd, sdd, sddd.
-`fastest_along` is both steps in one, for tests and benchmarks; the planner takes them one by one.
+`RoughMotion` is for the comparison of paths; only the motion along the best of them is finished.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from rrr_traj_planner.planners.path_timing.mesh import path_mesh
 from rrr_traj_planner.planners.path_timing.problem import PathProblem
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
-from rrr_traj_planner.planners.path_timing.tightening import tightened
+from rrr_traj_planner.planners.path_timing.tightening import RoughTiming
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.tolerances import HOLDING_MARGIN
 
@@ -47,6 +47,65 @@ class Timed(NamedTuple):
 
     trajectory: PathTrajectory
     gap: float  # bound on the time that the fastest motion saves [s]
+
+
+class RoughMotion:
+    """
+    The fastest motion along a path, roughly: to compare paths.
+
+    Parameters
+    ----------
+    task : PathTask
+        Path and limits.
+
+    Attributes
+    ----------
+    task
+        As given.
+
+    Raises
+    ------
+    LimitViolationError
+        If the motors cannot hold the arm somewhere on the path; with the position.
+
+    """
+
+    def __init__(self, task: PathTask) -> None:
+        self.task = task
+        task.should_stop()
+        self._table = table = PathTable(task.arm_path)
+        task.should_stop()
+        N = len(table.ends) - 1
+        self._mesh = path_mesh(N)
+        _check_held(task, table)
+        steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
+        task.should_stop()
+        self._timing = RoughTiming(PathProblem(task, table, self._mesh, steady))
+
+    @property
+    def duration(self) -> float:
+        """
+        Return its duration [s].
+
+        Of 133 random paths that of the fastest motion is 0.2 % shorter in the median, by 0.2 %
+        longer to 1.5 % shorter.
+        """
+        return self._timing.duration
+
+    def finished(self) -> Timed:
+        """
+        Return the fastest motion along the path, from rest to rest.
+
+        Returns
+        -------
+        Timed
+            Within every limit, between the problem's points too.
+
+        """
+        motion, gap = self._timing.finished()
+        self.task.should_stop()
+        trajectory = _trajectory(self.task, self._table, self._mesh, motion)
+        return Timed(_fitted(self.task, trajectory), gap)
 
 
 def fastest_along(task: PathTask) -> Timed:
@@ -69,69 +128,21 @@ def fastest_along(task: PathTask) -> Timed:
         If the motors cannot hold the arm somewhere on the path; with the position.
 
     """
-    return fitted(task, nearly_fastest_along(task))
+    return RoughMotion(task).finished()
 
 
-def nearly_fastest_along(task: PathTask) -> Timed:
-    """
-    Return the fastest motion along a path, by the path's table.
-
-    Parameters
-    ----------
-    task : PathTask
-        Path and limits.
-
-    Returns
-    -------
-    Timed
-        Within the limits but for the table's interpolation error.
-
-    Raises
-    ------
-    LimitViolationError
-        If the motors cannot hold the arm somewhere on the path; with the position.
-
-    """
+def _fitted(task: PathTask, trajectory: PathTrajectory) -> PathTrajectory:
+    """Return a motion slowed until it keeps its limits exactly, by its own peaks."""
     task.should_stop()
-    table = PathTable(task.arm_path)
-    task.should_stop()
-    N = len(table.ends) - 1
-    mesh = path_mesh(N)
-    _check_held(task, table)
-    steady = _in_zones(task, table) if task.steady_zones else np.zeros(N, bool)
-    task.should_stop()
-    motion, gap = tightened(PathProblem(task, table, mesh, steady))
-    task.should_stop()
-    return Timed(_trajectory(task, table, mesh, motion), gap)
-
-
-def fitted(task: PathTask, timed: Timed) -> Timed:
-    """
-    Return a motion slowed until it keeps its limits exactly, by its own peaks, not the table's.
-
-    Parameters
-    ----------
-    task : PathTask
-        Path and limits.
-    timed : Timed
-        As of `nearly_fastest_along`.
-
-    Returns
-    -------
-    Timed
-        Within every limit.
-
-    """
-    task.should_stop()
-    trajectory, factor = timed.trajectory, _exact_time_scale(task, timed.trajectory)
+    factor = _exact_time_scale(task, trajectory)
     if factor <= 1.0:
-        return timed
+        return trajectory
     trajectory = trajectory.time_scaled(factor)
     # With viscous friction a factor that one torque requires may be too large for another.
     while task.arm_path.model.friction.viscous.any() and (
             factor := _exact_time_scale(task, trajectory)) > 1.0 + TORQUE_ROUNDING:
         trajectory = trajectory.time_scaled(factor)
-    return timed._replace(trajectory=trajectory)
+    return trajectory
 
 
 def _in_zones(task: PathTask, table: PathTable) -> BoolArray:

@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,7 +29,7 @@ from rrr_traj_planner.core.path.largest_radii import paths_within
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.deadline import part_of
-from rrr_traj_planner.planners.path_timing.least_time import fitted, nearly_fastest_along, Timed
+from rrr_traj_planner.planners.path_timing.least_time import RoughMotion, Timed
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
@@ -98,48 +97,30 @@ def _fastest(task: CartesianTask, design: Design, paths: list[CartesianPath],
     """Return the fastest motion along one of several paths, or along one of smaller radii."""
     late = part_of(task.should_stop, AGAIN)
     cut_short = len(paths[0].radii) > 0 and early()
-    path_task = _feasible_path_task(task, design, paths[0], early)
-    best = _Motion(path_task, nearly_fastest_along(path_task))
+    best = RoughMotion(_feasible_path_task(task, design, paths[0], early))
     for path in paths[1:]:
         if not late():
-            best = min(best, _motion(task, path) or best, key=_Motion.duration)
-    while len(best.path.radii):
+            best = min(best, _rough_motion(task, path) or best, key=lambda m: m.duration)
+    while len(best_radii := best.task.arm_path.path.radii):
         if late():
             cut_short = True
             break
         # smaller radii have larger curvature on shorter zones: sometimes that is faster
-        path = design(task.tips, SMALLER * best.path.radii)
+        path = design(task.tips, SMALLER * best_radii)
         if (path.deviation > task.max_deviation).any():
             break
-        smaller = _motion(task, path)
-        if smaller is None or smaller.duration() >= (1.0 - WORTH_IT) * best.duration():
+        smaller = _rough_motion(task, path)
+        if smaller is None or smaller.duration >= (1.0 - WORTH_IT) * best.duration:
             break
         best = smaller
-    timed = fitted(best.path_task, best.timed)
+    timed = best.finished()
     return timed.trajectory.noted(_note(task, timed, cut_short))
 
 
-class _Motion(NamedTuple):
-    """A motion along a path."""
-
-    path_task: PathTask
-    timed: Timed
-
-    @property
-    def path(self) -> CartesianPath:
-        """Return the path."""
-        return self.path_task.arm_path.path
-
-    def duration(self) -> float:
-        """Return its duration [s]."""
-        return self.timed.trajectory.duration
-
-
-def _motion(task: CartesianTask, path: CartesianPath) -> _Motion | None:
-    """Return the fastest motion along a path; None where the arm cannot follow it."""
+def _rough_motion(task: CartesianTask, path: CartesianPath) -> RoughMotion | None:
+    """Return the fastest motion along a path, roughly; None where the arm cannot follow it."""
     try:
-        path_task = _path_task(task, path)
-        return _Motion(path_task, nearly_fastest_along(path_task))
+        return RoughMotion(_path_task(task, path))
     except (UnreachableError, LimitViolationError):
         return None
 

@@ -15,9 +15,9 @@
 """
 Motions along a path that keep their limits between the points too.
 
-The first round is rough, under the limits themselves; each later one starts from a point near the
-central path of the one before, and its constraints are shifted from those limits to its own
-(an exchange method: Hettich & Kortanek, SIAM Review 35, 1993).
+The first round is rough, under the limits themselves: it serves to compare paths. Each later one
+starts from a point near the central path of the one before, and its constraints are shifted from
+those limits to its own (an exchange method: Hettich & Kortanek, SIAM Review 35, 1993).
 """
 
 from __future__ import annotations
@@ -45,35 +45,52 @@ from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 from rrr_traj_planner.planners.tolerances import START_SCALING
 
-# Chosen values, without unit: half and twice of ROUGH_GAP and CENTRES_BACK of 1 or 5 change
-# durations of 48 random paths by less than 0.02 % in the mean, by 0.3 % at most.
-SCHEDULE = Schedule(rounds=8, tolerance=2e-3, patience=1, growth=1.7)
+# Chosen values, without unit: half of ROUGH_GAP and CENTRES_BACK of 1 or 5 change durations of 48
+# random paths by less than 0.02 % in the mean, by 0.3 % at most; twice of ROUGH_GAP makes them
+# 0.4 % slower in the mean, as slower paths are then chosen.
+FIRST = Schedule(rounds=1, tolerance=2e-3, patience=0, growth=1.7)
+OTHERS = FIRST._replace(rounds=7)
 ROUGH_GAP = 0.3         # part of the total time: the gap to which the first round converges
 CENTRES_BACK = 3        # which of the last centres a round with larger margins starts from
 
 
-def tightened(problem: PathProblem) -> tuple[Variables, float]:
+class RoughTiming:
     """
-    Return the fastest motion along a path, and a bound on the time that the optimum saves.
+    The fastest motion along a path after the first round, and after all of them.
 
     Parameters
     ----------
     problem : PathProblem
         Path and limits.
 
-    Returns
-    -------
-    motion : Variables
-        Within the limits, by the table.
-    gap : float
-        [s].
-
     """
-    rounds = _Rounds(problem)
-    if rounds.may_begin():
-        tighten(rounds, SCHEDULE, problem.task.should_stop)
-    T, motion, _ = min(rounds.found, key=lambda f: f[0])
-    return motion, max(T - max(least for *_, least in rounds.found), 0.0)
+
+    def __init__(self, problem: PathProblem) -> None:
+        self._rounds, self._should_stop = _Rounds(problem), problem.task.should_stop
+        if self._rounds.may_begin():
+            tighten(self._rounds, FIRST, self._should_stop)
+
+    @property
+    def duration(self) -> float:
+        """Return the duration of the first round's motion, which may exceed limits slightly."""
+        return float(self._rounds.fastest.T.sum())
+
+    def finished(self) -> tuple[Variables, float]:
+        """
+        Return the fastest motion, and a bound on the time that the optimum saves.
+
+        Returns
+        -------
+        motion : Variables
+            Within the limits, by the table.
+        gap : float
+            [s].
+
+        """
+        if self._rounds.have_margins:
+            tighten(self._rounds, OTHERS, self._should_stop)
+        T, motion, _ = min(self._rounds.found, key=lambda f: f[0])
+        return motion, max(T - max(least for *_, least in self._rounds.found), 0.0)
 
 
 class _Rounds:
@@ -89,6 +106,16 @@ class _Rounds:
         self._start = CentralPathPoint(_slow_start(problem, self._constraints), None)
         # each with its duration and a lower bound of all durations [s]
         self.found = [(float(self._start.motion.T.sum()), self._start.motion, -np.inf)]
+
+    @property
+    def fastest(self) -> Variables:
+        """Return the last solution, or the start where there is none."""
+        return self._last[0].motion if self._last else self._start.motion
+
+    @property
+    def have_margins(self) -> bool:
+        """Return whether the limits were tightened after a first solution."""
+        return self._previous is not None
 
     def may_begin(self) -> bool:
         """Return whether the start is within the limits."""
