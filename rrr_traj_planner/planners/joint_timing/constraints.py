@@ -149,7 +149,7 @@ class JointConstraints:
 
     def fixing(self, durations: DurationConstraints) -> DurationConstraints:
         """
-        Return what is fixed in a problem, and where joints are to stay at via points.
+        Return the objective with jerk, and what is fixed where joints are to stay at via points.
 
         Parameters
         ----------
@@ -165,7 +165,7 @@ class JointConstraints:
         fixed = durations.fixed.copy()
         if self._stays is not None:
             fixed[1:-1] |= self._stays
-        return durations._replace(fixed=fixed)
+        return durations._replace(fixed=fixed, max_jerk=self.limits.max_jerk)
 
     def _bounds(self) -> tuple[Array, Array, BoolArray]:
         """Return lower and upper bounds on states (N, P, 12), and which are limited (P, 12)."""

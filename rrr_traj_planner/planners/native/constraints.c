@@ -230,6 +230,13 @@ EXPORTED void timing_linearise(const Problem *p, double barrier)
             r[i] += f;
             Q[whole ? i * Z + i % Z : i] += weight;
         }
+        const int size = p->jerk_weights ? (p->n + 1) * p->J : 0;
+        for (int c = 0; c < size; ++c) {
+            const int i = c / p->J * Z + 3 * p->J + c % p->J;
+            const double weight = 2.0 * p->jerk_weights[(size_t)k * size + c];
+            r[i] += weight * z[i];
+            Q[whole ? i * Z + i % Z : i] += weight;
+        }
         if (whole)
             linearise_general(p, k, first + 2 * (size_t)p->bounds, barrier);
         p->gradient_T[k] = p->hessian_T[k] = 0.0;

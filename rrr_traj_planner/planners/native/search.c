@@ -19,13 +19,20 @@
 #include <math.h>
 #include <string.h>
 
-/* The objective: the weighted sum of durations. */
+/* The objective: the weighted sum of durations and of squared jerks. */
 EXPORTED double timing_cost(const Problem *p, double *variables)
 {
-    const double *T = variables_at(p, variables).T;
+    const Variables m = variables_at(p, variables);
+    const double *weight = p->jerk_weights;
     double sum = 0.0;
-    for (int k = 0; k < p->N; ++k)
-        sum += p->weights[k] * T[k];
+    for (int k = 0; k < p->N; ++k) {
+        sum += p->weights[k] * m.T[k];
+        for (int i = 0; i <= p->n && weight; ++i)
+            for (int j = 0; j < p->J; ++j, ++weight) {
+                const double jerk = jerks_at(p, m, k, i)[j];
+                sum += *weight * jerk * jerk;
+            }
+    }
     return sum;
 }
 

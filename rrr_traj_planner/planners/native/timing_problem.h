@@ -52,6 +52,7 @@ typedef struct {
     const uint8_t *free;    /* (N) */
     const double *proportions;      /* (N) */
     const double *weights;  /* (N), of the durations in the objective */
+    const double *jerk_weights;  /* (N, n + 1, J), of squared jerks in the objective, or NULL */
     const uint8_t *fixed;   /* (N + 1, 3, J), which of v, a and j at via points do not change */
     /* General constraints are limits on torque, or on motion along a path; NULL where not so: */
     const Arm *arm;
@@ -116,6 +117,14 @@ static inline size_t variables_size(const Problem *p)
 static inline Variables variables_at(const Problem *p, double *memory)
 {
     return variables_of(p->J, p->N, p->n, memory);
+}
+
+/* The jerks at a node of a segment, (J). */
+static inline const double *jerks_at(const Problem *p, Variables m, int k, int node)
+{
+    if (node == 0 || node == p->n)
+        return m.j + (size_t)(k + (node > 0)) * p->J;
+    return m.inner + ((size_t)k * (p->n - 1) + node - 1) * p->J;
 }
 
 /* spline.c: the states of a motion, and a step of its variables after which it meets the via

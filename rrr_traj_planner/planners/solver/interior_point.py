@@ -72,7 +72,7 @@ class Outcome(NamedTuple):
     """The result of the method."""
 
     motion: Variables
-    gap: float             # bound on the time that the optimum saves, by duality [s]
+    gap: float             # bound on what the optimum saves of the objective, by duality [s]
     converged: bool
     centres: list[CentralPathPoint]  # points near the central path on the way, slowest first
     within: bool = True    # False where shifts remain: the new limits were not reached
@@ -83,7 +83,7 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
              relative_gap: float = RELATIVE_GAP, wider: Limits | None = None,
              most_iterations: int = MOST_ITERATIONS) -> Outcome:
     """
-    Return the motion whose weighted sum of durations is least.
+    Return the motion whose weighted sum of durations, and of squared jerks, is least.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
     start : CentralPathPoint
         Strictly within them, or within the wider ones.
     durations : DurationConstraints
-        Which durations are free, and their weights in the objective.
+        Which durations are free, and the objective.
     should_stop : callable
         Cancellation callback, called before every iteration; True ends the method with the best
         motion so far.

@@ -93,9 +93,16 @@ def fixed_ends(segments: int, joints: int) -> BoolArray:
     return fixed
 
 
+# Weight in the objective of the mean square of jerk over its limit, chosen: at its limits of
+# velocity and acceleration a motion gains next to nothing by jerks that alternate. It reduces the
+# largest total variation of jerk of 56 random tasks by a third, and makes motions 0.03 % faster in
+# the mean, as fewer rounds are needed. Half and twice of it change them by 0.01 % in the mean.
+SMOOTHNESS = 1e-2
+
+
 class DurationConstraints(NamedTuple):
     """
-    Which durations are free, fixed or in fixed proportions; what is fixed at via points.
+    The objective; which durations are free, fixed or in fixed proportions; what via points fix.
 
     A duration that is not free changes by its proportion times a common unknown.
     """
@@ -105,6 +112,7 @@ class DurationConstraints(NamedTuple):
     weights: Array      # (N,), in the objective
     fixed: BoolArray    # (N + 1, 3, J), which velocities, accelerations and jerks do not change
     from_rest: bool = True  # whether the motion begins at rest; else it cannot be scaled in time
+    max_jerk: Array | None = None  # (J,), infinite: none; None: jerk is not in the objective
 
     @classmethod
     def all_free(cls, segments: int, joints: int) -> DurationConstraints:
@@ -144,9 +152,30 @@ class DurationConstraints(NamedTuple):
         """Return whether a motion may be slowed: it begins at rest, and no duration is fixed."""
         return self.from_rest and bool((self.free | (self.proportions > 0.0)).all())
 
+    def jerk_weights(self, shares: Array, T: Array) -> Array:
+        """
+        Return the weights of squared jerks in the objective.
+
+        Parameters
+        ----------
+        shares : ndarray, shape (N, n + 1)
+            Of the nodes in their segments, 1 in sum.
+        T : ndarray, shape (N,)
+            Durations, roughly [s].
+
+        Returns
+        -------
+        ndarray, shape (N, n + 1, J)
+            0 where jerk has no limit.
+
+        """
+        assert self.max_jerk is not None
+        by_segment = SMOOTHNESS * (self.weights * T)[:, np.newaxis] * shares
+        return by_segment[..., np.newaxis] / self.max_jerk ** 2
+
     def cost(self, T: Array) -> float:
         """
-        Return the objective.
+        Return the objective but for jerk.
 
         Parameters
         ----------

@@ -137,6 +137,12 @@ class Mesh:
         ends = np.cumsum(self.parts, axis=1)
         return np.concatenate((np.zeros((len(ends), 1)), ends), axis=1)
 
+    @property
+    def node_shares(self) -> Array:
+        """Return the weights of the trapezoidal rule, shape (N, n + 1); 1 in sum."""
+        beside = np.pad(self.parts, ((0, 0), (1, 1)))
+        return 0.5 * (beside[:, 1:] + beside[:, :-1])
+
     def samples(self, points: Array, m: Variables, per_interval: int) -> Array:
         """
         Return the states of a motion at equally spaced times of every interval.

@@ -48,7 +48,7 @@ class _Problem(ctypes.Structure):  # as in native/timing_problem.h
             'bound_at', 'general_at', 'has_general', 'least_T')),
         ('longest', ctypes.c_double),
         *((name, ctypes.c_void_p) for name in (
-            'free', 'proportions', 'weights', 'fixed', 'arm', 'table', 'overshoot',
+            'free', 'proportions', 'weights', 'jerk_weights', 'fixed', 'arm', 'table', 'overshoot',
             'viscous', 'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual',
             'shift', 'hessian', 'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables',
             'trial_states', 'trial_values', 'trial_slack', 'trial_gradient', 'trial_gradient_T',
@@ -209,6 +209,9 @@ class TimingProblem:
         self._bind('free', durations.free.astype(np.uint8))
         self._bind('proportions', contiguous(durations.proportions))
         self._bind('weights', contiguous(durations.weights))
+        if durations.max_jerk is not None:
+            self._bind('jerk_weights', contiguous(
+                durations.jerk_weights(self.mesh.node_shares, motion.T)))
         self._bind('fixed', durations.fixed.astype(np.uint8))
 
     def shift(self, wider: Limits) -> None:
