@@ -19,7 +19,8 @@ Jerk is linear in each interval of a mesh and continuous everywhere, also throug
 (`solver.splines`). Node jerks, the states at via points and durations are optimised together
 (direct transcription: Betts, Practical Methods for Optimal Control, 2010) by a feasible
 interior-point method (`solver.interior_point`), starting from a motion with stops at every via
-point; between two rough solutions and the last one the mesh is refined (`solver.refinement`).
+point. Squared jerk has a small weight in the objective (`solver.limits.SMOOTHNESS`). Between two
+rough solutions and the last one the mesh is refined (`solver.refinement`).
 """
 
 from __future__ import annotations
