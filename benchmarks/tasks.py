@@ -26,7 +26,7 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
 from rrr_traj_planner.core.kinematics.joint_ranges import whole_turns
 from rrr_traj_planner.core.kinematics.postures import ELBOWS, Posture
-from rrr_traj_planner.planners.posture_choice import first_possible
+from rrr_traj_planner.planners.parts.posture_choice import first_possible
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.via_points import joint_via_points

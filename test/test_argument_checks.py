@@ -69,7 +69,8 @@ CALLS = {
         'via_points': POINTS, 'start': Q, 'segment_durations': [3.0, 3.0, 3.0],
         'velocity_scaling': 0.5, 'acceleration_scaling': 0.5, 'sample_period': 0.01,
         'max_deviation': 0.05, 'max_tip_speed': 1.0, 'half_transition': 0.5, 'max_points': 1000,
-        'start_state_tolerance': 0.01}),
+        'start_state_tolerance': 0.01, 'dwell': [0.0, 0.0, 0.5]}),
+    'PlanningRequest of joints': (PlanningRequest, {'joint_via_points': [Q, Q]}),
     'ControllerGains': (ControllerGains, {'natural_frequency': 30.0, 'damping_ratio': 1.0}),
     'EncoderSettings': (EncoderSettings, {
         'resolution': 0.1, 'noise': 0.1, 'seed': 3, 'bandwidth': 300.0}),
@@ -126,7 +127,8 @@ NEVER = ['x', '0.01', '', b'1', 1j, 0.5 + 0j, {}, {1.0}, object(), (x for x in (
          np.ma.array([1.0, 2.0, 3.0], mask=[False, True, False])]
 ANY_LENGTH = {'t', 's'}
 ANY_SHAPE = {'spline'}  # calls
-NONE_WILL_DO = {'start', 'segment_durations', 'previous', 'velocities', 'accelerations'}
+NONE_WILL_DO = {
+    'start', 'segment_durations', 'dwell', 'previous', 'velocities', 'accelerations'}
 INFINITE_WILL_DO = {
     't', 'max_tip_speed', 'radius', 'min_position', 'max_position', 'max_velocity',
     'max_acceleration', 'max_jerk', 'max_effort'}
@@ -196,6 +198,8 @@ def test_every_form_of_a_number_is_accepted(call, name):
     ('PlanningRequest', 'planner_id', ['cycloid']), ('PlanningRequest', 'elbow', ''),
     ('PlanningRequest', 'elbow', ['up']), ('PlanningRequest', 'should_stop', True),
     ('PlanningRequest', 'segment_durations', [1e-12, 1.0, 1.0]),
+    ('PlanningRequest', 'stop_at', [1, 0, 1]), ('PlanningRequest', 'stop_at', 'yes'),
+    ('PlanningRequest', 'stop_at', True), ('PlanningRequest', 'stop_at', [[True]] * 3),
     ('PlanningRequest', 'half_transition', 1e-300), ('PlanningRequest', 'velocity_scaling', 2.0),
     ('inverse_kinematics', 'elbow', None), ('inverse_kinematics', 'shoulder', 'left'),
     ('Payload', 'known_to_controller', 1), ('EncoderSettings', 'seed', 0.5),

@@ -76,8 +76,9 @@ def error_kinds():
 
 
 @cache
-def plan_with(planner_id):
-    return plan(RobotModel(), JointLimits(), PlanningRequest(POINTS, planner_id=planner_id))
+def plan_with(planner_id, **request):
+    return plan(RobotModel(), JointLimits(), PlanningRequest(
+        POINTS, planner_id=planner_id, **request))
 
 
 @cache
@@ -94,7 +95,9 @@ def values():
         TrajectoryPoints([0, 1], q, zeros, zeros, flags, flags),
         CartesianTask(model, limits, q, q[0], 'up', 0.05, np.inf, False, 0.01),
         Takeover(0.5, (0.1,) * 9, limits, model),
-        *(plan_with(planner_id) for planner_id in planner_ids()))
+        *(plan_with(planner_id) for planner_id in planner_ids()),
+        *(plan_with(planner_id, stop_at=(True, True, True), dwell=(0.0, 0.5, 0.0))
+          for planner_id in ('cycloid', 'line_arc')))
 
 
 def fields_of(value):

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import copy
 from time import perf_counter
 
 from rrr_traj_planner.core.cancellation import never, ShouldStop
@@ -46,6 +47,7 @@ class Deadline:
                  is_over: ShouldStop = never) -> None:
         self._limit, self._clock, self._is_over = limit, clock, is_over
         self._begun = clock()
+        self._window = (0.0, 1.0)  # of the time: in which this callback's part is done
 
     def __call__(self) -> bool:
         """
@@ -57,33 +59,33 @@ class Deadline:
             If the limit is exceeded by more than GRACE.
 
         """
-        return self._after(IMPROVING)
-
-    def part(self, share: float) -> ShouldStop:
-        """
-        Return a callback for a share of the time; it raises as the deadline itself does.
-
-        Parameters
-        ----------
-        share : float
-            Of the time after which this one returns True, in [0, 1].
-
-        Returns
-        -------
-        callable
-            See `core.cancellation.ShouldStop`.
-
-        """
-        return lambda: self._after(IMPROVING * share)
-
-    def _after(self, share: float) -> bool:
         elapsed = self._clock() - self._begun
         if elapsed > self._limit + GRACE or self._is_over():
             raise TimeLimitError(self._limit, elapsed)
-        return elapsed > share * self._limit
+        return elapsed > IMPROVING * self._window[1] * self._limit
+
+    def window(self, begin: float, end: float) -> Deadline:
+        """
+        Return a callback for a window of the time; it raises as the deadline itself does.
+
+        Parameters
+        ----------
+        begin, end : float
+            Shares of the time in [0, 1]. The callback returns True after the latter; windows of
+            the window are parts of what is in between.
+
+        Returns
+        -------
+        Deadline
+            See `core.cancellation.ShouldStop`.
+
+        """
+        found, (first, last) = copy(self), self._window
+        found._window = (first + begin * (last - first), first + end * (last - first))
+        return found
 
 
-def part_of(should_stop: ShouldStop, share: float) -> ShouldStop:
+def part_of(should_stop: ShouldStop, share: float, begin: float = 0.0) -> ShouldStop:
     """
     Return a cancellation callback for a share of the time, if the given one is a `Deadline`.
 
@@ -92,7 +94,9 @@ def part_of(should_stop: ShouldStop, share: float) -> ShouldStop:
     should_stop : callable
         For the whole time.
     share : float
-        Of its time, in [0, 1].
+        Of its time after which this one returns True, in [0, 1].
+    begin : float
+        Share of its time after which work begins, for parts of the part.
 
     Returns
     -------
@@ -100,4 +104,4 @@ def part_of(should_stop: ShouldStop, share: float) -> ShouldStop:
         The deadline's part; the same callback where it is not a `Deadline`.
 
     """
-    return should_stop.part(share) if isinstance(should_stop, Deadline) else should_stop
+    return should_stop.window(begin, share) if isinstance(should_stop, Deadline) else should_stop

@@ -41,7 +41,7 @@ class Plan(ReadOnlyArrays):
     points : TrajectoryPoints
         The same, sampled.
     via_times : ndarray
-        When each via point is passed [s]; for one that is blended, the middle of its transition.
+        When each via point is reached [s]; for one that is blended, the middle of its transition.
     peaks : Peaks
         Exact extremes over the continuous motion.
     effort : ndarray, shape (3,)

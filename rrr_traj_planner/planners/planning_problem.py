@@ -12,30 +12,23 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What a request asks of an arm: its scaled limits and the checked start state."""
+"""A request, and the arm that is to meet it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import format_distinct, InvalidInputError, StartStateError
-from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
-from rrr_traj_planner.core.kinematics.postures import ANY_POSTURE, Posture
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.postures import Posture
 from rrr_traj_planner.core.kinematics.travel_time import THROUGH, ViaPointBehaviour
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
-from rrr_traj_planner.planners.effort_limits import (
-    check_friction,
-    torque_note,
-)
-from rrr_traj_planner.planners.joint_timing.moving_start import limits_of_moving_start
-from rrr_traj_planner.planners.registry import planner, planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
-from rrr_traj_planner.planners.tasks import StartRates
-from rrr_traj_planner.planners.via_points import check_start, joint_via_points
+from rrr_traj_planner.planners.via_points import checked_joint_positions, joint_via_points
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,12 +41,14 @@ class PlanningProblem(ReadOnlyArrays):
     model : RobotModel
         The arm.
     limits : JointLimits
-        Its limits, scaled as requested.
+        Its limits, scaled as requested; slightly raised where a start that moves needs it.
     request : PlanningRequest
         Via points and how to pass them.
     start : ndarray, shape (3,), optional
         Joint positions [rad] where the motion starts, within the ranges; None: at the first via
         point.
+    from_rest : JointLimits
+        Limits of the parts of the motion that begin at rest: scaled as requested.
     note : str
         On limits that cannot be checked, for the plan; usually empty.
 
@@ -63,12 +58,42 @@ class PlanningProblem(ReadOnlyArrays):
     limits: JointLimits
     request: PlanningRequest
     start: Array | None
+    from_rest: JointLimits
     note: str = ''
 
     @property
     def asked(self) -> Posture:
         """Return what the request asks of the arm's posture."""
         return Posture(self.request.elbow, self.request.shoulder)
+
+    @cached_property
+    def tips(self) -> Array:
+        """Return the tip's positions at the via points, shape (n, 3) [m]."""
+        if self.request.via_points is not None:
+            return self.request.via_points
+        tips = forward_kinematics(self.model, self.given_joints)
+        tips.setflags(write=False)
+        return tips
+
+    @cached_property
+    def given_joints(self) -> Array:
+        """
+        Return the joint positions that the request gives for the via points, checked.
+
+        Returns
+        -------
+        ndarray, shape (n, 3)
+            [rad]; empty where it gives positions of the tip.
+
+        Raises
+        ------
+        JointRangeError, LimitViolationError
+            As of `checked_joint_positions`.
+
+        """
+        given = self.request.joint_via_points
+        return np.zeros((0, 3)) if given is None else checked_joint_positions(
+            self.model, self.limits, given)
 
     def joint_points(self, posture: Posture, passing: ViaPointBehaviour = THROUGH) -> Array:
         """
@@ -77,7 +102,8 @@ class PlanningProblem(ReadOnlyArrays):
         Parameters
         ----------
         posture : Posture
-            Of all via points, so far as it is asked for.
+            Of all via points, so far as it is asked for; not of via points that are given as joint
+            positions.
         passing : ViaPointBehaviour
             How the motion passes via points, for the choice of whole turns.
 
@@ -89,74 +115,9 @@ class PlanningProblem(ReadOnlyArrays):
         Raises
         ------
         UnreachableError, JointRangeError, LimitViolationError
-            As of `joint_via_points`.
+            As of `joint_via_points` and `checked_joint_positions`.
 
         """
-        q = joint_via_points(
+        q = self.given_joints if self.request.via_points is None else joint_via_points(
             self.model, self.limits, self.request.via_points, self.start, posture, passing)
         return q if self.start is None else np.vstack((self.start, q))
-
-
-def planning_problem(model: RobotModel, limits: JointLimits,
-                     request: PlanningRequest) -> PlanningProblem:
-    """
-    Return the problem that a request poses an arm.
-
-    Parameters
-    ----------
-    model : RobotModel
-        The arm.
-    limits : JointLimits
-        Its limits, before the request's scaling.
-    request : PlanningRequest
-        Via points and how to pass them.
-
-    Returns
-    -------
-    PlanningProblem
-        With scaled limits.
-
-    Raises
-    ------
-    InvalidInputError
-        If it names a posture, and the arm's have no names.
-    StartStateError
-        If the start state is out of its range or cannot be held, or the arm cannot go on from it.
-    LimitViolationError
-        If Coulomb friction reaches an effort limit: it leaves no torque for motion.
-
-    """
-    asked = Posture(request.elbow, request.shoulder)
-    if asked != ANY_POSTURE and not has_named_postures(model):
-        raise InvalidInputError(
-            f'{asked} is asked for, but the postures of this arm have no names')
-    scaled = limits.scaled(request.velocity_scaling, request.acceleration_scaling)
-    check_friction(model, scaled)
-    rates, start = request.start_rates, None
-    if request.start is not None:
-        start = check_start(model, scaled, request.start, request.start_state_tolerance,
-                            rests=rates is None)
-        if rates is not None:
-            _check_planner(model, request, rates)
-            scaled = limits_of_moving_start(model, scaled, start, rates)
-    return PlanningProblem(model, scaled, request, start, torque_note(model, limits))
-
-
-def _check_planner(model: RobotModel, request: PlanningRequest, rates: StartRates) -> None:
-    """Raise if the planner takes no motion that starts moving, or not as it is asked for."""
-    if not planner(request.planner_id).starts_moving:
-        able = ', '.join(i for i in planner_ids() if planner(i).starts_moving)
-        tolerance = request.start_state_tolerance
-        moving = np.abs(rates.velocity) > tolerance
-        values, how, unit, j = (
-            (rates.velocity, 'moves at', 'rad/s', int(moving.argmax())) if moving.any() else
-            (rates.acceleration, 'accelerates with', 'rad/s^2',
-             int(np.abs(rates.acceleration).argmax())))
-        _, most, shown = format_distinct(abs(float(values[j])), tolerance, float(values[j]))
-        raise StartStateError(
-            f'start state: {model.joint_names[j]} {how} {shown} {unit}, must be at rest (no '
-            f'faster than start_state_tolerance, {most} rad/s) for planner {request.planner_id}; '
-            f'from any state: {able}')
-    if request.segment_durations is not None:
-        raise InvalidInputError('segment_durations are given, and the start state moves: '
-                                'durations can be prescribed from rest only')

@@ -24,7 +24,12 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
-from rrr_traj_planner.core.errors import format_distinct, LimitViolationError, StartStateError
+from rrr_traj_planner.core.errors import (
+    format_distinct,
+    JointRangeError,
+    LimitViolationError,
+    StartStateError,
+)
 from rrr_traj_planner.core.kinematics.joint_ranges import out_of_range, range_error
 from rrr_traj_planner.core.kinematics.joint_sequence import joint_sequence
 from rrr_traj_planner.core.kinematics.postures import ANY_POSTURE, Posture
@@ -74,6 +79,48 @@ def joint_via_points(model: RobotModel, limits: JointLimits, points: Array,
                        lambda x: can_hold(model, limits, x))
     for i, j in np.argwhere(out_of_range(q, limits)).tolist():
         raise range_error(model, limits, f'via point {i}', j, q[i], i)
+    failure = holding_failure(model, limits, q)
+    if failure is not None:
+        raise failure
+    return q
+
+
+def checked_joint_positions(model: RobotModel, limits: JointLimits, q: Array) -> Array:
+    """
+    Return joint positions that are given for via points, checked.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Positions and holding torques must be within.
+    q : ndarray, shape (n, 3)
+        Joint positions [rad].
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+        The same; a joint beyond the end of its range by no more than rounding is on its end.
+
+    Raises
+    ------
+    JointRangeError
+        If a joint is out of its range; it asks whether positions are in degrees, where those
+        explain one.
+    LimitViolationError
+        If the motors cannot hold the arm at a point.
+
+    """
+    low, high = limits.min_position, limits.max_position
+    for i, j in np.argwhere(out_of_range(q, limits)).tolist():
+        at, lowest, highest = format_distinct(q[i, j], low[j], high[j])
+        hint = HINT if any(map(explained_by_degrees, q[i], low, high)) else ''
+        raise JointRangeError(
+            f'via point {i}: {model.joint_names[j]} is at {at} rad, limits {lowest} to {highest} '
+            f'rad{hint}', model.joint_names[j], float(q[i, j]),
+            float(low[j] if q[i, j] < low[j] else high[j]), i)
+    q = np.clip(q, low, high)
     failure = holding_failure(model, limits, q)
     if failure is not None:
         raise failure

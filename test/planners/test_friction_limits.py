@@ -33,7 +33,7 @@ from rrr_traj_planner.planners.joint_timing.feasible_path import (
     statically_feasible_path,
 )
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.planning_problem import planning_problem
+from rrr_traj_planner.planners.posed_problem import planning_problem
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.tasks import JointTask

@@ -34,6 +34,9 @@ from rrr_traj_planner.core.kinematics.solutions import solutions
 from rrr_traj_planner.core.rounding import TIP_ROUNDING
 from rrr_traj_planner.core.scalars import one_of
 
+MILLIMETRES = '; if these are millimetres, divide by 1000'  # appended to an error
+FAR = 3.0  # times the arm's size: points that miss by less are not suspected; chosen
+
 
 def inverse_kinematics(model: RobotModel, position: ArrayLike, elbow: Elbow = 'up',
                        previous: ArrayLike | None = None,
@@ -134,15 +137,23 @@ def reachable(model: RobotModel, position: ArrayLike, previous: ArrayLike | None
     Raises
     ------
     UnreachableError
-        If the point is outside the workspace; with the distance by which it misses.
+        If the point is outside the workspace; with the distance by which it misses, and a hint if
+        it seems to be in millimetres.
 
     """
     found = solutions(model, position, TIP_ROUNDING, previous)
     if not len(found.q):
+        hint = MILLIMETRES if _explained_by_millimetres(model, position, found.nearest) else ''
         raise UnreachableError(
             f"{point_text(position)} is out of the arm's reach: it misses by "
-            f'{found.nearest:.6g} m', distance=found.nearest)
+            f'{found.nearest:.6g} m{hint}', distance=found.nearest)
     return found.q
+
+
+def _explained_by_millimetres(model: RobotModel, position: ArrayLike, miss: float) -> bool:
+    """Return whether a point far out of reach is within it if it is in millimetres."""
+    metres = 1e-3 * np.asarray(position, dtype=float)
+    return miss > FAR * model.chain.size and len(solutions(model, metres, TIP_ROUNDING).q) > 0
 
 
 def point_text(position: ArrayLike) -> str:

@@ -80,7 +80,7 @@ class Trajectory(ReadOnlyArrays, ABC):
     duration : float
         [s].
     via_times : ndarray
-        When each via point is passed [s], never decreasing; at the end the duration exactly.
+        When each via point is reached [s], never decreasing; at the end the duration exactly.
     note : str
         Remark on how the motion was planned; usually empty.
 

@@ -25,7 +25,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError, UnreachableError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics
+from rrr_traj_planner.core.kinematics.inverse import inverse_kinematics, nearest_solution
 from rrr_traj_planner.core.kinematics.postures import ELBOWS
 
 ROUNDING = 5e-14      # m, of a tip position
@@ -200,3 +200,13 @@ def test_malformed_point_is_refused(position, text):
 def test_unknown_elbow_is_refused():
     with pytest.raises(InvalidInputError, match="^elbow is 'left', must be 'up' or 'down'$"):
         inverse_kinematics(MODEL, (0.5, 0.5, 0.5), 'left')
+
+
+@pytest.mark.parametrize(('point', 'hinted'), [
+    ((1020.0, 590.0, 970.0), True), ((460.0, -550.0, 1440.0), True), ((0.0, 0.0, -300.0), True),
+    ((1700.0, 1700.0, 0.0), False),                       # 2.4 m away is out of reach too
+    ((3.0, 0.0, 0.5), False), ((0.0, 5.0, 0.0), False)])  # not far enough to be suspected
+def test_refusal_asks_for_millimetres_where_they_explain_it(point, hinted):
+    with pytest.raises(UnreachableError, match=r"m is out of the arm's reach: ") as refusal:
+        nearest_solution(RobotModel(), point, np.zeros(3))
+    assert str(refusal.value).endswith('; if these are millimetres, divide by 1000') == hinted

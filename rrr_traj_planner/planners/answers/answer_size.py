@@ -42,7 +42,10 @@ def check_answer_size(limits: JointLimits, request: PlanningRequest, q: Array) -
         If there would be more points than allowed.
 
     """
-    check_size(least_time(limits, q), request.sample_period, request.max_points)
+    at = request.rest_points
+    least = sum(least_time(limits, q[a:b + 1]) for a, b in zip(at, at[1:]))
+    check_size(least + float(request.rests.dwell.sum()), request.sample_period,
+               request.max_points)
 
 
 def least_time(limits: JointLimits, q: Array) -> float:

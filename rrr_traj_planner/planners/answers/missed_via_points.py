@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
+from rrr_traj_planner.planners.plan import Plan
 
 
 class ViaPointErrors(NamedTuple):
@@ -80,3 +82,26 @@ def miss_note(found: ViaPointErrors) -> str:
     if not missed:
         return ''
     return f'via point{"s" * (len(missed) > 1)} missed by construction: {", ".join(missed)}'
+
+
+def with_miss_note(model: RobotModel, answer: Plan, q: Array) -> Plan:
+    """
+    Return a plan with the distances by which it misses its via points in the note.
+
+    Parameters
+    ----------
+    model : RobotModel
+        The arm.
+    answer : Plan
+        The plan.
+    q : ndarray, shape (n, 3)
+        Joint positions at the via points [rad].
+
+    Returns
+    -------
+    Plan
+        Otherwise the same.
+
+    """
+    found = miss_note(via_point_errors(model, answer.trajectory, answer.via_times, q))
+    return replace(answer, note='; '.join(filter(None, (answer.note, found))))

@@ -21,7 +21,7 @@ from helpers.planning_cases import ARM, LIMITS, through
 import numpy as np
 import pytest
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.planners.missed_via_points import miss_note, ViaPointErrors
+from rrr_traj_planner.planners.answers.missed_via_points import miss_note, ViaPointErrors
 from rrr_traj_planner.planners.planning import plan
 
 PLANNERS = ['cycloid_approach_b', 'poly_414']

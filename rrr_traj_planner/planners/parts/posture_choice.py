@@ -92,9 +92,9 @@ def path_beginnings(problem: PlanningProblem) -> list[Array]:
     Returns
     -------
     list of ndarray, shape (3,)
-        The start, or the solutions at the first via point up to whole turns, those first in whose
-        posture the estimated time through the via points is least [rad]. Without those out of
-        range, unless all are.
+        The start; or else the joint positions given for the first via point; or else its solutions
+        up to whole turns, those first in whose posture the estimated time through the via points
+        is least [rad], without those out of range, unless all are.
 
     Raises
     ------
@@ -112,7 +112,9 @@ def path_beginnings(problem: PlanningProblem) -> list[Array]:
                 f'the start state has {posture_of(model, start)}: along a path of the tip the arm '
                 f'cannot change to {asked}')
         return [start]
-    first = problem.request.via_points[0]
+    if len(problem.given_joints):
+        return [problem.given_joints[0]]
+    first = problem.tips[0]
     found = _away_from_axis(problem, reachable(model, first))
     asked_for = found[in_posture(model, found, asked)]
     if not len(asked_for):
@@ -128,7 +130,7 @@ def path_beginnings(problem: PlanningProblem) -> list[Array]:
 def _away_from_axis(problem: PlanningProblem, found: Array) -> Array:
     """Return solutions, on joint axis 1 with joint 1 towards the path and half a turn from it."""
     frame = axis_frame(problem.model)
-    points = frame.coordinates(problem.request.via_points)
+    points = frame.coordinates(problem.tips)
     distance = np.hypot(*points[:, :2].T)
     if distance[0] > TIP_ROUNDING:
         return found
@@ -197,7 +199,7 @@ def _time(problem: PlanningProblem, posture: Posture, passing: ViaPointBehaviour
     """Return the estimated time through via points, infinite where a joint leaves its range."""
     model, limits, start = problem.model, problem.limits, problem.start
     try:
-        q = joint_sequence(model, limits, problem.request.via_points, posture, start, passing)
+        q = joint_sequence(model, limits, problem.tips, posture, start, passing)
     except UnreachableError:
         return np.inf
     if out_of_range(q, limits).any():
