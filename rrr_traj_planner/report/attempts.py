@@ -18,12 +18,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from time import perf_counter
 
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import RrrPlannerError
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.rounding import TIME_ROUNDING
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner
@@ -55,10 +58,13 @@ class Task:
     limits: JointLimits
     request: PlanningRequest
 
-    @property
+    @cached_property
     def via_points(self) -> Array:
         """Tip positions [m], shape (n, 3)."""
-        return self.request.via_points
+        if self.request.via_points is not None:
+            return self.request.via_points
+        assert self.request.joint_via_points is not None  # one of the two is given
+        return forward_kinematics(self.model, self.request.joint_via_points)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +113,12 @@ class Planned:
     task: Task
     planner_id: str
     plan: Plan
+
+    @property
+    def moving_knots(self) -> Array:
+        """Knots until the last via point is reached; then the arm holds, if it is to dwell [s]."""
+        knots = self.plan.trajectory.knots
+        return knots[knots <= self.plan.via_times[-1] + TIME_ROUNDING * max(1.0, knots[-1])]
 
 
 def attempts(task: Task, planner_ids: Sequence[str], repeats: int = 1) -> list[Attempt]:

@@ -32,6 +32,7 @@ from rrr_traj_planner.core.motion_laws.cycloid import CycloidPiece
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
 from rrr_traj_planner.core.motion_laws.transition_shape import ShapedPiece
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.trajectory.paused import motions_of
 from rrr_traj_planner.core.trajectory.pieces import Pieces
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
@@ -70,7 +71,7 @@ def coefficients(trajectory: Trajectory) -> Coefficients:
         Numbers of pieces, and of coefficients for each.
 
     """
-    profiles = _profiles_of(trajectory)
+    profiles = [p for motion in motions_of(trajectory) for p in _profiles_of(motion)]
     moving = np.concatenate([is_transition(p.pieces) for p in profiles])
     return Coefficients(int(moving.sum()), int((~moving).sum()),
                         PER_TRANSITION[_function(profiles[0].pieces)],

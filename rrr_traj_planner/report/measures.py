@@ -24,6 +24,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.trajectory.paused import motions_of
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.report.attempts import Planned
@@ -83,13 +84,18 @@ def jerk_at_ends(trajectory: Trajectory) -> Array:
         Jerk [rad/s^3]; for a motion along a path of the tip, at the ends of the pieces of s(t).
 
     """
-    if isinstance(trajectory, PiecewiseTrajectory):
-        return np.array([_end_jerk(profile) for profile in trajectory.profiles])
-    knots = trajectory.knots
-    if isinstance(trajectory, PathTrajectory):
+    return np.asarray(np.max([_end_jerks(motion) for motion in motions_of(trajectory)], axis=0))
+
+
+def _end_jerks(motion: Trajectory) -> Array:
+    """Return the same for a motion without pauses."""
+    if isinstance(motion, PiecewiseTrajectory):
+        return np.array([_end_jerk(profile) for profile in motion.profiles])
+    knots = motion.knots
+    if isinstance(motion, PathTrajectory):
         times = np.concatenate((knots[:-1], knots[1:] - BEFORE))
-        return np.asarray(np.abs(trajectory(times)[3]).max(axis=0))
-    raise TypeError(f'a {type(trajectory).__name__} has no pieces')
+        return np.asarray(np.abs(motion(times)[3]).max(axis=0))
+    raise TypeError(f'a {type(motion).__name__} has no pieces')
 
 
 def via_errors(of: Planned) -> tuple[Array, Array]:
@@ -107,8 +113,9 @@ def via_errors(of: Planned) -> tuple[Array, Array]:
         Largest error of a joint [rad], and distance of the tip [m].
 
     """
-    q = of.plan.trajectory(of.plan.via_times)[0]
-    return (joint_errors(of.task.model, of.task.via_points, q),
+    q, given = of.plan.trajectory(of.plan.via_times)[0], of.task.request.joint_via_points
+    return (joint_errors(of.task.model, of.task.via_points, q) if given is None
+            else np.asarray(np.abs(q - given).max(axis=1)),
             tip_errors(of.task.model, of.task.via_points, q))
 
 

@@ -54,10 +54,12 @@ def write_plan_report(folder: Path, found: Sequence[Attempt]) -> Path:
 
     """
     task = found[0].task
-    points = ['(' + ', '.join(f'{x:g}' for x in p) + ')' for p in task.via_points]
+    joints = task.request.joint_via_points
+    given, unit = (task.via_points, 'm') if joints is None else (joints, 'rad')
+    points = ['(' + ', '.join(f'{x:g}' for x in p) + ')' for p in given]
     text = '; '.join(points) if len(points) <= FEW else f'from {points[0]} to {points[-1]}'
     return write_page(folder, f'Plan of {task.name}',
-                      f'{counted(len(points), "via point")} [m]: {text}.', sections(found))
+                      f'{counted(len(points), "via point")} [{unit}]: {text}.', sections(found))
 
 
 def sections(found: Sequence[Attempt]) -> list[Section]:

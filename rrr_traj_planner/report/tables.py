@@ -159,12 +159,21 @@ def via_points_table(task: Task, plans: Sequence[Planned], name: str) -> Table:
         A row for each via point, numbered from 0; a column of times for each plan.
 
     """
-    times = [[f'{t:.3f}' for t in p.plan.via_times] for p in plans]
-    heads = ('#', 'x [m]', 'y [m]', 'z [m]', *(f'{p.planner_id} [s]' for p in plans))
-    caption = 'Positions, and the times at which each planner passes them.' if plans else ''
-    return Table(name, 'Via points', caption, heads, [
-        [str(i), *(f'{x:.6g}' for x in point), *passed]
-        for i, (point, *passed) in enumerate(zip(task.via_points, *times))])
+    columns = [(f'{axis} [m]', [f'{x:.6g}' for x in values])
+               for axis, values in zip('xyz', task.via_points.T)]
+    request = task.request
+    if request.joint_via_points is not None:
+        columns += [(f'{joint} [rad]', [f'{x:.6g}' for x in values]) for joint, values in zip(
+            task.model.joint_names, request.joint_via_points.T)]
+    at, dwell = request.rests
+    if request.stop_at is not None or dwell.any():
+        columns.append(('rests for [s]', [
+            f'{x:.6g}' if rests else '' for rests, x in zip(at, dwell)]))
+    columns += [(f'{p.planner_id} [s]', [f'{t:.3f}' for t in p.plan.via_times]) for p in plans]
+    heads, cells = zip(*columns)
+    caption = 'Positions, and the times at which each planner reaches them.' if plans else ''
+    return Table(name, 'Via points', caption, ('#', *heads), [
+        [str(i), *row] for i, row in enumerate(zip(*cells))])
 
 
 def _method(of: Planned, planning_time: float) -> list[str]:

@@ -58,9 +58,8 @@ def vibration_of(of: Planned, frequencies: Sequence[float] | Array) -> Array:
         The largest of the joints' [rad/s^2].
 
     """
-    trajectory = of.plan.trajectory
-    return np.asarray(
-        residual_vibration(trajectory, trajectory.knots, frequencies).max(axis=1))
+    return np.asarray(residual_vibration(
+        of.plan.trajectory, of.moving_knots, frequencies).max(axis=1))
 
 
 def vibration_table(plans: Sequence[Planned], name: str) -> Table:

@@ -35,6 +35,7 @@ from rrr_traj_planner.nodes.planner_node.planning_request import planning_reques
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 CODES = PlanTrajectory.Response
 REFUSALS = {CODES.PLANNING_FAILED, CODES.GOAL_CONSTRAINTS_VIOLATED,
@@ -66,14 +67,14 @@ POSITIONS = st.tuples(  # the arm can hold most of these
 
 @st.composite
 def hostile_requests(draw):
-    """Return a request with up to two of its parts replaced by unusual values."""
+    """Return a request with up to three of its parts replaced by unusual values."""
     q = draw(st.lists(POSITIONS, min_size=2, max_size=5))
     request = plan_request(forward_kinematics(RobotModel(), np.array(q)))
     request.planner_id = draw(st.sampled_from(planner_ids()))
     if draw(st.booleans()):
         request.start_state.name = NAMES
         request.start_state.position = list(draw(POSITIONS))
-    for change in draw(st.lists(st.sampled_from(CHANGES), max_size=2)):
+    for change in draw(st.lists(st.sampled_from(CHANGES), max_size=3)):
         change(draw, request)
     return request
 
@@ -149,9 +150,44 @@ def _odd_frame(draw, request):
     request.via_points.header.frame_id = draw(odd_texts)
 
 
+def _joint_points(draw, request):
+    """Give joint positions in place of the tip's, odd ones or with odd fields too."""
+    points = [JointTrajectoryPoint(positions=draw(POSITIONS)) for _ in request.via_points.poses]
+    if draw(st.booleans()) and points:
+        point = draw(st.sampled_from(points))
+        usual = st.one_of(st.floats(-pi, pi), odd_numbers)
+        setattr(point, draw(st.sampled_from(('positions', 'positions', 'velocities', 'effort'))),
+                draw(st.lists(usual, min_size=2, max_size=4)))
+    request.joint_via_points = points
+    if draw(st.integers(0, 5)):
+        request.via_points.poses = []
+
+
+def number_of(request):
+    """Return the number of via points of a request."""
+    return len(request.via_points.poses) + len(request.joint_via_points)
+
+
+def _stops(draw, request):
+    number = number_of(request)
+    flags = draw(st.lists(st.booleans(), min_size=max(number - 1, 0), max_size=number))
+    request.stop_at = [*flags, True][:number + draw(st.integers(-1, 1))]
+
+
+def _dwells(draw, request):
+    """Dwell where the arm stops, or anywhere, or for odd times."""
+    usual = st.sampled_from((0.0, 0.0, 1e-6, 1e-3, 0.01, 0.5, 3.0))
+    number = number_of(request)
+    at = list(request.stop_at) if len(request.stop_at) == number else [True] * number
+    request.dwell = [draw(usual if rests else st.just(0.0)) for rests in at]
+    if draw(st.booleans()):
+        request.dwell = draw(st.lists(st.one_of(usual, odd_numbers), min_size=number,
+                                      max_size=number))
+
+
 CHANGES = (
     _odd_coordinate, _odd_orientation, _special_place, _repeated_points, _fewer_points,
-    _odd_durations, _odd_start, _odd_text, _odd_frame,
+    _odd_durations, _odd_start, _odd_text, _odd_frame, _joint_points, _stops, _dwells, _dwells,
     _odd_number('max_velocity_scaling_factor', st.floats(1e-4, 1.0)),
     _odd_number('max_acceleration_scaling_factor', st.floats(1e-4, 1.0)),
     _odd_number('sample_period', st.floats(1e-4, 10.0)),
@@ -175,14 +211,15 @@ def assert_sound(request, response, config=CONFIG):
     if response.error_code != CODES.SUCCESS:
         assert response.error_code in REFUSALS
         assert response.message.isprintable() and len(response.message) < 5000
-        assert -1 <= response.failed_via_point < max(len(request.via_points.poses), 1)
+        assert -1 <= response.failed_via_point < max(number_of(request), 1)
         assert not response.trajectory.points and not response.trajectory.joint_names
         return
     assert is_well_formed(request)
     times, motion = stamps(response.trajectory), points_of(response.trajectory)
     assert 2 <= len(times) <= config.max_points
     assert times[0] == 0 and (np.diff(times) > 0).all()
-    assert len(response.via_times) == len(request.via_points.poses)
+    assert len(response.via_times) == number_of(request)
+    assert_rests(request, response, times, motion)
     assert all(np.isfinite(v).all() for v in (
         motion.positions, motion.velocities, motion.accelerations))
     limits = config.limits.scaled(request.max_velocity_scaling_factor or 1.0,
@@ -196,11 +233,33 @@ def assert_sound(request, response, config=CONFIG):
     assert (np.array(response.peak_effort) <= limits.max_effort * (1.0 + 1e-6)).all()
 
 
+def assert_rests(request, response, times, motion):
+    """Assert that the arm rests where and for as long as it is asked to."""
+    via = np.round(np.multiply(response.via_times, 1e9)).astype(int)
+    for k, stops in enumerate(request.stop_at):
+        dwell = round(1e9 * request.dwell[k]) if request.dwell else 0
+        rests = (times >= via[k] - 1) & (times <= via[k] + dwell + 1)
+        assert rests.any()
+        if stops:
+            assert np.abs(motion.velocities[rests]).max() < 1e-6
+            assert np.ptp(motion.positions[rests], axis=0).max() < 1e-9
+    if request.dwell:
+        assert times[-1] - via[-1] >= round(1e9 * request.dwell[-1]) - 1
+
+
 def is_well_formed(request):
     """Return whether all values of a request are within the documented bounds."""
     tips = [(p.position.x, p.position.y, p.position.z, p.orientation.x, p.orientation.y,
              p.orientation.z, p.orientation.w) for p in request.via_points.poses]
-    return (np.isfinite(tips).all() and request.via_points.header.frame_id in ('', 'base_link')
+    frame = request.via_points.header.frame_id if tips else ''
+    joints = [p.positions for p in request.joint_via_points]
+    return (np.isfinite(tips).all() and np.isfinite(joints).all()
+            and not (tips and joints) and not any(
+                p.velocities or p.effort for p in request.joint_via_points)
+            and len(request.stop_at) in (0, number_of(request))
+            and len(request.dwell) in (0, number_of(request))
+            and all(0.0 <= d < inf for d in request.dwell)
+            and frame in ('', 'base_link')
             and request.elbow in ('', 'up', 'down')
             and request.planner_id in ('', *planner_ids())
             and all(0.0 <= factor <= 1.0 for factor in (

@@ -31,6 +31,7 @@ from rrr_traj_planner.core.arrays import (
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import make_read_only
 from rrr_traj_planner.core.rounding import TIME_ROUNDING
+from rrr_traj_planner.core.trajectory.joined import JoinedTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import ending_at_duration, Peaks, Trajectory
 
 
@@ -147,3 +148,23 @@ class PausedTrajectory(Trajectory):
         """
         return PausedTrajectory(
             self.moving.time_scaled(factor), self.via_index, self.at_rest, self.pauses)
+
+
+def motions_of(trajectory: Trajectory) -> tuple[Trajectory, ...]:
+    """
+    Return the motions of which a trajectory consists, without pauses.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        With pauses or without.
+
+    Returns
+    -------
+    tuple of Trajectory
+        One after another; the trajectory itself, where it is neither paused nor joined.
+
+    """
+    if isinstance(trajectory, PausedTrajectory):
+        return motions_of(trajectory.moving)
+    return trajectory.parts if isinstance(trajectory, JoinedTrajectory) else (trajectory,)

@@ -71,6 +71,7 @@ class PlannerConfig:
     half_transition: float
     least_jerk_rise: float
     planning_time_limit: float
+    transform_timeout: float
     max_points: int
     max_via_points: int
     urdf: str  # empty: the thesis's kind of arm
@@ -116,7 +117,8 @@ class PlannerConfig:
             **{name: values[name] for name in (
                 'base_frame', 'tip_frame', 'default_planner_id', 'sample_period',
                 'max_deviation', 'least_jerk_rise', 'start_state_tolerance', 'max_tip_speed',
-                'steady_zones', 'planning_time_limit', 'max_points', 'max_via_points')})
+                'steady_zones', 'planning_time_limit', 'transform_timeout', 'max_points',
+                'max_via_points')})
 
     def limits_for(self, *planner_ids: str) -> JointLimits:
         """

@@ -137,6 +137,8 @@ TABLE: tuple[Row, ...] = (
         100.0, nodes=(PLANNER,)),
     Row('planning_time_limit', 1.0, 'time after which planning stops with the best motion so far, '
         'or with an error that names the step in progress', 's', 1e-3, 3600.0, nodes=(PLANNER,)),
+    Row('transform_timeout', 2.0, 'time to wait for the transform of via points in another frame '
+        'than base_frame', 's', 0.0, 60.0, nodes=(PLANNER,)),
     Row('max_points', MOST_POINTS, 'largest number of points of an answer; a request for more is '
         'refused before they are computed', 'points', 2, 10_000_000, nodes=(PLANNER,)),
     Row('max_via_points', 1000, 'largest number of via points of a request', 'points', 2, 100_000,

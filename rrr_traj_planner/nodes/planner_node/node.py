@@ -26,6 +26,7 @@ from typing import Any, NamedTuple
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Path
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.clock import Clock, ClockType
@@ -41,6 +42,7 @@ from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.parameter_files import files_given
 from rrr_traj_planner.nodes.parameters.table import PLANNER
+from rrr_traj_planner.nodes.planner_node.frame_transforms import FrameError, FrameTransforms
 from rrr_traj_planner.nodes.planner_node.planning_answer import failure, refusal, success, tip_path
 from rrr_traj_planner.nodes.planner_node.planning_request import planning_request
 from rrr_traj_planner.nodes.planner_node.request_statistics import RequestStatistics
@@ -115,7 +117,7 @@ class TrajectoryPlanner(ServiceNode):
         self._statistics = RequestStatistics()
         self._in_progress: list[float] = []  # start times of the requests being planned
         self._diagnostics = self.create_publisher(DiagnosticArray, 'diagnostics', 10)
-        self._pool = WorkerPool(self, 'planning')
+        self._pool, self._frames = WorkerPool(self, 'planning'), FrameTransforms(self)
         self.create_service(PlanTrajectory, 'plan_trajectory', self._plan,
                             qos_profile=REQUEST_QUEUE, callback_group=ReentrantCallbackGroup())
         self._unpublished: deque[_Unpublished] = deque()
@@ -133,9 +135,7 @@ class TrajectoryPlanner(ServiceNode):
         config, stamp = self._parameters_declared.config, self.get_clock().now().to_msg()
         start = perf_counter()
         self._in_progress.append(start)
-        answer = await self._pool.call(
-            _answer, request, config, self._pool.is_ending,
-            expected=TIME_PER_VIA_POINT * len(request.via_points.poses))
+        answer = await self._answer(request, config)
         self._in_progress.remove(start)
         name = quoted(request.planner_id or config.default_planner_id)[1:-1]
         self._statistics.add(answer.response, self.get_clock().now().to_msg())
@@ -145,6 +145,21 @@ class TrajectoryPlanner(ServiceNode):
                 _Unpublished(answer.response.trajectory, answer.plan, config, stamp))
             self._answered.trigger()
         return answer.response
+
+    async def _answer(self, request: PlanTrajectory.Request, config: PlannerConfig) -> _Answer:
+        """Have a thread plan, once the transform of the via points is there."""
+        to_base = None
+        try:
+            if len(request.via_points.poses):
+                to_base = await self._frames.to_base(
+                    request.via_points.header, config.base_frame, config.transform_timeout)
+        except FrameError as error:
+            return _Answer(refusal(error))
+        except Exception as error:  # a bug, as in _answer
+            return _Answer(failure(error), trace=traceback.format_exc())
+        number = len(request.via_points.poses) + len(request.joint_via_points)
+        return await self._pool.call(_answer, request, config, to_base, self._pool.is_ending,
+                                     expected=TIME_PER_VIA_POINT * number)
 
     async def _publish_all(self) -> None:
         """Publish the plans that have been sent to their clients, oldest first."""
@@ -193,12 +208,13 @@ class TrajectoryPlanner(ServiceNode):
 
 
 def _answer(request: PlanTrajectory.Request, config: PlannerConfig,
-            is_ending: Callable[[], bool], job: Job) -> _Answer:
+            to_base: TransformStamped | None, is_ending: Callable[[], bool],
+            job: Job) -> _Answer:
     """Plan a request; errors become responses too."""
     found, trace = None, ''
     deadline = Deadline(config.planning_time_limit, job.checkpoint, is_ending)
     try:
-        wanted = planning_request(request, config, deadline)
+        wanted = planning_request(request, config, deadline, to_base)
         found = plan(config.model, config.limits_for(wanted.planner_id), wanted)
         planning_time = job.run_time()
         with step('conversion to the response message'):

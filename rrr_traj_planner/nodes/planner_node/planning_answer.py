@@ -35,7 +35,7 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.planner_node.planning_request import FrameError
+from rrr_traj_planner.nodes.planner_node.frame_transforms import FrameError
 from rrr_traj_planner.planners.plan import Plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint

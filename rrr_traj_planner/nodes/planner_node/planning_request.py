@@ -19,6 +19,7 @@ from __future__ import annotations
 from math import inf, isfinite
 from typing import Any, NamedTuple
 
+from geometry_msgs.msg import TransformStamped
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cancellation import never, ShouldStop
@@ -27,12 +28,13 @@ from rrr_traj_planner.core.errors import (
     format_distinct,
     InvalidInputError,
     quoted,
-    RrrPlannerError,
     StartStateError,
 )
 from rrr_traj_planner.core.kinematics.postures import ELBOWS, SHOULDERS
+from rrr_traj_planner.nodes.output.message_times import seconds
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.error_names import named
+from rrr_traj_planner.nodes.planner_node.frame_transforms import FrameError, in_base_frame
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
@@ -52,12 +54,9 @@ FIELDS = {'start': 'start_state', 'start_velocity': 'start_state',
           'half_transition': 'poly_414.t_acc'}
 
 
-class FrameError(RrrPlannerError):
-    """Via points in another frame than the base frame: the node has no transforms."""
-
-
 def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
-                     should_stop: ShouldStop = never) -> PlanningRequest:
+                     should_stop: ShouldStop = never,
+                     to_base: TransformStamped | None = None) -> PlanningRequest:
     """
     Return the planning request of a message, with the node's defaults for empty fields.
 
@@ -69,6 +68,8 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
         The node's parameters.
     should_stop : callable
         See `PlanningRequest`.
+    to_base : TransformStamped, optional
+        From the frame of the via points to the base frame; None: they are in the base frame.
 
     Returns
     -------
@@ -78,14 +79,14 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
     Raises
     ------
     FrameError
-        If the via points are not in the base frame.
+        If the via points are in another frame, and there is no transform, or it is malformed.
     StartStateError
         If the start state is incomplete or not finite.
     InvalidInputError
         If another field is malformed.
 
     """
-    _check_via_points(message, config)
+    via_points = _via_points(message, config, to_base)
     _check_range('sample_period', message.sample_period, MIN_SAMPLE_PERIOD, MAX_SAMPLE_PERIOD, 's')
     _check_range('max_deviation', message.max_deviation, MIN_DEVIATION, MAX_DEVIATION, 'm')
     for name, choices in (('elbow', ELBOWS), ('shoulder', SHOULDERS)):
@@ -93,15 +94,18 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
             raise InvalidInputError(
                 f'{name} is {quoted(getattr(message, name))}, must be '
                 f"'{choices[0]}', '{choices[1]}' or empty")
+        if getattr(message, name) and len(message.joint_via_points):
+            raise InvalidInputError(
+                f'{name} is {quoted(getattr(message, name))}, must be empty: joint_via_points '
+                'have postures of their own')
     start = _start(message, config)
     with named(FIELDS):
         return PlanningRequest(
-            via_points=_tip_positions(message.via_points.poses),
-            start=start.position, start_velocity=start.velocity,
-            start_acceleration=start.acceleration,
+            **via_points, stop_at=list(message.stop_at) or None,
+            dwell=_array_or_none(message.dwell), start=start.position,
+            start_velocity=start.velocity, start_acceleration=start.acceleration,
             planner_id=message.planner_id or config.default_planner_id,
-            segment_durations=np.array(message.segment_durations) if len(
-                message.segment_durations) else None,
+            segment_durations=_array_or_none(message.segment_durations),
             velocity_scaling=_or_default(message.max_velocity_scaling_factor, 1.0),
             acceleration_scaling=_or_default(message.max_acceleration_scaling_factor, 1.0),
             sample_period=_or_default(message.sample_period, config.sample_period),
@@ -114,15 +118,25 @@ def planning_request(message: PlanTrajectory.Request, config: PlannerConfig,
             start_state_tolerance=config.start_state_tolerance)
 
 
-def _check_via_points(message: PlanTrajectory.Request, config: PlannerConfig) -> None:
-    """Check the frame and the number of via points."""
-    frame, count = message.via_points.header.frame_id, len(message.via_points.poses)
-    if frame not in ('', config.base_frame):
-        raise FrameError(f'via_points are in frame {quoted(frame)}, must be in '
-                         f"'{config.base_frame}' (an empty frame_id means the same)")
+def _via_points(message: PlanTrajectory.Request, config: PlannerConfig,
+                to_base: TransformStamped | None) -> dict[str, Array]:
+    """Return the via points, checked, by the name of the argument that takes them."""
+    poses, joint_points = message.via_points.poses, message.joint_via_points
+    if len(poses) and len(joint_points):
+        raise InvalidInputError(
+            f'{counted(len(poses), "via point")} and {len(joint_points)} joint_via_points are '
+            'given, must be one of the two')
+    count = len(poses) + len(joint_points)
     if count > config.max_via_points:
         raise InvalidInputError(f'{count} via points given, at most {config.max_via_points} '
                                 'allowed (max_via_points)')
+    if len(joint_points):
+        return {'joint_via_points': _joint_positions(joint_points, config)}
+    points, frame = _tip_positions(poses), message.via_points.header.frame_id
+    if to_base is None and len(poses) and frame not in ('', config.base_frame):
+        raise FrameError(f'via_points are in frame {quoted(frame)}, must be in '
+                         f"'{config.base_frame}' (an empty frame_id means the same)")
+    return {'via_points': points if to_base is None else in_base_frame(points, to_base)}
 
 
 def _check_range(field: str, value: float, low: float, high: float, unit: str) -> None:
@@ -150,6 +164,36 @@ def _tip_positions(poses: Any) -> Array:
         raise _at_via_point(InvalidInputError(
             f'via point {i}: position is {tuple(points[i].tolist())} m, must be finite'), i)
     return points
+
+
+def _joint_positions(points: Any, config: PlannerConfig) -> Array:
+    """Return the positions of trajectory points [rad]; they may have nothing else."""
+    names = config.model.joint_names
+    for i, point in enumerate(points):
+        name = f'joint_via_points[{i}]'
+        if len(point.positions) != len(names):
+            raise _at_via_point(InvalidInputError(
+                f'{name} has {counted(len(point.positions), "position")}, must have one for each '
+                f'of {", ".join(names)}'), i)
+        for field, instead in (('velocities', ' (stop_at asks for a stop)'),
+                               ('accelerations', ''), ('effort', '')):
+            if len(getattr(point, field)):
+                raise _at_via_point(InvalidInputError(
+                    f'{name} has {field}, must have positions only: the planner chooses the '
+                    f'rest{instead}'), i)
+        if point.time_from_start.sec or point.time_from_start.nanosec:
+            raise _at_via_point(InvalidInputError(
+                f'{name} has time_from_start {seconds(point.time_from_start):g} s, must be 0: '
+                'segment_durations prescribe times'), i)
+    q = np.array([point.positions for point in points])
+    for i, j in np.argwhere(~np.isfinite(q)).tolist():
+        raise _at_via_point(InvalidInputError(
+            f'via point {i}: {names[j]} is at {q[i, j]:g} rad, must be finite'), i)
+    return q
+
+
+def _array_or_none(values: Any) -> Array | None:
+    return np.array(values) if len(values) else None
 
 
 def _at_via_point(error: InvalidInputError, via_point: int) -> InvalidInputError:

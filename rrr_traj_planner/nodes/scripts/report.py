@@ -126,7 +126,7 @@ def _plan(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     for of in planned(found):
         trajectory = of.plan.trajectory
         print(f'{of.planner_id}: {trajectory.duration:.3f} s, '
-              f'{vibration_text(trajectory, trajectory.knots)}', flush=True)
+              f'{vibration_text(trajectory, of.moving_knots)}', flush=True)
     name = file.name.encode()[:MAX_NAME].decode(errors='ignore')
     page = write_plan_report(options.output or Path(f'report_{name}'), found)
     print(f'page: {page}')

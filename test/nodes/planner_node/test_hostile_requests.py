@@ -97,8 +97,8 @@ def test_degenerate_positions_are_planned_or_refused(points, code, text, via_poi
 def test_scalings_and_periods_are_refused_before_anything_is_planned(
         monkeypatch, planner_id, fields, text):
     request = plan_request((A, B, C), planner_id=planner_id, **fields)
-    for name in ('JointTask', 'CartesianTask'):
-        monkeypatch.setattr(f'rrr_traj_planner.planners.planning.{name}', must_not_be_made)
+    for name in ('through_joints.JointTask', 'along_path.CartesianTask'):
+        monkeypatch.setattr(f'rrr_traj_planner.planners.parts.{name}', must_not_be_made)
     if 'must be positive' in text:  # 1 rad/s times it is no number above 0, or the least one
         assert answered(request).error_code == INVALID
     else:
@@ -137,7 +137,7 @@ def test_texts_from_outside_are_shortened_in_messages():
 @pytest.fixture
 def ask(ros):
     node = ros.add(TrajectoryPlanner(context=ros.context, parameter_overrides=[
-        Parameter('max_points', value=MAX_POINTS),
+        Parameter('max_points', value=MAX_POINTS), Parameter('transform_timeout', value=0.0),
         Parameter('planning_time_limit', value=60.0)]))  # however busy the machine is
     assert node._parameters_declared.config.max_points == CONFIG.max_points
     return lambda request: ros.call(PlanTrajectory, 'plan_trajectory', request)
@@ -151,8 +151,10 @@ def test_node_answers_as_the_planners_do_and_continues(ask):
         if request.planner_id in STOPPED:
             request.planner_id = 'cycloid'
         response, expected = ask(request), answered(request, patience=inf)
-        assert (response.error_code, response.message, response.failed_via_point) == (
-            expected.error_code, expected.message, expected.failed_via_point)
+        assert (response.error_code, response.failed_via_point) == (
+            expected.error_code, expected.failed_via_point)
+        if response.error_code != CODES.FRAME_TRANSFORM_FAILURE:  # there it tells of tf2
+            assert response.message == expected.message
         assert response.trajectory == expected.trajectory
 
     run()

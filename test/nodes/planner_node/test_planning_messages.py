@@ -20,7 +20,8 @@ from dataclasses import replace
 from math import nan
 import re
 
-from builtin_interfaces.msg import Time
+from builtin_interfaces.msg import Duration, Time
+from geometry_msgs.msg import TransformStamped
 from helpers.plan_requests import NAMES, plan_request, points_of, stamps, START, TABLE_6_1
 import numpy as np
 import pytest
@@ -51,6 +52,7 @@ from rrr_traj_planner.nodes.planner_node.planning_answer import (
 from rrr_traj_planner.nodes.planner_node.planning_request import FrameError, planning_request
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from trajectory_msgs.msg import JointTrajectoryPoint
 
 CODES = PlanTrajectory.Response
 
@@ -166,6 +168,63 @@ def test_errors_name_the_service_s_fields(config, field, wrong, text):
 def test_another_frame_is_refused(config):
     with pytest.raises(FrameError, match="in frame 'tool', must be in 'base_link'"):
         planning_request(plan_request(frame='tool'), config)
+
+
+def test_via_points_in_another_frame_are_transformed(config):
+    to_base = TransformStamped(child_frame_id='tool')
+    to_base.transform.rotation.w = 1.0
+    to_base.transform.translation.z = 0.25
+    request = planning_request(plan_request(frame='tool'), config, to_base=to_base)
+    assert request.via_points == pytest.approx(np.add(TABLE_6_1, [0.0, 0.0, 0.25]))
+
+
+def joints(*points, **fields):
+    return plan_request((), joint_via_points=[
+        JointTrajectoryPoint(**{'positions': [0.3, 1.4, 0.1], **point}) for point in points],
+        **fields)
+
+
+def test_stops_dwells_and_joint_positions_are_taken_over(config):
+    request = planning_request(joints({}, {'positions': [0.5, 1.2, 0.0]}, {}, frame='anywhere',
+                                      stop_at=[False, True, True], dwell=[0.5, 0.0, 1.0]), config)
+    assert request.via_points is None
+    assert request.joint_via_points.tolist() == [[0.3, 1.4, 0.1], [0.5, 1.2, 0.0], [0.3, 1.4, 0.1]]
+    assert request.stop_at.tolist() == [False, True, True]
+    assert request.dwell.tolist() == [0.5, 0.0, 1.0]
+    plain = planning_request(plan_request(), config)
+    assert plain.joint_via_points is plain.stop_at is plain.dwell is None
+
+
+@pytest.mark.parametrize(('message', 'text', 'via_point'), [
+    (joints({}, {'positions': [0.3, 1.4]}), 'joint_via_points[1] has 2 positions, must have one '
+     'for each of joint_1, joint_2, joint_3', 1),
+    (joints({}, {'positions': [0.3, nan, 0.1]}),
+     'via point 1: joint_2 is at nan rad, must be finite', 1),
+    (joints({'velocities': [0.0] * 3}, {}), 'joint_via_points[0] has velocities, must have '
+     'positions only: the planner chooses the rest (stop_at asks for a stop)', 0),
+    (joints({}, {'accelerations': [0.0] * 3}), 'joint_via_points[1] has accelerations, must '
+     'have positions only: the planner chooses the rest', 1),
+    (joints({}, {'effort': [1.0]}), 'joint_via_points[1] has effort, must have positions only: '
+     'the planner chooses the rest', 1),
+    (joints({}, {'time_from_start': Duration(sec=2)}), 'joint_via_points[1] has time_from_start '
+     '2 s, must be 0: segment_durations prescribe times', 1),
+    (joints({}, {}, elbow='up'),
+     "elbow is 'up', must be empty: joint_via_points have postures of their own", -1),
+    (joints({}, {}, shoulder='back'),
+     "shoulder is 'back', must be empty: joint_via_points have postures of their own", -1),
+    (plan_request(joint_via_points=[JointTrajectoryPoint()]),
+     '3 via points and 1 joint_via_points are given, must be one of the two', -1),
+    (joints({}), '1 via point given, at least 2 needed', -1),
+    (joints({}, {}, stop_at=[True]),
+     'stop_at has 1 value for 2 via points, must have one for each, or none', -1),
+    (plan_request(stop_at=[True, True, False]), 'stop_at[2] is false, must be true: the motion '
+     'ends at the last via point, at rest', 2),
+    (plan_request(dwell=[0.0, 1.0, 0.0]), 'dwell[1] is 1 s, but the arm does not stop at via '
+     'point 1: stop_at must be true there', 1)])
+def test_malformed_joint_positions_stops_and_dwells_are_refused(config, message, text, via_point):
+    with pytest.raises(InvalidInputError, match=f'^{re.escape(text)}$') as refusal:
+        planning_request(message, config)
+    assert refusal.value.via_point == via_point
 
 
 @pytest.mark.parametrize(('error', 'code', 'via_point'), [

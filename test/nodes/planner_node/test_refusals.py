@@ -116,11 +116,6 @@ def test_refusal_names_the_via_point_with_an_orientation_that_is_not_finite(ask)
                    'must be finite', 2)
 
 
-def test_another_frame_is_refused(ask):
-    assert_refused(ask, plan_request(frame='world'), CODES.FRAME_TRANSFORM_FAILURE,
-                   "via_points are in frame 'world', must be in 'base_link'")
-
-
 @pytest.mark.parametrize(('start', 'text'), [
     ({'name': NAMES[:2], 'position': START[:2]},
      'start state names joint_3 0 times, must name each of joint_1, joint_2, joint_3 once'),
