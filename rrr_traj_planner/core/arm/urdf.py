@@ -132,20 +132,21 @@ def _add_shapes(element: ET.Element, model: RobotModel, link: int, frame: Frame)
         length = float(np.linalg.norm(end - start))
         # A rod is symmetric: of its two directions, the one within a right angle of z.
         along = (end - start) / length * (1.0 if end[2] >= start[2] else -1.0)
-        rod = _add_visual(element, 0.5 * (start + end), rotation_z_to(along), 'light')
-        ET.SubElement(rod, 'cylinder', radius=_text([radius]), length=_text([length]))
+        rod = ET.Element('cylinder', radius=_text([radius]), length=_text([length]))
+        _add_shape(element, rod, 0.5 * (start + end), rotation_z_to(along), 'light')
     for point in (x.at for x in joint_points(model.chain) if x.link == link):
-        ball = _add_visual(element, frame.inside(point), np.eye(3), 'dark')
-        ET.SubElement(ball, 'sphere', radius=_text([1.4 * radius]))
+        ball = ET.Element('sphere', radius=_text([1.4 * radius]))
+        _add_shape(element, ball, frame.inside(point), np.eye(3), 'dark')
 
 
-def _add_visual(link: ET.Element, xyz: Array, R: Array, material: str) -> ET.Element:
-    """Add a visual element, and return its empty geometry element."""
-    visual = ET.SubElement(link, 'visual')
-    _add_origin(visual, xyz, R)
-    geometry = ET.SubElement(visual, 'geometry')
-    ET.SubElement(visual, 'material', name=material)
-    return geometry
+def _add_shape(link: ET.Element, shape: ET.Element, xyz: Array, R: Array, material: str) -> None:
+    """Add a shape to a link, to be seen and for checks of collisions."""
+    for kind in ('visual', 'collision'):
+        element = ET.SubElement(link, kind)
+        _add_origin(element, xyz, R)
+        ET.SubElement(element, 'geometry').append(shape)
+        if kind == 'visual':
+            ET.SubElement(element, 'material', name=material)
 
 
 def _add_joint(robot: ET.Element, name: str, kind: str, links: Sequence[str],

@@ -32,11 +32,12 @@ from rclpy.parameter import Parameter
 from rrr_traj_planner.core.errors import InvalidInputError, RrrPlannerError
 from rrr_traj_planner.nodes.parameters.arm_source import arm_source, LIMITS, URDF
 from rrr_traj_planner.nodes.parameters.parameter_files import folder_of_value
-from rrr_traj_planner.nodes.parameters.table import check_value, Row, rows_of
+from rrr_traj_planner.nodes.parameters.table import ARM, check_value, PLANNER, Row, rows_of
 
 Config = TypeVar('Config')
 
 RESOLVED = (URDF, LIMITS)  # declared with a file's text, and an absolute path
+ROLES = (PLANNER, ARM)
 
 
 class DeclaredParameters(Generic[Config]):
@@ -92,8 +93,13 @@ class DeclaredParameters(Generic[Config]):
             self._values[row.name] = self._declare(row)
             self._rows[row.name] = row
         self.config = build(self._values)
+        self._of_others = {name for other in ROLES for name in rows_of(other, self.joint_names)
+                           if name not in self._rows}
         node.add_on_set_parameters_callback(self._check)
         node.add_post_set_parameters_callback(self._apply)
+        # What the parameter services call: rclpy refuses read-only parameters before any callback.
+        self._set_by_rclpy = node.set_parameters_atomically
+        node.set_parameters_atomically = self._set
 
     def _declare(self, row: Row) -> Any:
         """Declare one parameter; return its override, or the default of the table."""
@@ -107,6 +113,30 @@ class DeclaredParameters(Generic[Config]):
             raise InvalidInputError(f'parameter {error}') from None
         self._node.set_descriptor(row.name, descriptor(row))
         return _plain(value)
+
+    def _set(self, parameters: list[Parameter]) -> SetParametersResult:
+        """
+        Set parameters as rclpy does, but for what makes a file of both nodes fail to load.
+
+        That are read-only parameters with the value that they have, and parameters of the other
+        node: these are ignored, and the result says so.
+        """
+        ignored = [p.name for p in parameters if p.name in self._of_others]
+        changes = [p for p in parameters if p.name not in ignored and not self._is_kept(p)]
+        result = (self._set_by_rclpy(changes) if changes
+                  else SetParametersResult(successful=True))
+        if ignored and result.successful:
+            result.reason = f'ignored here: {", ".join(ignored)}'
+        return result
+
+    def _is_kept(self, parameter: Parameter) -> bool:
+        """Return whether a parameter is read-only and keeps its value."""
+        name, row = parameter.name, self._rows.get(parameter.name)
+        if row is None or not row.read_only:
+            return False
+        present, value = self._node.get_parameter(name), _plain(parameter.value)
+        return parameter.type_ == present.type_ and (
+            value == _plain(present.value) or (name in RESOLVED and value == self.given.get(name)))
 
     def _check(self, parameters: list[Parameter]) -> SetParametersResult:
         """Refuse values that are out of range or contradict others."""

@@ -23,6 +23,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from rrr_traj_planner.nodes.process.node_runner import run_node
+from rrr_traj_planner.planners.method_summaries import method_summaries
 
 if TYPE_CHECKING:
     from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
@@ -35,6 +36,8 @@ Plan motions of the arm's tip through via points, within the limits of joints an
               diagnostics (diagnostic_msgs/DiagnosticArray)
               markers (visualization_msgs/MarkerArray)
   parameters  config/thesis_arm.yaml lists them all
+  planner_id
+{planners}
 
 --check starts nothing: it prints what a URDF was understood to say, and whether this arm can be
 planned for; if not, the exit code is 1."""
@@ -55,7 +58,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit code.
 
     """
-    return run_node('planner', DESCRIPTION, _load, arguments, _add_options, _instead)
+    lines = [f'    {name:<20}{text}' for name, text in method_summaries().items()]
+    description = DESCRIPTION.format(planners='\n'.join(lines))
+    return run_node('planner', description, _load, arguments, _add_options, _instead)
 
 
 def _add_options(parser: argparse.ArgumentParser) -> None:

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-`gauss`: as `cycloid`, with Gauss's function for the acceleration of transitions (3.1, A.1-A.9).
+`gauss`: as `cycloid`, with Gauss's function for the transitions' acceleration (3.1, A.1-A.9).
 
 Acceleration is continuous; jerk steps where a transition begins or ends.
 """

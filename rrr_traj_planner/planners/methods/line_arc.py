@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-`line_arc`: lines and arcs of circles through every via point, as fast as the limits allow.
+`line_arc`: lines and circular arcs through every via point, as fast as limits allow.
 
 The path is that of thesis 5.4.2; its timing: Bobrow, Dubowsky & Gibson, Time-optimal control of
 robotic manipulators along specified paths, IJRR 4, 1985.

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-`line_polynomial`: lines and zones of continuous curvature, as fast as the limits allow.
+`line_polynomial`: lines and zones of continuous curvature, as fast as limits allow.
 
 Zones: thesis (3.18); the timing: Bobrow, Dubowsky & Gibson, Time-optimal control of robotic
 manipulators along specified paths, IJRR 4, 1985.

@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-`poly_434`: Lin's 4-3-4: in every segment a quartic lift-off, a cubic cruise, a quartic set-down.
+`poly_434`: quartic lift-off, cubic cruise, quartic set-down in every segment (Lin's 4-3-4).
 
 Approach (c) of thesis section 4.2: "each subtrajectory is composed of three segments, namely;
 lift-off, cruise and set down", of polynomials as section 2.2.2 describes them. The thesis's

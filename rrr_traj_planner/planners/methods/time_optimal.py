@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-`time_optimal`: as fast as velocity, acceleration, jerk and torque allow, with continuous jerk.
+`time_optimal`: as fast as velocity, acceleration, jerk and torque allow, jerk continuous.
 
 Jerk is linear in each interval of a mesh and continuous everywhere, also through via points
 (`solver.splines`). Node jerks, the states at via points and durations are optimised together

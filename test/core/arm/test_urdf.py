@@ -154,15 +154,15 @@ def test_parser_of_ros_finds_one_chain_from_base_to_tip(capfd):
     assert capfd.readouterr() == ('', '')  # it has nothing to complain of
 
 
-def ends_in_base(text, data, model, shape):
+def ends_in_base(text, data, model, shape, kind):
     """Return the cylinders' ends, or the balls' centres, as sets of rounded points."""
     found = []
     for link in ElementTree.fromstring(text).iter('link'):
-        for visual in link.iter('visual'):
-            drawn = visual.find(f'geometry/{shape}')
+        for element in link.iter(kind):
+            drawn = element.find(f'geometry/{shape}')
             if drawn is None:
                 continue
-            xyz, rpy = (np.array(visual.find('origin').get(k).split(), dtype=float)
+            xyz, rpy = (np.array(element.find('origin').get(k).split(), dtype=float)
                         for k in ('xyz', 'rpy'))
             half = 0.5 * float(drawn.get('length', 0.0))
             along = pinocchio.rpy.rpyToMatrix(rpy) @ (0.0, 0.0, half)
@@ -176,7 +176,8 @@ def rounded(point):
 
 
 @pytest.mark.parametrize('arm', [*ANY_ARM, ThesisArm(d1=0.0), ThesisArm(d1=-0.3)])
-def test_what_is_drawn_reaches_from_joint_to_joint(arm):
+@pytest.mark.parametrize('kind', ['visual', 'collision'])
+def test_shapes_reach_from_joint_to_joint(arm, kind):
     """The ends of the cylinders, carried to the base by Pinocchio, are the links' points."""
     text = urdf(arm, JointLimits())
     model = pinocchio.buildModelFromXML(text)
@@ -185,8 +186,8 @@ def test_what_is_drawn_reaches_from_joint_to_joint(arm):
     pinocchio.framesForwardKinematics(model, data, q)
     points = [rounded(p) for p in link_positions(arm, q.tolist())]
     lines = [{a, b} for a, b in zip(points, points[1:]) if a != b]
-    assert ends_in_base(text, data, model, 'cylinder') == lines
-    assert ends_in_base(text, data, model, 'sphere') == [{p} for p in points[1:-1]]
+    assert ends_in_base(text, data, model, 'cylinder', kind) == lines
+    assert ends_in_base(text, data, model, 'sphere', kind) == [{p} for p in points[1:-1]]
 
 
 @pytest.mark.parametrize('frames', [

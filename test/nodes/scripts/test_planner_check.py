@@ -21,6 +21,7 @@ import sys
 
 from helpers.places import CONFIG, ROOT
 import pytest
+from rrr_traj_planner.planners.method_summaries import method_summaries
 
 DEADLINE = 60.0  # s
 
@@ -86,3 +87,9 @@ def test_refusals_are_one_line(tmp_path, arguments, code, text):
     assert (found.returncode, found.stdout) == (code, '')
     assert text in found.stderr
     assert found.stderr.count('\n') == 1
+
+
+def test_help_lists_every_planner_id_in_a_line(tmp_path):
+    lines = [line.split(maxsplit=1) for line in check('--help', cwd=tmp_path).stdout.splitlines()]
+    for planner_id, summary in method_summaries().items():
+        assert [planner_id, summary] in lines
