@@ -30,8 +30,8 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.nodes.parameters.configuration_files import read_task
 from rrr_traj_planner.nodes.parameters.planner_config import planner_config
+from rrr_traj_planner.nodes.point_files.reading import read_task
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.report.animation import frames

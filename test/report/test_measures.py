@@ -20,16 +20,19 @@ from math import pi
 
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.motion_laws import cycloid
 from rrr_traj_planner.core.motion_laws.gauss import GAUSS
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.planners.registry import planner_ids
-from rrr_traj_planner.report.attempts import planned
+from rrr_traj_planner.planners.request import PlanningRequest
+from rrr_traj_planner.report.attempts import attempts, planned, Task
 from rrr_traj_planner.report.coefficients import Coefficients, coefficients
 from rrr_traj_planner.report.measures import jerk_at_ends, measures, time_at_limit
-from rrr_traj_planner.report.tables import methods_table, refusals_table, shown
+from rrr_traj_planner.report.tables import methods_table, refusals_table, shown, via_points_table
 
 ROUNDING = 1e-9
 MISSING = {'poly_414', 'cycloid_approach_b'}
@@ -143,3 +146,26 @@ def test_time_at_a_limit_is_a_part_of_the_time():
 
 def test_rounding_is_shown_as_none():
     assert [shown(x, 2) for x in (1e-13, -1e-10, 0.004, 1.0)] == ['0', '0', '0.00', '1.00']
+
+
+@pytest.mark.parametrize('planner_id', ['cycloid', 'line_arc'])
+def test_measures_of_a_motion_with_stops_are_those_of_its_parts(planner_id):
+    q = np.array([[0.3, 1.4, 0.0], [0.9, 1.7, 0.2], [0.5, 1.2, -0.1]])
+    request = PlanningRequest(joint_via_points=q, stop_at=[False, True, True],
+                              dwell=[0.25, 0.5, 0.125])
+    arm = RobotModel(), JointLimits()
+    whole, = planned(attempts(Task('stops', *arm, request), [planner_id]))
+    parts = [planned(attempts(Task('part', *arm, PlanningRequest(joint_via_points=q[k:k + 2])),
+                              [planner_id]))[0] for k in (0, 1)]
+    found, single = measures(whole), [measures(part) for part in parts]
+    assert found.total_time == pytest.approx(sum(m.total_time for m in single) + 0.875, abs=1e-9)
+    assert found.coefficients.total == sum(m.coefficients.total for m in single)
+    assert found.jerk_at_ends == pytest.approx(
+        np.maximum(*(m.jerk_at_ends for m in single)), abs=1e-6)
+    assert found.via_error <= ROUNDING
+    assert whole.moving_knots[-1] == pytest.approx(whole.plan.via_times[-1], abs=ROUNDING)
+    table = via_points_table(whole.task, [whole], 'via_points')
+    assert table.heads == ('#', 'x [m]', 'y [m]', 'z [m]', 'joint_1 [rad]', 'joint_2 [rad]',
+                           'joint_3 [rad]', 'rests for [s]', f'{planner_id} [s]')
+    assert [row[4:8] for row in table.rows] == [
+        ['0.3', '1.4', '0', '0.25'], ['0.9', '1.7', '0.2', '0.5'], ['0.5', '1.2', '-0.1', '0.125']]

@@ -56,7 +56,7 @@ def without(*modules):
 
 def test_plan_is_drawn_without_ros_and_nothing_is_written_elsewhere(tmp_path):
     code, output, errors = ended(report(
-        '--plan', 'table_6_1.yaml', '--planner', 'cycloid', '--planner', 'septic', '--output',
+        '--plan', 'pick_and_place.yaml', '--planner', 'cycloid', '--planner', 'septic', '--output',
         'out', cwd=tmp_path, code=without('rclpy', 'ament_index_python')))
     assert (code, errors) == (0, '')
     assert output.endswith('page: out/index.html\n')
@@ -65,10 +65,11 @@ def test_plan_is_drawn_without_ros_and_nothing_is_written_elsewhere(tmp_path):
     assert {'index.html', 'planners.csv', 'profiles_cycloid.png', 'profiles_septic.csv',
             'vibrations.csv', 'vibration.png'} <= names
     page = (tmp_path / 'out' / 'index.html').read_text()
+    assert 'rests for [s]' in page  # it stops at some via points
     assert 'Peaks of septic' in page and 'Residual vibration over frequency' in page
     for planner_id in ('cycloid', 'septic'):
-        assert re.search(rf'^{planner_id}: 2\.\d+ s, residual vibration \[rad/s\^2\] at 16 / 32 / '
-                         r'64 Hz: 0\.\d+ / 0\.\d+ / 0\.\d+$', output, re.MULTILINE)
+        assert re.search(rf'^{planner_id}: \d\.\d+ s, residual vibration \[rad/s\^2\] at 16 / 32 '
+                         r'/ 64 Hz: 0\.\d+ / 0\.\d+ / 0\.\d+$', output, re.MULTILINE)
 
 
 def test_plan_of_a_urdf_s_arm_is_drawn(tmp_path):

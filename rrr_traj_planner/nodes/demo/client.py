@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from time import monotonic, sleep
 from typing import Any
 
@@ -29,19 +30,21 @@ from rclpy.parameter import parameter_value_to_python
 from rclpy.time import Time
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import counted
-from rrr_traj_planner.core.kinematics.postures import posture_of
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
-from rrr_traj_planner.nodes.demo.messages import plan_request, trajectory_points
+from rrr_traj_planner.nodes.demo.messages import plan_request, trajectory_points, way_to
 from rrr_traj_planner.nodes.demo.recording import demo_recorder
 from rrr_traj_planner.nodes.output.message_times import seconds
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters.configuration_files import Task
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
+from rrr_traj_planner.nodes.point_files.task import given, Task
 from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.process.node_claim import is_claimed
 from rrr_traj_planner.nodes.process.node_start import KEEP_APART
 from rrr_traj_planner.nodes.process.processes import exit_message
 from rrr_traj_planner.nodes.recording.bag import Bag
+from rrr_traj_planner.planners.registry import planner
+from rrr_traj_planner.planners.rests import Rests, rests_at_via_points
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
@@ -54,6 +57,7 @@ SETTLING_TIME = 0.5    # s that is recorded after the end
 PROGRESS_PERIOD = 0.5  # s between two progress lines
 POLL_PERIOD = 0.02     # s between two checks of a condition that is waited for
 AT_START = 1e-6        # rad, largest distance of a joint at which the motion can start
+IN_JOINT_SPACE = 'cycloid'  # planner of the way to the start of a path of the tip
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +70,24 @@ class Run:
     planned: TrajectoryPoints
     recorded: TrajectoryPoints  # the arm's motion; time 0 is the start of the trajectory
     torque: Array             # motor torques at the recorded points, shape (n, 3) [N m]
+
+    @cached_property
+    def joint_via_points(self) -> Array | None:
+        """Joint positions that the task gives for its via points [rad], shape (n, 3)."""
+        return self.task.joint_via_points(self.config.model.joint_names)
+
+    @cached_property
+    def tips(self) -> Array:
+        """The tip's positions at the via points [m], shape (n, 3)."""
+        joints = self.joint_via_points
+        return (self.task.via_points if joints is None
+                else forward_kinematics(self.config.model, joints))
+
+    @cached_property
+    def rests(self) -> Rests:
+        """Where and how long the arm is to rest."""
+        return rests_at_via_points(
+            given(self.task.stop_at), given(self.task.dwell), len(self.tips), False)
 
 
 class Client(Node):
@@ -117,16 +139,14 @@ class Client(Node):
         if bag is not None:
             self._wait(demo_recorder(self, bag).is_connected, 'the topics to record')
         config = self._planner_config(task)
-        response = self._planned(plan_request(task))
-        print(f'planned {counted(len(task.via_points), "via point")} with '
+        task.check_frame(config.base_frame)
+        response = self._planned(plan_request(task, config.model.joint_names))
+        print(f'planned {counted(len(response.via_times), "via point")} with '
               f"'{task.planner_id or config.default_planner_id}' in "
               f'{1e3 * response.planning_time:.0f} ms: {response.via_times[-1]:.3f} s, '
               f'{counted(len(response.trajectory.points), "point")}', flush=True)
         planned = trajectory_points(response.trajectory)
-        rest = self._go_to(planned.positions[0], task, config)
-        if np.abs(rest - planned.positions[0]).max() > AT_START:
-            response = self._planned_from(rest, task, config)
-            planned = trajectory_points(response.trajectory)
+        self._go_to(planned.positions[0], task, config)
         start = self._execute(response.trajectory, 'executing')
         recorded, torque = _recorded(list(self._states), config, start)
         return Run(task, config, response, planned, recorded, torque)
@@ -179,35 +199,16 @@ class Client(Node):
         answer = self._answer(self._get_parameters, GetParameters.Request(names=names))
         return dict(zip(names, map(parameter_value_to_python, answer.values)))
 
-    def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> Array:
-        """
-        Move the arm to the first via point, if it is elsewhere, and return where it rests [rad].
-
-        That is not the start of the motion if the arm comes there in another posture, which
-        happens if its postures have no names to ask for.
-        """
+    def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
+        """Move the arm to where the motion begins [rad], if it is elsewhere."""
         state = self._states[-1]
         if np.abs(_in_order([state], config, 'position')[0] - q).max() <= AT_START:
-            return q
-        request = plan_request(replace(
-            task, via_points=task.via_points[:1], segment_durations=np.array([])))
-        posture = posture_of(config.model, q)
-        if posture is not None:
-            request.elbow, request.shoulder = posture.elbow or '', posture.shoulder or ''
-        request.start_state.name = list(state.name)
-        request.start_state.position = list(state.position)
-        way = self._planned(request).trajectory
+            return
+        planner_id = task.planner_id or config.default_planner_id
+        if planner(planner_id).plan_path is not None:
+            planner_id = IN_JOINT_SPACE
+        way = self._planned(way_to(q, state, planner_id)).trajectory
         self._execute(way, 'moving to the first via point')
-        return np.array(way.points[-1].positions)
-
-    def _planned_from(self, q: Array, task: Task, config: PlannerConfig) -> Any:
-        """Return the plan that begins at the first via point in the posture of q [rad]."""
-        request = plan_request(replace(task, via_points=task.via_points[1:]))
-        request.start_state.name = list(config.model.joint_names)
-        request.start_state.position = q.tolist()
-        response = self._planned(request)
-        response.via_times = [0.0, *response.via_times]
-        return response
 
     def _planned(self, request: PlanTrajectory.Request) -> Any:
         response = self._answer(self._plan, request)

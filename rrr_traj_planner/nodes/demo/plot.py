@@ -68,7 +68,7 @@ def draw(run: Run, file: Path) -> None:
         _space(right.add_subplot(grid[0], projection='3d'), run)
         _tracking(right.add_subplot(grid[1]), run)
         planner = run.task.planner_id or run.config.default_planner_id
-        points = counted(len(run.task.via_points), 'via point')
+        points = counted(len(run.tips), 'via point')
         figure.suptitle(f'{run.task.name}: {points}, planner {planner}, '
                         f'{run.response.via_times[-1]:.3f} s', fontsize=11)
         left.align_ylabels(profiles)
@@ -139,7 +139,7 @@ def _space(axes: Any, run: Run) -> None:
     axes.plot(*forward_kinematics(model, q).T, color='#cc79a7', linewidth=2.0, label='planned')
     executed = run.recorded.positions[run.recorded.times >= 0.0]
     axes.plot(*forward_kinematics(model, executed).T, **EXECUTED, label='executed')
-    axes.scatter(*run.task.via_points.T, color='#e69f00', edgecolor='black', s=30,
+    axes.scatter(*run.tips.T, color='#e69f00', edgecolor='black', s=30,
                  depthshade=False, label='via points', zorder=5)
     axes.set(xlabel='x [m]', ylabel='y [m]', zlabel='z [m]')
     axes.set_aspect('equal')
@@ -147,7 +147,7 @@ def _space(axes: Any, run: Run) -> None:
         axis.set_major_locator(MultipleLocator(_tick_step(axes)))
     axes.tick_params(pad=1)
     axes.view_init(elev=24.0, azim=-62.0)
-    _number(axes, run.task.via_points)
+    _number(axes, run.tips)
     axes.legend(loc='upper center', bbox_to_anchor=(0.5, 1.08), ncols=2, fontsize=8)
 
 

@@ -25,11 +25,12 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.path.deviation import distance_from_polyline
 from rrr_traj_planner.core.trajectory.limit_check import TOLERANCE
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
+from rrr_traj_planner.core.trajectory.sampling import NANOSECOND
 from rrr_traj_planner.nodes.demo.client import Run
+from rrr_traj_planner.nodes.demo.via_errors import executed_errors, final_error, planned_errors
 from rrr_traj_planner.planners.registration import Registered
 from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner.report.excitation import vibration_text
-from rrr_traj_planner.report.measures import joint_errors, tip_errors
 
 PLANNED_BOUND = 1e-9   # rad, error of the plan at via points: rounding
 EXECUTED_BOUND = 2e-3  # m, error of the arm's tip at via points: tracking
@@ -72,14 +73,13 @@ def checked_values(run: Run) -> list[CheckedValue]:
 
     """
     found = []
-    last = len(run.task.via_points) - 1
     missed = _planner(run).misses_via_points
-    for i, (planned, executed) in enumerate(zip(_planned_errors(run), _executed_errors(run))):
-        if missed and 0 < i < last:  # this planner misses inner via points by construction
+    for i, (planned, executed) in enumerate(zip(planned_errors(run), executed_errors(run))):
+        if missed and not run.rests.at[i]:  # by construction
             continue
         found += [CheckedValue(f'via point {i}: planned error', planned, PLANNED_BOUND, 'rad'),
                   CheckedValue(f'via point {i}: tip error', executed, EXECUTED_BOUND, 'm')]
-    found.append(CheckedValue('final error', _final_error(run), FINAL_BOUND, 'm'))
+    found.append(CheckedValue('final error', final_error(run), FINAL_BOUND, 'm'))
     if _follows_path(run):
         bound = run.config.max_deviation
         planned, executed = _deviations(run)
@@ -114,15 +114,18 @@ def table(run: Run, found: list[CheckedValue]) -> str:
         Several lines.
 
     """
+    joints, (at, dwell) = run.joint_via_points, run.rests
+    given, digits, unit = (run.tips, 6, 'm') if joints is None else (joints, 4, 'rad')
     lines = ['', f'{run.task.name}: {run.response.via_times[-1]:.3f} s', '',
-             f'{"via point":<28}{"at [s]":>9}{"planned error [rad]":>22}'
-             f'{"tip error [mm]":>21}']
+             f'{"via point":<31}{"at [s]":>8}{"rests [s]":>11}{"planned error [rad]":>21}'
+             f'{"tip error [mm]":>16}']
     for i, (point, t, planned, executed) in enumerate(zip(
-            run.task.via_points, run.response.via_times, _planned_errors(run),
-            _executed_errors(run))):
-        where = '(' + ', '.join(f'{x:g}' for x in point) + ') m'
-        lines.append(f'{i:<3}{where:<25}{t:>9.3f}{planned:>22.1e}{1e3 * executed:>21.4f}')
-    lines += [f'{"at rest":<28}{"":>9}{"":>22}{1e3 * _final_error(run):>21.4f}']
+            given, run.response.via_times, planned_errors(run), executed_errors(run))):
+        where = '(' + ', '.join(f'{x:.{digits}g}' for x in point) + f') {unit}'
+        rest = f'{dwell[i]:g}' if at[i] else ''
+        lines.append(f'{i:<3}{where:<28}{t:>8.3f}{rest:>11}{planned:>21.1e}'
+                     f'{1e3 * executed:>16.4f}')
+    lines += [f'{"at rest":<71}{1e3 * final_error(run):>16.4f}']
     if _follows_path(run):
         planned, executed = _deviations(run)
         lines.append(f'distance from the polyline: planned {1e3 * planned:.2f} mm, executed '
@@ -137,7 +140,8 @@ def table(run: Run, found: list[CheckedValue]) -> str:
         lines.append(f'{label:<24}' + ''.join(
             f'{f"{p:.4g} / {_limit(m)}":>24}' for p, m in zip(peak, limit)))
     spline = spline_through(run.planned)
-    lines += ['', vibration_text(spline.at, spline.knots)]
+    moving = spline.knots <= run.response.via_times[-1] + NANOSECOND
+    lines += ['', vibration_text(spline.at, spline.knots[moving])]
     within = sum(f.within_bound for f in found)
     lines += ['', f'{within} of {len(found)} figures are inside their bounds']
     return '\n'.join(lines)
@@ -184,66 +188,8 @@ def _deviations(run: Run) -> tuple[float, float]:
     tips = (forward_kinematics(run.config.model, q) for q in (
         run.planned.positions, run.recorded.positions[moving]))
     planned, executed = (float(distance_from_polyline(
-        np.asarray(run.task.via_points), tip).max()) for tip in tips)
+        run.tips, tip).max()) for tip in tips)
     return planned, executed
-
-
-def _planned_errors(run: Run) -> list[float]:
-    """
-    Return the plan's joint position errors at the via points [rad].
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-
-    Returns
-    -------
-    list of float
-        The largest of the three joints' errors for each via point.
-
-    """
-    index = [np.abs(run.planned.times - t).argmin() for t in run.response.via_times]
-    return [float(error) for error in joint_errors(
-        run.config.model, run.task.via_points, run.planned.positions[index])]
-
-
-def _executed_errors(run: Run) -> list[float]:
-    """
-    Return the distances of the simulated arm's tip from the via points at their times [m].
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-
-    Returns
-    -------
-    list of float
-        A distance for each via point.
-
-    """
-    q = spline_through(run.recorded).at(np.array(run.response.via_times))[0]
-    return [float(error) for error in tip_errors(run.config.model, run.task.via_points, q)]
-
-
-def _final_error(run: Run) -> float:
-    """
-    Return the distance of the arm's final position from the last via point [m].
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-
-    Returns
-    -------
-    float
-        The distance.
-
-    """
-    tip = forward_kinematics(run.config.model, run.recorded.positions[-1])
-    return float(np.linalg.norm(tip - run.task.via_points[-1]))
 
 
 def _executed_torque(run: Run) -> Array:

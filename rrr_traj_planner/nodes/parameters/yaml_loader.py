@@ -36,6 +36,13 @@ class Loader(yaml.SafeLoader):
         except RecursionError:
             raise yaml.YAMLError('nested too deeply') from None
 
+    def get_node(self) -> Any:
+        """Return the root of the next document."""
+        try:
+            return super().get_node()
+        except RecursionError:
+            raise yaml.YAMLError('nested too deeply') from None
+
     def construct_document(self, node: yaml.Node) -> Any:
         """Return the document's content."""
         try:

@@ -83,8 +83,8 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     from rrr_traj_planner.core.errors import counted
     from rrr_traj_planner.nodes.demo.client import Client
     from rrr_traj_planner.nodes.demo.table import checked_values, table
-    from rrr_traj_planner.nodes.parameters.configuration_files import read_task
     from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
+    from rrr_traj_planner.nodes.point_files.reading import read_task
     from rrr_traj_planner.nodes.process.node_runner import spin_in_background
     from rrr_traj_planner.nodes.process.processes import NodeProcesses
     from rrr_traj_planner.nodes.recording.bag import Bag

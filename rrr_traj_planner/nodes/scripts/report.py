@@ -101,9 +101,11 @@ def _thesis(folder: Path) -> int:
 
 
 def _plan(options: argparse.Namespace, ros_arguments: list[str]) -> int:
-    from rrr_traj_planner.nodes.parameters.configuration_files import found_file, read_task
+    from rrr_traj_planner.nodes.parameters.configuration_files import found_file
     from rrr_traj_planner.nodes.parameters.planner_config import planner_config
     from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
+    from rrr_traj_planner.nodes.point_files.reading import read_task
+    from rrr_traj_planner.nodes.point_files.task import given
     from rrr_traj_planner.planners.registry import planner_ids
     from rrr_traj_planner.planners.request import PlanningRequest
     from rrr_traj_planner.report.attempts import attempts, planned, Task
@@ -114,9 +116,13 @@ def _plan(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     limits = options.joint_limits and found_file(options.joint_limits, Path.cwd())
     arm = None if describes_an_arm(ros_arguments) else file.arm
     config = planner_config(arm, limits, ros_arguments)
+    file.check_frame(config.base_frame)
+    joints = file.joint_via_points(config.model.joint_names)
     request = PlanningRequest(
-        file.via_points, sample_period=config.sample_period, max_deviation=config.max_deviation,
-        segment_durations=file.segment_durations if len(file.segment_durations) else None,
+        file.via_points if joints is None else None, joint_via_points=joints,
+        stop_at=given(file.stop_at), dwell=given(file.dwell),
+        segment_durations=given(file.segment_durations),
+        sample_period=config.sample_period, max_deviation=config.max_deviation,
         max_tip_speed=config.max_tip_speed or float('inf'), steady_zones=config.steady_zones,
         half_transition=config.half_transition, least_jerk_rise=config.least_jerk_rise)
     ids = options.planner or [file.planner_id or config.default_planner_id]

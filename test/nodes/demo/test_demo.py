@@ -75,7 +75,7 @@ def test_demo_runs_arms_of_urdfs(tmp_path, name):
     assert 'Traceback' not in errors
 
 
-def test_demo_starts_in_the_posture_in_which_an_arm_without_names_comes(tmp_path):
+def test_demo_moves_an_arm_to_the_plan_s_posture_also_where_that_has_no_name(tmp_path):
     text = arm(j3=joint('j3', 'revolute', 'b', 'c', Z, (0.5, 0.0, 0.0)))
     model = RobotModel.from_urdf(text)
     assert not has_named_postures(model)
@@ -86,8 +86,8 @@ def test_demo_starts_in_the_posture_in_which_an_arm_without_names_comes(tmp_path
     points = forward_kinematics(model, q).tolist()
     (tmp_path / 'my.urdf').write_text(text)
     (tmp_path / 'task.yaml').write_text(f'arm: arm.yaml\nvia_points: {points}\n')
-    planned = []
-    for initial in (start, other):
+    moved = []
+    for initial in (start, other):  # the tip is at the first via point
         (tmp_path / 'arm.yaml').write_text(
             '/**:\n  ros__parameters: {robot_description: my.urdf, initial_positions: '
             f'{initial.round(6).tolist()}}}\n')
@@ -95,8 +95,22 @@ def test_demo_starts_in_the_posture_in_which_an_arm_without_names_comes(tmp_path
             code, output, errors = demo.ended()
         assert code == 0, errors
         assert 'inside their bounds' in output
-        planned.append(errors.count(' planned 3 via points') + errors.count(' planned 2 via p'))
-    assert sorted(planned) == [1, 2]  # one of them has to plan again
+        moved.append('moving to the first via point' in output)
+    assert sorted(moved) == [False, True]
+
+
+def test_demo_runs_taught_positions_with_stops(tmp_path):
+    (tmp_path / 'taught.csv').write_text(
+        'joint_3,joint_2 [deg],joint_1,stop_at,dwell\n0.25,54,0.52,,\n0.2,57,0.55,yes,0.2\n'
+        '0.15,54,0.52,,0.1\n')
+    with Script(script('demo'), 'taught.csv', '--plot', '', cwd=tmp_path) as demo:
+        code, output, errors = demo.ended()
+    assert code == 0, errors
+    assert '22 of 22 figures are inside their bounds' in output
+    rows = [line.split() for line in output.splitlines() if re.match(r'[012]  \(', line)]
+    assert [''.join(row[1:4]) for row in rows] == [
+        '(0.52,0.9425,0.25)', '(0.55,0.9948,0.2)', '(0.52,0.9425,0.15)']
+    assert [float(row[6]) for row in rows] == [0.0, 0.2, 0.1]
 
 
 @pytest.mark.parametrize('planner_id', ['line_arc', 'line_polynomial'])

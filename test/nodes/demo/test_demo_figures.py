@@ -31,9 +31,10 @@ from rrr_traj_planner.nodes.demo.client import Run
 from rrr_traj_planner.nodes.demo.plot import draw
 from rrr_traj_planner.nodes.demo.table import checked_values, table
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters.configuration_files import read_task
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
 from rrr_traj_planner.nodes.planner_node.planning_answer import success
+from rrr_traj_planner.nodes.point_files.reading import read_task
+from rrr_traj_planner.nodes.point_files.task import given
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
 
@@ -45,7 +46,10 @@ def executed(task, off=0.0, **parameters):
     config = PlannerConfig.from_values({
         **{name: row.default for name, row in rows_of(PLANNER, JOINT_NAMES).items()},
         **parameters})
-    found = plan(config.model, config.limits, PlanningRequest(task.via_points))
+    joints = task.joint_via_points(JOINT_NAMES)
+    found = plan(config.model, config.limits, PlanningRequest(
+        task.via_points if joints is None else None, joint_via_points=joints,
+        stop_at=given(task.stop_at), dwell=given(task.dwell)))
     t = np.linspace(-BEFORE, found.points.duration + AFTER, STATES)
     q, qd, qdd, _ = spline_through(found.points).at(t)
     torque = inverse_dynamics(config.model, q, qd, qdd)
@@ -117,6 +121,48 @@ def test_table_shows_the_residual_vibration_of_the_planned_motion(task):
     assert label == 'residual vibration [rad/s^2] at 16 / 32 / 64'
     assert [float(x) for x in values.split(' / ')] == pytest.approx(
         (0.057, 0.005, 0.002), abs=6e-4)  # the cycloid's, by a program of its own
+
+
+def stopping(task, **changes):
+    """Return a task with rests, of 0.5 s at the second via point."""
+    return replace(task, stop_at=np.array([False, True, True]), dwell=np.array([0.1, 0.5, 0.2]),
+                   **changes)
+
+
+def test_run_with_stops_is_within_every_bound_and_its_table_shows_them(task):
+    run = executed(stopping(task))
+    assert broken(run) == []
+    rows = [line.split() for line in table(run, checked_values(run)).splitlines()
+            if line[:1].isdigit()]
+    assert [row[-3] for row in rows[:3]] == ['0.1', '0.5', '0.2']
+    assert float(rows[0][-4]) == 0.0
+    plain = executed(task)  # which rests nowhere before the end
+    assert [line.split()[-3] for line in table(plain, checked_values(plain)).splitlines()
+            if line[:1].isdigit()][:3] == ['0', '1.680', '0']
+
+
+def test_arm_that_does_not_rest_breaks_the_bound_of_its_via_point(task):
+    run = executed(stopping(task))
+    q = run.recorded.positions.copy()
+    middle = run.response.via_times[1] + 0.25
+    q[np.abs(run.recorded.times - middle) < 0.05] += (0.0, 0.01, 0.0)
+    moved = TrajectoryPoints(run.recorded.times, q, run.recorded.velocities)
+    assert broken(replace(run, recorded=moved)) == ['via point 1: tip error']
+
+
+def test_run_through_joint_positions_is_within_every_bound(task):
+    taught = np.array([[0.52, 0.94, 0.25], [0.87, 1.35, -0.4], [0.7, 1.36, -0.8]])
+    run = executed(stopping(task, via_points=np.zeros((0, 3)),
+                            joint_positions=lambda names: taught))
+    assert broken(run) == []
+    assert run.tips == pytest.approx(forward_kinematics(run.config.model, taught))
+    lines = table(run, checked_values(run)).splitlines()
+    assert any(line.startswith('1  (0.87, 1.35, -0.4) rad ') for line in lines)
+    assert max(map(len, lines)) <= 99
+    off = run.planned.positions.copy()
+    off[-1] += (0.0, 1e-8, 0.0)
+    missed = replace(run, planned=replace(run.planned, positions=off))
+    assert broken(missed) == ['via point 2: planned error']
 
 
 def test_plot_is_a_picture(task, tmp_path):

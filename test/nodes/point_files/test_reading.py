@@ -22,11 +22,8 @@ from helpers.places import CONFIG
 import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.parameters.configuration_files import (
-    found_file,
-    read_task,
-    shipped_folder,
-)
+from rrr_traj_planner.nodes.parameters.configuration_files import found_file, shipped_folder
+from rrr_traj_planner.nodes.point_files.reading import read_task
 
 POINTS = 'via_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n'
 
@@ -82,7 +79,7 @@ def test_durations_are_read(here):
     ('arm: x\nvia_points:\n', 'line 2: no via_points, the list is empty: must have via_points: '),
     ('via_points: []\n', 'line 1: no via_points, the list is empty: must have via_points: '),
     ('via_points: 3.0\n', 'via_points is 3.0, must be a list of points [x, y, z]'),
-    ('via_points: {x: 1.0}\n', "via_points is {'x': 1.0}, must be a list of points [x, y, z]"),
+    ('via_points: {a: 1.0}\n', "via_points is {'a': 1.0}, must be a list of points [x, y, z]"),
     ('via_points: [1.0, 2.0, 3.0]\n',
      'line 1: via_points[0] is 1.0, must be three numbers, [x, y, z] in m'),
     ('via_points:\n  - [1.02, 0.59, 0.97]\n  # the second\n  - [0.46, 0.55]\n',
@@ -107,8 +104,10 @@ def test_durations_are_read(here):
     (POINTS + POINTS, 'line 2: via_points is repeated (first in line 1)'),
     (POINTS + 'segment_durations: [1.0, x]\n', "segment_durations[1] is 'x', must be a number"),
     (POINTS + 'segment_durations: [.nan]\n', 'segment_durations[0] is nan, must be finite'),
-    (POINTS + 'segment_durations: 3.0\n', 'segment_durations has shape (), must have (n)'),
-    (POINTS + 'planer_id: x\n', 'line 2: unknown planer_id; known are planner_id, via_points'),
+    (POINTS + 'segment_durations: 3.0\n', 'line 2: segment_durations is 3.0, must be a list of '
+     'numbers'),
+    (POINTS + 'planer_id: x\n', 'line 2: unknown planer_id (is planner_id meant?); known '
+     'are planner_id, via_points'),
     (POINTS + 'planner_id: [1]\n', 'planner_id is [1], must be a text'),
     (POINTS + 'arm: 7\n', 'arm is 7, must be a text'),
     (POINTS + 'arm: nowhere.yaml\n', "no file 'nowhere.yaml'"),
