@@ -62,7 +62,7 @@ def document(text: str) -> dict[str, Any]:
     """
     roots = _roots(text)
     if len(roots) > 1:
-        return _of_messages(roots)
+        return _of_documents(roots)
     root = roots[0] if roots else None
     if root is None or not isinstance(root.value, dict):
         raise InvalidInputError(
@@ -91,6 +91,18 @@ def _roots(text: str) -> list[Located]:
     return [root for root in found if root.value is not None]
 
 
+def _of_documents(roots: Sequence[Located]) -> dict[str, Any]:
+    """Return the content of messages, and of one document beside them with other fields."""
+    others = [root for root in roots if isinstance(root.value, dict) and set(
+        map(str, root.value)) <= {*FIELDS} - {TIPS, JOINTS}]
+    if len(others) > 1:
+        names = ', '.join(map(str, others[1].value))
+        raise InvalidInputError(f'line {others[1].line}: a second document has {names}, must be '
+                                f'one with those of line {others[0].line}')
+    messages = _of_messages([root for root in roots if root not in others])
+    return {**messages, **_others(others[0].fields())} if others else messages
+
+
 def _is_message(root: Located) -> bool:
     return is_message(root.value) or is_joint_state(root.value)
 
@@ -98,7 +110,8 @@ def _is_message(root: Located) -> bool:
 def _without(root: Located, keys: Sequence[str]) -> Located:
     """Return a mapping without some of its fields."""
     node = yaml.MappingNode(root.node.tag, [
-        pair for pair in root.node.value if pair[0].value not in keys], root.node.start_mark)
+        pair for pair in root.node.value if pair[0].value not in keys], root.node.start_mark,
+        root.node.end_mark)
     return Located('', {k: v for k, v in root.value.items() if k not in keys}, node)
 
 

@@ -84,10 +84,11 @@ class Located(NamedTuple):
 
         """
         found: dict[str, Located] = {}
+        own: set[str] = set()  # others are merged into it, as by `<<: *other`
         values = {str(key): value for key, value in self.value.items()}
         for key, node in self.node.value:
             name, line = str(key.value), key.start_mark.line + 1
-            if name in found:
+            if name in found and name in own:
                 raise InvalidInputError(
                     f'line {line}: {name} is repeated (first in line {found[name].line})')
             if known and name not in known:
@@ -96,7 +97,13 @@ class Located(NamedTuple):
                     f'{", ".join(known)}')
             prefix = f'{self.name}.' if self.name else ''
             found[name] = Located(f'{prefix}{name}', values.get(name), node)
+            own |= {name} if self._is_inside(key) else set()
         return found
+
+    def _is_inside(self, node: yaml.Node) -> bool:
+        """Return whether a node stands within the value."""
+        return bool(
+            self.node.start_mark.index <= node.start_mark.index < self.node.end_mark.index)
 
     def number(self) -> float:
         """

@@ -109,7 +109,7 @@ class Task:
         """
         if self.frame not in ('', base_frame):
             raise InvalidInputError(
-                f"{self.name}: the via points are in frame {quoted(self.frame)}, must be in "
+                f'{self.name}: the via points are in frame {quoted(self.frame)}, must be in '
                 f"'{base_frame}': only the service plan_trajectory transforms them")
 
 

@@ -118,6 +118,18 @@ def test_fields_of_the_file_may_follow_a_message(read):
     assert task.arm.name == 'table_6_1.yaml'
 
 
+def test_fields_of_the_file_may_stand_in_a_document_of_their_own(read):
+    task = read(echoed(*MESSAGES['PoseStamped']) + 'dwell: [0.5, 0]\nplanner_id: septic\n')
+    assert task.via_points.tolist() == TIPS
+    assert (task.planner_id, task.dwell.tolist()) == ('septic', [0.5, 0.0])
+
+
+def test_a_point_may_take_over_parts_of_another(read):
+    task = read('via_points:\n  - &low {x: 1.0, y: 0.5, z: 1.0}\n  - {<<: *low, z: 1.2}\n'
+                '  - *low\n')
+    assert task.via_points.tolist() == [[1.0, 0.5, 1.0], [1.0, 0.5, 1.2], [1.0, 0.5, 1.0]]
+
+
 def test_lists_and_mappings_may_be_mixed(read):
     assert read('via_points:\n  - [1.02, 0.59, 0.97]\n  - {z: 1.44, x: 0.46, y: 0.55}\n'
                 ).via_points.tolist() == TIPS
@@ -192,7 +204,9 @@ def test_stops_and_dwells_are_columns_of_a_table(read):
     ('header: {frame_id: map}\nposes: []\n', 'line 2: poses is empty, must have a pose'),
     (echoed(framed(PoseStamped(), 'map'), framed(PoseStamped(), 'odom')),
      "via point 1 is in frame 'odom', via point 0 in frame 'map': must be in one frame"),
-    (echoed(Pose()) + 'planner_id: gauss\n', 'line 11: a document is '),
+    (echoed(Pose()) + 'planer_id: gauss\n', "line 11: a document is {'planer_id': 'gauss'}, mu"),
+    (echoed(Pose()) + 'arm: a\n---\nstop_at: [true]\n',
+     'line 13: a second document has stop_at, must be one with those of line 11'),
     (echoed(Pose(), JointState(name=['a'], position=[1.0])),
      'some messages have poses, others joint positions: must be of one kind'),
     (f'via_points: {TIPS}\njoint_via_points: {Q}\n',
