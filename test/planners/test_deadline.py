@@ -27,9 +27,10 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.cancellation import step
 from rrr_traj_planner.core.errors import InvalidInputError, TimeLimitError, TimingError
+from rrr_traj_planner.planners import registration
 from rrr_traj_planner.planners.deadline import Deadline, GRACE, part_of
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.registry import planner_ids
+from rrr_traj_planner.planners.registry import planner, planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.planners.solver.convergence import CONVERGED
 
@@ -89,6 +90,34 @@ def test_a_part_of_it_ends_sooner_and_gives_up_with_the_whole():
     with pytest.raises(TimeLimitError, match='^planning_time_limit 2 s: given up after 3.00 s$'):
         part()
     assert part_of(bool, 0.25) is bool  # of any other question all is waited for
+
+
+def test_parts_of_a_part_are_shares_of_its_own_time():
+    clock = Clock()
+    last = part_of(Deadline(2.0, clock), 1.0, 0.5)  # the second half: 80 % of 2 s, from 0.8 s on
+    half = part_of(last, 0.5)
+    for now, answers in ((100.79, (False, False)), (101.19, (False, False)),
+                         (101.21, (False, True)), (101.61, (True, True))):
+        clock.now = now
+        assert (last(), half()) == answers
+
+
+def test_parts_of_a_motion_share_the_time_by_their_segments(monkeypatch):
+    """Of 3 s, 80 % for planning: 0.8 s for the first part, of one segment, then 1.6 s for two."""
+    clock, ended = CountingClock(), []
+    cycloid = planner('cycloid').plan
+
+    def slow(task):
+        while not task.should_stop():
+            pass
+        ended.append(clock.now)
+        return cycloid(task)
+
+    monkeypatch.setitem(registration.REGISTERED, 'slow', registration.Registered(slow))
+    deadline = Deadline(3.0, clock)
+    plan(RobotModel(), LIMITS, PlanningRequest(
+        circle(4), planner_id='slow', should_stop=deadline, stop_at=[False, True, False, True]))
+    assert ended == pytest.approx([0.8, 2.4], abs=0.03)
 
 
 def test_the_inner_step_is_named():
