@@ -73,19 +73,19 @@ class Run:
 
     @cached_property
     def joint_via_points(self) -> Array | None:
-        """Joint positions that the task gives for its via points [rad], shape (n, 3)."""
+        """Return the joint positions that the task gives for its via points, (n, 3) [rad]."""
         return self.task.joint_via_points(self.config.model.joint_names)
 
     @cached_property
     def tips(self) -> Array:
-        """The tip's positions at the via points [m], shape (n, 3)."""
+        """Return the tip's positions at the via points, shape (n, 3) [m]."""
         joints = self.joint_via_points
         return (self.task.via_points if joints is None
                 else forward_kinematics(self.config.model, joints))
 
     @cached_property
     def rests(self) -> Rests:
-        """Where and how long the arm is to rest."""
+        """Return where and how long the arm is to rest."""
         return rests_at_via_points(
             given(self.task.stop_at), given(self.task.dwell), len(self.tips), False)
 
