@@ -3,6 +3,7 @@
 #
 # ROS is what is sourced or installed in /opt/ros/jazzy; .venv then only adds the Python packages
 # that are missing. Elsewhere ROS comes as wheels, in .venv too. $PYTHON says which Python to use.
+# Message packages that this ROS lacks are built from scripts/ros_messages.
 #
 # A step that is through leaves a stamp, a hash of all that it depends on. One whose stamp is up
 # to date is skipped; one that was interrupted starts afresh.
@@ -12,6 +13,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 unset MAKEFLAGS MFLAGS  # those of the make that calls this are not meant for colcon's
 root=$PWD
 log=log/setup.log
+declare -A keys  # of packages: what they are built from
 
 die() {
     echo "setup: $*" >&2
@@ -96,17 +98,55 @@ make_venv() {  # KEY
     echo "$1" > .venv/.stamp
 }
 
-build() {  # PACKAGE DURATION FILE...: build the package if one of the files has changed
-    local package=$1 duration=$2 key
-    shift 2
-    key=$(sha256sum "$@" | sha256sum)
-    ! is_fresh "install/$package" "$key" || [ ! -d "build/$package" ] || return 0
-    rm -rf "build/$package" "install/$package"
-    step "building $package ($duration)" \
-        python "$(command -v colcon)" build --packages-select "$package" --cmake-args \
+ros_has() {  # PACKAGE: whether a package is there, outside this clone
+    local prefix prefixes
+    IFS=: read -ra prefixes <<< "$AMENT_PREFIX_PATH"
+    for prefix in "${prefixes[@]}"; do
+        [[ $prefix = "$root"/install/* || ! -f $prefix/share/$1/package.xml ]] || return 0
+    done
+    return 1
+}
+
+is_built() {  # PACKAGE FILE...: whether the package was built from the files as they are
+    local package=$1
+    shift
+    keys[$package]=$(sha256sum "$@" | sha256sum)
+    is_fresh "install/$package" "${keys[$package]}" && [ -d "build/$package" ]
+}
+
+build() {  # DURATION PACKAGE...: build packages side by side
+    local duration=$1 package
+    shift
+    [ $# -gt 0 ] || return 0
+    rm -rf "${@/#/build/}" "${@/#/install/}"
+    step "building $(sed 's/ /, /g' <<< "$*") ($duration)" \
+        python "$(command -v colcon)" build --packages-select "$@" \
+        --base-paths . rrr_traj_planner_interfaces scripts/ros_messages/*/ --cmake-args \
         -DPython3_EXECUTABLE="$root/.venv/bin/python" \
         -DCMAKE_PROJECT_INCLUDE="$root/scripts/cmake/wheel_include_dirs.cmake"
-    echo "$key" > "install/$package/.stamp"
+    for package; do
+        echo "${keys[$package]}" > "install/$package/.stamp"
+    done
+}
+
+build_interfaces() {  # this package's, and those of ROS's that this ROS lacks
+    local folder package stale=()
+    for folder in rrr_traj_planner_interfaces scripts/ros_messages/*; do
+        [ -d "$folder" ] || continue
+        package=${folder##*/}
+        if [[ $folder = scripts/* ]] && ros_has "$package"; then
+            rm -rf "build/$package" "install/$package"
+        elif ! is_built "$package" $(find "$folder" scripts/cmake -type f | sort); then
+            stale+=("$package")
+        fi
+    done
+    build 'up to 1 minute' "${stale[@]}"
+}
+
+build_package() {
+    is_built rrr_traj_planner package.xml setup.py setup.cfg resource/* \
+        $(find config rrr_traj_planner/*/native -name '*.yaml' -o -name '*.urdf' -o -name '*.[ch]' \
+            -o -name '*.inc' | sort) || build 'about 5 s' rrr_traj_planner
 }
 
 trap 'echo; die "interrupted; the next call takes it up again"' INT TERM
@@ -127,9 +167,5 @@ key=$({ echo "$ros $root" && cat $(find requirements -type f ! -name 'bench.*' |
     sha256sum)  # make bench installs its own
 is_fresh .venv "$key" && is_same_python || make_venv "$key"
 hash -r
-build rrr_traj_planner_interfaces 'about 30 s' \
-    $(find rrr_traj_planner_interfaces scripts/cmake -type f | sort)
-build rrr_traj_planner 'about 5 s' \
-    package.xml setup.py setup.cfg resource/* \
-    $(find config rrr_traj_planner/*/native -name '*.yaml' -o -name '*.urdf' -o -name '*.[ch]' \
-        -o -name '*.inc' | sort)
+build_interfaces
+build_package

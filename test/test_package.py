@@ -26,7 +26,8 @@ from lxml import etree
 import pytest
 
 PACKAGE = 'rrr_traj_planner'
-PACKAGES = ('.', 'rrr_traj_planner_interfaces')
+STAND_INS = tuple(f'scripts/ros_messages/{name}' for name in ('control_msgs', 'tf2_msgs'))
+PACKAGES = ('.', 'rrr_traj_planner_interfaces', *STAND_INS)
 XML = ElementTree.parse(ROOT / 'package.xml').getroot()
 
 # Keys that differ from the module's name; None where it may be missing: what needs it says so, and
