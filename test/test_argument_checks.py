@@ -79,8 +79,8 @@ CALLS = {
     'with_payload': (lambda mass: with_payload(MODEL, mass), {'mass': 1.0}),
     'SoftStops': (SoftStops, {'width': 0.1, 'stiffness': 1.0, 'damping': 0.1}),
     'Tolerances': (Tolerances, {
-        'trajectory': [0.1] * 3, 'goal': [0.1] * 3, 'stopped_velocity': 0.01, 'goal_time': 0.1,
-        'cmd_timeout': 0.2}),
+        'trajectory': [0.1] * 3, 'goal': [0.1] * 3, 'stopped_velocity': [0.01] * 3,
+        'goal_time': 0.1, 'cmd_timeout': 0.2, 'trajectory_velocity': [0.1] * 3}),
     'ArmSettings': (lambda step: ArmSettings(MODEL, LIMITS, ControllerGains(), step),
                     {'step': 0.001}),
     'ControlledArm': (lambda q: ControlledArm(ArmSettings(MODEL, LIMITS, ControllerGains()), q),

@@ -35,6 +35,23 @@ SECOND = 10 ** 9
 ALL = 1000  # queue of a listener [messages]: no burst is lost on a busy machine
 
 
+def duration(seconds):
+    sec, nanosec = divmod(round(seconds * SECOND), SECOND)
+    return Duration(sec=sec, nanosec=nanosec)
+
+
+def trajectory_message(*points, names=NAMES, stamp=0):
+    """Return points: time [s], positions, then velocities and accelerations if wanted."""
+    message = JointTrajectory(joint_names=list(names))
+    message.header.stamp = Time(sec=stamp // SECOND, nanosec=stamp % SECOND)
+    for time, *fields in points:
+        point = JointTrajectoryPoint(time_from_start=duration(time))
+        for field, values in zip(('positions', 'velocities', 'accelerations'), fields):
+            setattr(point, field, [float(x) for x in values])
+        message.points.append(point)
+    return message
+
+
 class Arm:
     """A running arm node, its published messages, and methods to send it trajectories."""
 
@@ -48,17 +65,8 @@ class Arm:
         self._publisher = ros.publisher(JointTrajectory, 'joint_trajectory')
 
     def send(self, *points, names=NAMES, stamp=0):
-        """Send points: time [s], positions, then velocities and accelerations if wanted."""
-        message = JointTrajectory(joint_names=list(names))
-        message.header.stamp = Time(sec=stamp // SECOND, nanosec=stamp % SECOND)
-        for time, *fields in points:
-            ns = round(time * SECOND)
-            point = JointTrajectoryPoint(
-                time_from_start=Duration(sec=ns // SECOND, nanosec=ns % SECOND))
-            for field, values in zip(('positions', 'velocities', 'accelerations'), fields):
-                setattr(point, field, [float(x) for x in values])
-            message.points.append(point)
-        self._publisher.publish(message)
+        """Send a trajectory on the topic."""
+        self._publisher.publish(trajectory_message(*points, names=names, stamp=stamp))
 
     def disturb(self, **torques):
         """Apply disturbance torques [N m] to joints; without any, end the disturbance."""

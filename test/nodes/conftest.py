@@ -21,6 +21,7 @@ from threading import Condition, Event, Thread
 
 import pytest
 import rclpy
+from rclpy.action import ActionClient
 from rclpy.context import Context
 from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.executors import SingleThreadedExecutor
@@ -66,7 +67,7 @@ class Ros:
         self.context = Context()
         rclpy.init(context=self.context, domain_id=int(os.environ['ROS_DOMAIN_ID']))
         self._executor = SingleThreadedExecutor(context=self.context)
-        self._nodes = []
+        self._nodes, self._action_clients = [], []
         self._closing = Event()
         self._thread = Thread(target=self._spin, daemon=True)
         self.node = self.add(Node('tester', context=self.context))
@@ -119,6 +120,13 @@ class Ros:
         finally:
             self.node.destroy_client(client)
 
+    def action_client(self, action_type, name):
+        """Return a client of an action that is there."""
+        client = ActionClient(self.node, action_type, name)
+        self._action_clients.append(client)  # it would keep the node alive
+        assert client.wait_for_server(DEADLINE), f'no action {name}'
+        return client
+
     def close(self):
         """End everything, in the order that leaves nothing behind."""
         # Not shut down while it spins: callbacks that are ready then would find it half destroyed.
@@ -127,6 +135,8 @@ class Ros:
             self._executor.create_task(lambda: None)  # wakes it
         self._thread.join(DEADLINE)
         self._executor.shutdown(timeout_sec=DEADLINE)
+        while self._action_clients:
+            self._action_clients.pop().destroy()
         while self._nodes:
             self._nodes.pop().destroy_node()
         self.context.try_shutdown()

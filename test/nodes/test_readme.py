@@ -16,8 +16,7 @@
 
 from __future__ import annotations
 
-import re
-
+from helpers.examples import example
 from helpers.places import ROOT
 from helpers.scripts import python, Script, script
 from rrr_traj_planner.planners.planning import plan
@@ -28,8 +27,7 @@ README = ROOT / 'README.md'
 
 
 def test_library_s_example_of_a_urdf_is_planned_with_its_own_limits(monkeypatch):
-    blocks = re.findall(r'^```python\n(.*?)^```', README.read_text(), re.DOTALL | re.MULTILINE)
-    code, = (block for block in blocks if 'read_urdf' in block)
+    code = example(README, 'read_urdf')
     monkeypatch.chdir(ROOT)
     names = {'plan': plan, 'PlanningRequest': PlanningRequest}
     exec(code, names)
@@ -38,8 +36,7 @@ def test_library_s_example_of_a_urdf_is_planned_with_its_own_limits(monkeypatch)
 
 
 def test_client_s_trajectory_reaches_an_arm_that_is_found_late(ros):
-    blocks = re.findall(r'^```python\n(.*?)^```', README.read_text(), re.DOTALL | re.MULTILINE)
-    code, = (block for block in blocks if 'create_client' in block)
+    code = example(README, 'create_client')
     states = ros.listen(JointState, 'joint_states')
     with Script(script('planner')) as planner, Script(python(code)) as client:
         planner.read_errors_until('cycloid planned 3 via points in ')

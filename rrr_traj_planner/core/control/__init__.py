@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Control of the arm: computed torque, trajectory validation, replacement, tolerances."""
+"""Control of the arm: computed torque, trajectory validation, replacement, tolerances, goals."""

@@ -57,6 +57,14 @@ class IncomingTrajectory(NamedTuple):
     points: Sequence[IncomingPoint]
 
 
+class JointNamesError(InvalidInputError):
+    """A trajectory whose joints are not the arm's."""
+
+
+class PastEndError(InvalidInputError):
+    """A trajectory that has ended already."""
+
+
 class MovingEndError(InvalidInputError):
     """A trajectory whose last point has a velocity, where `Rules` do not allow it."""
 
@@ -148,18 +156,18 @@ def _check_names(trajectory: IncomingTrajectory, joint_names: Sequence[str],
                  rules: Rules) -> None:
     names = trajectory.joint_names
     if not rules.allow_partial_joints_goal and len(names) != len(joint_names):
-        raise InvalidInputError("Joints on incoming trajectory don't match the controller joints.")
+        raise JointNamesError("Joints on incoming trajectory don't match the controller joints.")
     if not names:
-        raise InvalidInputError('Empty joint names on incoming trajectory.')
+        raise JointNamesError('Empty joint names on incoming trajectory.')
     if not trajectory.points:
         raise InvalidInputError('Empty trajectory received.')
     for name in names:
         if name not in joint_names:
-            raise InvalidInputError(
+            raise JointNamesError(
                 f"Incoming joint {name} doesn't match the controller's joints.")
     for i, name in enumerate(names):
         if name in names[:i]:
-            raise InvalidInputError(f'Incoming joint {name} is named twice.')
+            raise JointNamesError(f'Incoming joint {name} is named twice.')
 
 
 def _check_rest(trajectory: IncomingTrajectory) -> None:
@@ -173,7 +181,7 @@ def _check_rest(trajectory: IncomingTrajectory) -> None:
 def _check_end(trajectory: IncomingTrajectory, now: int) -> None:
     end = trajectory.stamp + trajectory.points[-1].time
     if trajectory.stamp != 0 and end < now:
-        raise InvalidInputError(
+        raise PastEndError(
             f'Received trajectory with non-zero start time ({trajectory.stamp / SECOND:f}) '
             f'that ends in the past ({end / SECOND:f})')
 

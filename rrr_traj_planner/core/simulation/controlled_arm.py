@@ -12,13 +12,22 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The simulated arm with its trajectory controller: following, replacing, stopping, tolerances."""
+"""The simulated arm with its trajectory controller: following, replacing, stopping, goals."""
 
 from __future__ import annotations
 
 from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import finite_array
+from rrr_traj_planner.core.control.goal_end import (
+    GoalEnd,
+    HELD,
+    not_followed,
+    OUT_OF_RANGE,
+    RESET,
+)
 from rrr_traj_planner.core.control.replacement import replacement, Takeover
+from rrr_traj_planner.core.control.tolerances import Outcome, Tolerances
+from rrr_traj_planner.core.control.trajectory_watch import TrajectoryWatch
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
 from rrr_traj_planner.core.simulation.control_loop import ControlLoop
@@ -48,11 +57,14 @@ class ControlledArm(ControlLoop):
         The tolerances violated when one last was; empty if there was no violation.
     stop_warnings : tuple of str
         Limits that the last stop violates; empty if there are none.
+    watch : TrajectoryWatch
+        Of the trajectory that is followed; says how a goal ended.
 
     """
 
     def __init__(self, settings: ArmSettings, q: ArrayLike) -> None:
         super().__init__(settings, q)
+        self.watch = TrajectoryWatch()
         self.motion: ReferenceTrajectory = holding(q)
         self.stop_warnings: tuple[str, ...] = ()
         self.reset(q)
@@ -105,13 +117,15 @@ class ControlledArm(ControlLoop):
         """
         q = finite_array('q', q, (3,))
         self.set_position(q)
-        self._stay(holding(q, self.now))
+        self._stay(holding(q, self.now), RESET)
         self.violation: tuple[str, ...] = ()
         self.torque = self.control(self.desired)
 
     def follow(self, points: TrajectoryPoints, origin_ns: int) -> bool:
         """
         Follow a new trajectory, without a jump in the command.
+
+        A goal that is pursued goes on with it.
 
         Parameters
         ----------
@@ -131,13 +145,36 @@ class ControlledArm(ControlLoop):
         self.motion, self.stop_warnings, holds = replacement(
             takeover, points, origin_ns, self.settings.step)
         self.violation = ()
-        self._watched = self._first_check = True
+        if holds:
+            self.watch.leave(not_followed(self.stop_warnings))
+        else:
+            self.watch.follow()
         self._brake_at_end()
         return not holds
 
+    def pursue(self, points: TrajectoryPoints, origin_ns: int, tolerances: Tolerances) -> bool:
+        """
+        Follow a new trajectory as a goal: `watch.goal_end` says how it ends.
+
+        Parameters
+        ----------
+        points, origin_ns
+            As `follow`.
+        tolerances : Tolerances
+            Of this goal, in place of the settings'.
+
+        Returns
+        -------
+        bool
+            As `follow`.
+
+        """
+        self.watch.pursue(tolerances)
+        return self.follow(points, origin_ns)
+
     def hold(self) -> None:
         """Stop inside the ranges, as fast as the limits allow, and stay there."""
-        self._stop(self._motion_to_brake())
+        self._stop(self._motion_to_brake(), HELD)
 
     def advance(self, steps: int) -> None:
         """
@@ -161,33 +198,49 @@ class ControlledArm(ControlLoop):
         """Brake a motion that ends with a velocity, at its end."""
         motion = self.motion
         if motion.ends_moving and self.now >= motion.end_ns:
+            if self.watch.is_on and self.watch.goal is not None:
+                self._check(motion.end_state)
+                if self.motion is not motion:  # given up
+                    return
             moving = self._motion_to_brake()
             self.motion, self.stop_warnings = self._stopped(
                 moving, motion.end if moving is motion else self.time)
 
     def _advance(self, steps: int) -> None:
         """Simulate control and physics, while no motion ends with a velocity."""
-        if self.is_ideal and (not self._watched or self.settings.tolerances.are_none):
-            self.advance_ideal(self.motion, steps)
-        else:
-            for _ in range(steps):
-                self._watch()
+        while steps > 0:
+            unwatched = self._unwatched_steps(steps)
+            if unwatched == 0:
+                self._check(self.desired)
+            if unwatched > 0 and self.is_ideal:
+                done = min(unwatched, steps)
+                self.advance_ideal(self.motion, done)
+            else:
+                done = 1
                 self.advance_general(self.desired)
+            steps -= done
 
-    def _watch(self) -> None:
-        """Abort a trajectory whose tolerances are exceeded, and hold the arm's position."""
-        if self._watched:
-            lines = self.settings.tolerances.violation(
-                self.measured, self.desired, self.time - self.motion.end, self._first_check)
-            self._first_check = False
-            if lines:
-                self._stop(MeasuredState(self.measured, self.now, self.motion))
-                self.violation = lines
+    def _unwatched_steps(self, most: int) -> int:
+        """Return in how many steps tolerances are to be checked next, or `most` if never."""
+        time = self.watch.time_to_check(
+            self.settings.tolerances, self.motion.end_ns - self.now)
+        return most if time is None else -(-time // self._step_ns)  # rounded up
+
+    def _check(self, desired: Desired) -> None:
+        """End a goal that is reached; brake from the measured state if tolerances are exceeded."""
+        verdict = self.watch.check(
+            self.settings.tolerances, self.measured, desired, self.now - self.motion.end_ns)
+        if verdict is None:
+            return
+        lines = self.watch.apply(verdict, self.settings.model.joint_names)
+        if verdict.outcome is not Outcome.REACHED:
+            self._stop(MeasuredState(self.measured, self.now, self.motion), HELD)
+            self.violation = lines
 
     def _keep_ranges(self) -> None:
         """Stop a motion that leaves ranges made smaller."""
         if time_inside(self.motion, self.time, self.settings.limits) < self.motion.end:
-            self._stop(self._motion_to_brake())
+            self._stop(self._motion_to_brake(), OUT_OF_RANGE)
             self.stop_warnings = (
                 'The motion leaves the new joint ranges: stopping', *self.stop_warnings)
 
@@ -195,18 +248,18 @@ class ControlledArm(ControlLoop):
         """Return the motion that would be braked now."""
         return motion_to_brake(self.motion, self.now, self.measured, self.settings.limits)
 
-    def _stop(self, motion: ReferenceTrajectory) -> None:
-        """Stop a motion now."""
+    def _stop(self, motion: ReferenceTrajectory, end: GoalEnd) -> None:
+        """Stop a motion now, which ends a goal."""
         stopped, warnings = self._stopped(motion, self.time)
-        self._stay(stopped)
+        self._stay(stopped, end)
         self.stop_warnings = warnings
 
     def _stopped(self, motion: ReferenceTrajectory, time: float) -> Stop:
         """Return a stop from a motion at a time."""
         return stop(motion, time, self.settings.limits, self.settings.controller_model)
 
-    def _stay(self, motion: ReferenceTrajectory) -> None:
-        """Follow a motion other than a received trajectory: tolerances do not apply."""
+    def _stay(self, motion: ReferenceTrajectory, end: GoalEnd) -> None:
+        """Follow a motion other than a received trajectory: no tolerances, and no goal."""
         self.motion = motion
-        self._watched = self._first_check = False
+        self.watch.leave(end)
         self.stop_warnings = ()

@@ -21,6 +21,8 @@ import re
 
 from rclpy.node import Node
 from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.control.goal_end import GoalEnd, PREEMPTED, ResultCode
+from rrr_traj_planner.core.control.tolerances import Outcome
 from rrr_traj_planner.core.control.trajectory_limits import Excess
 from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.simulation.saturation_and_contact import (
@@ -79,6 +81,58 @@ class ArmLog:
         kind = NUMBER.sub('#', text)
         if self._throttle.passes(kind):
             self._log.error(text + self._suppressed(kind))
+
+    def ignored(self, text: str) -> None:
+        """
+        Warn of what is ignored.
+
+        Parameters
+        ----------
+        text : str
+            What, and why.
+
+        """
+        if self._throttle.passes(text):
+            self._log.warning(text)
+
+    def goal_ended(self, end: GoalEnd) -> None:
+        """
+        Log how a goal has ended.
+
+        Parameters
+        ----------
+        end : GoalEnd
+            How.
+
+        """
+        kind = NUMBER.sub('#', end.text)
+        if not self._throttle.passes(kind):
+            return
+        if end.code is ResultCode.SUCCESSFUL or end is PREEMPTED:
+            self._log.info(end.text + self._suppressed(kind))
+        else:
+            self._log.warning(end.text + self._suppressed(kind))
+
+    def given_up(self, lines: Sequence[str]) -> None:
+        """
+        Log why a trajectory has been given up.
+
+        Parameters
+        ----------
+        lines : sequence of str
+            The exceeded tolerances, and the consequence.
+
+        """
+        for line in lines:  # rclpy has one severity for each line of code
+            if line == Outcome.TIMED_OUT.value:
+                self._log.warning(line)
+            else:
+                self._log.error(line)
+
+    def goal_canceled(self) -> None:
+        """Log that a goal has been canceled."""
+        if self._throttle.passes('canceled'):
+            self._log.info('goal canceled, stopping' + self._suppressed('canceled'))
 
     def exceeded(self, excesses: Sequence[Excess]) -> None:
         """

@@ -19,10 +19,13 @@ from __future__ import annotations
 from array import array
 from collections.abc import Sequence
 
+from control_msgs.action import FollowJointTrajectory
+from control_msgs.msg import JointTolerance
+from rrr_traj_planner.core.control.goal_tolerances import AskedTolerance, AskedTolerances
 from rrr_traj_planner.core.control.trajectory_validation import IncomingPoint, IncomingTrajectory
 from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError
 from rrr_traj_planner.core.nanoseconds import SECOND
-from rrr_traj_planner.nodes.output.message_times import nanoseconds
+from rrr_traj_planner.nodes.output.message_times import nanoseconds, seconds
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
@@ -92,6 +95,29 @@ def incoming_trajectory(message: JointTrajectory) -> IncomingTrajectory:
         message.joint_names, nanoseconds(message.header.stamp),
         [IncomingPoint(nanoseconds(p.time_from_start), p.positions, p.velocities,
                        p.accelerations, p.effort) for p in message.points])
+
+
+def asked_tolerances(goal: FollowJointTrajectory.Goal) -> AskedTolerances:
+    """
+    Return the tolerances of a goal, unchecked.
+
+    Parameters
+    ----------
+    goal : FollowJointTrajectory.Goal
+        The goal.
+
+    Returns
+    -------
+    AskedTolerances
+        Of its path, of its end, and its time.
+
+    """
+    def listed(tolerances: Sequence[JointTolerance]) -> list[AskedTolerance]:
+        return [AskedTolerance(t.name, t.position, t.velocity, t.acceleration)
+                for t in tolerances]
+
+    return AskedTolerances(listed(goal.path_tolerance), listed(goal.goal_tolerance),
+                           seconds(goal.goal_time_tolerance))
 
 
 class JointStateMessage:

@@ -23,25 +23,16 @@ from typing import Any
 
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rrr_traj_planner.core.control.tolerances import TIMED_OUT
-from rrr_traj_planner.core.control.trajectory_limits import excesses
-from rrr_traj_planner.core.control.trajectory_validation import (
-    check_trajectory,
-    commanded_points,
-    MovingEndError,
-)
 from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from rrr_traj_planner.nodes.arm_node.arm_action import ArmAction
 from rrr_traj_planner.nodes.arm_node.arm_diagnostics import ArmDiagnostics
 from rrr_traj_planner.nodes.arm_node.arm_log import ArmLog
-from rrr_traj_planner.nodes.arm_node.arm_messages import (
-    disturbance_torque,
-    incoming_trajectory,
-    JointStateMessage,
-)
+from rrr_traj_planner.nodes.arm_node.arm_messages import disturbance_torque, JointStateMessage
 from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, OwnClock, QUEUE_DEPTH
 from rrr_traj_planner.nodes.arm_node.arm_view import ArmView
+from rrr_traj_planner.nodes.arm_node.trajectory_input import TrajectoryInput
 from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.parameter_files import files_given
@@ -54,10 +45,6 @@ from std_srvs.srv import SetBool, Trigger
 from trajectory_msgs.msg import JointTrajectory
 
 WARNING_PERIOD = 1.0  # s between warnings of stops
-
-MOVING_END_HINT = (
-    '; a stream of points with velocities needs '
-    'allow_nonzero_velocity_at_trajectory_end: true')
 
 NOT_THE_CLOCK = 'simulated time can be paused only with publish_clock: true'
 
@@ -77,11 +64,12 @@ class SimulatedArm(ServiceNode):
     Notes
     -----
     Subscribes to `joint_trajectory` and `disturbance` (names and efforts, applied until the next
-    message). Publishes `joint_states` (measured position and velocity, motor torque),
-    `desired_joint_states` (the controller's reference) and `~/tracking_error` (reference minus
-    measurement), all three with the same stamp; `diagnostics` once a second; `robot_description`
-    and `markers` (the arm and its tip's past path), transient local. Serves `~/reset`, `~/hold`,
-    `~/pause` and `~/step`. Parameters: see `parameters.table`.
+    message). Serves the action `~/follow_joint_trajectory` (`arm_action.py`). Publishes
+    `joint_states` (measured position and velocity, motor torque), `desired_joint_states` (the
+    controller's reference) and `~/tracking_error` (reference minus measurement), all three with
+    the same stamp; `diagnostics` once a second; `robot_description` and `markers` (the arm and its
+    tip's past path), transient local. Serves `~/reset`, `~/hold`, `~/pause` and `~/step`.
+    Parameters: see `parameters.table`.
 
     """
 
@@ -103,8 +91,6 @@ class SimulatedArm(ServiceNode):
             (JointStateMessage(self._joint_names),
              self.create_publisher(JointState, topic, QUEUE_DEPTH).publish)
             for topic in ('joint_states', 'desired_joint_states', '~/tracking_error')]
-        self.create_subscription(
-            JointTrajectory, 'joint_trajectory', self._follow, QUEUE_DEPTH)
         self.create_subscription(JointState, 'disturbance', self._disturb, QUEUE_DEPTH)
         for name, type_, answer in (('reset', Trigger, self._reset), ('hold', Trigger, self._hold),
                                     ('step', Trigger, self._single_step),
@@ -113,13 +99,19 @@ class SimulatedArm(ServiceNode):
         self._time = OwnClock(
             self, self._arm, self._publish, config.real_time_factor
         ) if config.publish_clock else FollowedClock(self, self._arm, self._publish)
+        trajectories = TrajectoryInput(
+            self._arm, self._time, self._parameters_declared, self._log)
+        self.create_subscription(
+            JointTrajectory, 'joint_trajectory', trajectories.take, QUEUE_DEPTH)
+        self._action = ArmAction(self, self._arm, self._time, trajectories, self._log)
         self._diagnostics = ArmDiagnostics(self, self._arm, self._time)
         # The timer uses steady time: it also runs while simulated time is paused.
         self._timer = self.create_timer(
             self._period(config), self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._start = NodeStart(
             self, self._parameters_declared, config.settings.limits,
-            f'follows {self.resolve_topic_name("joint_trajectory")}', arguments)
+            f'follows {self.resolve_topic_name("joint_trajectory")} and goals of '
+            f'{self.resolve_service_name("~/follow_joint_trajectory")}', arguments)
 
     def _tick(self) -> None:
         """Simulate up to the present, and log warnings."""
@@ -129,10 +121,9 @@ class SimulatedArm(ServiceNode):
         self._diagnostics.update(condition)
         self._log.strained(condition, self._arm.settings.limits)
         if self._arm.violation:
-            log = self.get_logger()
-            for line in self._arm.violation:
-                (log.warning if line == TIMED_OUT else log.error)(line)
+            self._log.given_up(self._arm.violation)
             self._arm.violation = ()
+        self._action.update()
         if self._arm.stop_warnings:
             self.get_logger().warning(
                 '; '.join(self._arm.stop_warnings), throttle_duration_sec=WARNING_PERIOD)
@@ -149,24 +140,6 @@ class SimulatedArm(ServiceNode):
         for (message, publish), values in zip(self._publishers_of_states, fields):
             publish(message.filled(stamp, *values))
 
-    def _follow(self, message: JointTrajectory) -> None:
-        """Accept a trajectory, or log why it is refused and continue as before."""
-        self._time.advance_to_now()
-        trajectory, arm = incoming_trajectory(message), self._arm
-        try:
-            check_trajectory(trajectory, self._joint_names, self._time.now(),
-                             self._parameters_declared.config.rules)
-            points = commanded_points(trajectory, self._joint_names, arm.desired[:3])
-        except RrrPlannerError as error:
-            self._log.refused(str(error) + (
-                MOVING_END_HINT if isinstance(error, MovingEndError) else ''))
-            return
-        origin_ns = trajectory.stamp - self._time.epoch if trajectory.stamp != 0 else arm.now
-        self._log.exceeded(excesses(
-            points, arm.settings.limits, (arm.now - origin_ns) / SECOND, arm.desired))
-        if arm.follow(points, origin_ns):
-            self._log.followed(len(trajectory.points), arm.motion.end - arm.time)
-
     def _disturb(self, message: JointState) -> None:
         """Apply disturbance torques, or log why they are refused."""
         self._time.advance_to_now()
@@ -180,6 +153,7 @@ class SimulatedArm(ServiceNode):
         self._time.advance_to_now()
         q = self._parameters_declared.config.initial_positions
         self._arm.reset(q)
+        self._action.update()
         self._view.restart()
         response.success = True
         response.message = f'at rest at {_positions(q)} rad'
@@ -189,6 +163,7 @@ class SimulatedArm(ServiceNode):
         """Stop the arm inside its ranges, as fast as its limits allow."""
         self._time.advance_to_now()
         self._arm.hold()
+        self._action.update()
         motion = self._arm.motion
         response.success = True
         response.message = (f'at rest in {motion.end - self._arm.time:.3f} s at '
@@ -235,7 +210,8 @@ class SimulatedArm(ServiceNode):
         return self._time.period(rate, config.real_time_factor)
 
     def destroy_node(self) -> None:
-        """Release the claim on the node's name with the node."""
+        """Abort a goal, and release the claim on the node's name."""
+        self._action.close()
         self._start.end()
         super().destroy_node()
 

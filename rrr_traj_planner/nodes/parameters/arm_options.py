@@ -100,8 +100,9 @@ def tolerances(values: Values) -> Tolerances:
     with named({'trajectory': 'constraints.JOINT.trajectory', 'goal': 'constraints.JOINT.goal',
                 'stopped_velocity': 'constraints.stopped_velocity_tolerance',
                 'goal_time': 'constraints.goal_time'}):
-        return Tolerances(*of_joints, values['constraints.stopped_velocity_tolerance'],
-                          values['constraints.goal_time'], values['cmd_timeout'])
+        return Tolerances(
+            *of_joints, np.full(3, values['constraints.stopped_velocity_tolerance']),
+            values['constraints.goal_time'], values['cmd_timeout'])
 
 
 def encoder(values: Values, gains: ControllerGains) -> EncoderSettings:

@@ -25,7 +25,7 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.payload import Payload, with_payload
 from rrr_traj_planner.core.control.computed_torque import ControllerGains
-from rrr_traj_planner.core.control.tolerances import GOAL_TIME_EXCEEDED, PATH_VIOLATED, Tolerances
+from rrr_traj_planner.core.control.tolerances import Outcome, Tolerances
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inertia_matrix
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
@@ -148,7 +148,7 @@ def test_blocked_arm_gives_its_trajectory_up_and_holds_where_it_is():
     while not arm.violation:
         assert arm.time < 2.0
         arm.advance(1)
-    assert arm.violation[-1] == PATH_VIOLATED
+    assert arm.violation[-1] == Outcome.PATH_VIOLATED.value
     assert arm.violation[0] == 'State tolerances failed for joint 0:'
     arm.disturbance = (0.0, 0.0, 0.0)
     arm.advance(3000)
@@ -187,7 +187,7 @@ def test_goal_that_is_missed_is_given_up_after_its_time():
     arm.advance(2000)
     assert arm.violation == ()
     arm.advance(3)
-    assert arm.violation[-1] == GOAL_TIME_EXCEEDED
+    assert arm.violation[-1] == Outcome.GOAL_VIOLATED.value
 
 
 def test_goal_that_is_reached_stays_reached():

@@ -16,11 +16,11 @@
 
 from __future__ import annotations
 
-import re
 import sys
 
 from builtin_interfaces.msg import Time
 from helpers.arm_in_ros import ALL, Arm, SECOND, stamp, START
+from helpers.examples import example
 from helpers.places import DOCS
 from helpers.scripts import Script
 import numpy as np
@@ -28,7 +28,6 @@ from rclpy.clock import Clock, ClockType
 from rosgraph_msgs.msg import Clock as ClockMessage
 from trajectory_msgs.msg import JointTrajectory
 
-DOCUMENT = DOCS / 'arm.md'
 SWING, W, SECONDS = 0.03, np.pi, 2.0  # one swing, shorter than in the document
 TICK, AHEAD = SECOND // 100, SECOND // 20
 JOINED = SECOND // 5
@@ -55,7 +54,7 @@ class PatientClock:
 
 
 def test_arm_follows_a_stream_of_stamped_points(ros):
-    code, = re.findall(r'^```python\n(.*?)^```', DOCUMENT.read_text(), re.DOTALL | re.MULTILINE)
+    code = example(DOCS / 'arm.md', 'teleoperation')
     for there, here in (('0.1, 8.0  #', f'0.1, {SECONDS}  #'),
                         ('SWING, W = 0.1, tau / 4.0', f'SWING, W = {SWING}, {W}')):
         assert code.count(there) == 1

@@ -160,6 +160,18 @@ def test_command_timeout_holds_what_was_reached(ros):
     np.testing.assert_allclose(held.position, GOAL, atol=1e-3)
 
 
+def test_one_arm_warns_of_a_timeout_after_an_error_of_tolerances(ros):
+    """Each severity has a line of code of its own; rclpy ends the node else."""
+    arm = Arm(ros, **{'constraints.joint_1.trajectory': 1e-9, 'cmd_timeout': 0.1})
+    log = ros.listen(Log, '/rosout', 100)
+    arm.send(rest_to_rest(GOAL, 0.3))
+    log.wait_for(lambda m: m.msg == 'Holding position due to state tolerance violation')
+    assert arm.set_parameter('constraints.joint_1.trajectory', 0.0).successful
+    arm.send(rest_to_rest(GOAL, 0.3))
+    log.wait_for(lambda m: m.msg == 'Aborted due to command timeout')
+    assert arm.trigger('hold').success
+
+
 def test_partial_goal_moves_its_joint_alone(ros):
     arm = Arm(ros)
     log = ros.listen(Log, '/rosout', 100)

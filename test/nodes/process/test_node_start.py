@@ -37,8 +37,8 @@ def ends(started):
 
 @pytest.mark.parametrize(('name', 'text'), [
     ('planner', '/left/trajectory_planner: {file}; {limits}; serves /left/plan_trajectory; ready'),
-    ('simulated_arm', '/left/simulated_arm: {file}; {limits}; follows /left/joint_trajectory; '
-     'ready')])
+    ('simulated_arm', '/left/simulated_arm: {file}; {limits}; follows /left/joint_trajectory and '
+     'goals of /left/simulated_arm/follow_joint_trajectory; ready')])
 def test_start_is_logged_in_a_line(name, text):
     file = CONFIG / 'thesis_arm_joint_2_250.yaml'
     limits = ('joint_1 0 to 1.571 rad, 1 rad/s, 1 rad/s^2, 10 rad/s^3, 150 N m; '

@@ -26,7 +26,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.service import Service
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
-from rrr_traj_planner.nodes.process import service_node
+from rrr_traj_planner.nodes.process import responses
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from std_srvs.srv import Trigger
 
@@ -59,7 +59,7 @@ def test_answer_that_was_dropped_is_sent_again(ros, monkeypatch, node, service, 
 
 
 def test_client_that_is_never_discovered_is_warned_of_and_delays_no_other(ros, monkeypatch):
-    monkeypatch.setattr(service_node, 'MAX_WAIT', 2.0 * service_node.FIRST_WAIT)
+    monkeypatch.setattr(responses, 'MAX_WAIT', 2.0 * responses.FIRST_WAIT)
     log = ros.listen(Log, '/rosout')
     ros.add(SimulatedArm(context=ros.context))
     assert ros.call(Trigger, 'simulated_arm/reset').success
