@@ -37,7 +37,7 @@ from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.nodes.arm_node.arm_log import ArmLog
 from rrr_traj_planner.nodes.arm_node.arm_messages import asked_tolerances
 from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, OwnClock
-from rrr_traj_planner.nodes.arm_node.controller_messages import feedback_message
+from rrr_traj_planner.nodes.arm_node.controller_messages import ControllerMessages
 from rrr_traj_planner.nodes.arm_node.trajectory_input import AcceptedTrajectory, TrajectoryInput
 from rrr_traj_planner.nodes.process.goal_server import (
     ABORTED,
@@ -70,15 +70,18 @@ class ArmAction:
         The arm's time.
     trajectories : TrajectoryInput
         Checks and follows trajectories.
+    messages : ControllerMessages
+        Of the arm.
     log : ArmLog
         The arm's log.
 
     """
 
     def __init__(self, node: Node, arm: ControlledArm, time: FollowedClock | OwnClock,
-                 trajectories: TrajectoryInput, log: ArmLog) -> None:
+                 trajectories: TrajectoryInput, messages: ControllerMessages,
+                 log: ArmLog) -> None:
         self._node, self._arm, self._time = node, arm, time
-        self._trajectories, self._log = trajectories, log
+        self._trajectories, self._messages, self._log = trajectories, messages, log
         self._goal: ServerGoalHandle | None = None  # the one that is pursued
         self._server = GoalServer(node, FollowJointTrajectory, '~/follow_joint_trajectory',
                                   self._check, self._begin, self._cancel)
@@ -150,7 +153,7 @@ class ArmAction:
     def _publish_feedback(self) -> None:
         """Publish the state of the goal's trajectory."""
         if self._goal is not None:
-            self._goal.publish_feedback(feedback_message(self._arm, self._time.reached()))
+            self._goal.publish_feedback(self._messages.feedback(self._time.reached()))
 
 
 def _result(end: GoalEnd) -> FollowJointTrajectory.Result:

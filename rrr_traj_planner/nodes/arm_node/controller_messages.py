@@ -21,46 +21,88 @@ from collections.abc import Sequence
 
 from builtin_interfaces.msg import Duration
 from control_msgs.action import FollowJointTrajectory
+from control_msgs.msg import JointTrajectoryControllerState
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
+from std_msgs.msg import Header
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 
-def feedback_message(arm: ControlledArm, stamp: int) -> FollowJointTrajectory.Feedback:
+class ControllerMessages:
     """
-    Return the feedback of a goal.
+    Messages that are created once and reused for each publication.
+
+    Times from the start count from the start of the trajectory, or of the hold, as in
+    joint_trajectory_controller.
 
     Parameters
     ----------
     arm : ControlledArm
-        The arm, which follows the goal's trajectory.
-    stamp : int
-        Time of its state [ns].
-
-    Returns
-    -------
-    FollowJointTrajectory.Feedback
-        `time_from_start` counts from the trajectory's start, as in joint_trajectory_controller.
+        The arm.
 
     """
-    message = FollowJointTrajectory.Feedback(joint_names=arm.settings.model.joint_names)
-    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
-    message.desired, message.actual, message.error = _points(arm)
-    return message
+
+    def __init__(self, arm: ControlledArm) -> None:
+        self._arm, names = arm, list(arm.settings.model.joint_names)
+        self._feedback = FollowJointTrajectory.Feedback(joint_names=names)
+        self._state = JointTrajectoryControllerState(joint_names=names, speed_scaling_factor=1.0)
+
+    def feedback(self, stamp: int) -> FollowJointTrajectory.Feedback:
+        """
+        Return the feedback of a goal.
+
+        Parameters
+        ----------
+        stamp : int
+            Time of the arm's state [ns].
+
+        Returns
+        -------
+        FollowJointTrajectory.Feedback
+            The same object each time.
+
+        """
+        message = self._feedback
+        self._fill(message.header, message.desired, message.actual, message.error, stamp)
+        return message
+
+    def state(self, stamp: int) -> JointTrajectoryControllerState:
+        """
+        Return the controller's state.
+
+        Parameters
+        ----------
+        stamp : int
+            Time of the arm's state [ns].
+
+        Returns
+        -------
+        JointTrajectoryControllerState
+            Its output are the torques that it commands; the same object each time.
+
+        """
+        message = self._state
+        self._fill(message.header, message.reference, message.feedback, message.error, stamp)
+        message.output.effort = array('d', self._arm.torque)
+        return message
+
+    def _fill(self, header: Header, reference: JointTrajectoryPoint,
+              measured: JointTrajectoryPoint, error: JointTrajectoryPoint, stamp: int) -> None:
+        """Fill a message's stamp and points."""
+        header.stamp.sec, header.stamp.nanosec = divmod(stamp, SECOND)
+        desired, actual = self._arm.desired, self._arm.measured
+        elapsed = self._arm.now - self._arm.motion.origin_ns
+        for point, values in ((reference, desired), (measured, actual)):
+            _fill_point(point, values)
+            _fill_time(point.time_from_start, elapsed)
+        reference.accelerations = array('d', desired[6:])
+        _fill_point(error, [a - b for a, b in zip(desired, actual)])
 
 
-def _points(arm: ControlledArm) -> tuple[JointTrajectoryPoint, ...]:
-    """Return reference, measured state and their difference."""
-    desired, actual = arm.desired, arm.measured
-    error = [a - b for a, b in zip(desired, actual)]
-    sec, nanosec = divmod(arm.now - arm.motion.origin_ns, SECOND)
-    time = Duration(sec=sec, nanosec=nanosec)
-    return (_point(desired[:3], desired[3:6], desired[6:], time),
-            _point(actual[:3], actual[3:], (), time), _point(error[:3], error[3:], (), Duration()))
+def _fill_point(point: JointTrajectoryPoint, values: Sequence[float]) -> None:
+    """Fill positions and velocities."""
+    point.positions, point.velocities = array('d', values[:3]), array('d', values[3:6])
 
 
-def _point(positions: Sequence[float], velocities: Sequence[float],
-           accelerations: Sequence[float], time: Duration) -> JointTrajectoryPoint:
-    return JointTrajectoryPoint(
-        positions=array('d', positions), velocities=array('d', velocities),
-        accelerations=array('d', accelerations), time_from_start=time)
+def _fill_time(time: Duration, nanoseconds: int) -> None:
+    time.sec, time.nanosec = divmod(nanoseconds, SECOND)

@@ -29,9 +29,11 @@ from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.nodes.arm_node.arm_action import ArmAction
 from rrr_traj_planner.nodes.arm_node.arm_diagnostics import ArmDiagnostics
 from rrr_traj_planner.nodes.arm_node.arm_log import ArmLog
-from rrr_traj_planner.nodes.arm_node.arm_messages import disturbance_torque, JointStateMessage
+from rrr_traj_planner.nodes.arm_node.arm_messages import disturbance_torque
+from rrr_traj_planner.nodes.arm_node.arm_states import ArmStates
 from rrr_traj_planner.nodes.arm_node.arm_time import FollowedClock, OwnClock, QUEUE_DEPTH
 from rrr_traj_planner.nodes.arm_node.arm_view import ArmView
+from rrr_traj_planner.nodes.arm_node.controller_messages import ControllerMessages
 from rrr_traj_planner.nodes.arm_node.trajectory_input import TrajectoryInput
 from rrr_traj_planner.nodes.parameters.configuration import ArmConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
@@ -66,10 +68,10 @@ class SimulatedArm(ServiceNode):
     Subscribes to `joint_trajectory` and `disturbance` (names and efforts, applied until the next
     message). Serves the action `~/follow_joint_trajectory` (`arm_action.py`). Publishes
     `joint_states` (measured position and velocity, motor torque), `desired_joint_states` (the
-    controller's reference) and `~/tracking_error` (reference minus measurement), all three with
-    the same stamp; `diagnostics` once a second; `robot_description` and `markers` (the arm and its
-    tip's past path), transient local. Serves `~/reset`, `~/hold`, `~/pause` and `~/step`.
-    Parameters: see `parameters.table`.
+    controller's reference), `~/tracking_error` (reference minus measurement) and
+    `~/controller_state` (all of these), with the same stamp; `diagnostics` once a second;
+    `robot_description` and `markers` (the arm and its tip's past path), transient local. Serves
+    `~/reset`, `~/hold`, `~/pause` and `~/step`. Parameters: see `parameters.table`.
 
     """
 
@@ -87,10 +89,8 @@ class SimulatedArm(ServiceNode):
         self._arm = ControlledArm(config.settings, config.initial_positions)
         self._log = ArmLog(self, self._joint_names)
         self._view = ArmView(self, config, self._arm.measured)
-        self._publishers_of_states = [
-            (JointStateMessage(self._joint_names),
-             self.create_publisher(JointState, topic, QUEUE_DEPTH).publish)
-            for topic in ('joint_states', 'desired_joint_states', '~/tracking_error')]
+        messages = ControllerMessages(self._arm)
+        self._states = ArmStates(self, self._arm, messages)
         self.create_subscription(JointState, 'disturbance', self._disturb, QUEUE_DEPTH)
         for name, type_, answer in (('reset', Trigger, self._reset), ('hold', Trigger, self._hold),
                                     ('step', Trigger, self._single_step),
@@ -103,7 +103,8 @@ class SimulatedArm(ServiceNode):
             self._arm, self._time, self._parameters_declared, self._log)
         self.create_subscription(
             JointTrajectory, 'joint_trajectory', trajectories.take, QUEUE_DEPTH)
-        self._action = ArmAction(self, self._arm, self._time, trajectories, self._log)
+        self._action = ArmAction(
+            self, self._arm, self._time, trajectories, messages, self._log)
         self._diagnostics = ArmDiagnostics(self, self._arm, self._time)
         # The timer uses steady time: it also runs while simulated time is paused.
         self._timer = self.create_timer(
@@ -130,15 +131,9 @@ class SimulatedArm(ServiceNode):
             self._arm.stop_warnings = ()
 
     def _publish(self) -> None:
-        """Publish measured state, reference and tracking error."""
-        stamp, arm = self._time.reached(), self._arm
-        q, qd = arm.measured[:3], arm.measured[3:]
-        self._view.moved(q)
-        desired = arm.desired
-        fields = ((q, qd, arm.torque), (desired[:3], desired[3:6]), (
-            [a - b for a, b in zip(desired, q)], [a - b for a, b in zip(desired[3:6], qd)]))
-        for (message, publish), values in zip(self._publishers_of_states, fields):
-            publish(message.filled(stamp, *values))
+        """Publish the arm's states."""
+        self._view.moved(self._arm.measured[:3])
+        self._states.publish(self._time.reached())
 
     def _disturb(self, message: JointState) -> None:
         """Apply disturbance torques, or log why they are refused."""

@@ -33,6 +33,7 @@ from std_msgs.msg import String
 
 NO_PLOT = ('--plot', '')
 RUNNING = {'/joint_states', '/desired_joint_states', '/simulated_arm/tracking_error',
+           '/simulated_arm/controller_state',
            '/diagnostics'}
 LATE = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = {'/planned_trajectory', '/planned_path', '/markers', '/robot_description'}
