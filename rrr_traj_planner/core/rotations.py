@@ -22,6 +22,8 @@ from math import atan2, cos, sin
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
 
+Quaternion = tuple[float, float, float, float]  # x, y, z, w, of length 1
+
 HALF_TURN = np.diag((1.0, -1.0, -1.0))  # about x
 
 # z of a direction below which it is reached from -z. Between, both ways are accurate. Chosen.
@@ -75,6 +77,53 @@ def rotated(vector: Sequence[float], axis: Sequence[float], angle: float
     along = (a * x + b * y + d * z) * (1.0 - c)
     return (c * x + s * (b * z - d * y) + along * a, c * y + s * (d * x - a * z) + along * b,
             c * z + s * (a * y - b * x) + along * d)
+
+
+def quaternion(R: Array) -> Quaternion:
+    """
+    Return the quaternion of a rotation, by Shepperd's method.
+
+    Parameters
+    ----------
+    R : ndarray, shape (3, 3)
+        The rotation.
+
+    Returns
+    -------
+    tuple of 4 floats
+        x, y, z, w; of the two the one whose largest component is positive.
+
+    """
+    trace = float(np.trace(R))
+    # Four times the products of each pair of components; the column of the largest square.
+    products = np.array((
+        (1.0 + 2.0 * R[0, 0] - trace, R[1, 0] + R[0, 1], R[0, 2] + R[2, 0], R[2, 1] - R[1, 2]),
+        (R[1, 0] + R[0, 1], 1.0 + 2.0 * R[1, 1] - trace, R[2, 1] + R[1, 2], R[0, 2] - R[2, 0]),
+        (R[0, 2] + R[2, 0], R[2, 1] + R[1, 2], 1.0 + 2.0 * R[2, 2] - trace, R[1, 0] - R[0, 1]),
+        (R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1], 1.0 + trace)))
+    column = products[:, int(np.argmax(np.diag(products)))]
+    x, y, z, w = (column / np.linalg.norm(column)).tolist()
+    return x, y, z, w
+
+
+def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
+    """
+    Return the rotation b followed by a.
+
+    Parameters
+    ----------
+    a, b : tuple of 4 floats
+        x, y, z, w.
+
+    Returns
+    -------
+    tuple of 4 floats
+        x, y, z, w.
+
+    """
+    (x, y, z, w), (u, v, r, s) = a, b
+    return (w * u + x * s + y * r - z * v, w * v - x * r + y * s + z * u,
+            w * r + x * v - y * u + z * s, w * s - x * u - y * v - z * r)
 
 
 def rotation_z_to(direction: Array) -> Array:

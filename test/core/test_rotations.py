@@ -20,6 +20,8 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.rotations import (
     from_roll_pitch_yaw,
+    quaternion,
+    quaternion_product,
     roll_pitch_yaw,
     rotated,
     rotation,
@@ -75,3 +77,23 @@ def test_roll_pitch_and_yaw_are_about_fixed_axes_and_are_found_again(pitch):
         assert R == pytest.approx(
             Rotation.from_euler('xyz', (roll, pitch, yaw)).as_matrix(), abs=ROUNDING)
         assert from_roll_pitch_yaw(roll_pitch_yaw(R)) == pytest.approx(R, abs=ROUNDING)
+
+
+def rotations():
+    """Return random rotations, and those in which components of the quaternion vanish."""
+    halves = [Rotation.from_rotvec(np.pi * np.array(axis)) for axis in np.eye(3)]
+    return [Rotation.identity(), *halves, halves[0] * Rotation.from_rotvec((1e-9, 0.0, 0.0)),
+            *Rotation.random(50, random_state=3)]
+
+
+def test_quaternions_are_scipy_s():
+    for R in rotations():
+        found = np.array(quaternion(R.as_matrix()))
+        assert np.abs(found @ R.as_quat()) == pytest.approx(1.0, abs=ROUNDING)
+        assert Rotation.from_quat(found).as_matrix() == pytest.approx(R.as_matrix(), abs=1e-13)
+
+
+def test_product_of_quaternions_is_that_of_rotations():
+    for a, b in zip(rotations(), reversed(rotations())):
+        found = Rotation.from_quat(quaternion_product(tuple(a.as_quat()), tuple(b.as_quat())))
+        assert found.as_matrix() == pytest.approx((a * b).as_matrix(), abs=1e-13)

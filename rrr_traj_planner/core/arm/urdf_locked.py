@@ -128,7 +128,7 @@ def locked_poses(tree: LinkTree, arm: Sequence[Joint], pose: Array, warnings: li
         body, above = place[joint.parent]
         position = 0.0
         if joint.name not in numbers and joint.kind != 'fixed':
-            position = _locked_at(tree, joint, numbers, warnings)
+            position = locked_at(tree, joint, tuple(numbers), warnings)
             texts.append(f'{quoted(joint.name)} at {position:g} {UNITS.get(joint.kind, "rad")}')
         body = numbers.get(joint.name, body)
         place[joint.child] = body, pose_after(joint, above, position)
@@ -139,20 +139,70 @@ def locked_poses(tree: LinkTree, arm: Sequence[Joint], pose: Array, warnings: li
     return found
 
 
-def _locked_at(tree: LinkTree, joint: Joint, arm: dict[str, int], warnings: list[UrdfWarning]
-               ) -> float:
-    """Return where a joint is locked; one that mimics a locked joint follows it."""
+def locked_at(tree: LinkTree, joint: Joint, arm: Sequence[str] = (),
+              warnings: list[UrdfWarning] | None = None) -> float:
+    """
+    Return where a joint that is none of the arm's is locked.
+
+    Parameters
+    ----------
+    tree : LinkTree
+        All links.
+    joint : Joint
+        One that moves. If it mimics a locked joint, it follows it.
+    arm : sequence of str
+        The arm's joints, which are not locked.
+    warnings : list of UrdfWarning, optional
+        Gets one if the joint mimics one that it does not follow.
+
+    Returns
+    -------
+    float
+        Zero, or the end of its range that is nearest to it [rad, or m].
+
+    Raises
+    ------
+    InvalidInputError
+        If the range is empty.
+
+    """
+    leader, factor, offset = followed(tree, joint)
+    if leader is not None and leader.name not in arm:
+        return factor * _rest(leader) + offset
+    if warnings is not None and joint.mimic is not None:
+        warnings.append(UrdfWarning(
+            f'{joint.label}, on a side branch, mimics {quoted(joint.mimic[0])}, which it does not '
+            'follow here: the inertia is not exact'))
+    return _rest(joint)
+
+
+def followed(tree: LinkTree, joint: Joint) -> tuple[Joint | None, float, float]:
+    """
+    Return which joint another one mimics, in the end.
+
+    Parameters
+    ----------
+    tree : LinkTree
+        All links.
+    joint : Joint
+        A joint.
+
+    Returns
+    -------
+    leader : Joint or None
+        The joint itself if it mimics none; None if a joint is not there, or mimics itself.
+    factor, offset : float
+        The joint's position is factor * leader's position + offset [rad, or m].
+
+    """
     factor, offset, seen = 1.0, 0.0, [joint]
     while (mimic := seen[-1].mimic) is not None:
         other = tree.joints.get(mimic[0])
-        if other is None or other.name in arm or any(other is joint for joint in seen):
-            warnings.append(UrdfWarning(
-                f'{joint.label}, on a side branch, mimics {quoted(mimic[0])}, which it does not '
-                'follow here: the inertia is not exact'))
-            return _rest(joint)
+        if other is None or any(other is joint for joint in seen):
+            return None, factor, offset
         factor, offset = factor * mimic[1], offset + factor * mimic[2]
         seen.append(other)
-    return factor * _rest(seen[-1]) + offset
+    return seen[-1], factor, offset
 
 
 def _rest(joint: Joint) -> float:

@@ -28,6 +28,7 @@ from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.nodes.arm_node.arm_action import ArmAction
 from rrr_traj_planner.nodes.arm_node.arm_diagnostics import ArmDiagnostics
+from rrr_traj_planner.nodes.arm_node.arm_frames import ArmFrames
 from rrr_traj_planner.nodes.arm_node.arm_log import ArmLog
 from rrr_traj_planner.nodes.arm_node.arm_messages import disturbance_torque
 from rrr_traj_planner.nodes.arm_node.arm_states import ArmStates
@@ -70,8 +71,9 @@ class SimulatedArm(ServiceNode):
     `joint_states` (measured position and velocity, motor torque), `desired_joint_states` (the
     controller's reference), `~/tracking_error` (reference minus measurement) and
     `~/controller_state` (all of these), with the same stamp; `diagnostics` once a second;
-    `robot_description` and `markers` (the arm and its tip's past path), transient local. Serves
-    `~/reset`, `~/hold`, `~/pause` and `~/step`. Parameters: see `parameters.table`.
+    `robot_description` and `markers` (the arm and its tip's past path), transient local; with
+    `publish_tf`, `/tf` and `/tf_static` (`arm_frames.py`). Serves `~/reset`, `~/hold`, `~/pause`
+    and `~/step`. Parameters: see `parameters.table`.
 
     """
 
@@ -99,6 +101,8 @@ class SimulatedArm(ServiceNode):
         self._time = OwnClock(
             self, self._arm, self._publish, config.real_time_factor
         ) if config.publish_clock else FollowedClock(self, self._arm, self._publish)
+        self._frames = ArmFrames(
+            self, config.urdf, self._joint_names, self._time.now()) if config.publish_tf else None
         trajectories = TrajectoryInput(
             self._arm, self._time, self._parameters_declared, self._log)
         self.create_subscription(
@@ -134,6 +138,8 @@ class SimulatedArm(ServiceNode):
         """Publish the arm's states."""
         self._view.moved(self._arm.measured[:3])
         self._states.publish(self._time.reached())
+        if self._frames is not None:
+            self._frames.publish(self._time.reached(), self._arm.measured[:3])
 
     def _disturb(self, message: JointState) -> None:
         """Apply disturbance torques, or log why they are refused."""

@@ -158,6 +158,7 @@ class ArmConfig:
     frames: FrameNames
     marker_rate: float  # 0: none
     urdf: str
+    publish_tf: bool
 
     @classmethod
     def from_values(cls, values: Values) -> ArmConfig:
@@ -197,7 +198,8 @@ class ArmConfig:
         return cls(settings, values['publish_rate'], _initial_positions(values, limits),
                    trajectory_rules(values), values['publish_clock'], values['real_time_factor'],
                    frames, values['marker_rate'],
-                   values['robot_description'] or urdf(settings.model, limits, frames))
+                   values['robot_description'] or urdf(settings.model, limits, frames),
+                   values['publish_tf'])
 
 
 def robot_model(values: Values) -> RobotModel:

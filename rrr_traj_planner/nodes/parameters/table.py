@@ -147,6 +147,8 @@ TABLE: tuple[Row, ...] = (
         nodes=(ARM,)),
     Row('marker_rate', 10.0, 'rate of markers, in wall time; 0: none', 'Hz', 0.0, 100.0,
         nodes=(ARM,)),
+    Row('publish_tf', False, 'whether the arm publishes the frames of robot_description, on /tf '
+        'and /tf_static', read_only=True, nodes=(ARM,)),
     Row('physics_step', 0.001, 'time step of physics and control', 's', 1e-5, 0.01, True, (ARM,)),
     Row('initial_positions', list(START),
         'joint positions at the start and after ~/reset', 'rad', -NO_RANGE, NO_RANGE,
