@@ -41,6 +41,11 @@ NO_INTERFACES = (
     "repository's root, or in a workspace after "
     '`cd src && ln -s rrr_traj_planner/rrr_traj_planner_interfaces . && cd .. && colcon build`')
 
+MESSAGES = ('control_msgs', 'tf2_msgs')  # not in every installation of ROS
+NO_MESSAGES = (
+    "ROS's package {} is not installed: call `rosdep install --from-paths src -yi` in the "
+    'workspace, or `make setup` in this repository')
+
 EPILOG = (
     'ROS arguments follow --ros-args, as in '
     '--ros-args --params-file FILE -p NAME:=VALUE -r FROM:=TO')
@@ -181,6 +186,8 @@ def run_script(name: str, work: Callable[[], int]) -> int:
         missing = (error.name or '').partition('.')[0]
         if missing == 'rrr_traj_planner_interfaces':
             text = NO_INTERFACES
+        elif missing in MESSAGES:
+            text = NO_MESSAGES.format(missing)
         elif missing in ('rclpy', 'rcl_interfaces'):
             text = NO_ROS.format(error=error)
         else:

@@ -31,9 +31,12 @@ joint_trajectory_controller, and holds its position otherwise.
 
   subscribes  joint_trajectory (trajectory_msgs/JointTrajectory)
               disturbance (sensor_msgs/JointState: names and efforts)
+  action      ~/follow_joint_trajectory (control_msgs/FollowJointTrajectory)
   publishes   joint_states, desired_joint_states, ~/tracking_error (sensor_msgs/JointState)
+              ~/controller_state (control_msgs/JointTrajectoryControllerState)
               diagnostics (diagnostic_msgs/DiagnosticArray), once a second
               robot_description (std_msgs/String), markers (visualization_msgs/MarkerArray)
+              /tf, /tf_static (tf2_msgs/TFMessage), with publish_tf
               /clock (rosgraph_msgs/Clock), with publish_clock
   services    ~/reset, ~/hold, ~/step (std_srvs/Trigger), ~/pause (std_srvs/SetBool)
   parameters  config/thesis_arm.yaml lists them all"""

@@ -17,17 +17,20 @@
 from __future__ import annotations
 
 import signal
+from time import monotonic
 
 from action_msgs.msg import GoalStatus, GoalStatusArray
+from control_msgs.action import FollowJointTrajectory
 from helpers.arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
 from helpers.examples import example
-from helpers.goal_client import goal, GoalClient
+from helpers.goal_client import DEADLINE, goal, GoalClient
 from helpers.places import DOCS
 from helpers.scripts import python, Script, script
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Log
 from rclpy.action import get_action_names_and_types
+from rrr_traj_planner.nodes.arm_node.arm_action import FEEDBACK_RATE
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
 from rrr_traj_planner.nodes.output.message_times import nanoseconds
 from sensor_msgs.msg import JointState
@@ -36,7 +39,7 @@ from std_srvs.srv import SetBool
 SUCCEEDED, CANCELED, ABORTED, REFUSED = 4, 5, 6, 0  # action_msgs/GoalStatus; refused: unknown
 OUTSIDE = (-1.0, *START[1:])
 NEAR = START + 0.2 * (GOAL - START)
-FAR = rest_to_rest(START + 0.4, 3.0)
+FAR = rest_to_rest(START + 0.4, 8.0)
 
 # From another process: goals that are answered at once or within a short motion, and how.
 ENDINGS = {
@@ -110,34 +113,37 @@ def test_signal_ends_an_arm_with_a_goal_in_order(ros, number):
 
 
 def test_feedback_has_reference_and_measurement_of_the_goal(ros):
-    arm, feedback = Arm(ros), []
-    client = GoalClient(ros)
-    begin = arm.now()
-    handle = client.send(goal(rest_to_rest(GOAL, 0.8)), feedback)
-    assert client.result(handle)[:2] == (SUCCEEDED, 0)
+    feedback = ros.listen(FollowJointTrajectory.Impl.FeedbackMessage,
+                          'simulated_arm/follow_joint_trajectory/_action/feedback')
+    arm, client = Arm(ros), GoalClient(ros)
+    begun = monotonic()
+    handle = client.send(goal(FAR))
+    feedback.wait_for(lambda _: len(feedback.messages) >= 5)
+    assert client.cancel(handle) == 1
+    taken = monotonic() - begun
+    assert len(feedback.messages) <= taken * FEEDBACK_RATE + 1
+    arm.desired.wait_for(lambda m: stamp(m) > nanoseconds(
+        feedback.messages[-1].feedback.header.stamp))
     states = {stamp(m): m for m in arm.desired.messages}
-    assert len(feedback) >= 5  # in 0.8 s, at 20 Hz, on a busy machine
-    for m in feedback:
-        assert m.joint_names == NAMES
+    starts = set()
+    for message in feedback.messages:
+        m = message.feedback
+        assert message.goal_id == handle.goal_id and m.joint_names == NAMES
         np.testing.assert_array_equal(
             m.error.positions, np.subtract(m.desired.positions, m.actual.positions))
         np.testing.assert_array_equal(
             m.error.velocities, np.subtract(m.desired.velocities, m.actual.velocities))
-        elapsed = nanoseconds(m.desired.time_from_start)
-        assert nanoseconds(m.header.stamp) - elapsed - begin < 2 * SECOND
-        assert 0 < elapsed < 0.9 * SECOND
-        if nanoseconds(m.header.stamp) in states:
-            published = states[nanoseconds(m.header.stamp)]
-            np.testing.assert_array_equal(m.desired.positions, published.position)
-            np.testing.assert_array_equal(m.desired.velocities, published.velocity)
-    starts = {nanoseconds(m.header.stamp) - nanoseconds(m.actual.time_from_start)
-              for m in feedback}
-    assert len(starts) == 1  # the trajectory's
+        now = nanoseconds(m.header.stamp)
+        starts |= {now - nanoseconds(p.time_from_start) for p in (m.desired, m.actual)}
+        if now in states:
+            np.testing.assert_array_equal(m.desired.positions, states[now].position)
+            np.testing.assert_array_equal(m.desired.velocities, states[now].velocity)
+    assert len(starts) == 1  # of the trajectory
 
 
 def test_canceled_goal_stops_short_of_it_and_holds(ros):
     arm, client = Arm(ros), GoalClient(ros)
-    handle = client.send(goal(rest_to_rest(START + 0.4, 1.0)))
+    handle = client.send(goal(FAR))
     arm.desired.wait_for(moving)
     assert client.cancel(handle) == 1
     assert client.result(handle) == (CANCELED, 0, '')
@@ -186,12 +192,11 @@ def test_arm_that_ends_aborts_its_goal(ros):
 
 
 def test_goal_is_pursued_in_the_arm_s_own_time(ros):
-    """Ten times as fast as the wall's, and not at all while it is paused."""
-    arm = Arm(ros, publish_clock=True, real_time_factor=10.0)
+    """As fast as the arm can, and not at all while its time is paused."""
+    arm = Arm(ros, publish_clock=True, real_time_factor=0.0)
     client = GoalClient(ros)
-    begun = ros.node.get_clock().now().nanoseconds
-    assert client.run(goal(FAR))[:2] == (SUCCEEDED, 0)
-    assert ros.node.get_clock().now().nanoseconds - begun < 3 * SECOND
+    longer_than_the_deadline = goal(rest_to_rest(START + 0.4, 2.0 * DEADLINE))
+    assert client.run(longer_than_the_deadline)[:2] == (SUCCEEDED, 0)
     assert ros.call(SetBool, 'simulated_arm/pause', SetBool.Request(data=True)).success
     handle = client.send(goal(rest_to_rest(START, 1.0)))
     assert client.cancel(handle) == 1

@@ -57,6 +57,14 @@ def test_missing_interfaces_are_reported_in_one_line():
     assert errors.count('\n') == 1
 
 
+@pytest.mark.parametrize('package', ['control_msgs', 'tf2_msgs'])
+def test_missing_messages_are_reported_in_one_line(package):
+    code, _, errors = ended(arm_process(code=without(package)))
+    assert code == 1
+    assert errors.startswith(f"simulated_arm: ROS's package {package} is not installed: call ")
+    assert errors.count('\n') == 1
+
+
 @pytest.mark.parametrize(('line', 'own', 'ros'), [
     ('', '', ''), ('--plot x', '--plot x', ''),
     ('a --ros-args -p x:=1', 'a', '--ros-args -p x:=1'),
