@@ -105,7 +105,7 @@ class TrajectoryInput:
 
         """
         self._time.advance_to_now()
-        trajectory, names = incoming_trajectory(message), self._parameters.joint_names
+        trajectory, names = incoming_trajectory(message), self._arm.settings.model.joint_names
         try:
             check_trajectory(trajectory, names, self._time.now(), self._parameters.config.rules)
             points = commanded_points(trajectory, names, self._arm.desired[:3])

@@ -30,6 +30,7 @@ import numpy as np
 import pytest
 from rcl_interfaces.msg import Log
 from rclpy.action import get_action_names_and_types
+from rrr_traj_planner.core.control.goal_end import ResultCode
 from rrr_traj_planner.nodes.arm_node.arm_action import FEEDBACK_RATE
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
 from rrr_traj_planner.nodes.output.message_times import nanoseconds
@@ -91,6 +92,13 @@ def test_every_way_to_end_is_seen_from_another_process(ros):
         assert client.cancel(second) == 0  # it has ended
         arm.process.send_signal(signal.SIGTERM)
         assert arm.ended()[0] == 0
+
+
+def test_codes_are_those_of_the_message():
+    assert {code.name: code.value for code in ResultCode} == {
+        name: getattr(FollowJointTrajectory.Result, name) for name in (
+            'SUCCESSFUL', 'INVALID_GOAL', 'INVALID_JOINTS', 'OLD_HEADER_TIMESTAMP',
+            'PATH_TOLERANCE_VIOLATED', 'GOAL_TOLERANCE_VIOLATED')}
 
 
 def test_example_of_the_documentation_moves_the_arm():
@@ -168,6 +176,7 @@ def test_topic_replaces_the_motion_of_a_goal_which_goes_on(ros):
     handle = client.send(goal(FAR))
     arm.desired.wait_for(moving)
     arm.send(rest_to_rest(START, 1.0), names=NAMES[:2])  # refused: changes nothing
+    assert not client.send(goal(FAR, names=NAMES[:2])).accepted
     arm.send(rest_to_rest(START, 1.0))
     assert client.result(handle) == (SUCCEEDED, 0, 'Goal successfully reached!')
     arm.actual.wait_for_next(at(START))
