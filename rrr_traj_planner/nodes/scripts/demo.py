@@ -42,6 +42,9 @@ UNKNOWN_FRICTION = (
     'make up for it')
 
 
+FRAMES = ['--ros-args', '-p', 'publish_tf:=true', '--']  # for who looks at the recording
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """
     Run the demonstration.
@@ -90,7 +93,8 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.recording.bag import Bag
     from rrr_traj_planner.nodes.scripts.bringup import node_arguments
 
-    ros_arguments = [*own_arguments, *limits_arguments(options.joint_limits)]
+    frames = [] if options.record is None else FRAMES
+    ros_arguments = [*frames, *own_arguments, *limits_arguments(options.joint_limits)]
     task = read_task(options.task)
     task = replace(task, planner_id=options.planner or task.planner_id)
     with ExitStack() as stack:

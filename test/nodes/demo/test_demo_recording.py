@@ -19,6 +19,7 @@ from __future__ import annotations
 import os
 import signal
 import warnings
+from xml.etree import ElementTree
 
 from helpers.bag_reading import messages_by_topic, plain, summary
 from helpers.scripts import Script, script
@@ -33,10 +34,9 @@ from std_msgs.msg import String
 
 NO_PLOT = ('--plot', '')
 RUNNING = {'/joint_states', '/desired_joint_states', '/simulated_arm/tracking_error',
-           '/simulated_arm/controller_state',
-           '/diagnostics'}
+           '/simulated_arm/controller_state', '/diagnostics', '/tf'}
 LATE = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-LATCHED = {'/planned_trajectory', '/planned_path', '/markers', '/robot_description'}
+LATCHED = {'/planned_trajectory', '/planned_path', '/markers', '/robot_description', '/tf_static'}
 
 
 def by_stamp(found):
@@ -56,9 +56,9 @@ def test_bag_contains_what_was_planned_sent_and_executed(ros, tmp_path):
     assert set(found) - {'/parameter_events'} == RUNNING | LATCHED | {
         '/joint_trajectory', '/rosout', '/odd/late'}
     assert {m.data for _, m in found['/odd/late']} == {'late'}
-    logged = {m.name: m.msg for _, m in found['/rosout']}
-    assert 'cycloid planned 3 via points' in logged['trajectory_planner']
-    assert 'following 286 points' in logged['simulated_arm']
+    for name, text in (('trajectory_planner', 'cycloid planned 3 via points'),
+                       ('simulated_arm', 'following 286 points')):
+        assert any(text in m.msg for _, m in found['/rosout'] if m.name == name), text
     count = sum(map(len, found.values()))
     assert f'recording: demo.mcap, {count} messages\n' in output
     assert summary(file)[1].statistics.message_count == count
@@ -69,6 +69,12 @@ def test_bag_contains_what_was_planned_sent_and_executed(ros, tmp_path):
     (_, path), = found['/planned_path']
     assert len(path.poses) == len(planned.points)
     assert [m.data for _, m in found['/robot_description']] == [urdf(RobotModel(), JointLimits())]
+    # What a viewer needs to draw the arm by its URDF: a transform to every link but the first.
+    frames = {t.child_frame_id for topic in ('/tf', '/tf_static') for _, m in found[topic]
+              for t in m.transforms}
+    links = [link.get('name') for link in ElementTree.fromstring(
+        found['/robot_description'][0][1].data).iter('link')]
+    assert frames == set(links[1:])
     assert {m.ns for _, array in found['/markers'] for m in array.markers} == {
         'arm', 'executed_path', 'planned_path', 'via_points'}
 
