@@ -109,7 +109,8 @@ setup(
     entry_points={
         'console_scripts': [
             f'{script} = {NAME}.nodes.scripts.{script}:main'
-            for script in ('bringup', 'demo', 'planner', 'report', 'simulated_arm')
+            for script in (
+                'bringup', 'demo', 'motion_server', 'planner', 'report', 'simulated_arm')
         ],
     },
 )

@@ -32,12 +32,19 @@ from rclpy.parameter import Parameter
 from rrr_traj_planner.core.errors import InvalidInputError, RrrPlannerError
 from rrr_traj_planner.nodes.parameters.arm_source import arm_source, LIMITS, URDF
 from rrr_traj_planner.nodes.parameters.parameter_files import folder_of_value
-from rrr_traj_planner.nodes.parameters.table import ARM, check_value, PLANNER, Row, rows_of
+from rrr_traj_planner.nodes.parameters.table import (
+    ARM,
+    check_value,
+    MOTION,
+    PLANNER,
+    Row,
+    rows_of,
+)
 
 Config = TypeVar('Config')
 
 RESOLVED = (URDF, LIMITS)  # declared with a file's text, and an absolute path
-ROLES = (PLANNER, ARM)
+ROLES = (PLANNER, ARM, MOTION)
 
 
 class DeclaredParameters(Generic[Config]):
@@ -49,7 +56,7 @@ class DeclaredParameters(Generic[Config]):
     node : Node
         The node; parameters are declared on it at once.
     role : str
-        `table.PLANNER` or `table.ARM`.
+        `table.PLANNER`, `table.ARM` or `table.MOTION`.
     build : callable
         Returns a configuration for a mapping of values by name; raises an InvalidInputError if
         they contradict each other.
@@ -116,10 +123,10 @@ class DeclaredParameters(Generic[Config]):
 
     def _set(self, parameters: list[Parameter]) -> SetParametersResult:
         """
-        Set parameters as rclpy does, but for what makes a file of both nodes fail to load.
+        Set parameters as rclpy does, but for what makes a file of all nodes fail to load.
 
-        That are read-only parameters with the value that they have, and parameters of the other
-        node: these are ignored, and the result says so.
+        That are read-only parameters with the value that they have, and parameters of other
+        nodes: these are ignored, and the result says so.
         """
         ignored = [p.name for p in parameters if p.name in self._of_others]
         changes = [p for p in parameters if p.name not in ignored and not self._is_kept(p)]

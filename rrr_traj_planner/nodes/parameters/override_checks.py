@@ -22,7 +22,7 @@ from typing import Any
 
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.parameters.table import ARM, PLANNER, rows_of
+from rrr_traj_planner.nodes.parameters.table import ARM, MOTION, PLANNER, rows_of
 
 KINDS = ('velocity', 'acceleration', 'jerk', 'effort')  # of limits, in names of parameters
 ROS_PARAMETERS = ('use_sim_time', 'qos_overrides', 'start_type_description_service')
@@ -62,7 +62,7 @@ def check_given(given: Mapping[str, Any], joint_names: Sequence[str],
 
 def unused_warnings(given: Collection[str], joint_names: Sequence[str]) -> list[str]:
     """
-    Return warnings about parameters that neither node uses.
+    Return warnings about parameters that no node uses.
 
     Parameters
     ----------
@@ -81,14 +81,15 @@ def unused_warnings(given: Collection[str], joint_names: Sequence[str]) -> list[
     for name in given:
         if name not in known and _group(name) not in (*map(_group, known), *ROS_PARAMETERS):
             meant = ' or '.join(_similar(name, known))
-            texts.append(f'parameter {name} is used by neither node'
+            texts.append(f'parameter {name} is used by no node'
                          + (f'; is {meant} meant?' if meant else ''))
     return texts
 
 
 def _known(joint_names: Sequence[str]) -> list[str]:
-    """Return the parameter names of both nodes: one file may serve both."""
-    return list({**rows_of(PLANNER, joint_names), **rows_of(ARM, joint_names)})
+    """Return the parameter names of all nodes: one file may serve them all."""
+    return list({name: None for node in (PLANNER, ARM, MOTION)
+                 for name in rows_of(node, joint_names)})
 
 
 def _similar(name: str, known: Sequence[str]) -> list[str]:

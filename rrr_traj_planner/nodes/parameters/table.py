@@ -13,7 +13,7 @@
 # limitations under the License.
 
 """
-The table of all parameters of both nodes, and the check of values against it.
+The table of all parameters of the nodes, and the check of values against it.
 
 This module does not need ROS; `declared` declares the parameters on a node.
 """
@@ -30,7 +30,7 @@ from rrr_traj_planner.core.arm.urdf_tree import BASE, TIP
 from rrr_traj_planner.core.errors import counted, format_distinct, InvalidInputError, shown
 from rrr_traj_planner.core.trajectory.sampling import MOST_POINTS
 
-PLANNER, ARM = 'planner', 'arm'
+PLANNER, ARM, MOTION = 'planner', 'arm', 'motion'
 
 # [rad], at the first via point of the thesis's table 6.1, (1.02, 0.59, 0.97) m, elbow up.
 START = (0.5244092235441183, 0.9438995534205477, 0.2480927534820987)
@@ -143,6 +143,14 @@ TABLE: tuple[Row, ...] = (
         'refused before they are computed', 'points', 2, 10_000_000, nodes=(PLANNER,)),
     Row('max_via_points', 1000, 'largest number of via points of a request', 'points', 2, 100_000,
         nodes=(PLANNER,)),
+    Row('controller_name', 'simulated_arm', 'the controller that runs motions, by its action '
+        'CONTROLLER_NAME/follow_joint_trajectory', read_only=True, nodes=(MOTION,)),
+    Row('replanning_lead', 0.25, 'how far ahead of the arm a motion in progress is gone on from; '
+        'planning and two messages must take less', 's', 0.02, 10.0, nodes=(MOTION,)),
+    Row('planning_timeout', 30.0, 'time after which a planner that does not answer counts as gone',
+        's', 0.1, 3600.0, nodes=(MOTION,)),
+    Row('start_tolerance', 0.01, 'how far a joint may be from the start of a plan when that is '
+        'sent', 'rad', 0.0, 1.0, nodes=(MOTION,)),
     Row('publish_rate', 200.0, 'rate of joint_states and desired_joint_states', 'Hz', 1.0, 1000.0,
         nodes=(ARM,)),
     Row('marker_rate', 10.0, 'rate of markers, in wall time; 0: none', 'Hz', 0.0, 100.0,
@@ -207,7 +215,7 @@ def rows_of(node: str, joint_names: Sequence[str]) -> dict[str, Row]:
     Parameters
     ----------
     node : str
-        `PLANNER` or `ARM`.
+        `PLANNER`, `ARM` or `MOTION`.
     joint_names : sequence of str
         The three joints.
 

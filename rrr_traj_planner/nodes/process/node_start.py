@@ -36,8 +36,8 @@ WATCH_PERIOD = 1.0   # s, between two checks for nodes of the same name
 
 KEEP_APART = ('end one, or give it a namespace (--ros-args -r __ns:=/NAME) or another '
               'ROS_DOMAIN_ID')
-DEFAULT = 'no parameter file, the default arm'
-OF_URDF = 'no parameter file, the arm of robot_description'
+NO_FILE = 'no parameter file'
+DEFAULT, OF_URDF = 'the default arm', 'the arm of robot_description'
 
 
 class NodeStart:
@@ -50,8 +50,8 @@ class NodeStart:
         The node, fully set up.
     parameters : DeclaredParameters
         The node's parameters.
-    limits : JointLimits
-        The joints' limits, for the log line.
+    limits : JointLimits, optional
+        The joints' limits, for the log line; None: the node has no arm.
     offer : str
         The node's main interface, for the log line.
     arguments : sequence of str, optional
@@ -59,16 +59,17 @@ class NodeStart:
 
     """
 
-    def __init__(self, node: Node, parameters: DeclaredParameters[Any], limits: JointLimits,
+    def __init__(self, node: Node, parameters: DeclaredParameters[Any], limits: JointLimits | None,
                  offer: str, arguments: Sequence[str] | None = None) -> None:
         self._node, self._parameters = node, parameters
         self._name = node.get_fully_qualified_name()
         files = files_given([*sys.argv, *(arguments or ())])
         self._unused = [file for file in files if not has_section_for(file, self._name)]
-        default = OF_URDF if node.get_parameter('robot_description').value else DEFAULT
-        arm = ', '.join(str(f) for f in files if f not in self._unused) or default
-        self._text = (f'{self._name}: {arm}; {_limits_text(limits, parameters.joint_names)}; '
-                      f'{offer}; ready')
+        default = OF_URDF if parameters.given.get('robot_description') else DEFAULT
+        source = ', '.join(str(f) for f in files if f not in self._unused) or (
+            NO_FILE if limits is None else f'{NO_FILE}, {default}')
+        arm = [] if limits is None else [_limits_text(limits, parameters.joint_names)]
+        self._text = f'{self._name}: {"; ".join([source, *arm, offer])}; ready'
         self._claim = claim(node.context.get_domain_id(), self._name)
         self._others = 0
         self._timer = node.create_timer(

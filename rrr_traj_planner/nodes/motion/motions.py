@@ -1,0 +1,335 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""
+Plans motions from where the arm is, and has a trajectory controller run them, one after another.
+
+Used by the node `motion_server` and the script `move`. Nothing waits: all goes on in callbacks of
+the node's executor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from time import monotonic
+from typing import Any, NamedTuple
+
+from control_msgs.action import FollowJointTrajectory
+from rclpy.action import ActionClient
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.task import Future
+from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.nodes.motion.arm_states import ArmStates
+from rrr_traj_planner.nodes.motion.controller_goal import end_of_goal, progress_of
+from rrr_traj_planner.nodes.motion.departure import (
+    Departure,
+    departure,
+    moved,
+    TooLateError,
+)
+from rrr_traj_planner.nodes.motion.motion import EndCode, Motion, MotionEnd, Watch
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+
+IN_MOTION = 'time_optimal'  # the planner that plans from any state
+RETRY_PERIOD = 0.05  # s between two attempts to join a motion
+RETRY_TIME = 5.0     # s since the motion was asked for, after which there is none
+CHECK_PERIOD = 0.5   # s between two checks whether planner and controller are still there
+ANSWER_TIME = 5.0    # s for the controller to accept or reject a goal
+
+UNKNOWN_STATE = 'the state of the arm is not known any more'
+REPLACED = MotionEnd(EndCode.PREEMPTED, 'replaced by a newer goal')
+CANCELED = MotionEnd(EndCode.PREEMPTED, 'canceled')
+
+
+class Options(NamedTuple):
+    """
+    How motions are run.
+
+    Attributes
+    ----------
+    controller : str
+        Name of the controller, which serves `CONTROLLER/follow_joint_trajectory`.
+    lead : float
+        How far ahead of the arm a motion in progress is gone on from [s].
+    planning_timeout : float
+        How long the planner may take to answer [s].
+    start_tolerance : float
+        How far each joint may be from the start of a plan when it is sent [rad].
+
+    """
+
+    controller: str = 'simulated_arm'
+    lead: float = 0.25
+    planning_timeout: float = 30.0
+    start_tolerance: float = 0.01
+
+
+class Motions:
+    """
+    Plans and runs motions.
+
+    A motion that is asked for while another is in progress takes over from it without a stop; if
+    it is refused, the one in progress goes on.
+
+    Parameters
+    ----------
+    node : Node
+        The node. Its executor's thread calls all methods, or they are called before it spins.
+    options : Options
+        Controller, lead and tolerance.
+
+    """
+
+    def __init__(self, node: Node, options: Options) -> None:
+        self._node, self.options = node, options
+        self._clock, self._steady = node.get_clock(), Clock(clock_type=ClockType.STEADY_TIME)
+        self._planner = node.create_client(PlanTrajectory, 'plan_trajectory')
+        self.action = node.resolve_service_name(f'{options.controller}/follow_joint_trajectory')
+        self._controller = ActionClient(node, FollowJointTrajectory, self.action)
+        self._states = ArmStates(node, options.controller)
+        self._running: Motion | None = None  # the controller's goal
+        self._sent: Motion | None = None     # whose goal is neither accepted nor rejected yet
+        self._sent_at = 0.0
+        self._next: Motion | None = None     # the newest, before it is sent
+        self._asked_at = 0.0
+        self._ended_early: Future | None = None  # result of the running goal while one is sent
+        self._check_timer = node.create_timer(CHECK_PERIOD, self._check, clock=self._steady)
+
+    def missing(self) -> list[str]:
+        """
+        Return what is not there.
+
+        Returns
+        -------
+        list of str
+            Empty if motions can be planned and run.
+
+        """
+        found = []
+        if not self._planner.service_is_ready():
+            found.append(f'the planner (service {self._planner.srv_name})')
+        if not self._controller.server_is_ready():
+            found.append(f'the controller (action {self.action})')
+        if self._states.latest() is None:
+            found.append(f"the arm's state (topic {' or '.join(self._states.sources)})")
+        return found
+
+    def move(self, request: PlanTrajectory.Request, watch: Watch, sends: bool = True) -> Motion:
+        """
+        Plan a motion, and run it; it replaces one that is not sent yet.
+
+        Parameters
+        ----------
+        request : PlanTrajectory.Request
+            Without start state.
+        watch : Watch
+            Is told how the motion goes on; its `ended` may be called at once.
+        sends : bool
+            Whether the plan is run; False: it ends with `planned`.
+
+        Returns
+        -------
+        Motion
+            For `cancel`.
+
+        """
+        motion = Motion(request, watch, sends)
+        replaced, self._next = self._next, motion
+        if replaced is not None:
+            self._finish(replaced, REPLACED)
+        if self._sent is None:  # else as soon as that is answered
+            self._begin(motion)
+        return motion
+
+    def cancel(self, motion: Motion) -> None:
+        """
+        End a motion before its time: the controller stops the arm if it is in progress.
+
+        Parameters
+        ----------
+        motion : Motion
+            Nothing happens if it has ended.
+
+        """
+        motion.canceled = True
+        if motion is self._next:
+            self._finish(motion, CANCELED)
+        elif motion is self._running:
+            motion.goal.cancel_goal_async()
+
+    def close(self) -> None:
+        """Release the action's client, which would keep the node alive."""
+        self._check_timer.cancel()
+        self._controller.destroy()
+
+    def _begin(self, motion: Motion) -> None:
+        """Plan a motion, if all is there."""
+        self._asked_at = monotonic()
+        if missing := self.missing():
+            self._finish(motion, MotionEnd(
+                EndCode.COMMUNICATION_FAILURE, f'not there: {", ".join(missing)}'))
+        else:
+            self._plan(motion, self.options.lead)
+
+    def _plan(self, motion: Motion, lead: float) -> None:
+        """Ask the planner for a motion from where the arm is."""
+        if motion.end is not None:
+            return
+        latest = self._states.latest()
+        if latest is None:
+            self._finish(motion, MotionEnd(EndCode.COMMUNICATION_FAILURE, UNKNOWN_STATE))
+            return
+        running = self._running
+        begin = departure(latest, None if running is None or running.canceled else running,
+                          self._now(), round(lead * SECOND))
+        request = motion.request
+        asked = request.planner_id
+        request.start_state, request.start_acceleration = begin.state.message()
+        if begin.state.is_moving and not asked:
+            request.planner_id = IN_MOTION
+        answer = self._planner.call_async(request)
+        request.planner_id = asked
+        self._asked_at = monotonic()
+        answer.add_done_callback(partial(self._planned, motion, begin, lead))
+
+    def _planned(self, motion: Motion, begin: Departure, lead: float, answer: Future) -> None:
+        """Send a motion to the controller, or tell that the planner refuses."""
+        if motion.end is not None:
+            return
+        motion.response = response = answer.result()
+        if response.error_code != response.SUCCESS:
+            end = MotionEnd(response.error_code, response.message, response.failed_via_point)
+            if response.error_code == response.START_STATE_INVALID and begin.is_estimate:
+                self._again(motion, lead, end)
+            else:
+                self._finish(motion, end)
+        elif motion.sends:
+            self._send(motion, begin, lead)
+        else:
+            motion.watch.planned(motion)
+            self._finish(motion, MotionEnd(EndCode.SUCCESS, response.message))
+
+    def _send(self, motion: Motion, begin: Departure, lead: float) -> None:
+        """Send a plan to the controller, if the arm is still where it begins."""
+        plan, latest = motion.response.trajectory, self._states.latest()
+        if begin.running is None and not begin.is_estimate:
+            gone = UNKNOWN_STATE if latest is None else moved(
+                plan, latest, self.options.start_tolerance)
+            if gone:
+                self._finish(motion, MotionEnd(EndCode.START_STATE_INVALID, gone))
+                return
+        try:
+            motion.trajectory, motion.begins = begin.joined(plan, self._running, self._now())
+        except TooLateError as error:
+            self._again(motion, 2.0 * lead, MotionEnd(EndCode.START_STATE_INVALID, str(error)))
+            return
+        motion.watch.planned(motion)
+        self._next, self._sent, self._sent_at = None, motion, monotonic()
+        self._controller.send_goal_async(
+            FollowJointTrajectory.Goal(trajectory=motion.trajectory),
+            partial(self._progress, motion)).add_done_callback(
+                partial(self._answered, motion, begin, lead))
+
+    def _again(self, motion: Motion, lead: float, end: MotionEnd) -> None:
+        """Plan a motion again a little later; after `RETRY_TIME` it has ended."""
+        if monotonic() > motion.since + RETRY_TIME or motion is not self._next:
+            self._finish(motion, end)
+        else:
+            self._later(partial(self._plan, motion, lead))
+
+    def _answered(self, motion: Motion, begin: Departure, lead: float, answer: Future) -> None:
+        """Take over from the motion in progress, if the controller accepts the goal."""
+        if self._sent is not motion:
+            return
+        goal, self._sent = answer.result(), None
+        early, self._ended_early = self._ended_early, None
+        if goal.accepted:
+            motion.goal = goal
+            replaced, self._running = self._running, motion
+            if replaced is not None:
+                self._finish(replaced, REPLACED)
+            goal.get_result_async().add_done_callback(partial(self._ended, motion))
+            if motion.canceled:
+                self.cancel(motion)
+        else:  # the result has the reason, from controllers that say it
+            goal.get_result_async().add_done_callback(
+                partial(self._rejected, motion, begin, lead))
+            if early is not None and self._running is not None:
+                self._ended(self._running, early)
+        if self._next is not None:
+            self._begin(self._next)
+
+    def _rejected(self, motion: Motion, begin: Departure, lead: float, answer: Future) -> None:
+        """Tell why the controller has rejected a goal."""
+        end = end_of_goal(answer.result(), rejected=True)
+        if begin.is_estimate and self._next is None and not motion.canceled:
+            self._next = motion
+            self._again(motion, lead, end)
+        else:
+            self._finish(motion, end)
+
+    def _ended(self, motion: Motion, answer: Future) -> None:
+        """Tell how the goal in progress has ended."""
+        if motion is not self._running:
+            return  # replaced
+        if self._sent is not None:  # perhaps replaced by what is sent
+            self._ended_early = answer
+            return
+        self._running = None
+        end = end_of_goal(answer.result())
+        success = end.code == EndCode.SUCCESS
+        self._finish(motion, end._replace(text=motion.response.message) if success else end)
+
+    def _progress(self, motion: Motion, message: Any) -> None:
+        """Tell where the motion in progress is."""
+        if motion is self._running:
+            motion.watch.progress(progress_of(message.feedback, motion))
+
+    def _finish(self, motion: Motion, end: MotionEnd) -> None:
+        """Tell that a motion has ended."""
+        if motion is self._next:
+            self._next = None
+        if motion.end is None:
+            motion.end = end
+            motion.watch.ended(end)
+
+    def _check(self) -> None:
+        """End motions for which the planner or the controller has gone."""
+        if self._next is not None and self._sent is None:
+            timeout = self.options.planning_timeout
+            if not self._planner.service_is_ready() or monotonic() > self._asked_at + timeout:
+                self._finish(self._next, MotionEnd(
+                    EndCode.COMMUNICATION_FAILURE, 'the planner has gone, or has not answered for '
+                    f'{timeout:g} s'))
+        if self._controller.server_is_ready() and (
+                self._sent is None or monotonic() < self._sent_at + ANSWER_TIME):
+            return
+        gone = MotionEnd(EndCode.COMMUNICATION_FAILURE, 'the controller does not answer any more')
+        for motion in (self._sent, self._running):
+            if motion is not None:
+                self._finish(motion, gone)
+        self._sent = self._running = None
+
+    def _later(self, call: Callable[[], None]) -> None:
+        """Call a function a little later."""
+        def once() -> None:
+            self._node.destroy_timer(timer)
+            call()
+
+        timer = self._node.create_timer(RETRY_PERIOD, once, clock=self._steady)
+
+    def _now(self) -> int:
+        return int(self._clock.now().nanoseconds)
