@@ -19,29 +19,22 @@ from __future__ import annotations
 import re
 import sys
 
-from helpers.arm_in_ros import ALL, Arm, SECOND, stamp
+from helpers.arm_in_ros import ALL, Arm
+from helpers.motion_in_ros import assert_steady, random_places, SteppedClock
 from helpers.places import DOCS
 from helpers.plan_requests import points_of
 from helpers.planner_in_ros import start_planner
 from helpers.scripts import DEADLINE, Script, script
 import numpy as np
 from rclpy.duration import Duration
-from rclpy.time import Time
-from rosgraph_msgs.msg import Clock as ClockMessage
-from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
-from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectory
 
 CODE, = re.findall(r'^```python\n(.*?)^```', (DOCS / 'replanning.md').read_text(),
                    re.DOTALL | re.MULTILINE)
-INSTANTS, TICK = 100, SECOND // 200
-LIMITS = JointLimits()
-STEP = 1e-9     # rad, rad/s, rad/s^2: between what ends and what begins at a point
-ROUNDING = 1e-6  # rad, rad/s: of stamps, a nanosecond each, and of the fields of a message
-MORE = 1.1      # times jerk's limit, by a quintic between two points
+INSTANTS = 100
+STEP = 1e-9  # rad, rad/s, rad/s^2: between what ends and what begins at a point
 
 
 def the_document_s():
@@ -49,34 +42,6 @@ def the_document_s():
     names = {'__name__': 'example'}
     exec(CODE, names)
     return names
-
-
-def random_places(rng, model):
-    """Return one to three tip positions that the arm can reach and hold."""
-    while True:
-        q = rng.uniform([0.1, 0.6, -0.6], [1.4, 1.8, 0.6], (rng.integers(1, 4), 3))
-        if (np.abs(gravity_torque(model, q)) < 0.9 * LIMITS.max_effort).all():
-            return forward_kinematics(model, q).tolist()
-
-
-class SteppedClock:
-    """A clock that goes on when the arm has followed: no message is late, however busy it is."""
-
-    def __init__(self, ros):
-        self.time = 100 * SECOND
-        self._publisher = ros.publisher(ClockMessage, '/clock')
-
-    def now(self):
-        """Return the time, as a node's clock does."""
-        return Time(nanoseconds=self.time)
-
-    def advance(self, arm, seconds):
-        """Let time pass."""
-        for _ in range(round(seconds * SECOND / TICK)):
-            self.time += TICK
-            self._publisher.publish(ClockMessage(clock=self.now().to_msg()))
-            arm.desired.wait_for(lambda m: stamp(m) > self.time - TICK,
-                                 max(len(arm.desired.messages) - 5, 0))
 
 
 def test_the_arm_joins_plans_made_in_motion_without_a_step(ros):
@@ -122,20 +87,6 @@ def assert_continues(before, after, k):
     for field in ('times', 'positions', 'velocities', 'accelerations'):
         expected = getattr(before, field)[first:k + 1]
         assert np.abs(getattr(after, field)[:len(expected)] - expected).max() <= STEP
-
-
-def assert_steady(messages):
-    """Assert that what the controller follows has no step in position, velocity, acceleration."""
-    t = np.array([stamp(m) for m in messages]) / SECOND
-    q, v = (np.array([getattr(m, f) for m in messages]) for f in ('position', 'velocity'))
-    dt = np.diff(t)[:, np.newaxis]
-    jerk = MORE * LIMITS.max_jerk
-    # the error of the trapezoidal rule is at most jerk dt^3 / 12
-    assert (np.abs(np.diff(q, axis=0) - 0.5 * dt * (v[1:] + v[:-1]))
-            <= jerk * dt ** 3 / 12.0 + ROUNDING).all()
-    mean = np.diff(v, axis=0) / dt  # acceleration, somewhere between two messages
-    assert (np.abs(np.diff(mean, axis=0))
-            <= 0.5 * jerk * (dt[1:] + dt[:-1]) + ROUNDING / dt.min()).all()
 
 
 def test_the_document_s_example_replans_in_motion(ros):

@@ -15,8 +15,7 @@
 """
 Plans motions from where the arm is, and has a trajectory controller run them, one after another.
 
-Used by the node `motion_server` and the script `move`. Nothing waits: all goes on in callbacks of
-the node's executor.
+Nothing waits: all goes on in callbacks of the node's executor.
 """
 
 from __future__ import annotations
@@ -66,6 +65,8 @@ class Options(NamedTuple):
         How far ahead of the arm a motion in progress is gone on from [s].
     planning_timeout : float
         How long the planner may take to answer [s].
+    discovery_timeout : float
+        How long planner, controller and the arm's state are waited for [s].
     start_tolerance : float
         How far each joint may be from the start of a plan when it is sent [rad].
 
@@ -74,6 +75,7 @@ class Options(NamedTuple):
     controller: str = 'simulated_arm'
     lead: float = 0.25
     planning_timeout: float = 30.0
+    discovery_timeout: float = 5.0
     start_tolerance: float = 0.01
 
 
@@ -97,6 +99,7 @@ class Motions:
         self._node, self.options = node, options
         self._clock, self._steady = node.get_clock(), Clock(clock_type=ClockType.STEADY_TIME)
         self._planner = node.create_client(PlanTrajectory, 'plan_trajectory')
+        self._service = node.resolve_service_name('plan_trajectory')
         self.action = node.resolve_service_name(f'{options.controller}/follow_joint_trajectory')
         self._controller = ActionClient(node, FollowJointTrajectory, self.action)
         self._states = ArmStates(node, options.controller)
@@ -104,7 +107,7 @@ class Motions:
         self._sent: Motion | None = None     # whose goal is neither accepted nor rejected yet
         self._sent_at = 0.0
         self._next: Motion | None = None     # the newest, before it is sent
-        self._asked_at = 0.0
+        self._asked_at: float | None = None  # the planner, whose answer is to come
         self._ended_early: Future | None = None  # result of the running goal while one is sent
         self._check_timer = node.create_timer(CHECK_PERIOD, self._check, clock=self._steady)
 
@@ -120,7 +123,7 @@ class Motions:
         """
         found = []
         if not self._planner.service_is_ready():
-            found.append(f'the planner (service {self._planner.srv_name})')
+            found.append(f'the planner (service {self._service})')
         if not self._controller.server_is_ready():
             found.append(f'the controller (action {self.action})')
         if self._states.latest() is None:
@@ -176,13 +179,17 @@ class Motions:
         self._controller.destroy()
 
     def _begin(self, motion: Motion) -> None:
-        """Plan a motion, if all is there."""
-        self._asked_at = monotonic()
-        if missing := self.missing():
+        """Plan a motion as soon as all is there."""
+        if motion.end is not None or motion is not self._next:
+            return
+        missing = self.missing()
+        if not missing:
+            self._plan(motion, self.options.lead)
+        elif monotonic() < motion.since + self.options.discovery_timeout:
+            self._later(partial(self._begin, motion))
+        else:
             self._finish(motion, MotionEnd(
                 EndCode.COMMUNICATION_FAILURE, f'not there: {", ".join(missing)}'))
-        else:
-            self._plan(motion, self.options.lead)
 
     def _plan(self, motion: Motion, lead: float) -> None:
         """Ask the planner for a motion from where the arm is."""
@@ -209,6 +216,7 @@ class Motions:
         """Send a motion to the controller, or tell that the planner refuses."""
         if motion.end is not None:
             return
+        self._asked_at = None
         motion.response = response = answer.result()
         if response.error_code != response.SUCCESS:
             end = MotionEnd(response.error_code, response.message, response.failed_via_point)
@@ -301,14 +309,14 @@ class Motions:
     def _finish(self, motion: Motion, end: MotionEnd) -> None:
         """Tell that a motion has ended."""
         if motion is self._next:
-            self._next = None
+            self._next = self._asked_at = None
         if motion.end is None:
             motion.end = end
             motion.watch.ended(end)
 
     def _check(self) -> None:
         """End motions for which the planner or the controller has gone."""
-        if self._next is not None and self._sent is None:
+        if self._next is not None and self._asked_at is not None:
             timeout = self.options.planning_timeout
             if not self._planner.service_is_ready() or monotonic() > self._asked_at + timeout:
                 self._finish(self._next, MotionEnd(

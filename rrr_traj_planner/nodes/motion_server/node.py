@@ -108,6 +108,8 @@ class MotionServer(ServiceNode):
         log = self.get_logger()
         if end.code == EndCode.SUCCESS:
             log.info('goal reached' + (f'; {end.text}' if end.text else ''))
+        elif end.code == EndCode.PREEMPTED:
+            log.info(f'goal ended: {end.text}')
         else:
             log.warning(f'goal ended ({end.code}): {end.text}')
         self._server.end(handle, SUCCEEDED if end.code == EndCode.SUCCESS else ABORTED,
@@ -128,7 +130,8 @@ class MotionServer(ServiceNode):
 def _options(values: Mapping[str, Any]) -> Options:
     """Return how motions are run."""
     return Options(values['controller_name'], values['replanning_lead'],
-                   values['planning_timeout'], values['start_tolerance'])
+                   values['planning_timeout'], values['discovery_timeout'],
+                   values['start_tolerance'])
 
 
 def _request(goal: MoveThrough.Goal) -> PlanTrajectory.Request:

@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What both nodes use for output: diagnostics, markers, times, throttled log messages."""
+"""What nodes use for output: diagnostics, markers, times, throttled log messages."""

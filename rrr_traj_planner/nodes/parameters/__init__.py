@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Parameters of both nodes: their table, their files, and the configurations built from them."""
+"""Parameters of the nodes: their table, their files, and the configurations built from them."""

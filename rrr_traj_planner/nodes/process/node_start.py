@@ -64,7 +64,8 @@ class NodeStart:
         self._node, self._parameters = node, parameters
         self._name = node.get_fully_qualified_name()
         files = files_given([*sys.argv, *(arguments or ())])
-        self._unused = [file for file in files if not has_section_for(file, self._name)]
+        self._unused = [] if limits is None else [
+            file for file in files if not has_section_for(file, self._name)]
         default = OF_URDF if parameters.given.get('robot_description') else DEFAULT
         source = ', '.join(str(f) for f in files if f not in self._unused) or (
             NO_FILE if limits is None else f'{NO_FILE}, {default}')

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Both nodes as child processes: started, watched and ended together."""
+"""Nodes as child processes: started, watched and ended together."""
 
 from __future__ import annotations
 
@@ -26,8 +26,7 @@ from types import TracebackType
 
 from rrr_traj_planner.nodes.process.signals import signal_arrived, signals_blocked
 
-MODULES = {'planner': 'rrr_traj_planner.nodes.scripts.planner',
-           'simulated_arm': 'rrr_traj_planner.nodes.scripts.simulated_arm'}
+SCRIPTS = 'rrr_traj_planner.nodes.scripts'
 
 # Like `python -m`, but with this copy of the package: -m prefers one in the current folder.
 PACKAGE_PATH = str(Path(__file__).parents[3])
@@ -43,28 +42,32 @@ STOP_TIMEOUT = 1.5  # s after SIGINT, then SIGKILL
 
 class NodeProcesses:
     """
-    The processes of the planner and the simulated arm; a context manager that ends them.
+    Processes of scripts that run nodes; a context manager that ends them.
 
     Signals must be deferred within the context (`signals.py`).
 
     Parameters
     ----------
+    scripts : sequence of str
+        Their names, such as 'planner'.
     ros_arguments : sequence of str
-        ROS arguments of both, beginning with `--ros-args`.
+        ROS arguments of all, beginning with `--ros-args`.
 
     """
 
-    def __init__(self, ros_arguments: Sequence[str]) -> None:
+    def __init__(self, scripts: Sequence[str], ros_arguments: Sequence[str]) -> None:
+        self._scripts = scripts
         self._ros_arguments = list(ros_arguments)
         self._processes: dict[str, subprocess.Popen[bytes]] = {}
 
     def __enter__(self) -> NodeProcesses:
-        """Start both, or neither."""
+        """Start all, or none."""
         try:
             with signals_blocked():
-                for name, module in MODULES.items():
-                    self._processes[name] = subprocess.Popen(
-                        [sys.executable, '-c', RUN_MODULE, module, *self._ros_arguments])
+                for name in self._scripts:
+                    self._processes[name] = subprocess.Popen([
+                        sys.executable, '-c', RUN_MODULE, f'{SCRIPTS}.{name}',
+                        *self._ros_arguments])
         except BaseException:
             self.stop()
             raise
@@ -72,7 +75,7 @@ class NodeProcesses:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
-        """End both."""
+        """End all."""
         self.stop()
 
     def ended(self) -> tuple[str, int] | None:
@@ -108,7 +111,7 @@ class NodeProcesses:
         return None
 
     def stop(self) -> None:
-        """End both by SIGINT, and by SIGKILL after `STOP_TIMEOUT`."""
+        """End all by SIGINT, and by SIGKILL after `STOP_TIMEOUT`."""
         deadline = monotonic() + STOP_TIMEOUT
         for process in self._processes.values():
             if process.poll() is None:

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The script `bringup`: planner and simulated arm together; if one ends, the other is ended."""
+"""The script `bringup`: all nodes together; if one ends, the others are ended."""
 
 from __future__ import annotations
 
@@ -30,13 +30,14 @@ from rrr_traj_planner.nodes.process.entry import (
 from rrr_traj_planner.nodes.process.processes import exit_message, NodeProcesses
 from rrr_traj_planner.nodes.process.signals import defer_signals
 
-DESCRIPTION = 'Run the trajectory planner and the simulated arm, until Ctrl-C.'
+DESCRIPTION = 'Run the trajectory planner, the simulated arm and the motion server, until Ctrl-C.'
+NODES = ('planner', 'simulated_arm', 'motion_server')
 THESIS_ARM = 'thesis_arm.yaml'
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """
-    Run both nodes until SIGINT or SIGTERM, or until one of them ends.
+    Run the nodes until SIGINT or SIGTERM, or until one of them ends.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--arm', metavar='FILE',
-        help="parameters of both nodes: a file, or one of the package's config/ or config/arms/ "
+        help="parameters of the nodes: a file, or one of the package's config/ or config/arms/ "
              f'(default: {THESIS_ARM}, none with a parameter robot_description)')
     add_limits_option(parser)
 
@@ -70,7 +71,7 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
 
     own = [*ros_arguments, *limits_arguments(options.joint_limits)]
     name = options.arm or (None if describes_an_arm(ros_arguments) else THESIS_ARM)
-    nodes = NodeProcesses(node_arguments(name and found_file(name, Path.cwd()), own))
+    nodes = NodeProcesses(NODES, node_arguments(name and found_file(name, Path.cwd()), own))
     defer_signals()
     with nodes:
         ended = nodes.wait()
@@ -83,7 +84,7 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
 
 def node_arguments(parameters: Path | None, ros_arguments: Sequence[str]) -> list[str]:
     """
-    Return the ROS arguments of both nodes.
+    Return the ROS arguments of the nodes.
 
     Parameters
     ----------

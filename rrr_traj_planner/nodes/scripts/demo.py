@@ -102,7 +102,8 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
         client.check_free()
         bag = None if options.record is None else stack.enter_context(Bag(options.record))
         arm = None if describes_an_arm(ros_arguments) else task.arm
-        nodes = stack.enter_context(NodeProcesses(node_arguments(arm, ros_arguments)))
+        nodes = stack.enter_context(NodeProcesses(
+            ('planner', 'simulated_arm'), node_arguments(arm, ros_arguments)))
         run = client.run(task, nodes.ended, bag)
     found = checked_values(run)
     print(table(run, found), flush=True)

@@ -101,7 +101,7 @@ def test_joints_in_another_order_need_their_own_limits():
 def test_name_that_neither_node_uses_is_warned_of(name, hint):
     known = ['publish_rate', 'sample_period', 'joint_names']  # each of some node
     assert unused_warnings([name, *known, *OWN], NAMES) == [
-        f'parameter {name} is used by neither node{hint}']
+        f'parameter {name} is used by no node{hint}']
 
 
 @pytest.mark.parametrize('name', [

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The script `bringup`: both nodes come up together, and end together, whatever ends first."""
+"""The script `bringup`: all nodes come up together, and end together, whatever ends first."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ import yaml
 
 
 def assert_up(ros, states):
-    """Assert that both nodes answer; return the planner's answer."""
+    """Assert that planner and arm answer; return the planner's answer."""
     states.wait_for()
     assert ros.call(Trigger, 'simulated_arm/hold').success
     return ros.call(PlanTrajectory, 'plan_trajectory', plan_request(TABLE_6_3))
 
 
-def test_both_nodes_come_up_with_their_file_and_a_signal_ends_all(ros):
+def test_nodes_come_up_with_their_file_and_a_signal_ends_all(ros):
     states = ros.listen(JointState, 'joint_states')
     file = CONFIG / 'thesis_arm_joint_2_250.yaml'
     with Script(script('bringup'), '--arm', file) as bringup:
         response = assert_up(ros, states)
         assert response.error_code == response.SUCCESS, response.message
-        children = bringup.started(2)
+        children = bringup.started(3)
         bringup.process.send_signal(signal.SIGTERM)
         assert bringup.ended()[0] == 0
         assert all(child.has_ended() for child in children)
@@ -60,7 +60,7 @@ def test_ctrl_c_in_a_terminal_reaches_all_and_ends_all(ros):
     with Script(script('bringup'), new_group=True) as bringup:
         response = assert_up(ros, states)
         assert response.error_code == response.GOAL_CONSTRAINTS_VIOLATED  # the thesis's arm
-        children = bringup.started(2)
+        children = bringup.started(3)
         os.killpg(bringup.process.pid, signal.SIGINT)
         code, _, errors = bringup.ended()
         assert all(child.has_ended() for child in children)
@@ -70,12 +70,13 @@ def test_ctrl_c_in_a_terminal_reaches_all_and_ends_all(ros):
 
 @pytest.mark.parametrize(('name', 'number', 'code', 'text'), [
     ('planner', signal.SIGKILL, 128 + signal.SIGKILL, 'planner was killed by SIGKILL'),
-    ('simulated_arm', signal.SIGTERM, 0, 'simulated_arm ended with exit code 0')])
-def test_node_that_ends_takes_the_other_with_it(ros, name, number, code, text):
+    ('simulated_arm', signal.SIGTERM, 0, 'simulated_arm ended with exit code 0'),
+    ('motion_server', signal.SIGINT, 0, 'motion_server ended with exit code 0')])
+def test_node_that_ends_takes_the_others_with_it(ros, name, number, code, text):
     states = ros.listen(JointState, 'joint_states')
     with Script(script('bringup')) as bringup:
         assert_up(ros, states)
-        children = bringup.started(2)
+        children = bringup.started(3)
         victim, = (c for c in children if f'rrr_traj_planner.nodes.scripts.{name}' in c.command)
         victim.send_signal(number)
         ended, _, errors = bringup.ended()
@@ -153,7 +154,7 @@ def test_nothing_is_left_where_the_second_node_cannot_be_started(monkeypatch):
 
     monkeypatch.setattr(subprocess, 'Popen', first_only)
     with pytest.raises(OSError, match='no more processes'):
-        with NodeProcesses([]):
+        with NodeProcesses(('planner', 'simulated_arm'), []):
             pass
     assert started[0].poll() is not None
 
