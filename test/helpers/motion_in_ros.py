@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Motions of the arm node: a clock that waits for it, places to go to, and steps in its command."""
+"""Motions of the arm node: a clock that waits for it, places to go to, steps in its command."""
 
 from __future__ import annotations
 

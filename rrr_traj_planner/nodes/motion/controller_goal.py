@@ -23,7 +23,13 @@ from action_msgs.msg import GoalStatus
 from control_msgs.action import FollowJointTrajectory
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.motion.departure import duration_of, elapsed
-from rrr_traj_planner.nodes.motion.motion import EndCode, Motion, MotionEnd, Progress
+from rrr_traj_planner.nodes.motion.motion import (
+    CANCELED,
+    EndCode,
+    Motion,
+    MotionEnd,
+    Progress,
+)
 from rrr_traj_planner.nodes.output.message_times import nanoseconds
 
 Result = FollowJointTrajectory.Result
@@ -53,7 +59,7 @@ def end_of_goal(response: Any, rejected: bool = False) -> MotionEnd:
     if response.status == GoalStatus.STATUS_SUCCEEDED and not rejected:
         return MotionEnd(EndCode.SUCCESS, '')
     if response.status == GoalStatus.STATUS_CANCELED:
-        return MotionEnd(EndCode.PREEMPTED, 'canceled')
+        return CANCELED
     what = 'rejected' if rejected else 'aborted'
     code = NAMES.get(result.error_code, '')
     text = f'the controller has {what} the trajectory'

@@ -60,6 +60,9 @@ class MotionEnd(NamedTuple):
     controller_code: int = 0
 
 
+CANCELED = MotionEnd(EndCode.PREEMPTED, 'canceled')
+
+
 class Progress(NamedTuple):
     """
     Where a motion is.
@@ -149,3 +152,17 @@ class Motion:
     goal: Any = None
     canceled: bool = False
     end: MotionEnd | None = None
+
+    def finish(self, end: MotionEnd) -> None:
+        """
+        End the motion, unless it has ended, and tell so.
+
+        Parameters
+        ----------
+        end : MotionEnd
+            How it ends.
+
+        """
+        if self.end is None:
+            self.end = end
+            self.watch.ended(end)

@@ -23,34 +23,29 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from time import monotonic
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from control_msgs.action import FollowJointTrajectory
-from rclpy.action import ActionClient
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.task import Future
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.motion.arm_states import ArmStates
-from rrr_traj_planner.nodes.motion.controller_goal import end_of_goal, progress_of
+from rrr_traj_planner.nodes.motion.controller import Controller, REPLACED
 from rrr_traj_planner.nodes.motion.departure import (
     Departure,
     departure,
     moved,
     TooLateError,
 )
-from rrr_traj_planner.nodes.motion.motion import EndCode, Motion, MotionEnd, Watch
+from rrr_traj_planner.nodes.motion.motion import CANCELED, EndCode, Motion, MotionEnd, Watch
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
 IN_MOTION = 'time_optimal'  # the planner that plans from any state
 RETRY_PERIOD = 0.05  # s between two attempts to join a motion
 RETRY_TIME = 5.0     # s since the motion was asked for, after which there is none
 CHECK_PERIOD = 0.5   # s between two checks whether planner and controller are still there
-ANSWER_TIME = 5.0    # s for the controller to accept or reject a goal
 
 UNKNOWN_STATE = 'the state of the arm is not known any more'
-REPLACED = MotionEnd(EndCode.PREEMPTED, 'replaced by a newer goal')
-CANCELED = MotionEnd(EndCode.PREEMPTED, 'canceled')
 
 
 class Options(NamedTuple):
@@ -100,15 +95,11 @@ class Motions:
         self._clock, self._steady = node.get_clock(), Clock(clock_type=ClockType.STEADY_TIME)
         self._planner = node.create_client(PlanTrajectory, 'plan_trajectory')
         self._service = node.resolve_service_name('plan_trajectory')
-        self.action = node.resolve_service_name(f'{options.controller}/follow_joint_trajectory')
-        self._controller = ActionClient(node, FollowJointTrajectory, self.action)
+        self._controller = Controller(node, options.controller, self._continue)
+        self.action = self._controller.action
         self._states = ArmStates(node, options.controller)
-        self._running: Motion | None = None  # the controller's goal
-        self._sent: Motion | None = None     # whose goal is neither accepted nor rejected yet
-        self._sent_at = 0.0
-        self._next: Motion | None = None     # the newest, before it is sent
+        self._next: Motion | None = None  # the newest, before it is sent
         self._asked_at: float | None = None  # the planner, whose answer is to come
-        self._ended_early: Future | None = None  # result of the running goal while one is sent
         self._check_timer = node.create_timer(CHECK_PERIOD, self._check, clock=self._steady)
 
     def missing(self) -> list[str]:
@@ -124,7 +115,7 @@ class Motions:
         found = []
         if not self._planner.service_is_ready():
             found.append(f'the planner (service {self._service})')
-        if not self._controller.server_is_ready():
+        if not self._controller.is_there():
             found.append(f'the controller (action {self.action})')
         if self._states.latest() is None:
             found.append(f"the arm's state (topic {' or '.join(self._states.sources)})")
@@ -153,7 +144,8 @@ class Motions:
         replaced, self._next = self._next, motion
         if replaced is not None:
             self._finish(replaced, REPLACED)
-        if self._sent is None:  # else as soon as that is answered
+        self._asked_at = None
+        if not self._controller.is_sending:  # else as soon as that is answered
             self._begin(motion)
         return motion
 
@@ -167,16 +159,15 @@ class Motions:
             Nothing happens if it has ended.
 
         """
-        motion.canceled = True
         if motion is self._next:
             self._finish(motion, CANCELED)
-        elif motion is self._running:
-            motion.goal.cancel_goal_async()
+        else:
+            self._controller.cancel(motion)
 
     def close(self) -> None:
         """Release the action's client, which would keep the node alive."""
         self._check_timer.cancel()
-        self._controller.destroy()
+        self._controller.close()
 
     def _begin(self, motion: Motion) -> None:
         """Plan a motion as soon as all is there."""
@@ -199,7 +190,7 @@ class Motions:
         if latest is None:
             self._finish(motion, MotionEnd(EndCode.COMMUNICATION_FAILURE, UNKNOWN_STATE))
             return
-        running = self._running
+        running = self._controller.running
         begin = departure(latest, None if running is None or running.canceled else running,
                           self._now(), round(lead * SECOND))
         request = motion.request
@@ -240,16 +231,14 @@ class Motions:
                 self._finish(motion, MotionEnd(EndCode.START_STATE_INVALID, gone))
                 return
         try:
-            motion.trajectory, motion.begins = begin.joined(plan, self._running, self._now())
+            motion.trajectory, motion.begins = begin.joined(
+                plan, self._controller.running, self._now())
         except TooLateError as error:
             self._again(motion, 2.0 * lead, MotionEnd(EndCode.START_STATE_INVALID, str(error)))
             return
         motion.watch.planned(motion)
-        self._next, self._sent, self._sent_at = None, motion, monotonic()
-        self._controller.send_goal_async(
-            FollowJointTrajectory.Goal(trajectory=motion.trajectory),
-            partial(self._progress, motion)).add_done_callback(
-                partial(self._answered, motion, begin, lead))
+        self._next = None
+        self._controller.send(motion, partial(self._rejected, motion, begin, lead))
 
     def _again(self, motion: Motion, lead: float, end: MotionEnd) -> None:
         """Plan a motion again a little later; after `RETRY_TIME` it has ended."""
@@ -258,61 +247,24 @@ class Motions:
         else:
             self._later(partial(self._plan, motion, lead))
 
-    def _answered(self, motion: Motion, begin: Departure, lead: float, answer: Future) -> None:
-        """Take over from the motion in progress, if the controller accepts the goal."""
-        if self._sent is not motion:
-            return
-        goal, self._sent = answer.result(), None
-        early, self._ended_early = self._ended_early, None
-        if goal.accepted:
-            motion.goal = goal
-            replaced, self._running = self._running, motion
-            if replaced is not None:
-                self._finish(replaced, REPLACED)
-            goal.get_result_async().add_done_callback(partial(self._ended, motion))
-            if motion.canceled:
-                self.cancel(motion)
-        else:  # the result has the reason, from controllers that say it
-            goal.get_result_async().add_done_callback(
-                partial(self._rejected, motion, begin, lead))
-            if early is not None and self._running is not None:
-                self._ended(self._running, early)
-        if self._next is not None:
-            self._begin(self._next)
-
-    def _rejected(self, motion: Motion, begin: Departure, lead: float, answer: Future) -> None:
-        """Tell why the controller has rejected a goal."""
-        end = end_of_goal(answer.result(), rejected=True)
+    def _rejected(self, motion: Motion, begin: Departure, lead: float, end: MotionEnd) -> None:
+        """End a motion that the controller rejects, or try again if it began at an estimate."""
         if begin.is_estimate and self._next is None and not motion.canceled:
             self._next = motion
             self._again(motion, lead, end)
         else:
-            self._finish(motion, end)
+            motion.finish(end)
 
-    def _ended(self, motion: Motion, answer: Future) -> None:
-        """Tell how the goal in progress has ended."""
-        if motion is not self._running:
-            return  # replaced
-        if self._sent is not None:  # perhaps replaced by what is sent
-            self._ended_early = answer
-            return
-        self._running = None
-        end = end_of_goal(answer.result())
-        success = end.code == EndCode.SUCCESS
-        self._finish(motion, end._replace(text=motion.response.message) if success else end)
-
-    def _progress(self, motion: Motion, message: Any) -> None:
-        """Tell where the motion in progress is."""
-        if motion is self._running:
-            motion.watch.progress(progress_of(message.feedback, motion))
+    def _continue(self) -> None:
+        """Plan the motion that has waited until the one before was accepted or rejected."""
+        if self._next is not None and self._asked_at is None:
+            self._begin(self._next)
 
     def _finish(self, motion: Motion, end: MotionEnd) -> None:
-        """Tell that a motion has ended."""
+        """End a motion that is not sent."""
         if motion is self._next:
             self._next = self._asked_at = None
-        if motion.end is None:
-            motion.end = end
-            motion.watch.ended(end)
+        motion.finish(end)
 
     def _check(self) -> None:
         """End motions for which the planner or the controller has gone."""
@@ -322,14 +274,7 @@ class Motions:
                 self._finish(self._next, MotionEnd(
                     EndCode.COMMUNICATION_FAILURE, 'the planner has gone, or has not answered for '
                     f'{timeout:g} s'))
-        if self._controller.server_is_ready() and (
-                self._sent is None or monotonic() < self._sent_at + ANSWER_TIME):
-            return
-        gone = MotionEnd(EndCode.COMMUNICATION_FAILURE, 'the controller does not answer any more')
-        for motion in (self._sent, self._running):
-            if motion is not None:
-                self._finish(motion, gone)
-        self._sent = self._running = None
+        self._controller.check()
 
     def _later(self, call: Callable[[], None]) -> None:
         """Call a function a little later."""

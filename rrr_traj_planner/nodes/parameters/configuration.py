@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Configurations of planner and arm: frozen values built from parameters and checked as a whole."""
+"""Configurations of planner and arm: frozen, built from parameters, checked as a whole."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.parameters.configuration import ArmConfig, PlannerConfig
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters, descriptor
-from rrr_traj_planner.nodes.parameters.table import ARM, check_value, PLANNER, rows_of
+from rrr_traj_planner.nodes.parameters.table import ARM, check_value, MOTION, PLANNER, rows_of
 import yaml
 
 BUILD = {PLANNER: PlannerConfig.from_values, ARM: ArmConfig.from_values}
@@ -76,7 +76,7 @@ def set_one(ros, name, value):
 
 
 def test_file_names_every_parameter_with_its_default():
-    every = {**defaults(PLANNER), **defaults(ARM)}
+    every = {**defaults(PLANNER), **defaults(ARM), **defaults(MOTION)}
     assert every.pop('gravity') == [0.0, 0.0, -every['arm.gravity']]  # either, never both
     assert from_file('thesis_arm.yaml') == every
 
