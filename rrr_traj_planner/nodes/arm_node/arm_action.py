@@ -16,10 +16,8 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
-
 from control_msgs.action import FollowJointTrajectory
-from rclpy.action.server import RCLError, ServerGoalHandle
+from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
@@ -83,6 +81,8 @@ class ArmAction:
         self._node, self._arm, self._time = node, arm, time
         self._trajectories, self._messages, self._log = trajectories, messages, log
         self._goal: ServerGoalHandle | None = None  # the one that is pursued
+        self._last: ServerGoalHandle | None = None  # the one that the arm's end aborts
+        self._finishing = False
         self._server = GoalServer(node, FollowJointTrajectory, '~/follow_joint_trajectory',
                                   self._check, self._begin, self._cancel)
         self._feedback_timer = node.create_timer(
@@ -95,15 +95,33 @@ class ArmAction:
         if self._goal is not None and end is not None:
             self._end(end)
 
+    def finish(self) -> bool:
+        """
+        Abort the goal, and refuse others from now on.
+
+        Returns
+        -------
+        bool
+            Whether there was no goal, and the client of the last one knows how it ended.
+
+        """
+        self._finishing = True
+        if self._goal is not None:
+            self._last = self._goal
+            self._end(SHUT_DOWN)
+            return False
+        return self._last is None or self._server.has_told(self._last)
+
     def close(self) -> None:
         """Stop serving; abort the goal, if there is one and ROS still runs."""
-        if self._goal is not None and self._node.context.ok():
-            with suppress(RCLError):  # a signal shuts ROS down just now
-                self._end(SHUT_DOWN)
+        if self._node.context.ok():
+            self.finish()
         self._server.destroy()
 
     def _check(self, goal: FollowJointTrajectory.Goal) -> tuple[AcceptedTrajectory, Tolerances]:
         """Return a goal's trajectory and tolerances, or refuse it."""
+        if self._finishing:
+            raise RefusedGoal(_result(SHUT_DOWN))
         try:
             accepted = self._trajectories.checked(goal.trajectory)
         except RrrPlannerError as error:

@@ -210,6 +210,18 @@ class SimulatedArm(ServiceNode):
                 f'{step:g} s: states are published at {1.0 / step:g} Hz')
         return self._time.period(rate, config.real_time_factor)
 
+    def finish(self) -> bool:
+        """
+        Abort a goal, since the process ends.
+
+        Returns
+        -------
+        bool
+            Whether there is none, and the client of the last one has its result.
+
+        """
+        return self._action.finish()
+
     def destroy_node(self) -> None:
         """Abort a goal, and release the claim on the node's name."""
         self._action.close()

@@ -42,6 +42,7 @@ from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.process.node_claim import is_claimed
 from rrr_traj_planner.nodes.process.node_start import KEEP_APART
 from rrr_traj_planner.nodes.process.processes import exit_message
+from rrr_traj_planner.nodes.process.signals import signal_arrived
 from rrr_traj_planner.nodes.recording.bag import Bag
 from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner.planners.rests import Rests, rests_at_via_points
@@ -253,7 +254,7 @@ class Client(Node):
         while not ready():
             if progress() != reached:
                 reached, deadline = progress(), monotonic() + TIMEOUT
-            if not self.context.ok():
+            if signal_arrived():
                 raise KeyboardInterrupt
             ended = self._ended()
             if ended is not None:

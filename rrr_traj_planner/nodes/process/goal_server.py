@@ -90,6 +90,7 @@ class GoalServer(ActionServer):
         self._name = node.resolve_service_name(name)
         self._results: dict[bytes, Any] = {}      # responses about goals that have ended
         self._waiting: dict[bytes, list[Any]] = {}  # headers of requests for results to come
+        self._told: set[bytes] = set()            # goals whose results have been sent
         super().__init__(node, action_type, name, lambda _: None, result_timeout=RESULT_TIMEOUT)
 
     def end(self, handle: ServerGoalHandle, event: GoalEvent, result: Any) -> None:
@@ -112,7 +113,24 @@ class GoalServer(ActionServer):
         self._results[key] = self._action_type.Impl.GetResultService.Response(
             status=handle.status, result=result)
         for header in self._waiting.pop(key, ()):
-            self._send('result', header, self._results[key])
+            self._send_result(header, key)
+
+    def has_told(self, handle: ServerGoalHandle) -> bool:
+        """
+        Return whether a goal's result has been sent to a client.
+
+        Parameters
+        ----------
+        handle : ServerGoalHandle
+            The goal.
+
+        Returns
+        -------
+        bool
+            False as long as no client has asked for it.
+
+        """
+        return bytes(handle.goal_id.uuid) in self._told
 
     async def _execute_goal_request(self, request_header_and_message: Any) -> None:
         """Accept or refuse a goal."""
@@ -175,9 +193,15 @@ class GoalServer(ActionServer):
         if key in self._goal_handles and key not in self._results:
             self._waiting.setdefault(key, []).append(header)
             return
-        unknown = self._action_type.Impl.GetResultService.Response(
-            status=GoalStatus.STATUS_UNKNOWN)
-        self._send('result', header, self._results.get(key, unknown))
+        self._send_result(header, key)
+
+    def _send_result(self, header: Any, key: bytes) -> None:
+        """Send a goal's result; that of an unknown goal is empty."""
+        known = key in self._results
+        self._send('result', header, self._results[key] if known else
+                   self._action_type.Impl.GetResultService.Response(
+                       status=GoalStatus.STATUS_UNKNOWN),
+                   partial(self._told.add, key) if key in self._goal_handles else None)
 
     async def _execute_expire_goals(self, expired_goals: Any) -> None:
         """Forget goals that ended long ago."""
@@ -185,12 +209,20 @@ class GoalServer(ActionServer):
             key = bytes(info.goal_id.uuid)
             self._goal_handles.pop(key).destroy()
             self._results.pop(key, None)
+            self._told.discard(key)
 
-    def _send(self, kind: str, header: Any, response: Any) -> None:
-        """Send a response, again if it is dropped."""
+    def _send(self, kind: str, header: Any, response: Any,
+              sent: Callable[[], None] | None = None) -> None:
+        """Send a response, again if it is dropped; then call `sent`."""
         send = getattr(self._handle, f'send_{kind}_response')
-        send_until_discovered(
-            self._node, f'{self._name} ({kind})', partial(_goes_out, send, header, response))
+
+        def goes_out() -> bool:
+            out = _goes_out(send, header, response)
+            if out and sent is not None:
+                sent()
+            return out
+
+        send_until_discovered(self._node, f'{self._name} ({kind})', goes_out)
 
 
 def _goes_out(send: Callable[[Any, Any], None], header: Any, response: Any) -> bool:

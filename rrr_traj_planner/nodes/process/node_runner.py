@@ -21,6 +21,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 import gc
 from threading import Event, Thread
+from time import monotonic
 from typing import Any
 import warnings
 
@@ -36,7 +37,9 @@ from rrr_traj_planner.nodes.process.signals import defer_signals, end_if_signall
 AddOptions = Callable[[argparse.ArgumentParser], None]
 Instead = Callable[[argparse.Namespace, list[str]], 'int | None']
 
-WAKE_PERIOD = 0.25  # s, after which the executor checks for shutdown at the latest
+WAKE_PERIOD = 0.25     # s, after which the executor checks for signals at the latest
+FINISH_TIMEOUT = 0.5   # s in which clients may still ask for the results of goals that are aborted
+DELIVERY_TIME = 0.1    # s for what has been sent to arrive, by DDS, before its writer is gone
 
 
 def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
@@ -81,7 +84,10 @@ def run_node(name: str, description: str, load: Callable[[], Callable[[], Any]],
 
 def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int:
     """
-    Start ROS and a node, spin until the context is shut down, and clean up.
+    Start ROS and a node, spin until a signal arrives, let the node finish, and clean up.
+
+    ROS is still there while the node finishes (`finish` of `ServiceNode`): rclpy's own handler
+    would shut it down at once, and the client of an action would wait for a result for ever.
 
     Parameters
     ----------
@@ -105,20 +111,30 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
         start_ros(ros_arguments)
         executor = SingleThreadedExecutor()
         node = create_node(make_node)
-        # A signal wakes the executor before rclpy shuts the context down: on a busy machine the
-        # executor may find the context valid and sleep again. The timer wakes it once more.
+        # A signal does not wake the executor: the timer does.
         node.create_timer(WAKE_PERIOD, lambda: None, clock=Clock(
             clock_type=ClockType.STEADY_TIME))
         executor.add_node(node)
-        executor.spin()
+        while not signal_arrived():
+            executor.spin_once()
+        _finish(executor, node)
     except ExternalShutdownException:
         pass
-    except Exception:
-        if not signal_arrived():  # else a consequence of the shutdown
-            raise
     finally:
         _clean_up(executor, node)
     return 0
+
+
+def _finish(executor: Any, node: Any) -> None:
+    """Let a node end what it does for clients, and tell them."""
+    if node.finish():
+        return
+    deadline = monotonic() + FINISH_TIMEOUT
+    while monotonic() < deadline and not node.finish():
+        executor.spin_once(DELIVERY_TIME)
+    deadline = monotonic() + DELIVERY_TIME
+    while monotonic() < deadline:
+        executor.spin_once(DELIVERY_TIME)
 
 
 @contextmanager
@@ -159,7 +175,7 @@ def spin_in_background(make_node: Callable[[], Any], ros_arguments: list[str]) -
         thread.start()
         yield node
     except Exception:
-        if not signal_arrived():  # else a consequence of the shutdown
+        if not signal_arrived():  # else a consequence: the nodes get the signal too
             raise
         raise KeyboardInterrupt from None
     finally:
@@ -177,13 +193,13 @@ def _spin_until(closing: Event, executor: Any) -> None:
         while rclpy.ok() and not closing.is_set():
             executor.spin_once()
     except Exception:
-        if rclpy.ok():  # else a signal has shut ROS down, which the main thread handles
+        if rclpy.ok():  # else somebody has shut ROS down, which the main thread finds
             raise
 
 
 def start_ros(ros_arguments: list[str]) -> None:
     """
-    Start ROS; from then on SIGINT and SIGTERM shut down its context instead of the process.
+    Start ROS; from then on SIGINT and SIGTERM are recorded, and do not end the process.
 
     Parameters
     ----------
@@ -197,9 +213,10 @@ def start_ros(ros_arguments: list[str]) -> None:
 
     """
     import rclpy
+    from rclpy.signals import SignalHandlerOptions
     try:
-        rclpy.init(args=ros_arguments)
         defer_signals()
+        rclpy.init(args=ros_arguments, signal_handler_options=SignalHandlerOptions.NO)
     except Exception as error:
         raise StartError(f'ROS refuses to start: {_one_line(error)}') from error
 
@@ -239,8 +256,6 @@ def create_node(make_node: Callable[[], Any]) -> Any:
     try:
         node = make_node()
     except (ParameterException, NameValidationException, rclpy_implementation.RCLError) as error:
-        if signal_arrived():  # a consequence of the shutdown
-            raise
         raise StartError(_one_line(error)) from error
     gc.collect()
     gc.freeze()

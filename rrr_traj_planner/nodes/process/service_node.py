@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A node whose services also answer clients that DDS has discovered only partly."""
+"""A node of this package: answers clients that DDS discovered only partly, and ends in order."""
 
 from __future__ import annotations
 
@@ -37,6 +37,20 @@ class ServiceNode(Node):
         Arguments of `rclpy.node.Node`.
 
     """
+
+    def finish(self) -> bool:
+        """
+        End what the node does for clients, before it is destroyed; the process ends.
+
+        Called until it returns True, for `node_runner.FINISH_TIMEOUT` at most, and spun between.
+
+        Returns
+        -------
+        bool
+            Whether there is nothing to end, and no client left to be told.
+
+        """
+        return True
 
     def create_service(self, *args: Any, **kwargs: Any) -> Service:
         """

@@ -13,11 +13,13 @@
 # limitations under the License.
 
 """
-Handling of SIGINT and SIGTERM: the process ends at once, or cleanly if ROS runs.
+Handling of SIGINT and SIGTERM: the process ends at once, or in order if ROS runs.
 
 The handler raises no exception, because that would interrupt any code, such as imports,
 destructors and compiled modules. Until a script has started ROS or other processes it has nothing
-to clean up and ends at once; from then on signals are deferred: the handler only records them.
+to clean up and ends at once; from then on signals are deferred: the handler only records them,
+and whoever waits asks `signal_arrived`. rclpy's own handlers are not installed: they shut its
+context down at once, and nobody can be told any more that the node ends.
 """
 
 from __future__ import annotations
@@ -34,7 +36,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class _Handler:
-    """The handler of both signals; rclpy's own, which shuts its context down, calls it too."""
+    """The handler of both signals."""
 
     deferred = False
     arrived = False

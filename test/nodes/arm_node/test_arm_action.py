@@ -34,7 +34,6 @@ from rrr_traj_planner.core.control.goal_end import ResultCode
 from rrr_traj_planner.nodes.arm_node.arm_action import FEEDBACK_RATE
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
 from rrr_traj_planner.nodes.output.message_times import nanoseconds
-from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
 
 SUCCEEDED, CANCELED, ABORTED, REFUSED = 4, 5, 6, 0  # action_msgs/GoalStatus; refused: unknown
@@ -105,19 +104,6 @@ def test_example_of_the_documentation_moves_the_arm():
     code = example(DOCS / 'arm.md', 'ActionClient')
     with Script(script('simulated_arm')), Script(python(code)) as client:
         assert client.ended() == (0, 'True 0 Goal successfully reached!\n', '')
-
-
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_signal_ends_an_arm_with_a_goal_in_order(ros, number):
-    with Script(script('simulated_arm')) as arm:
-        client, feedback = GoalClient(ros), []
-        client.send(goal(FAR), feedback)
-        ros.listen(JointState, 'joint_states').wait_for(moving)
-        arm.process.send_signal(number)
-        assert arm.is_over_in(2.0)
-        code, _, errors = arm.ended()
-    assert code == 0
-    assert [line for line in errors.splitlines() if '[INFO]' not in line] == []
 
 
 def test_feedback_has_reference_and_measurement_of_the_goal(ros):
