@@ -33,7 +33,7 @@ from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.control.computed_torque import ControllerGains
-from rrr_traj_planner.core.control.replacement import Takeover
+from rrr_traj_planner.core.control.takeover import Takeover
 from rrr_traj_planner.core.control.tolerances import Tolerances
 from rrr_traj_planner.core.errors import RrrPlannerError, UnreachableError
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC

@@ -22,7 +22,8 @@ from math import inf
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.control.replacement import replacement, Takeover
+from rrr_traj_planner.core.control.replacement import replacement
+from rrr_traj_planner.core.control.takeover import Takeover
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 

@@ -123,7 +123,7 @@ def excesses(points: TrajectoryPoints, limits: JointLimits, time: float = np.inf
             (limits.max_position, limits.max_velocity, limits.max_acceleration)):
         for j, bounds in enumerate(zip(low.tolist(), high.tolist())):
             widened = [float(bound) for bound in _with_tolerance(quantity, *bounds)]
-            values = [_furthest(form[:, j], *widened) for form in forms]
+            values = [furthest(form[:, j], *widened) for form in forms]
             value = values[1] if values[0] is None else values[0]
             if value is not None and not any(e.joint == j and e.in_degrees for e in found):
                 found.append(Excess(j, quantity, value, *bounds, explained_by_degrees(
@@ -178,8 +178,23 @@ def _with_tolerance(quantity: str, low: ArrayLike, high: ArrayLike) -> tuple[Arr
             high + POSITION_TOLERANCE * np.maximum(1.0, np.abs(high)))
 
 
-def _furthest(form: Array, low: float, high: float) -> float | None:
-    """Return the value furthest beyond a bound, or None where all are within."""
+def furthest(form: Array, low: float, high: float) -> float | None:
+    """
+    Return the value of some polynomials furthest beyond a bound.
+
+    Parameters
+    ----------
+    form : ndarray, shape (n, m + 1)
+        Bernstein coefficients.
+    low, high : float
+        The bounds.
+
+    Returns
+    -------
+    float or None
+        None where all values are within.
+
+    """
     above, below = _largest(form, high), -_largest(-form, -low)
     if above <= high and below >= low:
         return None

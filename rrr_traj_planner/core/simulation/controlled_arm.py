@@ -25,8 +25,10 @@ from rrr_traj_planner.core.control.goal_end import (
     OUT_OF_RANGE,
     RESET,
 )
-from rrr_traj_planner.core.control.replacement import replacement, Takeover
+from rrr_traj_planner.core.control.replacement import Missed, replacement
+from rrr_traj_planner.core.control.takeover import Takeover
 from rrr_traj_planner.core.control.tolerances import Outcome, Tolerances
+from rrr_traj_planner.core.control.trajectory_start import unmet_start
 from rrr_traj_planner.core.control.trajectory_watch import TrajectoryWatch
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.simulation.arm_settings import ArmSettings
@@ -57,6 +59,8 @@ class ControlledArm(ControlLoop):
         The tolerances violated when one last was; empty if there was no violation.
     stop_warnings : tuple of str
         Limits that the last stop violates; empty if there are none.
+    missed : Missed
+        Which points of the trajectory that was last followed are not reached in time.
     watch : TrajectoryWatch
         Of the trajectory that is followed; says how a goal ended.
 
@@ -67,6 +71,7 @@ class ControlledArm(ControlLoop):
         self.watch = TrajectoryWatch()
         self.motion: ReferenceTrajectory = holding(q)
         self.stop_warnings: tuple[str, ...] = ()
+        self.missed = Missed()
         self.reset(q)
 
     @property
@@ -140,10 +145,8 @@ class ControlledArm(ControlLoop):
             Whether it is followed; if not, the arm stops, and `stop_warnings` give the reason.
 
         """
-        takeover = Takeover(self.time, self.desired, self.settings.limits,
-                            self.settings.controller_model, self._motion_to_brake())
-        self.motion, self.stop_warnings, holds = replacement(
-            takeover, points, origin_ns, self.settings.step)
+        self.motion, self.stop_warnings, holds, self.missed = replacement(
+            self._takeover(), points, origin_ns, self.settings.step)
         self.violation = ()
         if holds:
             self.watch.leave(not_followed(self.stop_warnings))
@@ -151,6 +154,28 @@ class ControlledArm(ControlLoop):
             self.watch.follow()
         self._brake_at_end()
         return not holds
+
+    def unmet_start(self, points: TrajectoryPoints, origin_ns: int) -> str:
+        """
+        Return why a trajectory could not be followed from its first point on, as a goal must be.
+
+        Parameters
+        ----------
+        points, origin_ns
+            As `follow`.
+
+        Returns
+        -------
+        str
+            As `trajectory_start.unmet_start`.
+
+        """
+        return unmet_start(self._takeover(), points, origin_ns, self.settings.step)
+
+    def _takeover(self) -> Takeover:
+        """Return the present, for a trajectory that takes over."""
+        return Takeover(self.time, self.desired, self.settings.limits,
+                        self.settings.controller_model, self._motion_to_brake())
 
     def pursue(self, points: TrajectoryPoints, origin_ns: int, tolerances: Tolerances) -> bool:
         """

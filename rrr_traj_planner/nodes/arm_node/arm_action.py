@@ -123,7 +123,7 @@ class ArmAction:
         if self._finishing:
             raise RefusedGoal(_result(SHUT_DOWN))
         try:
-            accepted = self._trajectories.checked(goal.trajectory)
+            accepted = self._trajectories.checked(goal.trajectory, is_goal=True)
         except RrrPlannerError as error:
             raise RefusedGoal(_result(refusal(error))) from None
         if (goal.multi_dof_trajectory.joint_names or goal.multi_dof_trajectory.points

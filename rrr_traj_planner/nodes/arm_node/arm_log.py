@@ -22,6 +22,7 @@ import re
 from rclpy.node import Node
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.control.goal_end import GoalEnd, PREEMPTED, ResultCode
+from rrr_traj_planner.core.control.replacement import Missed
 from rrr_traj_planner.core.control.tolerances import Outcome
 from rrr_traj_planner.core.control.trajectory_limits import Excess
 from rrr_traj_planner.core.errors import counted
@@ -134,7 +135,7 @@ class ArmLog:
         if self._throttle.passes('canceled'):
             self._log.info('goal canceled, stopping' + self._suppressed('canceled'))
 
-    def exceeded(self, excesses: Sequence[Excess]) -> None:
+    def exceeded(self, excesses: Sequence[Excess], missed: Missed) -> None:
         """
         Warn of a trajectory, or a lead-in segment, that exceeds ranges or limits.
 
@@ -142,16 +143,20 @@ class ArmLog:
         ----------
         excesses : sequence of Excess
             The exceeded ranges and limits.
+        missed : Missed
+            Which points are not reached in time.
 
         """
-        for leading_in, text in (
-                (False, 'the received trajectory exceeds joint limits: {}'),
-                (True, 'the lead-in segment exceeds joint limits: {}; the trajectory is joined '
-                       'at a later point')):
-            found = [e for e in excesses if e.leading_in is leading_in]
+        own = [e for e in excesses if not e.leading_in]
+        leading_in = [e for e in excesses if e.leading_in]
+        for found, text, end in (
+                (own, 'the received trajectory', ''),
+                (leading_in, 'the lead-in segment', missed.text and f'; {missed.text}')):
             if found and self._throttle.passes(*(e.kind for e in found)):
-                self._log.warning(text.format('; '.join(
-                    e.text(self._joint_names) for e in found)))
+                self._log.warning(f'{text} exceeds joint limits: ' + '; '.join(
+                    e.text(self._joint_names) for e in found) + end)
+        if missed.points and not leading_in and self._throttle.passes('missed'):
+            self._log.warning(missed.text + self._suppressed('missed'))
 
     def strained(self, condition: SaturationAndContact, limits: JointLimits) -> None:
         """

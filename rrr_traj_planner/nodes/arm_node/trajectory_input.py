@@ -25,7 +25,7 @@ from rrr_traj_planner.core.control.trajectory_validation import (
     commanded_points,
     MovingEndError,
 )
-from rrr_traj_planner.core.errors import RrrPlannerError
+from rrr_traj_planner.core.errors import InvalidInputError, RrrPlannerError
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.core.simulation.controlled_arm import ControlledArm
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
@@ -84,7 +84,7 @@ class TrajectoryInput:
             return
         self.follow(accepted)
 
-    def checked(self, message: JointTrajectory) -> AcceptedTrajectory:
+    def checked(self, message: JointTrajectory, is_goal: bool = False) -> AcceptedTrajectory:
         """
         Check a trajectory now.
 
@@ -92,6 +92,9 @@ class TrajectoryInput:
         ----------
         message : JointTrajectory
             As received.
+        is_goal : bool
+            Whether it is a goal's: the arm must be able to follow it from its first point on,
+            unless it was under way already when it arrived.
 
         Returns
         -------
@@ -109,6 +112,9 @@ class TrajectoryInput:
         try:
             check_trajectory(trajectory, names, self._time.now(), self._parameters.config.rules)
             points = commanded_points(trajectory, names, self._arm.desired[:3])
+            unmet = is_goal and self._arm.unmet_start(points, self._origin(trajectory.stamp))
+            if unmet:
+                raise InvalidInputError(unmet)
         except RrrPlannerError as error:
             if isinstance(error, MovingEndError):
                 error = MovingEndError(f'{error}{MOVING_END_HINT}')
@@ -129,12 +135,19 @@ class TrajectoryInput:
 
         """
         arm, points = self._arm, accepted.points
-        origin_ns = accepted.stamp - self._time.epoch if accepted.stamp != 0 else arm.now
-        self._log.exceeded(excesses(
-            points, arm.settings.limits, (arm.now - origin_ns) / SECOND, arm.desired))
+        origin_ns = self._origin(accepted.stamp)
+        exceeded = excesses(
+            points, arm.settings.limits, (arm.now - origin_ns) / SECOND, arm.desired)
         if goal is None:
             followed = arm.follow(points, origin_ns)
         else:
             followed = arm.pursue(points, origin_ns, goal)
         if followed:
+            self._log.exceeded(exceeded, arm.missed)
             self._log.followed(len(points.times), arm.motion.end - arm.time)
+        elif goal is not None:
+            arm.stop_warnings = ()  # the goal's end has them
+
+    def _origin(self, stamp: int) -> int:
+        """Return the origin of a trajectory's times on the arm's own clock [ns]."""
+        return stamp - self._time.epoch if stamp != 0 else self._arm.now

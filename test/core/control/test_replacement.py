@@ -40,7 +40,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.control.replacement import Takeover
+from rrr_traj_planner.core.control.takeover import Takeover
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.trajectory.reference_trajectory import reference_through

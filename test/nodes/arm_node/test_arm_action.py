@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 from time import monotonic
 
@@ -33,6 +34,7 @@ from rclpy.action import get_action_names_and_types
 from rrr_traj_planner.core.control.goal_end import ResultCode
 from rrr_traj_planner.nodes.arm_node.arm_action import FEEDBACK_RATE
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
+from rrr_traj_planner.nodes.output.latched import latched
 from rrr_traj_planner.nodes.output.message_times import nanoseconds
 from std_srvs.srv import SetBool
 
@@ -60,6 +62,11 @@ ENDINGS = {
              'Aborted due to path tolerance violation: joint_3 Position Error'),
     'goal': (goal(rest_to_rest(NEAR, 0.4), end=[('joint_1', 0.0, 1e-12)], goal_time=0.01),
              ABORTED, -5, 'Aborted due to goal_time_tolerance exceeding by 0.01'),
+    'too soon': (goal(rest_to_rest(NEAR + 0.2, 0.2)), REFUSED, -1,
+                 'The first point cannot be reached in time, it is due in 0.200 s: joint_1 '
+                 'reaches 1.'),
+    'elsewhere': (goal((0.0, NEAR + 0.02), rest_to_rest(NEAR + 0.2, 2.0)), REFUSED, -1,
+                  'joint_1 is commanded '),
     'out of range': (goal(rest_to_rest(OUTSIDE, 0.3)), ABORTED, -1,
                      'Aborted: the trajectory would end with joint_1 at -1 rad, range [0, '),
     'wrong tolerance': (goal(rest_to_rest(NEAR, 0.3), path=[('joint_9', 1e-9)]), SUCCEEDED, 0,
@@ -79,7 +86,7 @@ def test_every_way_to_end_is_seen_from_another_process(ros):
             found = client.result(handle)
             assert found[:2] == (status, code) and found[2].startswith(text)
             if status == REFUSED:
-                log.wait_for(lambda m, text=text: m.msg == text and m.level == 40)
+                log.wait_for(lambda m, text=text: m.msg.startswith(text) and m.level == 40)
         log.wait_for(lambda m: m.msg == (
             "joint 'joint_9' specified in goal.path_tolerance does not exist. Using default "
             'tolerances.'))
@@ -168,6 +175,29 @@ def test_topic_replaces_the_motion_of_a_goal_which_goes_on(ros):
     arm.actual.wait_for_next(at(START))
 
 
+def test_goal_that_cannot_begin_in_time_leaves_the_running_one_alone(ros):
+    arm, client = Arm(ros), GoalClient(ros)
+    running = client.send(goal(rest_to_rest(NEAR, 1.5)))
+    arm.desired.wait_for(moving)
+    refused = client.send(goal(rest_to_rest(START + 0.3, 0.1), rest_to_rest(START + 0.31, 2.0)))
+    assert not refused.accepted
+    assert client.result(refused)[1] == ResultCode.INVALID_GOAL
+    assert client.result(running)[:2] == (SUCCEEDED, 0)
+    arm.actual.wait_for(at(NEAR))
+
+
+def test_goal_that_was_under_way_is_joined_later_and_the_log_says_so(ros):
+    log = ros.listen(Log, '/rosout', latched(100))
+    arm, client = Arm(ros), GoalClient(ros)
+    q = [START + 0.02 + x for x in np.linspace(0.0, 0.1, 11)]
+    points = [(t, x) for t, x in zip(np.linspace(0.1, 2.1, 11), q)]
+    late = goal(*points, rest_to_rest(q[-1], 2.4), stamp=arm.now() - SECOND // 5)
+    assert client.run(late)[:2] == (SUCCEEDED, 0)
+    text = log.wait_for(lambda m: 'missed' in m.msg and m.level == 30).msg
+    assert re.fullmatch(r'[1-9] points? (is|are) missed: point \d+ of 12 is the first that can be '
+                        'reached in time', text)
+
+
 def test_goal_s_own_tolerances_come_before_the_parameters(ros):
     arm = Arm(ros, **{'constraints.joint_1.trajectory': 1e-9, 'constraints.goal_time': 1e-3})
     client = GoalClient(ros)
@@ -193,7 +223,7 @@ def test_goal_is_pursued_in_the_arm_s_own_time(ros):
     longer_than_the_deadline = goal(rest_to_rest(START + 0.4, 2.0 * DEADLINE))
     assert client.run(longer_than_the_deadline)[:2] == (SUCCEEDED, 0)
     assert ros.call(SetBool, 'simulated_arm/pause', SetBool.Request(data=True)).success
-    handle = client.send(goal(rest_to_rest(START, 1.0)))
+    handle = client.send(goal(rest_to_rest(START, 2.0)))
     assert client.cancel(handle) == 1
     assert client.result(handle)[0] == CANCELED
     assert ros.call(SetBool, 'simulated_arm/pause', SetBool.Request(data=False)).success

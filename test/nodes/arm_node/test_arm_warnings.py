@@ -51,10 +51,13 @@ class Output:
 
 @pytest.mark.parametrize(('options', 'send', 'parts'), [
     ({}, ((2.0, (34.0, 57.0, 17.0)),), (
-        'joint_1 goes to 34 rad, range [0, 1.5708] rad (in degrees?)', 'joint_3 goes to 17 rad')),
+        'end with joint_1 at 34 rad, range [0, 1.5708] rad (in degrees?): holding position',
+        'end with joint_3 at 17 rad')),
     ({}, ((1.0, GOAL, (0.9, 0.0, 0.0)), (3.0, GOAL, (0.0, 0.0, 0.0)), (3.1, START)), (
         'joint_1 goes to', 'range [0, 1.5708] rad')),
-    ({}, ((0.1, START + (0.0, 0.0, 0.4)),), ('joint_3 reaches 4 rad/s, limit 1 rad/s',))])
+    ({}, ((0.1, START + (0.0, 0.0, 0.4)),), (
+        'the lead-in segment exceeds joint limits: joint_3 reaches 4 rad/s, limit 1 rad/s; '
+        'the last point is reached ', ' s late'))])
 def test_trajectory_that_leaves_ranges_or_limits_is_warned_of(ros, options, send, parts):
     if len(send) == 3:  # a cubic that swings out by 4/27 v T
         send = ((1.0, (1.5, *START[1:]), (0.9, 0.0, 0.0)), (3.0, (1.5, *START[1:]), (0.0,) * 3))
@@ -66,8 +69,25 @@ def test_trajectory_that_leaves_ranges_or_limits_is_warned_of(ros, options, send
 def test_partial_goal_in_degrees_is_warned_of(ros):
     output = Output(ros, allow_partial_joints_goal=True)
     output.arm.send((2.0, (-90.0,)), names=['joint_3'])
-    text = output.line('joint_3 goes to -90 rad', '(in degrees?)')
+    text = output.line('joint_3 at -90 rad', '(in degrees?)')
     assert 'joint_1' not in text and 'joint_2' not in text
+
+
+@pytest.mark.parametrize('q', [(-0.5, *START[1:]), (34.0, 57.0, 17.0)])
+def test_trajectory_that_ends_out_of_reach_has_one_line(ros, q):
+    output = Output(ros)
+    output.arm.send((0.1, q))
+    output.line('the trajectory would end with joint_1 at')
+    output.arm.send((1.0, START), names=NAMES[:2])  # a later line
+    output.line("don't match the controller joints", level=ERROR)
+    assert len(output.lines('joint_1', level=WARN)) == 1
+
+
+def test_points_that_the_arm_misses_have_a_line(ros):
+    output = Output(ros)
+    output.arm.send((0.0, START + 0.1), (1.0, START + 0.11), (3.0, START + 0.12))
+    text = output.line('missed')
+    assert text == '1 point is missed: point 2 of 3 is the first that can be reached in time'
 
 
 def test_sound_trajectory_is_not_warned_of(ros):
