@@ -110,14 +110,26 @@ def answer(future: Any) -> Any:
     return future.result()
 
 
-def trajectory(rng: np.random.Generator) -> tuple[JointTrajectory, float]:
+def trajectory(rng: np.random.Generator, slower: float = 1.0
+               ) -> tuple[JointTrajectory, float]:
     """Return a trajectory to rest at a random position, and its duration [s]."""
-    seconds = float(rng.uniform(0.3, 1.5))
+    seconds = slower * float(rng.uniform(0.3, 1.5))
     point = JointTrajectoryPoint(
         positions=rng.uniform(-REACH, REACH, 3) + START, velocities=[0.0] * 3,
         accelerations=[0.0] * 3, time_from_start=Duration(
             sec=int(seconds), nanosec=int(seconds % 1.0 * 1e9)))
     return JointTrajectory(joint_names=['joint_1', 'joint_2', 'joint_3'], points=[point]), seconds
+
+
+def begun(client: Client, rng: np.random.Generator) -> tuple[Any, Any, float]:
+    """Return a new goal, its result to come, and its duration [s]; slower after each refusal."""
+    slower = 1.0
+    while True:
+        message, seconds = trajectory(rng, slower)
+        handle, result = client.pursue(message)
+        if handle.accepted:
+            return handle, result, seconds
+        slower *= 1.5
 
 
 def steps(states: list[JointState]) -> list[str]:
@@ -139,29 +151,27 @@ def soak(client: Client, goals: int, rng: np.random.Generator) -> list[str]:
     """Send goals, interrupt each, and return what went wrong."""
     failures: list[str] = []
     counts: Counter[tuple[str, int]] = Counter()
-    message, seconds = trajectory(rng)
-    handle, result = client.pursue(message)
+    handle, result, seconds = begun(client, rng)
     for number in range(goals):
         kind = KINDS[rng.integers(len(KINDS))]
         sleep(float(rng.uniform(0.0, 1.1 * seconds)))
-        message, seconds = trajectory(rng)
         following = None
+        message, _ = trajectory(rng)
         act = {'cancel': lambda goal=handle: answer(goal.cancel_goal_async()),
                'topic': partial(client.topic.publish, message),
                'hold': partial(client.hold.call, Trigger.Request(), timeout_sec=DEADLINE)}
         if kind in act:
             act[kind]()
         if kind == 'next goal':
-            following = client.pursue(message)
+            following = begun(client, rng)
         response = answer(result)
         end = (response.status, response.result.error_code, response.result.error_string)
         counts[kind, end[0]] += 1
         if end not in (ENDS[kind], ENDS['nothing']):  # it may have ended before
             failures.append(f'goal {number}, {kind}: ended with {end}')
         if following is None:
-            message, seconds = trajectory(rng)
-            following = client.pursue(message)
-        handle, result = following
+            following = begun(client, rng)
+        handle, result, seconds = following
     answer(result)
     print('endings by interruption and status:', dict(sorted(counts.items())))
     return failures + steps(list(client.states))
