@@ -23,6 +23,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import format_distinct
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.path.deviation import distance_from_polyline
+from rrr_traj_planner.core.simulation.saturation_and_contact import SATURATED
 from rrr_traj_planner.core.trajectory.limit_check import TOLERANCE
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.sampling import NANOSECOND
@@ -91,9 +92,8 @@ def checked_values(run: Run) -> list[CheckedValue]:
             found.append(
                 CheckedValue(f'{joint}: planned {name}', p, m * (1.0 + TOLERANCE), unit))
     for joint, p, m in zip(run.config.model.joint_names, _executed_torque(run),
-                           run.config.limits.max_effort):
-        # A torque at the limit means saturation: the bound is the next smaller number.
-        found.append(CheckedValue(f'{joint}: executed torque', p, np.nextafter(m, 0.0), 'N m'))
+                           _torque_bounds(run)):
+        found.append(CheckedValue(f'{joint}: executed torque', p, m, 'N m'))
     return found
 
 
@@ -208,6 +208,33 @@ def _executed_torque(run: Run) -> Array:
 
     """
     return np.asarray(np.abs(run.torque).max(axis=0))
+
+
+def _torque_bounds(run: Run) -> Array:
+    """
+    Return the bounds of the motors' executed torques [N m].
+
+    A torque at the limit means that the motor is saturated and may not follow. A motor whose plan
+    leaves what the controller needs to follow it, 1 - 1 / `SATURATED` of the limit, must not be:
+    its bound is the next number below the limit. Of a plan that takes more, up to the whole limit
+    (and the 1e-6 of it by which plans may exceed limits), the controller's correction saturates
+    the motor: torques are constant over a physics step, and the motion between two points is
+    interpolated. Whether the arm follows all the same, the tip's errors say.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        Bounds.
+
+    """
+    limit = run.config.limits.max_effort
+    takes_all = np.array(run.response.peak_effort) * SATURATED >= limit
+    return np.where(takes_all, limit * (1.0 + TOLERANCE), np.nextafter(limit, 0.0))
 
 
 def _peaks(run: Run) -> list[tuple[str, Array, Array, str]]:

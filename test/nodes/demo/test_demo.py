@@ -75,6 +75,17 @@ def test_demo_runs_arms_of_urdfs(tmp_path, name):
     assert 'Traceback' not in errors
 
 
+def test_demo_runs_a_plan_that_takes_a_motor_s_whole_torque(tmp_path):
+    free = [a for j in (1, 2, 3) for a in (
+        '-p', f'joint_limits.joint_{j}.has_acceleration_limits:=false')]
+    with Script(script('demo'), 'table_6_3.yaml', '--planner', 'time_optimal', '--plot', '',
+                '--ros-args', *free, cwd=tmp_path) as demo:
+        code, output, errors = demo.ended()
+    assert code == 0, errors
+    peaks, = re.findall(r'^torque \[N m\] .*$', output, re.MULTILINE)
+    assert ' 250 / 250 ' in peaks
+
+
 def test_demo_moves_an_arm_to_the_plan_s_posture_also_where_that_has_no_name(tmp_path):
     text = arm(j3=joint('j3', 'revolute', 'b', 'c', Z, (0.5, 0.0, 0.0)))
     model = RobotModel.from_urdf(text)

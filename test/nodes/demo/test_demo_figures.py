@@ -90,6 +90,22 @@ def test_saturated_motor_breaks_its_bound(task):
     assert broken(replace(run, torque=torque)) == ['joint_2: executed torque']
 
 
+@pytest.mark.parametrize(('planned', 'executed_torque', 'is_broken'), [
+    (1.0, 1.0, False),             # planned at the limit: the controller saturates the motor
+    (1.0 + 9e-7, 1.0, False),      # as far beyond it as a plan may be
+    (0.995, 1.0, False),           # what is left is less than the controller adds
+    (0.98, 1.0, True), (0.98, 1.0 - 1e-9, False),
+    (1.0, 1.0 + 1e-5, True)])      # no motor has so much
+def test_motor_may_be_saturated_where_the_plan_takes_its_torque(
+        task, planned, executed_torque, is_broken):
+    run = executed(task)
+    run.response.peak_effort[1] = planned * run.config.limits.max_effort[1]
+    torque = run.torque.copy()
+    torque[100, 1] = -executed_torque * run.config.limits.max_effort[1]
+    assert broken(replace(run, torque=torque)) == (
+        ['joint_2: executed torque'] if is_broken else [])
+
+
 def test_planned_peak_above_its_limit_breaks_its_bound(task):
     run = executed(task)
     run.response.peak_velocity[2] = 1.1
