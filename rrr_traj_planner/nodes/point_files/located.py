@@ -206,11 +206,11 @@ def is_number(text: str) -> bool:
     Returns
     -------
     bool
-        As `float` reads it.
+        As `float` reads it, but for underscores between digits.
 
     """
     try:
         float(text)
     except ValueError:
         return False
-    return True
+    return '_' not in text

@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+import csv
 from math import isfinite
 import re
 from typing import Any, NamedTuple
@@ -35,6 +36,8 @@ TRUTH = {'true': True, 'yes': True, '1': True, 'false': False, 'no': False, '0':
 LENGTHS = {'m': 1.0, 'cm': 0.01, 'mm': 0.001}
 ANGLES = {'rad': 1.0, 'deg': np.pi / 180.0, '°': np.pi / 180.0}
 TIMES = {'s': 1.0, 'ms': 0.001}
+QUOTED = re.compile(r'"(?:[^"]|"")*"')
+
 POSITION = ' position'  # after a joint's name, in the columns of `Plan.to_csv`
 
 
@@ -50,16 +53,18 @@ class _Row(NamedTuple):
         return self.fields[column] if column < len(self.fields) else ''
 
     def is_number(self, column: int) -> bool:
-        """Return whether a field is a number."""
-        return is_number(self._plain(column))
+        """Return whether a field is a number, if need be with a decimal comma."""
+        return is_number(self.text(column).replace(',', '.'))
 
     def number(self, column: int, name: str) -> float:
         """Return a field as a number."""
         if not self.text(column):
             raise InvalidInputError(f'line {self.line}: {name} is missing')
-        if not self.is_number(column):
+        if not is_number(self._plain(column)):
+            point = (' with a decimal point; decimal commas need columns that are split at '
+                     'semicolons' if self.is_number(column) else '')
             raise InvalidInputError(
-                f'line {self.line}: {name} is {shown(self.text(column))}, must be a number')
+                f'line {self.line}: {name} is {shown(self.text(column))}, must be a number{point}')
         value = float(self._plain(column))
         if not isfinite(value):
             raise InvalidInputError(f'line {self.line}: {name} is {value}, must be finite')
@@ -128,7 +133,8 @@ def table(text: str) -> dict[str, Any]:
         One point per line: x, y, z. A header line may name the columns, in any order and among
         others, as in `t, x [m], y [m], z [m]`, or joints in place of x, y and z; there may be
         columns stop_at and dwell. A line with semicolons or tabs is split at these, and its
-        numbers may have decimal commas. Empty lines and comments from # on are ignored.
+        numbers may have decimal commas. Fields may be quoted, by the rules of the `csv` module,
+        but not over several lines. Empty lines and comments from # on are ignored.
 
     Returns
     -------
@@ -167,16 +173,24 @@ def _table(text: str) -> _Table:
 
 def _rows(text: str) -> Iterator[_Row]:
     for number, line in enumerate(text.splitlines(), 1):
-        content = line.partition('#')[0]
-        if content.strip(' \t,;'):
-            mark = next((m for m in ';\t' if m in content.strip()), ',')
-            yield _Row(number, [f.strip(' \t"') for f in content.strip().split(mark)], mark != ',')
+        # Without the quoted parts, in which marks and # are text.
+        bare = QUOTED.sub(lambda found: '_' * len(found[0]), line).partition('#')[0]
+        content = line[:len(bare)].strip()
+        if not content.strip(' \t,;'):
+            continue
+        if '"' in bare:
+            raise InvalidInputError(
+                f'line {number} is {shown(content)}: a quotation mark is not closed')
+        mark = next((m for m in ';\t' if m in bare.strip()), ',')
+        fields, = csv.reader([content], delimiter=mark, skipinitialspace=True)
+        yield _Row(number, [field.strip() for field in fields], mark != ',')
 
 
 def _column(index: int, field: str) -> _Column:
-    """Return a column of a header: `NAME`, `NAME [UNIT]` or `NAME (UNIT)`."""
-    parts = re.fullmatch(r'(.*?)\s*[\[(]\s*(.*?)\s*[\])]', field)
-    name, unit = (field, '') if parts is None else parts.groups()
+    """Return a column of a header: `NAME`, `NAME [UNIT]`, `NAME (UNIT)` or `"NAME, UNIT"`."""
+    parts = re.fullmatch(r'(.*?)\s*[\[(]\s*(.*?)\s*[\])]|(.*?)\s*,\s*(.*)', field)
+    name, unit = (field, '') if parts is None else filter(
+        lambda part: part is not None, parts.groups())
     lower = name.lower()
     return _Column(index, lower if lower in (*AXES, STOP_AT, DWELL) else name, unit)
 
