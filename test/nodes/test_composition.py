@@ -257,7 +257,7 @@ def test_two_bring_ups_share_a_machine(ros, tmp_path):
         assert_executes(left, NEAR)
         assert_executes(right, np.add(NEAR, (0.0, 0.0, 0.2)), ThesisArm(d1=0.7))
         for bringup in (one, other):
-            children = bringup.started(2)
+            children = bringup.started(3)
             bringup.process.send_signal(signal.SIGTERM)
             assert bringup.ended()[0] == 0
             assert all(child.has_ended() for child in children)

@@ -27,7 +27,12 @@ from rrr_traj_planner.nodes.motion.motions import Motions, Options
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.parameter_files import files_given
 from rrr_traj_planner.nodes.parameters.table import MOTION
-from rrr_traj_planner.nodes.process.goal_server import ABORTED, GoalServer, SUCCEEDED
+from rrr_traj_planner.nodes.process.goal_server import (
+    ABORTED,
+    GoalServer,
+    RefusedGoal,
+    SUCCEEDED,
+)
 from rrr_traj_planner.nodes.process.node_construction import destroyed_on_error
 from rrr_traj_planner.nodes.process.node_start import NodeStart
 from rrr_traj_planner.nodes.process.service_node import ServiceNode
@@ -64,14 +69,21 @@ class MotionServer(ServiceNode):
             self, MOTION, _options, self._configure, files_given([*sys.argv, *(arguments or ())]))
         self._motions = Motions(self, parameters.config)
         self._goals: dict[bytes, tuple[ServerGoalHandle, Motion]] = {}
+        self._aborted: list[ServerGoalHandle] | None = None  # since the node finishes
         self._server = GoalServer(
-            self, MoveThrough, 'move_through', _request, self._begin, self._cancel)
+            self, MoveThrough, 'move_through', self._check, self._begin, self._cancel)
         self._start = NodeStart(
             self, parameters, None, f'serves {self.resolve_service_name("move_through")} with '
             f'{self._motions.action}', arguments)
 
     def _configure(self, options: Options) -> None:
         self._motions.options = options
+
+    def _check(self, goal: MoveThrough.Goal) -> PlanTrajectory.Request:
+        """Return the request to the planner, which refuses what is wrong with the goal."""
+        if self._aborted is not None:
+            raise RefusedGoal(_result(ENDED, None))
+        return _request(goal)
 
     def _begin(self, handle: ServerGoalHandle, request: PlanTrajectory.Request) -> None:
         """Plan and run an accepted goal."""
@@ -115,12 +127,27 @@ class MotionServer(ServiceNode):
         self._server.end(handle, SUCCEEDED if end.code == EndCode.SUCCESS else ABORTED,
                          _result(end, motion))
 
-    def destroy_node(self) -> None:
-        """Stop the arm, abort goals, and release the claim on the node's name."""
+    def finish(self) -> bool:
+        """
+        Stop the arm, abort goals, and refuse others, since the process ends.
+
+        Returns
+        -------
+        bool
+            Whether the clients of all goals have their results.
+
+        """
         goals, self._goals = self._goals, {}
+        self._aborted = [*(self._aborted or ()), *(handle for handle, _ in goals.values())]
         for handle, motion in goals.values():
             self._motions.cancel(motion)
             self._tell(handle, ENDED, motion)
+        return all(map(self._server.has_told, self._aborted))
+
+    def destroy_node(self) -> None:
+        """Abort goals, and release the claim on the node's name."""
+        if self.context.ok():
+            self.finish()
         self._server.destroy()
         self._motions.close()
         self._start.end()

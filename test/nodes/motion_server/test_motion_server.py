@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+import signal
+
 from helpers.arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
 from helpers.examples import example
 from helpers.motion_in_ros import assert_steady, random_places, SteppedClock
@@ -28,8 +30,12 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
+from rrr_traj_planner.nodes.motion_server.node import MotionServer
+from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner_interfaces.action import MoveThrough
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6  # action_msgs/GoalStatus
@@ -64,10 +70,12 @@ def test_goal_s_fields_and_codes_are_the_service_s():
 
 def test_goal_moves_the_arm_from_where_it_is_through_every_point(ros, arm):
     feedback, client = [], MoveClient(ros)
+    arm.desired.wait_for()  # discovered
     status, result = client.result(client.send(move_goal(*TABLE_6_1[1:]), feedback))
     assert (status, result.error_code, result.message) == (SUCCEEDED, Result.SUCCESS, '')
     start = result.trajectory.points[0].positions
     np.testing.assert_allclose(start, START, atol=1e-12)
+    arm.desired.wait_for_next(lambda m: not moving(m))
     states = arm.desired.messages[:]  # more arrive
     times = 1e-9 * np.array([stamp(m) for m in states])
     moved = times[[moving(m) for m in states]]
@@ -79,7 +87,7 @@ def test_goal_moves_the_arm_from_where_it_is_through_every_point(ros, arm):
     assert [f.next_via_point for f in feedback] == sorted(f.next_via_point for f in feedback)
     assert {f.next_via_point for f in feedback} == {0, 1}
     left = [f.time_left for f in feedback]
-    assert left == sorted(left, reverse=True) and left[0] > 2.0 and left[-1] < 0.2
+    assert left == sorted(left, reverse=True) and left[0] < result.via_times[-1] + 1e-9
     assert all(f.joint_names == NAMES and np.abs(f.tracking_error).max() < 1e-3
                for f in feedback)
 
@@ -194,6 +202,39 @@ def test_what_is_missing_is_named(ros):
         'not there: the planner (service /plan_trajectory), the controller (action '
         "/a/controller/follow_joint_trajectory), the arm's state (topic "
         '/a/controller/controller_state or /joint_states)')
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_signal_stops_the_arm_and_aborts_the_goal(ros, number):
+    start_planner(ros)
+    arm = Arm(ros)
+    with Script(script('motion_server')) as server:
+        client = MoveClient(ros)
+        handle = client.send(move_goal(FAR, max_velocity_scaling_factor=0.1))
+        arm.desired.wait_for(moving)
+        server.process.send_signal(number)
+        status, result = client.result(handle)
+        assert server.is_over_in(2.0)
+        code, _, errors = server.ended()
+    assert (status, result.error_code, result.message) == (
+        ABORTED, Result.PREEMPTED, 'motion_server has ended')
+    assert (code, 'Traceback' in errors) == (0, False)
+    rest = arm.desired.wait_for_next(lambda m: not np.any(m.velocity))
+    assert np.linalg.norm(tip(rest.position) - FAR) > 0.1
+
+
+def test_two_arms_in_namespaces_move_by_themselves(ros):
+    for namespace in ('left', 'right'):
+        for node in (TrajectoryPlanner, SimulatedArm, MotionServer):
+            ros.add(node(context=ros.context, namespace=namespace))
+    left, right = (MoveClient(ros, f'{name}/move_through') for name in ('left', 'right'))
+    canceled, reached = left.send(move_goal(FAR)), right.send(move_goal(TABLE_6_1[2]))
+    ros.listen(JointState, 'left/joint_states').wait_for(moving)
+    assert left.cancel(canceled) == 1
+    assert left.result(canceled)[0] == CANCELED
+    assert right.result(reached)[1].error_code == Result.SUCCESS
+    ros.listen(JointState, 'right/joint_states').wait_for(
+        lambda m: np.linalg.norm(tip(m.position) - TABLE_6_1[2]) < REACHED)
 
 
 def test_example_of_the_documentation_moves_the_arm(ros):

@@ -60,7 +60,7 @@ def test_signal_before_python_has_begun_ends_the_script(tmp_path, name, number):
 @pytest.mark.parametrize('number', BOTH)
 def test_signal_to_bringup_alone_ends_nodes_that_have_just_been_started(number):
     with Script(script('bringup'), '--ros-args', '--log-level', 'fatal') as bringup:
-        children = bringup.wait_for_children(2)
+        children = bringup.wait_for_children(3)
         bringup.process.send_signal(number)
         assert bringup.ended() == (0, '', '')
         assert all(child.has_ended() for child in children)
