@@ -24,13 +24,13 @@ from typing import NamedTuple
 
 from control_msgs.msg import JointTrajectoryControllerState
 from rclpy.node import Node
-from rclpy.qos import qos_profile_sensor_data
 from rrr_traj_planner.core.nanoseconds import SECOND
+from rrr_traj_planner.nodes.motion.latest_messages import LatestMessages
 from rrr_traj_planner.nodes.output.message_times import nanoseconds
 from sensor_msgs.msg import JointState
 
-FRESH = 1.0      # s after its arrival for which a state counts
-MOVING = 0.01    # rad/s, above which an arm moves; the planner's start_state_tolerance
+FRESH = 1.0    # s after its arrival for which a state counts
+MOVING = 0.01  # rad/s, above which an arm moves; the planner's start_state_tolerance
 
 
 class ArmState(NamedTuple):
@@ -110,17 +110,13 @@ class ArmStates:
     """
 
     def __init__(self, node: Node, controller: str) -> None:
-        self._clock = node.get_clock()
+        self._references = LatestMessages(
+            node, JointTrajectoryControllerState, f'{controller}/controller_state')
+        self._measurements = LatestMessages(node, JointState, 'joint_states')
         self._reference: tuple[float, ArmState] | None = None  # with the time of its arrival
         self._measured: dict[str, tuple[float, tuple[float, float, float]]] = {}
         self._stamp = 0
-        node.create_subscription(
-            JointTrajectoryControllerState, f'{controller}/controller_state', self._refer,
-            qos_profile_sensor_data)
-        node.create_subscription(
-            JointState, 'joint_states', self._measure, qos_profile_sensor_data)
-        self.sources = (node.resolve_topic_name(f'{controller}/controller_state'),
-                        node.resolve_topic_name('joint_states'))
+        self.sources = self._references.topic, self._measurements.topic
 
     def latest(self) -> ArmState | None:
         """
@@ -132,6 +128,7 @@ class ArmStates:
             None if no message has come for `FRESH`.
 
         """
+        self._take()
         oldest = monotonic() - FRESH
         if self._reference is not None and self._reference[0] >= oldest:
             return self._reference[1]
@@ -139,37 +136,19 @@ class ArmStates:
                   if arrived >= oldest}
         return ArmState(joints, self._stamp) if joints else None
 
-    def measured(self, name: str) -> float | None:
-        """
-        Return a joint's measured position.
-
-        Parameters
-        ----------
-        name : str
-            The joint.
-
-        Returns
-        -------
-        float or None
-            [rad]; None if it has never been measured.
-
-        """
-        found = self._measured.get(name)
-        return None if found is None else found[1][0]
-
-    def _refer(self, message: JointTrajectoryControllerState) -> None:
-        """Take a controller's reference, if it has one."""
-        joints = _states(message.joint_names, message.reference.positions,
-                         message.reference.velocities, message.reference.accelerations)
-        if joints:
-            self._reference = monotonic(), ArmState(joints, nanoseconds(message.header.stamp))
-
-    def _measure(self, message: JointState) -> None:
-        """Take measured joints; several nodes may each measure some."""
+    def _take(self) -> None:
+        """Take what has come: references, if any, and measured joints, some by each node."""
         now = monotonic()
-        self._measured.update({name: (now, state) for name, state in _states(
-            message.name, message.position, message.velocity, ()).items()})
-        self._stamp = nanoseconds(message.header.stamp)
+        for message, age in self._references.take():
+            reference = message.reference
+            joints = _states(message.joint_names, reference.positions, reference.velocities,
+                             reference.accelerations)
+            if joints:
+                self._reference = now - age, ArmState(joints, nanoseconds(message.header.stamp))
+        for message, age in self._measurements.take():
+            self._measured.update({name: (now - age, state) for name, state in _states(
+                message.name, message.position, message.velocity, ()).items()})
+            self._stamp = nanoseconds(message.header.stamp)
 
 
 def _states(names: Sequence[str], *columns: Sequence[float]

@@ -70,7 +70,7 @@ class Options(NamedTuple):
     controller: str = 'simulated_arm'
     lead: float = 0.25
     planning_timeout: float = 30.0
-    discovery_timeout: float = 5.0
+    discovery_timeout: float = 10.0
     start_tolerance: float = 0.01
 
 

@@ -149,7 +149,7 @@ TABLE: tuple[Row, ...] = (
         'planning and two messages must take less', 's', 0.02, 10.0, nodes=(MOTION,)),
     Row('planning_timeout', 30.0, 'time after which a planner that does not answer counts as gone',
         's', 0.1, 3600.0, nodes=(MOTION,)),
-    Row('discovery_timeout', 5.0, 'time to wait for planner, controller and the state of the arm',
+    Row('discovery_timeout', 10.0, 'time to wait for planner, controller and the state of the arm',
         's', 0.0, 3600.0, nodes=(MOTION,)),
     Row('start_tolerance', 0.01, 'how far a joint may be from the start of a plan when that is '
         'sent', 'rad', 0.0, 1.0, nodes=(MOTION,)),
