@@ -12,4 +12,4 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The demo: a client of both nodes, its table of figures, and its plot."""
+"""The demo: a client of both nodes, the bounds of its figures, and its plot."""

@@ -17,8 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from time import monotonic, sleep
 from typing import Any
 
@@ -30,22 +29,21 @@ from rclpy.parameter import parameter_value_to_python
 from rclpy.time import Time
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import counted
-from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
-from rrr_traj_planner.nodes.demo.messages import plan_request, trajectory_points, way_to
-from rrr_traj_planner.nodes.demo.recording import demo_recorder
 from rrr_traj_planner.nodes.output.message_times import seconds
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
-from rrr_traj_planner.nodes.point_files.task import given, Task
+from rrr_traj_planner.nodes.point_files.task import Task
 from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.process.node_claim import is_claimed
 from rrr_traj_planner.nodes.process.node_start import KEEP_APART
 from rrr_traj_planner.nodes.process.processes import exit_message
 from rrr_traj_planner.nodes.process.signals import signal_arrived
 from rrr_traj_planner.nodes.recording.bag import Bag
+from rrr_traj_planner.nodes.runs.messages import plan_request, trajectory_points, way_to
+from rrr_traj_planner.nodes.runs.recorded import in_order, recorded_motion
+from rrr_traj_planner.nodes.runs.recording import run_recorder
+from rrr_traj_planner.nodes.runs.run import Run
 from rrr_traj_planner.planners.registry import planner
-from rrr_traj_planner.planners.rests import Rests, rests_at_via_points
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
@@ -59,36 +57,6 @@ PROGRESS_PERIOD = 0.5  # s between two progress lines
 POLL_PERIOD = 0.02     # s between two checks of a condition that is waited for
 AT_START = 1e-6        # rad, largest distance of a joint at which the motion can start
 IN_JOINT_SPACE = 'cycloid'  # planner of the way to the start of a path of the tip
-
-
-@dataclass(frozen=True, eq=False)
-class Run:
-    """One run of the demo: the task, the planner's response, and the recorded motion."""
-
-    task: Task
-    config: PlannerConfig
-    response: Any             # PlanTrajectory.Response
-    planned: TrajectoryPoints
-    recorded: TrajectoryPoints  # the arm's motion; time 0 is the start of the trajectory
-    torque: Array             # motor torques at the recorded points, shape (n, 3) [N m]
-
-    @cached_property
-    def joint_via_points(self) -> Array | None:
-        """Return the joint positions that the task gives for its via points, (n, 3) [rad]."""
-        return self.task.joint_via_points(self.config.model.joint_names)
-
-    @cached_property
-    def tips(self) -> Array:
-        """Return the tip's positions at the via points, shape (n, 3) [m]."""
-        joints = self.joint_via_points
-        return (self.task.via_points if joints is None
-                else forward_kinematics(self.config.model, joints))
-
-    @cached_property
-    def rests(self) -> Rests:
-        """Return where and how long the arm is to rest."""
-        return rests_at_via_points(
-            given(self.task.stop_at), given(self.task.dwell), len(self.tips), False)
 
 
 class Client(Node):
@@ -138,7 +106,7 @@ class Client(Node):
         self._wait(lambda: self._states and self._send.get_subscription_count(), 'the arm')
         self.check_alone()
         if bag is not None:
-            self._wait(demo_recorder(self, bag).is_connected, 'the topics to record')
+            self._wait(run_recorder(self, bag).is_connected, 'the topics to record')
         config = self._planner_config(task)
         task.check_frame(config.base_frame)
         response = self._planned(plan_request(task, config.model.joint_names))
@@ -149,7 +117,8 @@ class Client(Node):
         planned = trajectory_points(response.trajectory)
         self._go_to(planned.positions[0], task, config)
         start = self._execute(response.trajectory, 'executing')
-        recorded, torque = _recorded(list(self._states), config, start)
+        recorded, torque = recorded_motion(
+            list(self._states), config.model.joint_names, start)
         return Run(task, config, response, planned, recorded, torque)
 
     def check_free(self) -> None:
@@ -203,7 +172,8 @@ class Client(Node):
     def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
         """Move the arm to where the motion begins [rad], if it is elsewhere."""
         state = self._states[-1]
-        if np.abs(_in_order([state], config, 'position')[0] - q).max() <= AT_START:
+        now = in_order([state], config.model.joint_names, 'position')[0]
+        if np.abs(now - q).max() <= AT_START:
             return
         planner_id = task.planner_id or config.default_planner_id
         if planner(planner_id).plan_path is not None:
@@ -262,18 +232,3 @@ class Client(Node):
             if monotonic() > deadline:
                 raise StartError(f'timed out after {TIMEOUT:.0f} s waiting for {what}')
             sleep(POLL_PERIOD)
-
-
-def _recorded(states: list[JointState], config: PlannerConfig,
-              start: float) -> tuple[TrajectoryPoints, Array]:
-    """Return the recorded motion, with times from its start, and the motor torques [N m]."""
-    times = np.array([seconds(s.header.stamp) for s in states]) - start
-    fresh = np.concatenate(([True], np.diff(times) > 0.0))
-    q, qd, torque = (_in_order(states, config, f)[fresh]
-                     for f in ('position', 'velocity', 'effort'))
-    return TrajectoryPoints(times[fresh], q, qd), torque
-
-
-def _in_order(states: list[JointState], config: PlannerConfig, field: str) -> Array:
-    order = [list(states[0].name).index(n) for n in config.model.joint_names]
-    return np.array([getattr(s, field) for s in states])[:, order]

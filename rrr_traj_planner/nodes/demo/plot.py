@@ -31,7 +31,7 @@ from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
-from rrr_traj_planner.nodes.demo.client import Run
+from rrr_traj_planner.nodes.runs.run import Run
 from rrr_traj_planner.report.path_figures import away_from_nearest, LABEL_DISTANCE, projection
 
 COLOURS = ('#0072b2', '#d55e00', '#009e73')  # Okabe and Ito's: distinct for colour-blind people

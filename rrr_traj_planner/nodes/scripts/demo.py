@@ -84,13 +84,14 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     from rrr_traj_planner.core.errors import counted
+    from rrr_traj_planner.nodes.demo.bounds import bounds_text, checked_values
     from rrr_traj_planner.nodes.demo.client import Client
-    from rrr_traj_planner.nodes.demo.table import checked_values, table
     from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
     from rrr_traj_planner.nodes.point_files.reading import read_task
     from rrr_traj_planner.nodes.process.node_runner import spin_in_background
     from rrr_traj_planner.nodes.process.processes import NodeProcesses
     from rrr_traj_planner.nodes.recording.bag import Bag
+    from rrr_traj_planner.nodes.runs.table import table
     from rrr_traj_planner.nodes.scripts.bringup import node_arguments
 
     frames = [] if options.record is None else FRAMES
@@ -106,7 +107,7 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
             ('planner', 'simulated_arm'), node_arguments(arm, ros_arguments)))
         run = client.run(task, nodes.ended, bag)
     found = checked_values(run)
-    print(table(run, found), flush=True)
+    print(f'{table(run)}\n\n{bounds_text(found)}', flush=True)
     if bag is not None:
         print(f'recording: {bag.file}, {counted(bag.count, "message")}', flush=True)
     plot = Path(f'demo_{task.name}.png') if options.plot is None else options.plot

@@ -12,50 +12,24 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The demonstration's figures, table and plot, for runs that are known."""
+"""The demonstration's figures and plot, for runs that are known."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from helpers.other_arms import OTHER_ARMS
+from helpers.runs import executed, stopping
 from matplotlib.image import imread
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
-from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
-from rrr_traj_planner.nodes.demo.client import Run
+from rrr_traj_planner.nodes.demo.bounds import bounds_text, checked_values
 from rrr_traj_planner.nodes.demo.plot import draw
-from rrr_traj_planner.nodes.demo.table import checked_values, table
-from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
-from rrr_traj_planner.nodes.planner_node.planning_answer import success
 from rrr_traj_planner.nodes.point_files.reading import read_task
-from rrr_traj_planner.nodes.point_files.task import given
-from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.request import PlanningRequest
-
-BEFORE, AFTER, STATES = 0.5, 0.5, 800
-
-
-def executed(task, off=0.0, **parameters):
-    """Return a run on an arm that follows its plan but for an angle by which joint 1 is off."""
-    config = PlannerConfig.from_values({
-        **{name: row.default for name, row in rows_of(PLANNER, JOINT_NAMES).items()},
-        **parameters})
-    joints = task.joint_via_points(JOINT_NAMES)
-    found = plan(config.model, config.limits, PlanningRequest(
-        task.via_points if joints is None else None, joint_via_points=joints,
-        stop_at=given(task.stop_at), dwell=given(task.dwell)))
-    t = np.linspace(-BEFORE, found.points.duration + AFTER, STATES)
-    q, qd, qdd, _ = spline_through(found.points).at(t)
-    torque = inverse_dynamics(config.model, q, qd, qdd)
-    q = q + (off, 0.0, 0.0)
-    return Run(task, config, success(found, config), found.points,
-               TrajectoryPoints(t, q, qd), torque)
 
 
 @pytest.fixture(scope='module')
@@ -68,7 +42,9 @@ def broken(run):
 
 
 def test_perfect_run_is_within_every_bound(task):
-    assert broken(executed(task)) == []
+    run = executed(task)
+    assert broken(run) == []
+    assert bounds_text(checked_values(run)) == '22 of 22 figures are inside their bounds'
 
 
 def test_error_between_the_bounds_breaks_the_final_one_alone(task):
@@ -121,40 +97,8 @@ def test_plan_that_misses_a_via_point_breaks_its_bound(task):
     assert broken(missed) == ['via point 2: planned error']
 
 
-def test_table_shows_every_via_point_joint_and_limit(task):
-    run = executed(task, **{'joint_limits.joint_1.has_jerk_limits': False})
-    lines = table(run, checked_values(run)).splitlines()
-    assert [line.split()[0] for line in lines if line[:1].isdigit()] == ['0', '1', '2', '22']
-    jerk, = (line for line in lines if line.startswith('jerk'))
-    assert ' / none' in jerk and ' / 10' in jerk
-    assert max(map(len, lines)) <= 99
-
-
-def test_table_shows_the_residual_vibration_of_the_planned_motion(task):
-    run = executed(task)
-    line, = (x for x in table(run, checked_values(run)).splitlines() if 'vibration' in x)
-    label, values = line.split(' Hz: ')
-    assert label == 'residual vibration [rad/s^2] at 16 / 32 / 64'
-    assert [float(x) for x in values.split(' / ')] == pytest.approx(
-        (0.057, 0.005, 0.002), abs=6e-4)  # the cycloid's, by a program of its own
-
-
-def stopping(task, **changes):
-    """Return a task with rests, of 0.5 s at the second via point."""
-    return replace(task, stop_at=np.array([False, True, True]), dwell=np.array([0.1, 0.5, 0.2]),
-                   **changes)
-
-
-def test_run_with_stops_is_within_every_bound_and_its_table_shows_them(task):
-    run = executed(stopping(task))
-    assert broken(run) == []
-    rows = [line.split() for line in table(run, checked_values(run)).splitlines()
-            if line[:1].isdigit()]
-    assert [row[-3] for row in rows[:3]] == ['0.1', '0.5', '0.2']
-    assert float(rows[0][-4]) == 0.0
-    plain = executed(task)  # which rests nowhere before the end
-    assert [line.split()[-3] for line in table(plain, checked_values(plain)).splitlines()
-            if line[:1].isdigit()][:3] == ['0', '1.680', '0']
+def test_run_with_stops_is_within_every_bound(task):
+    assert broken(executed(stopping(task))) == []
 
 
 def test_arm_that_does_not_rest_breaks_the_bound_of_its_via_point(task):
@@ -172,9 +116,6 @@ def test_run_through_joint_positions_is_within_every_bound(task):
                             joint_positions=lambda names: taught))
     assert broken(run) == []
     assert run.tips == pytest.approx(forward_kinematics(run.config.model, taught))
-    lines = table(run, checked_values(run)).splitlines()
-    assert any(line.startswith('1  (0.87, 1.35, -0.4) rad ') for line in lines)
-    assert max(map(len, lines)) <= 99
     off = run.planned.positions.copy()
     off[-1] += (0.0, 1e-8, 0.0)
     missed = replace(run, planned=replace(run.planned, positions=off))

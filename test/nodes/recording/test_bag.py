@@ -32,7 +32,6 @@ from rclpy.serialization import deserialize_message, serialize_message
 from rosgraph_msgs.msg import Clock
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
-from rrr_traj_planner.nodes.demo.recording import LATCHED, VOLATILE
 from rrr_traj_planner.nodes.output.marker_messages import arm_markers
 from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.recording.bag import Bag, NO_MCAP
@@ -40,6 +39,7 @@ from rrr_traj_planner.nodes.recording.message_definitions import definition
 from rrr_traj_planner.nodes.recording.recorder import LATCHED as LATCHED_QOS
 from rrr_traj_planner.nodes.recording.recorder import Recorder, type_name
 from rrr_traj_planner.nodes.recording.recorder import VOLATILE as VOLATILE_QOS
+from rrr_traj_planner.nodes.runs.recording import LATCHED, VOLATILE
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header, String
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint

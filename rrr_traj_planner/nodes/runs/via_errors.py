@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Errors of the demo's plan and of the arm at the via points."""
+"""Errors of a plan and of the arm at the via points."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ import numpy as np
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.core.trajectory.sampling import NANOSECOND
-from rrr_traj_planner.nodes.demo.client import Run
+from rrr_traj_planner.nodes.runs.run import Run
 from rrr_traj_planner.report.measures import joint_errors, tip_errors
 
 DURING_REST = 101  # times at which the arm's error is looked at while it rests at a via point
@@ -53,7 +53,7 @@ def planned_errors(run: Run) -> list[float]:
 
 def executed_errors(run: Run) -> list[float]:
     """
-    Return the distances of the simulated arm's tip from the via points, while it is there [m].
+    Return the distances of the arm's tip from the via points, while it is there [m].
 
     Parameters
     ----------

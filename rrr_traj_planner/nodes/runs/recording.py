@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The demo's recorder, with the topics of both nodes."""
+"""A recorder of a run, with the topics of both nodes."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ LATCHED = ((JointTrajectory, 'planned_trajectory'), (Path, 'planned_path'),
            (MarkerArray, 'markers'), (String, 'robot_description'))
 
 
-def demo_recorder(node: Node, bag: Bag) -> Recorder:
+def run_recorder(node: Node, bag: Bag) -> Recorder:
     """
     Return a recorder of the topics of both nodes, and of every other topic with a publisher.
 
     Parameters
     ----------
     node : Node
-        The demo's client.
+        The client.
     bag : Bag
         The bag to write to.
 
