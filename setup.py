@@ -110,7 +110,7 @@ setup(
         'console_scripts': [
             f'{script} = {NAME}.nodes.scripts.{script}:main'
             for script in (
-                'bringup', 'demo', 'motion_server', 'planner', 'report', 'simulated_arm')
+                'bringup', 'demo', 'motion_server', 'move', 'planner', 'report', 'simulated_arm')
         ],
     },
 )

@@ -17,7 +17,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from time import monotonic, sleep
 from typing import Any
 
@@ -25,13 +24,10 @@ import numpy as np
 from rcl_interfaces.srv import GetParameters
 from rclpy.client import Client as ServiceClient
 from rclpy.node import Node
-from rclpy.parameter import parameter_value_to_python
 from rclpy.time import Time
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.nodes.output.message_times import seconds
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
 from rrr_traj_planner.nodes.point_files.task import Task
 from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.process.node_claim import is_claimed
@@ -39,7 +35,9 @@ from rrr_traj_planner.nodes.process.node_start import KEEP_APART
 from rrr_traj_planner.nodes.process.processes import exit_message
 from rrr_traj_planner.nodes.process.signals import signal_arrived
 from rrr_traj_planner.nodes.recording.bag import Bag
+from rrr_traj_planner.nodes.runs.answer import planned_text, refused_text
 from rrr_traj_planner.nodes.runs.messages import plan_request, trajectory_points, way_to
+from rrr_traj_planner.nodes.runs.planner_config import planner_config, SERVICE
 from rrr_traj_planner.nodes.runs.recorded import in_order, recorded_motion
 from rrr_traj_planner.nodes.runs.recording import run_recorder
 from rrr_traj_planner.nodes.runs.run import Run
@@ -69,8 +67,7 @@ class Client(Node):
         self.create_subscription(JointState, 'joint_states', self._states.append, 100)
         self._send = self.create_publisher(JointTrajectory, 'joint_trajectory', 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
-        self._get_parameters = self.create_client(
-            GetParameters, 'trajectory_planner/get_parameters')
+        self._get_parameters = self.create_client(GetParameters, SERVICE)
 
     def run(self, task: Task, ended: Callable[[], tuple[str, int] | None],
             bag: Bag | None = None) -> Run:
@@ -110,10 +107,7 @@ class Client(Node):
         config = self._planner_config(task)
         task.check_frame(config.base_frame)
         response = self._planned(plan_request(task, config.model.joint_names))
-        print(f'planned {counted(len(response.via_times), "via point")} with '
-              f"'{task.planner_id or config.default_planner_id}' in "
-              f'{1e3 * response.planning_time:.0f} ms: {response.via_times[-1]:.3f} s, '
-              f'{counted(len(response.trajectory.points), "point")}', flush=True)
+        print(planned_text(response, task.planner_id or config.default_planner_id), flush=True)
         planned = trajectory_points(response.trajectory)
         self._go_to(planned.positions[0], task, config)
         start = self._execute(response.trajectory, 'executing')
@@ -161,13 +155,8 @@ class Client(Node):
 
     def _planner_config(self, task: Task) -> PlannerConfig:
         """Return the planner's configuration for a task, read from the running node."""
-        names = self._parameter_values(['joint_names'])['joint_names']
-        config = PlannerConfig.from_values(self._parameter_values(list(rows_of(PLANNER, names))))
-        return replace(config, limits=config.limits_for(task.planner_id))
-
-    def _parameter_values(self, names: list[str]) -> dict[str, Any]:
-        answer = self._answer(self._get_parameters, GetParameters.Request(names=names))
-        return dict(zip(names, map(parameter_value_to_python, answer.values)))
+        return planner_config(lambda names: self._answer(
+            self._get_parameters, GetParameters.Request(names=names)).values, task.planner_id)
 
     def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
         """Move the arm to where the motion begins [rad], if it is elsewhere."""
@@ -184,7 +173,7 @@ class Client(Node):
     def _planned(self, request: PlanTrajectory.Request) -> Any:
         response = self._answer(self._plan, request)
         if response.error_code != response.SUCCESS:
-            raise StartError(f'the planner refuses ({response.error_code}): {response.message}')
+            raise StartError(refused_text(response))
         return response
 
     def _answer(self, client: ServiceClient, request: Any) -> Any:

@@ -97,14 +97,19 @@ class Motions:
         self._service = node.resolve_service_name('plan_trajectory')
         self._controller = Controller(node, options.controller, self._continue)
         self.action = self._controller.action
-        self._states = ArmStates(node, options.controller)
+        self.states = ArmStates(node, options.controller)
         self._next: Motion | None = None  # the newest, before it is sent
         self._asked_at: float | None = None  # the planner, whose answer is to come
         self._check_timer = node.create_timer(CHECK_PERIOD, self._check, clock=self._steady)
 
-    def missing(self) -> list[str]:
+    def missing(self, sends: bool = True) -> list[str]:
         """
         Return what is not there.
+
+        Parameters
+        ----------
+        sends : bool
+            Whether a controller is needed.
 
         Returns
         -------
@@ -115,10 +120,10 @@ class Motions:
         found = []
         if not self._planner.service_is_ready():
             found.append(f'the planner (service {self._service})')
-        if not self._controller.is_there():
+        if sends and not self._controller.is_there():
             found.append(f'the controller (action {self.action})')
-        if self._states.latest() is None:
-            found.append(f"the arm's state (topic {' or '.join(self._states.sources)})")
+        if self.states.latest() is None:
+            found.append(f"the arm's state (topic {' or '.join(self.states.sources)})")
         return found
 
     def move(self, request: PlanTrajectory.Request, watch: Watch, sends: bool = True) -> Motion:
@@ -173,7 +178,7 @@ class Motions:
         """Plan a motion as soon as all is there."""
         if motion.end is not None or motion is not self._next:
             return
-        missing = self.missing()
+        missing = self.missing(motion.sends)
         if not missing:
             self._plan(motion, self.options.lead)
         elif monotonic() < motion.since + self.options.discovery_timeout:
@@ -186,7 +191,7 @@ class Motions:
         """Ask the planner for a motion from where the arm is."""
         if motion.end is not None:
             return
-        latest = self._states.latest()
+        latest = self.states.latest()
         if latest is None:
             self._finish(motion, MotionEnd(EndCode.COMMUNICATION_FAILURE, UNKNOWN_STATE))
             return
@@ -223,7 +228,7 @@ class Motions:
 
     def _send(self, motion: Motion, begin: Departure, lead: float) -> None:
         """Send a plan to the controller, if the arm is still where it begins."""
-        plan, latest = motion.response.trajectory, self._states.latest()
+        plan, latest = motion.response.trajectory, self.states.latest()
         if begin.running is None and not begin.is_estimate:
             gone = UNKNOWN_STATE if latest is None else moved(
                 plan, latest, self.options.start_tolerance)
