@@ -153,6 +153,12 @@ def ros():
     yield from closed_after_use(Ros())
 
 
+@pytest.fixture
+def other_ros():
+    """Give a test a second one, whose callbacks may wait for what the first one's do."""
+    yield from closed_after_use(Ros())
+
+
 @pytest.fixture(scope='module')
 def module_ros():
     """Give the tests of a module one ROS context in common."""

@@ -22,6 +22,7 @@ from time import monotonic, sleep
 
 import numpy as np
 from rcl_interfaces.srv import GetParameters
+from rclpy.validate_topic_name import validate_topic_name
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.motion.departure import duration_of
 from rrr_traj_planner.nodes.motion.motion import EndCode, Motion, Watch
@@ -62,8 +63,9 @@ class MoveClient(SpunNode):
     """
 
     def __init__(self, controller: str) -> None:
-        super().__init__('move')
         name = controller.removesuffix(ACTION).rstrip('/')
+        validate_topic_name(name + ACTION)
+        super().__init__('move')
         self._motions = Motions(self, Options(controller=name))
         self._record = StateRecord(self, name)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
