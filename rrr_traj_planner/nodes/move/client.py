@@ -22,6 +22,7 @@ from time import monotonic, sleep
 
 import numpy as np
 from rcl_interfaces.srv import GetParameters
+from rclpy.action import get_action_names_and_types
 from rclpy.validate_topic_name import validate_topic_name
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.motion.departure import duration_of
@@ -46,7 +47,7 @@ from rrr_traj_planner_interfaces.srv import PlanTrajectory
 CANCEL_TIME = 1.0    # s for the controller to say that it has canceled the goal
 SETTLING_TIME = 0.5  # s that is recorded after the end
 STATES_TIME = 5.0    # s by which states may be late
-ACTION = '/follow_joint_trajectory'
+ACTION, TYPE = '/follow_joint_trajectory', 'control_msgs/action/FollowJointTrajectory'
 
 NO_STATE = 'nobody publishes where the arm is: planned from rest at the first via point'
 
@@ -135,14 +136,14 @@ class MoveClient(SpunNode):
             After SIGINT or SIGTERM; a motion in progress has been canceled.
 
         """
-        self.wait_for_all(self._motions.missing)
+        self.wait_for_all(self._missing)
         if bag is not None:
             self.wait(run_recorder(self, bag).is_connected, 'the topics to record')
         config = self._planner_config(task)
         asked = self._from_here(task, config)
 
         def planned(motion: Motion) -> None:
-            self._record.clear()
+            self._record.begin()
             print(planned_text(motion.response, task.planner_id or config.default_planner_id),
                   flush=True)
 
@@ -151,6 +152,14 @@ class MoveClient(SpunNode):
         if motion.end is None or motion.end.code != EndCode.SUCCESS:
             raise StartError(_reason(motion, asked))
         return self._recorded_run(task, asked, config, motion)
+
+    def _missing(self) -> list[str]:
+        """Return what a motion needs; with other controllers where the one asked for is not."""
+        found, action = self._motions.missing(), self._motions.action
+        others = [name for name, types in get_action_names_and_types(self)
+                  if TYPE in types and self.count_publishers(f'{name}/_action/feedback')]
+        return [f'{text[:-1]}; there is {", ".join(sorted(others))})' if others and action in text
+                else text for text in found]
 
     def _missing_to_plan(self, grace: float) -> list[str]:
         """Return what a plan needs; the arm's state only if somebody publishes it."""

@@ -44,14 +44,15 @@ class StateRecord:
     def __init__(self, node: Node, controller: str) -> None:
         self._measured: list[JointState] = []
         self._of_controller: list[JointState] = []
+        self._begun = False
+        node.create_subscription(JointState, 'joint_states', self._take, QOS)
         node.create_subscription(
-            JointState, 'joint_states', self._measured.append, QOS)
-        node.create_subscription(
-            JointTrajectoryControllerState, f'{controller}/controller_state', self._take,
-            QOS)
+            JointTrajectoryControllerState, f'{controller}/controller_state',
+            self._take_of_controller, QOS)
 
-    def clear(self) -> None:
-        """Forget all states."""
+    def begin(self) -> None:
+        """Keep states from now on, and forget those before."""
+        self._begun = True
         self._measured.clear()
         self._of_controller.clear()
 
@@ -92,8 +93,13 @@ class StateRecord:
         latest = self._measured[-1:] or self._of_controller[-1:]
         return bool(latest) and nanoseconds(latest[0].header.stamp) >= stamp
 
-    def _take(self, message: JointTrajectoryControllerState) -> None:
+    def _take(self, message: JointState) -> None:
+        if self._begun:
+            self._measured.append(message)
+
+    def _take_of_controller(self, message: JointTrajectoryControllerState) -> None:
         """Keep what a controller has measured."""
-        self._of_controller.append(JointState(
-            header=message.header, name=message.joint_names, position=message.feedback.positions,
-            velocity=message.feedback.velocities))
+        if self._begun:
+            self._of_controller.append(JointState(
+                header=message.header, name=message.joint_names,
+                position=message.feedback.positions, velocity=message.feedback.velocities))

@@ -70,6 +70,17 @@ def test_arm_goes_through_taught_positions_from_where_it_is(arm, tmp_path):
     arm.actual.wait_for_next(at(START + (0.1, 0.0, 0.0)))
 
 
+def test_one_via_point_is_enough_and_one_where_the_arm_is_too(arm, tmp_path):
+    (tmp_path / 'one.csv').write_text(JOINTS + line(GOAL))
+    for at_it in (False, True):
+        code, output, errors = moved('one.csv', cwd=tmp_path)
+        assert (code, errors) == (0, '')
+        (index, time, error), = via_rows(output)
+        assert (index, time > 0.0) == (0, not at_it)
+        assert error < 1.0
+        arm.actual.wait_for_next(at(GOAL))
+
+
 def test_arm_at_the_first_via_point_starts_there(arm, tmp_path):
     code, output, errors = moved('from_here.yaml', '--planner', 'time_optimal', cwd=tmp_path)
     assert (code, errors) == (0, '')
@@ -122,7 +133,8 @@ def test_refusal_after_a_via_point_that_is_left_out_says_how_the_others_are_coun
 
 def test_what_is_not_there_is_waited_for_by_name_until_a_signal(tmp_path):
     with move('taught.csv', '--controller', '/nope', cwd=tmp_path) as process:
-        process.read_until('waiting for the controller (action /nope/follow_joint_trajectory) ...')
+        process.read_until('waiting for the controller (action /nope/follow_joint_trajectory; '
+                           'there is /simulated_arm/follow_joint_trajectory) ...')
         assert seconds_to_end(process, signal.SIGTERM) < 2.0
         assert process.ended()[0] == 0
 
