@@ -21,7 +21,6 @@ from difflib import get_close_matches
 from math import radians
 import os
 from pathlib import Path
-import re
 from typing import Any, NamedTuple
 
 from rrr_traj_planner.core.arm.limits import NO_RANGE
@@ -92,7 +91,7 @@ def read_joint_limits(path_or_text: str | os.PathLike[str],
 
 
 class _Loader(Loader):
-    """YAML with MoveIt's tags of angles and 1e3 for a number; without keys that repeat."""
+    """YAML with MoveIt's tags of angles; without keys that repeat."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         """
@@ -116,7 +115,7 @@ class _Loader(Loader):
     def construct_angle(self, node: yaml.Node) -> float:
         """Return the number behind !radians or !degrees [rad]."""
         try:
-            number = float(self.construct_scalar(node))
+            number = self.construct_float(node)
         except ValueError:
             raise ConstructorError(
                 None, None, f'{quoted(node.value)} is not a number', node.start_mark) from None
@@ -125,9 +124,6 @@ class _Loader(Loader):
 
 _Loader.add_constructor('!radians', _Loader.construct_angle)
 _Loader.add_constructor('!degrees', _Loader.construct_angle)
-_Loader.add_implicit_resolver(
-    'tag:yaml.org,2002:float', re.compile(r'[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$'),
-    list('-+.0123456789'))
 
 
 def _content(text: str) -> Any:

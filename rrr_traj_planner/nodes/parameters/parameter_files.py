@@ -22,7 +22,7 @@ import re
 from typing import Any
 
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.parameters.yaml_loader import Loader
+from rrr_traj_planner.nodes.parameters.yaml_loader import RosLoader
 import yaml
 
 # Sections that apply to the planner node; values of later ones take precedence.
@@ -164,14 +164,15 @@ def _sections(file: Path, node: str) -> Iterator[Any]:
             else:
                 yield from sections(value, f'{path}/{str(key).strip("/")}')
 
-    for path, values in sections(yaml.load(file.read_text(), Loader), ''):
+    content = yaml.load(file.read_text(), RosLoader)  # noqa: S506, a SafeLoader
+    for path, values in sections(content, ''):
         if re.fullmatch(re.escape(path).replace(r'\*\*', '.*').replace(r'\*', '[^/]*'), node):
             yield values
 
 
 def _values(file: Path) -> dict[str, Any]:
     """Return a file's parameters by their full names, with dots."""
-    content = yaml.load(file.read_text(), Loader)
+    content = yaml.load(file.read_text(), RosLoader)  # noqa: S506, a SafeLoader
     found: dict[str, Any] = {}
     for node in NODES:
         part = content.get(node) if isinstance(content, dict) else None

@@ -27,7 +27,7 @@ from rrr_traj_planner.nodes.parameters.parameter_files import (
     NODES,
     planner_values,
 )
-from rrr_traj_planner.nodes.parameters.yaml_loader import Loader
+from rrr_traj_planner.nodes.parameters.yaml_loader import RosLoader
 import yaml
 
 PARAMETER = ('-p', '--param')
@@ -81,7 +81,8 @@ def parameters_in(ros_arguments: Sequence[str]) -> Iterator[tuple[dict[str, Any]
     for node, name, text in _assigned(ros_arguments):
         if not node or node.strip('/') in nodes:
             try:
-                yield {name: yaml.load(text, Loader)}, Path.cwd()
+                content = yaml.load(text, RosLoader)  # noqa: S506, a SafeLoader
+                yield {name: content}, Path.cwd()
             except yaml.YAMLError as error:
                 raise InvalidInputError(
                     f'parameter {name}: {" ".join(str(error).split())}') from None

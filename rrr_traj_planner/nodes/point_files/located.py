@@ -124,7 +124,7 @@ class Located(NamedTuple):
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             hint = ''
             if isinstance(value, str) and is_number(value):
-                hint = ' (YAML reads 1e-3 and quoted numbers as text: write 1.0e-3)'
+                hint = ' without quotation marks'
             raise self.error(f'is {shown(value)}, must be a number{hint}')
         if abs(value) > LARGEST or value != value:
             raise self.error(f'is {shown(value)}, must be finite')

@@ -91,8 +91,10 @@ def test_durations_are_read(here):
     ('via_points: [[1.0, 2.0, 3.0, 4.0]]\n', ': 4.0 is too many'),
     ('via_points: [[1.0, 2.0, 3.0, 4.0, 5.0]]\n', ': 4.0, 5.0 are too many'),
     ('via_points: [[1.0, 2.0, x]]\n', "via_points[0][2] is 'x', must be a number"),
-    ('via_points: [[1.0, 1e-3, 3.0]]\n', "via_points[0][1] is '1e-3', must be a number (YAML "
-     'reads 1e-3 and quoted numbers as text: write 1.0e-3)'),
+    ('via_points: [[1.0, "1e-3", 3.0]]\n', "via_points[0][1] is '1e-3', must be a number without "
+     'quotation marks'),
+    ('via_points: [[1.0, 1:30, 3.0]]\n', "via_points[0][1] is '1:30', must be a number"),
+    ('via_points: [[1.0, 1_000, 3.0]]\n', "via_points[0][1] is '1_000', must be a number"),
     ('via_points: [[1.0, true, 3.0]]\n', 'via_points[0][1] is True, must be a number'),
     ('via_points: [[1.0, , 3.0]]\n', 'line 1: while parsing a flow node, expected the node '
      'content, but found '),
