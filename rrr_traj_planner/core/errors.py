@@ -223,6 +223,29 @@ def format_distinct(value: float, *bounds: float, digits: int = 6) -> tuple[str,
     return tuple(f'{float(x):.{MOST_DIGITS}g}' for x in numbers)
 
 
+def did_you_mean(*names: str, by: str = '') -> str:
+    """
+    Return the question whether something else was meant, for messages.
+
+    Parameters
+    ----------
+    *names : str
+        What may have been meant.
+    by : str
+        What was written, where the message does not begin with it.
+
+    Returns
+    -------
+    str
+        The question; empty without names.
+
+    """
+    if not names:
+        return ''
+    return ('did you mean ' + ' or '.join(f'"{name}"' for name in names)
+            + (f' by "{by}"' if by else '') + '?')
+
+
 def counted(count: int, singular: str, plural: str = '') -> str:
     """
     Return a number with what it counts, for messages.

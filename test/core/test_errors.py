@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rrr_traj_planner.core.errors import counted, format_distinct, quoted
+from rrr_traj_planner.core.errors import counted, did_you_mean, format_distinct, quoted
 
 
 @pytest.mark.parametrize(('text', 'shown'), [
@@ -63,3 +63,10 @@ def test_digits_are_few_where_few_suffice_or_there_is_nothing_to_tell():
     (3, ('velocity', 'velocities'), '3 velocities')])
 def test_what_is_counted_is_in_the_singular_where_it_is_one(count, nouns, text):
     assert counted(count, *nouns) == text
+
+
+def test_what_may_have_been_meant_is_asked():
+    assert did_you_mean() == ''
+    assert did_you_mean('dwell') == 'did you mean "dwell"?'
+    assert did_you_mean('a.x', 'b.x', 'c.x') == 'did you mean "a.x" or "b.x" or "c.x"?'
+    assert did_you_mean('elbow', by='elbo') == 'did you mean "elbow" by "elbo"?'

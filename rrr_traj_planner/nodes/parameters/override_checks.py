@@ -21,7 +21,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from rrr_traj_planner.core.arm.model import JOINT_NAMES
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import did_you_mean, InvalidInputError
 from rrr_traj_planner.nodes.parameters.table import ARM, MOTION, PLANNER, rows_of
 
 KINDS = ('velocity', 'acceleration', 'jerk', 'effort')  # of limits, in names of parameters
@@ -80,9 +80,9 @@ def unused_warnings(given: Collection[str], joint_names: Sequence[str]) -> list[
     known, texts = _known(joint_names), []
     for name in given:
         if name not in known and _group(name) not in (*map(_group, known), *ROS_PARAMETERS):
-            meant = ' or '.join(_similar(name, known))
+            question = did_you_mean(*_similar(name, known))
             texts.append(f'parameter {name} is used by no node'
-                         + (f'; is {meant} meant?' if meant else ''))
+                         + (f'; {question}' if question else ''))
     return texts
 
 

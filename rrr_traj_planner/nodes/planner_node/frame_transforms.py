@@ -28,8 +28,18 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import quoted, RrrPlannerError
 from std_msgs.msg import Header
 
-NO_TF2 = ('transforms need the Python package tf2_ros (apt: ros-jazzy-tf2-ros-py), which cannot '
-          'be imported')
+# Each says what to do, about a frame and the base frame.
+GIVEN = 'via_points are in frame {frame}'
+NO_TF2 = (GIVEN + ', which is not the base frame {base}: give them in {base}, or install tf2_ros (apt: '
+          'ros-jazzy-tf2-ros-py) for their transform (it cannot be imported: {why})')
+NO_TRANSFORM = (GIVEN + ', and no transform to the base frame {base} has arrived in {time:g} s: give '
+                'them in {base}, or publish the transform on /tf or /tf_static (tf2: {why})')
+BEFORE_ZERO = (GIVEN + ', which is not the base frame {base}, with the stamp {time} s: give them in '
+               '{base}, or the stamp 0, for the latest transform')
+NO_ROTATION = ('the transform from frame {frame} to the base frame {base} has the rotation '
+               '({r.x:g}, {r.y:g}, {r.z:g}, {r.w:g}), norm {norm:g}, and the translation ({t.x:g}, '
+               '{t.y:g}, {t.z:g}) m: correct who publishes it, for the norm must be 1 and every '
+               'number finite')
 
 # Norm of a rotation's quaternion, which messages have to six digits or more; chosen.
 UNIT_TOLERANCE = 1e-3
@@ -83,14 +93,13 @@ class FrameTransforms:
         frame = header.frame_id
         if frame in ('', base_frame):
             return None
-        beginning = f"via_points are in frame {quoted(frame)}, not in '{base_frame}'"
+        both = {'frame': quoted(frame), 'base': f"'{base_frame}'"}
         if header.stamp.sec < 0:
-            raise FrameError(
-                f'{beginning}, at {header.stamp.sec} s: the stamp must not be negative')
+            raise FrameError(BEFORE_ZERO.format(time=header.stamp.sec, **both))
         try:
             import tf2_ros
         except ImportError as error:
-            raise FrameError(f'{beginning}: {NO_TF2}: {error}') from None
+            raise FrameError(NO_TF2.format(why=error, **both)) from None
         if self._buffer is None:
             self._buffer = tf2_ros.Buffer()
             self._listener = tf2_ros.TransformListener(self._buffer, self._node)
@@ -99,9 +108,8 @@ class FrameTransforms:
             await in_time(self._node, self._buffer.wait_for_transform_async(*where), timeout)
             return self._buffer.lookup_transform(*where)
         except tf2_ros.TransformException as error:
-            raise FrameError(
-                f'{beginning}, and there is no transform after {timeout:g} s: '
-                f'{" ".join(str(error).split())}') from None
+            raise FrameError(NO_TRANSFORM.format(
+                time=timeout, why=' '.join(str(error).split()), **both)) from None
 
 
 async def in_time(node: Node, future: Future, timeout: float) -> bool:
@@ -165,11 +173,9 @@ def in_base_frame(points: Array, transform: TransformStamped) -> Array:
     axis, shift = np.array((r.x, r.y, r.z)), np.array((t.x, t.y, t.z))
     norm = float(np.hypot(np.linalg.norm(axis), r.w))
     if not abs(norm - 1.0) <= UNIT_TOLERANCE or not np.isfinite(shift).all():
-        raise FrameError(
-            f'the transform from {quoted(transform.child_frame_id)} to '
-            f'{quoted(transform.header.frame_id)} has the rotation ({r.x:g}, {r.y:g}, {r.z:g}, '
-            f'{r.w:g}), norm {norm:g}, and the translation ({t.x:g}, {t.y:g}, {t.z:g}) m; the '
-            'norm must be 1, and every number finite')
+        raise FrameError(NO_ROTATION.format(
+            frame=quoted(transform.child_frame_id), base=quoted(transform.header.frame_id), r=r,
+            t=t, norm=norm))
     axis, w = axis / norm, r.w / norm
     turned = 2.0 * np.cross(axis, points)  # Euler and Rodrigues' formula
     return np.asarray(points + w * turned + np.cross(axis, turned) + shift)

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.errors import InvalidInputError, shown
+from rrr_traj_planner.core.errors import did_you_mean, InvalidInputError, shown
 from rrr_traj_planner.nodes.parameters.yaml_loader import input_error, Loader
 from rrr_traj_planner.nodes.point_files.joint_forms import is_joint_state, ListedJoints
 from rrr_traj_planner.nodes.point_files.located import Located, similar
@@ -74,7 +74,7 @@ def document(text: str) -> dict[str, Any]:
         near = similar(TIPS, list(map(str, root.value)))
         raise InvalidInputError(
             f'no via_points, its fields are {", ".join(map(shown, root.value))}: {NEEDED}'
-            + (f'; is {TIPS} meant by {near}?' if near else ''))
+            + (f'; {did_you_mean(TIPS, by=near)}' if near else ''))
     fields = root.fields((*FIELDS, *MESSAGE_FIELDS))
     return {**_of_messages([_without(root, FIELDS)]), **_others(fields)}
 

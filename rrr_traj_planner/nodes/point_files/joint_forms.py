@@ -20,7 +20,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import counted, shown
+from rrr_traj_planner.core.errors import counted, did_you_mean, shown
 from rrr_traj_planner.nodes.point_files.located import Located, similar
 
 FORMS = ('a list of joint positions in rad, a mapping of joint names to positions, or a '
@@ -126,5 +126,5 @@ def _in_order(point: Located, names: list[str], positions: list[float],
         if names.count(joint) != 1:
             near = similar(joint, [name for name in names if name not in joint_names])
             raise point.error(f'names {", ".join(names)}, must name {joint} once'
-                              + (f': is it meant by {near}?' if near else ''))
+                              + (f'; {did_you_mean(joint, by=near)}' if near else ''))
     return [found[joint] for joint in joint_names]

@@ -21,7 +21,7 @@ from difflib import get_close_matches
 import sys
 from typing import Any, NamedTuple
 
-from rrr_traj_planner.core.errors import InvalidInputError, shown
+from rrr_traj_planner.core.errors import did_you_mean, InvalidInputError, shown
 import yaml
 
 LARGEST = sys.float_info.max
@@ -168,7 +168,7 @@ def meant(name: str, known: Collection[str]) -> str:
 
     """
     near = similar(name, known)
-    return f' (is {near} meant?)' if near else ''
+    return f' ({did_you_mean(near)})' if near else ''
 
 
 def similar(name: str, others: Collection[str], least: float = SIMILARITY) -> str:

@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.errors import InvalidInputError, shown
+from rrr_traj_planner.core.errors import did_you_mean, InvalidInputError, shown
 from rrr_traj_planner.nodes.point_files.located import is_number, similar
 from rrr_traj_planner.nodes.point_files.point_forms import AXES, difference
 
@@ -226,7 +226,7 @@ def _joints(found: _Table, joint_names: Sequence[str]) -> Array:
         near = similar(joint, others)
         columns.append(found.column(
             (joint, f'{joint}{POSITION}'), f'{joint} (or x, y and z)'
-            + (f': is it meant by {near}?' if near else '')))
+            + (f'; {did_you_mean(joint, by=near)}' if near else '')))
     return found.values(columns, ANGLES)
 
 
@@ -236,7 +236,7 @@ def _rests(found: _Table) -> dict[str, Any]:
     for name in names:
         near = similar(name.lower(), (STOP_AT, DWELL), SIMILAR)
         if near and name != near:
-            raise InvalidInputError(f'{found.head}: unknown {name} (is {near} meant?)')
+            raise InvalidInputError(f'{found.head}: unknown {name} ({did_you_mean(near)})')
     result: dict[str, Any] = {}
     if STOP_AT in names:
         result[STOP_AT] = _stops(found, found.column([STOP_AT], STOP_AT))

@@ -92,12 +92,12 @@ def test_joints_in_another_order_need_their_own_limits():
 
 
 @pytest.mark.parametrize(('name', 'hint'), [
-    ('foo', ''), ('speed.max', ''), ('sample_priod', '; is sample_period meant?'),
-    ('max_via_point', '; is max_via_points meant?'),
-    ('max_velocty', '; is joint_limits.base.max_velocity or joint_limits.lift.max_velocity or '
-     'joint_limits.bend.max_velocity meant?'),
-    ('base.min_positions', '; is joint_limits.base.min_position meant?'),
-    ('d4', '; is arm.d4 meant?')])
+    ('foo', ''), ('speed.max', ''), ('sample_priod', '; did you mean "sample_period"?'),
+    ('max_via_point', '; did you mean "max_via_points"?'),
+    ('max_velocty', '; did you mean "joint_limits.base.max_velocity" or '
+     '"joint_limits.lift.max_velocity" or "joint_limits.bend.max_velocity"?'),
+    ('base.min_positions', '; did you mean "joint_limits.base.min_position"?'),
+    ('d4', '; did you mean "arm.d4"?')])
 def test_name_that_neither_node_uses_is_warned_of(name, hint):
     known = ['publish_rate', 'sample_period', 'joint_names']  # each of some node
     assert unused_warnings([name, *known, *OWN], NAMES) == [

@@ -18,7 +18,9 @@ from __future__ import annotations
 
 from importlib.util import find_spec
 from math import inf, nan, sqrt
+import sys
 from threading import Event
+from types import SimpleNamespace
 
 from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from helpers.plan_requests import is_refused, patient, plan_request, points_of, TABLE_6_1
@@ -33,7 +35,6 @@ from rrr_traj_planner.nodes.planner_node.frame_transforms import (
     FrameError,
     in_base_frame,
     in_time,
-    NO_TF2,
 )
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
@@ -76,7 +77,8 @@ def test_any_rotation_is_scipy_s():
     ((nan, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0)), ((0.0, 0.0, 0.0, 1.0), (inf, 0.0, 0.0))])
 def test_what_is_no_rotation_and_translation_is_refused(rotation, translation):
     with pytest.raises(FrameError, match=(
-            "^the transform from 'camera' to 'base_link' has the rotation .*; the norm must be")):
+            "^the transform from frame 'camera' to the base frame 'base_link' has the rotation .*: "
+            'correct who publishes it, for the norm must be')):
         in_base_frame(np.zeros((1, 3)), transform(rotation, translation))
 
 
@@ -126,12 +128,36 @@ def test_via_points_in_a_frame_without_transform_are_refused_and_the_node_contin
     request.via_points.header.stamp.sec = stamp
     response = ros.call(PlanTrajectory, 'plan_trajectory', request)
     is_refused(response, CODES.FRAME_TRANSFORM_FAILURE,
-               "via_points are in frame 'camera', not in 'base_link'")
+               "via_points are in frame 'camera', ")
+    assert "the base frame 'base_link'" in response.message
+    assert ": give them in 'base_link', or " in response.message
     if stamp < 0:
-        assert 'the stamp must not be negative' in response.message
+        assert "with the stamp -1 s: give them in 'base_link', or the stamp 0" in response.message
     elif find_spec('tf2_ros') is None:
-        assert f': {NO_TF2}: ' in response.message
+        assert ', or install tf2_ros (apt: ros-jazzy-tf2-ros-py)' in response.message
     assert ros.call(PlanTrajectory, 'plan_trajectory', plan_request()).error_code == CODES.SUCCESS
+
+
+class Buffer:
+    """A tf2 buffer that gets no transform."""
+
+    def wait_for_transform_async(self, *_):
+        return Future()
+
+    def lookup_transform(self, *_):
+        raise KeyError('"camera" passed to lookupTransform\n does not exist.')
+
+
+def test_transform_that_does_not_come_is_told_with_both_frames_and_what_to_do(ros, monkeypatch):
+    monkeypatch.setitem(sys.modules, 'tf2_ros', SimpleNamespace(
+        Buffer=Buffer, TransformListener=lambda *_: None, TransformException=KeyError))
+    ros.add(TrajectoryPlanner(
+        context=ros.context, parameter_overrides=patient(transform_timeout=0.1)))
+    response = ros.call(PlanTrajectory, 'plan_trajectory', plan_request(frame='camera'))
+    is_refused(response, CODES.FRAME_TRANSFORM_FAILURE, (
+        "via_points are in frame 'camera', and no transform to the base frame 'base_link' has arrived "
+        "in 0.1 s: give them in 'base_link', or publish the transform on /tf or /tf_static (tf2: "))
+    assert '"camera" passed to lookupTransform' in response.message
 
 
 def test_via_points_in_another_frame_are_transformed_where_tf2_is_installed(ros):

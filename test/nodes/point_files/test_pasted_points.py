@@ -187,7 +187,7 @@ def test_stops_and_dwells_are_columns_of_a_table(read):
      'line 3: via_points[1] has x, z, must have x, y and z: y is missing'),
     ('via_points:\n  - {x: 1.0, y: 1.0, w: 2.0, z: 1.0}\n', 'line 2: unknown w; known are '),
     ('via_points:\n  - position: {x: 1.0, y: 1.0, z: 1.0}\n    orientatoin: {}\n',
-     'line 3: unknown orientatoin (is orientation meant?); known are x, y, z, position'),
+     'line 3: unknown orientatoin (did you mean "orientation"?); known are x, y, z, position'),
     ('via_points:\n  - position: {x: 1.0, y: .nan, z: 1.0}\n',
      'line 2: via_points[0].position.y is nan, must be finite'),
     ('via_points:\n  - position: [1.0, 2.0, 3.0]\n',
@@ -219,12 +219,12 @@ def test_stops_and_dwells_are_columns_of_a_table(read):
     ('joint_via_points:\n  - {name: [a, b], position: [1.0]}\n',
      'line 2: joint_via_points[0].name has 2 names for 1 position'),
     ('via_point: [[1, 2, 3]]\n', "no via_points, its fields are 'via_point': must have "
-     'via_points: [[x, y, z], ...] in m, or joint_via_points in rad; is via_points '
-     'meant by via_point?'),
+     'via_points: [[x, y, z], ...] in m, or joint_via_points in rad; did you '
+     'mean "via_points" by "via_point"?'),
     (f'via_points: {TIPS}\nstop_at: true\n', 'line 2: stop_at is True, must be a list of '),
     (f'via_points: {TIPS}\nstop_at: [1, 0]\n', 'line 2: stop_at[0] is 1, must be true or false'),
     (f'via_points: {TIPS}\ndwell: [0.0,\n  x]\n', "line 3: dwell[1] is 'x', must be a number"),
-    (f'via_points: {TIPS}\nstopp_at: [true]\n', 'line 2: unknown stopp_at (is stop_at meant?)')])
+    (f'via_points: {TIPS}\nstopp_at: [true]\n', 'line 2: unknown stopp_at (did you mean "stop_at"?)')])
 def test_malformed_points_are_named_with_line_and_key(read, content, text):
     assert refusal(read, content).startswith(text)
 
@@ -234,12 +234,12 @@ def test_malformed_points_are_named_with_line_and_key(read, content, text):
      'joint_via_points[1] is [1, 2], must have 3 numbers: the positions of shoulder, upper, '
      'elbow in rad'),
     ('joint_via_points:\n  - {shoulder: 1, uper: 2, elbow: 3}\n', 'points.yaml', 'line 2: '
-     'joint_via_points[0] names shoulder, uper, elbow, must name upper once: is it meant by '
-     'uper?'),
+     'joint_via_points[0] names shoulder, uper, elbow, must name upper once; did you mean '
+     '"upper" by "uper"?'),
     ('joint_via_points:\n  - {name: [elbow, elbow, upper], position: [1, 2, 3]}\n', 'points.yaml',
      'line 2: joint_via_points[0] names elbow, elbow, upper, must name shoulder once'),
     ('t,shoulder,upper,elbo\n0,1,2,3\n', 'points.csv', 'line 1: the header is t, shoulder, upper, '
-     'elbo, and must name one column elbow (or x, y and z): is it meant by elbo?'),
+     'elbo, and must name one column elbow (or x, y and z); did you mean "elbow" by "elbo"?'),
     ('shoulder,upper,elbow\n1,2,3\n1,,3\n', 'points.csv', 'line 3: upper is missing'),
     ('shoulder [grad],upper,elbow\n1,2,3\n', 'points.csv', 'line 1: the header is shoulder '
      "[grad], upper, elbow, and shoulder is in 'grad': must be in rad, deg, °")])
@@ -252,8 +252,8 @@ def test_joints_that_are_missing_are_named_once_the_arm_is_known(read, content, 
 
 @pytest.mark.parametrize(('content', 'text'), [
     ('x [ft],y,z\n1,2,3\n', "line 1: the header is x [ft], y, z, and x is in 'ft': must be in m"),
-    ('x,y,z,stop\n1,2,3,1\n', 'line 1: the header is x, y, z, stop: unknown stop (is stop_at '),
-    ('x,y,z,dwells\n1,2,3,1\n', 'line 1: the header is x, y, z, dwells: unknown dwells (is '),
+    ('x,y,z,stop\n1,2,3,1\n', 'line 1: the header is x, y, z, stop: unknown stop (did you mean '),
+    ('x,y,z,dwells\n1,2,3,1\n', 'line 1: the header is x, y, z, dwells: unknown dwells (did '),
     ('x,y,z,stop_at\n1,2,3,maybe\n', "line 2: stop_at is 'maybe', must be true or false"),
     ('x,y,z,dwell\n1,2,3,long\n', "line 2: dwell is 'long', must be a number"),
     ('x,y,z,dwell,dwell\n1,2,3,1,1\n', 'line 1: the header is x, y, z, dwell, dwell, and must')])

@@ -108,7 +108,7 @@ def test_durations_are_read(here):
     (POINTS + 'segment_durations: [.nan]\n', 'segment_durations[0] is nan, must be finite'),
     (POINTS + 'segment_durations: 3.0\n', 'line 2: segment_durations is 3.0, must be a list of '
      'numbers'),
-    (POINTS + 'planer_id: x\n', 'line 2: unknown planer_id (is planner_id meant?); known '
+    (POINTS + 'planer_id: x\n', 'line 2: unknown planer_id (did you mean "planner_id"?); known '
      'are planner_id, via_points'),
     (POINTS + 'planner_id: [1]\n', 'planner_id is [1], must be a text'),
     (POINTS + 'arm: 7\n', 'arm is 7, must be a text'),
