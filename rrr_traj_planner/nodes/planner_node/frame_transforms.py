@@ -30,16 +30,16 @@ from std_msgs.msg import Header
 
 # Each says what to do, about a frame and the base frame.
 GIVEN = 'via_points are in frame {frame}'
-NO_TF2 = (GIVEN + ', which is not the base frame {base}: give them in {base}, or install tf2_ros (apt: '
-          'ros-jazzy-tf2-ros-py) for their transform (it cannot be imported: {why})')
-NO_TRANSFORM = (GIVEN + ', and no transform to the base frame {base} has arrived in {time:g} s: give '
-                'them in {base}, or publish the transform on /tf or /tf_static (tf2: {why})')
-BEFORE_ZERO = (GIVEN + ', which is not the base frame {base}, with the stamp {time} s: give them in '
-               '{base}, or the stamp 0, for the latest transform')
+NO_TF2 = (GIVEN + ', which is not the base frame {base}: give them in {base}, or install tf2_ros '
+          '(apt: ros-jazzy-tf2-ros-py) for their transform (it cannot be imported: {why})')
+NO_TRANSFORM = (GIVEN + ', and no transform to the base frame {base} has arrived in {time:g} s: '
+                'give them in {base}, or publish the transform on /tf or /tf_static (tf2: {why})')
+BEFORE_ZERO = (GIVEN + ', which is not the base frame {base}, with the stamp {time} s: give '
+               'them in {base}, or the stamp 0, for the latest transform')
 NO_ROTATION = ('the transform from frame {frame} to the base frame {base} has the rotation '
-               '({r.x:g}, {r.y:g}, {r.z:g}, {r.w:g}), norm {norm:g}, and the translation ({t.x:g}, '
-               '{t.y:g}, {t.z:g}) m: correct who publishes it, for the norm must be 1 and every '
-               'number finite')
+               '({r.x:g}, {r.y:g}, {r.z:g}, {r.w:g}), norm {norm:g}, and the translation '
+               '({t.x:g}, {t.y:g}, {t.z:g}) m: correct who publishes it, for the norm must '
+               'be 1 and every number finite')
 
 # Norm of a rotation's quaternion, which messages have to six digits or more; chosen.
 UNIT_TOLERANCE = 1e-3

@@ -77,8 +77,8 @@ def test_any_rotation_is_scipy_s():
     ((nan, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0)), ((0.0, 0.0, 0.0, 1.0), (inf, 0.0, 0.0))])
 def test_what_is_no_rotation_and_translation_is_refused(rotation, translation):
     with pytest.raises(FrameError, match=(
-            "^the transform from frame 'camera' to the base frame 'base_link' has the rotation .*: "
-            'correct who publishes it, for the norm must be')):
+            "^the transform from frame 'camera' to the base frame 'base_link' has the rotation "
+            '.*: correct who publishes it, for the norm must be')):
         in_base_frame(np.zeros((1, 3)), transform(rotation, translation))
 
 
@@ -155,8 +155,9 @@ def test_transform_that_does_not_come_is_told_with_both_frames_and_what_to_do(ro
         context=ros.context, parameter_overrides=patient(transform_timeout=0.1)))
     response = ros.call(PlanTrajectory, 'plan_trajectory', plan_request(frame='camera'))
     is_refused(response, CODES.FRAME_TRANSFORM_FAILURE, (
-        "via_points are in frame 'camera', and no transform to the base frame 'base_link' has arrived "
-        "in 0.1 s: give them in 'base_link', or publish the transform on /tf or /tf_static (tf2: "))
+        "via_points are in frame 'camera', and no transform to the base frame 'base_link' has "
+        "arrived in 0.1 s: give them in 'base_link', or publish the transform on /tf or "
+        '/tf_static (tf2: '))
     assert '"camera" passed to lookupTransform' in response.message
 
 

@@ -224,7 +224,8 @@ def test_stops_and_dwells_are_columns_of_a_table(read):
     (f'via_points: {TIPS}\nstop_at: true\n', 'line 2: stop_at is True, must be a list of '),
     (f'via_points: {TIPS}\nstop_at: [1, 0]\n', 'line 2: stop_at[0] is 1, must be true or false'),
     (f'via_points: {TIPS}\ndwell: [0.0,\n  x]\n', "line 3: dwell[1] is 'x', must be a number"),
-    (f'via_points: {TIPS}\nstopp_at: [true]\n', 'line 2: unknown stopp_at (did you mean "stop_at"?)')])
+    (f'via_points: {TIPS}\nstopp_at: [true]\n', 'line 2: unknown stopp_at (did you mean '
+     '"stop_at"?)')])
 def test_malformed_points_are_named_with_line_and_key(read, content, text):
     assert refusal(read, content).startswith(text)
 

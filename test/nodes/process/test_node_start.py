@@ -75,7 +75,8 @@ def test_unused_files_and_parameters_are_warned_of(tmp_path):
         line, = planner.read_errors_until('ready')
         assert ': no parameter file, the default arm; ' in line
         lines = planner.read_errors_until('no parameters for this node')
-    assert 'parameter sample_priod is used by no node; did you mean "sample_period"?' in lines[0]
+    assert ('parameter sample_priod is used by no node; did you mean "sample_period"?'
+            ) in lines[0]
     assert (f'parameter file {file} has no parameters for this node, '
             '/trajectory_planner') in lines[1]
 
