@@ -188,8 +188,8 @@ class Motions:
                 EndCode.COMMUNICATION_FAILURE, f'not there: {", ".join(missing)}'))
 
     def _plan(self, motion: Motion, lead: float) -> None:
-        """Ask the planner for a motion from where the arm is."""
-        if motion.end is not None:
+        """Ask the planner for a motion from where the arm is, unless it has been asked."""
+        if motion is not self._next or self._asked_at is not None:
             return
         latest = self.states.latest()
         if latest is None:
@@ -210,7 +210,7 @@ class Motions:
 
     def _planned(self, motion: Motion, begin: Departure, lead: float, answer: Future) -> None:
         """Send a motion to the controller, or tell that the planner refuses."""
-        if motion.end is not None:
+        if motion is not self._next:
             return
         self._asked_at = None
         motion.response = response = answer.result()

@@ -144,8 +144,8 @@ class MoveClient(SpunNode):
 
         def planned(motion: Motion) -> None:
             self._record.begin()
-            print(planned_text(motion.response, task.planner_id or config.default_planner_id),
-                  flush=True)
+            print(planned_text(
+                motion.response, asked.task.planner_id or config.default_planner_id), flush=True)
 
         motion = self._moved(
             asked, config, Watch(planned, ProgressLines(asked.skipped).show), sends=True)
@@ -157,7 +157,8 @@ class MoveClient(SpunNode):
         """Return what a motion needs; with other controllers where the one asked for is not."""
         found, action = self._motions.missing(), self._motions.action
         others = [name for name, types in get_action_names_and_types(self)
-                  if TYPE in types and self.count_publishers(f'{name}/_action/feedback')]
+                  if TYPE in types and name != action
+                  and self.count_publishers(f'{name}/_action/feedback')]
         return [f'{text[:-1]}; there is {", ".join(sorted(others))})' if others and action in text
                 else text for text in found]
 

@@ -25,11 +25,13 @@ from rrr_traj_planner.core.errors import UnreachableError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.nodes.motion.arm_states import ArmState
+from rrr_traj_planner.nodes.motion.motions import IN_MOTION
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.point_files.task import Task
 
 THERE = 'the arm is at via point 0: the motion starts there'
-WAY_TIME = ('the file has no duration for the way to via point 0, which the planner chooses')
+WAY_TIME = 'the file has no duration for the way to via point 0: the planner is to choose it'
+MOVING = f"the arm moves: '{IN_MOTION}' plans from there"
 
 
 class FromHere(NamedTuple):
@@ -85,12 +87,15 @@ def from_here(task: Task, config: PlannerConfig, state: ArmState | None, toleran
     rests = len(task.dwell) and task.dwell[0] > 0.0
     if count > 1 and not rests and q is not None and _is_at(q, task, config, tolerance):
         return FromHere(_without_first(task, count), 1, (THERE,))
-    notes = ()
+    notes: tuple[str, ...] = ()
+    if state.is_moving and not task.planner_id:
+        notes = (MOVING,)
+        task = replace(task, planner_id=IN_MOTION)
     if rests:
         stops = task.stop_at if len(task.stop_at) else np.arange(count) == count - 1
         task = replace(task, stop_at=np.concatenate(([True], stops[1:])))
     if len(task.segment_durations) == count - 1 > 0:
-        notes = (WAY_TIME,)
+        notes = (*notes, WAY_TIME)
         task = replace(task, segment_durations=np.append(np.nan, task.segment_durations))
     return FromHere(task, notes=notes)
 

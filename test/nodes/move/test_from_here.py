@@ -22,7 +22,13 @@ from helpers.plan_requests import NAMES, START, TABLE_6_1
 import numpy as np
 import pytest
 from rrr_traj_planner.nodes.motion.arm_states import ArmState
-from rrr_traj_planner.nodes.move.from_here import from_here, in_base_frame, THERE, WAY_TIME
+from rrr_traj_planner.nodes.move.from_here import (
+    from_here,
+    in_base_frame,
+    MOVING,
+    THERE,
+    WAY_TIME,
+)
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
 from rrr_traj_planner.nodes.point_files.reading import read_task
@@ -67,13 +73,20 @@ def test_so_is_a_joint_position(task):
 
 @pytest.mark.parametrize('at', [
     state(START + (0.0, 0.011, 0.0)),            # it is elsewhere
-    state(qd=(0.0, 0.1, 0.0)),                   # it moves
     ArmState({'joint_1': (0.5, 0.0, 0.0)}, 0),   # it is known in part
     None])
 def test_an_arm_elsewhere_goes_to_the_first_via_point(task, at):
     found = asked(task, at)
     assert (found.skipped, found.task.via_points.tolist(), found.notes) == (
         0, task.via_points.tolist(), ())
+
+
+def test_an_arm_that_moves_needs_the_planner_that_starts_in_motion(task):
+    at = state(qd=(0.0, 0.1, 0.0))
+    found = asked(replace(task, planner_id=''), at)
+    assert (found.skipped, found.task.planner_id, found.notes) == (0, 'time_optimal', (MOVING,))
+    found = asked(replace(task, planner_id='cycloid'), at)  # which refuses
+    assert (found.task.planner_id, found.notes) == ('cycloid', ())
 
 
 def test_via_points_that_cannot_be_compared_are_all_asked_for(task):
