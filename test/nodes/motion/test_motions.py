@@ -49,7 +49,10 @@ class Controller:
     def _measure(self):
         self._states.publish(JointState(  # with a gripper, which is not planned for
             header=self._stamp(), name=['gripper', *reversed(NAMES)],
-            position=[0.0, *reversed(self.position)], velocity=[]))
+            position=[0.0, *reversed(self.position)], velocity=self._velocity()))
+
+    def _velocity(self):
+        return []
 
     def _stamp(self):
         message = JointState()
@@ -64,6 +67,34 @@ class Controller:
         self.goals.append(handle.request.trajectory)
         self.position = list(self.goals[-1].points[-1].positions)
         self.server.end(handle, SUCCEEDED, FollowJointTrajectory.Result())
+
+
+class Reluctant(Controller):
+    """A controller of an arm in motion: it rejects a goal, and takes its time for the next."""
+
+    VELOCITY = [0.0, 0.0, 0.0, 0.02]  # rad/s
+    DURATION = 0.5                    # s, in which other plans would arrive
+
+    def __init__(self, ros):
+        super().__init__(ros)
+        self.asked = 0
+
+    def _velocity(self):
+        return self.VELOCITY
+
+    def _check(self, goal):
+        self.asked += 1
+        if self.asked == 1:
+            raise RefusedGoal(FollowJointTrajectory.Result())
+
+    def _begin(self, handle, _):
+        self.goals.append(handle.request.trajectory)
+
+        def end():
+            timer.cancel()
+            self.server.end(handle, SUCCEEDED, FollowJointTrajectory.Result())
+
+        timer = self.node.create_timer(self.DURATION, end)
 
 
 @pytest.fixture
@@ -94,6 +125,16 @@ def test_rejection_without_a_reason_is_told(ros, ended_in_order):
     result = MoveClient(ros).run(move_goal(TABLE_6_1[1]))[1]
     assert (result.error_code, result.message) == (
         Result.CONTROL_FAILED, 'the controller has rejected the trajectory; its log says why')
+
+
+def test_a_rejected_goal_of_an_arm_in_motion_is_planned_again_by_one_plan_at_a_time(
+        ros, ended_in_order):
+    ended_in_order.append(controller := Reluctant(ros))
+    start_planner(ros)
+    start_motion_server(ros, controller_name='other')
+    result = MoveClient(ros).run(move_goal(TABLE_6_1[1]))[1]
+    assert (result.error_code, result.message) == (Result.SUCCESS, '')
+    assert (controller.asked, len(controller.goals)) == (2, 1)
 
 
 def test_nothing_is_sent_where_the_arm_has_moved_since_the_plan(ros, ended_in_order):
