@@ -18,8 +18,11 @@ setup:  ## ROS 2 Jazzy, Python packages and the build, unless they are there
 demo: setup  ## plan a motion through via points and run it on the simulated arm; options in ARGS
 	@$(in_env) demo $(ARGS)
 
+# Its rules are those of flake8, which `lint` has just run; `colcon test` runs it.
+CHECKED_BY_LINT := test/test_ament_linters.py::test_code_is_as_ament_flake8_wants_it
+
 test: lint  ## linters and every test; options for pytest in ARGS
-	@$(in_env) python -m pytest -n $(WORKERS) --dist loadfile $(ARGS)
+	@$(in_env) python -m pytest -n $(WORKERS) --dist loadfile --deselect $(CHECKED_BY_LINT) $(ARGS)
 
 lint: setup  ## ruff, flake8 with ament_flake8's rules, mypy on the core and the planners
 	@$(in_env) ruff check && python -m flake8 && mypy

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from configparser import ConfigParser
 from pathlib import Path
+import subprocess
 
 from helpers.places import ROOT
 import pytest
@@ -41,6 +42,16 @@ def test_make_lint_has_the_rules_of_ament_flake8():
     package = Path(pytest.importorskip('ament_flake8').__file__).parent
     theirs = flake8_rules(package / 'configuration' / 'ament_flake8.ini')
     assert flake8_rules(ROOT / '.flake8') == theirs
+
+
+def test_make_test_leaves_out_ament_flake8_alone_since_it_runs_flake8():
+    commands = subprocess.run(
+        ['make', '--dry-run', '--always-make', 'test'], cwd=ROOT, text=True, capture_output=True,
+        check=True).stdout
+    assert commands.count('flake8') == 2 and commands.count('python -m flake8 ') == 1
+    assert commands.count('--deselect') == 1
+    name = test_code_is_as_ament_flake8_wants_it.__name__
+    assert f' --deselect {Path(__file__).relative_to(ROOT)}::{name} ' in commands
 
 
 def test_docstrings_are_as_ament_pep257_wants_them():
