@@ -123,6 +123,21 @@ class _Table(NamedTuple):
             for row in self.rows])
 
 
+class _TableJoints:
+    """The joint positions in a table, in the order of an arm's joints on request."""
+
+    def __init__(self, found: _Table) -> None:
+        self._found = found
+
+    def __len__(self) -> int:
+        """Return the number of via points."""
+        return len(self._found.rows)
+
+    def __call__(self, joint_names: Sequence[str]) -> Array:
+        """Return joint positions [rad]."""
+        return _joints(self._found, joint_names)
+
+
 def table(text: str) -> dict[str, Any]:
     """
     Return the content of a table of comma-separated values.
@@ -153,7 +168,7 @@ def table(text: str) -> dict[str, Any]:
     elif any(column.name in AXES for column in found.columns) or len(found.columns) < 3:
         given = {'via_points': _tips(found)}
     else:
-        given = {'joint_positions': lambda joint_names: _joints(found, joint_names)}
+        given = {'joint_positions': _TableJoints(found)}
     if not found.rows:
         raise InvalidInputError(
             'no via_points, must have a line x, y, z [m], or of joint positions [rad] by a header '

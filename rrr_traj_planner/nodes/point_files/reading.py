@@ -26,12 +26,14 @@ from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.configuration_files import found_file
 from rrr_traj_planner.nodes.point_files.document import document
 from rrr_traj_planner.nodes.point_files.point_tables import table
-from rrr_traj_planner.nodes.point_files.task import JointPositions, Task
+from rrr_traj_planner.nodes.point_files.task import given, JointPositions, Task
+from rrr_traj_planner.planners.request import PlanningRequest
 
 ARM = 'thesis_arm.yaml'  # of files that name none
+ANY_PERIOD = 1e9         # s, a sample_period by which no motion has too many points
 
 
-def read_task(file: str) -> Task:
+def read_task(file: str, *, started: bool = False) -> Task:
     """
     Read a via-point file: YAML, or comma-separated values if its suffix is .csv.
 
@@ -39,6 +41,10 @@ def read_task(file: str) -> Task:
     ----------
     file : str
         A path, or the name of a file in the package's config/ or config/arms/.
+    started : bool
+        Whether the motion starts from a state of the arm, as with the service's start_state: then
+        a single via point is enough, segment_durations begins with the segment from there to the
+        first via point, and the arm rests at the first only if stop_at says so.
 
     Returns
     -------
@@ -48,7 +54,8 @@ def read_task(file: str) -> Task:
     Raises
     ------
     InvalidInputError
-        If the file is missing or malformed; names the file, the line if known, and what is wrong.
+        If the file is missing or malformed, or there are too few via points, or other than one
+        value for each; names the file, the line if known, and what is wrong.
 
     """
     path = found_file(file, Path.cwd())
@@ -56,12 +63,22 @@ def read_task(file: str) -> Task:
         text = path.read_text(encoding='utf-8-sig')
         content = table(text) if path.suffix.lower() == '.csv' else document(text)
         arm = found_file(content.pop('arm', '') or ARM, path.parent)
+        number = len(content.get('joint_positions') or content['via_points'])
+        task = Task(path.stem, content.pop('via_points', np.zeros((0, 3))), arm, **content)
+        _check_counts(task, number, started)
     except (OSError, UnicodeDecodeError, InvalidInputError) as error:
         raise _in_file(path, error) from None
-    task = Task(path.stem, content.pop('via_points', np.zeros((0, 3))), arm, **content)
     if task.joint_positions is None:
         return task
     return replace(task, joint_positions=_named(path, task.joint_positions))
+
+
+def _check_counts(task: Task, number: int, started: bool) -> None:
+    """Refuse what any request with so many via points is refused for, in the same words."""
+    PlanningRequest(
+        np.zeros((number, 3)), np.zeros(3) if started else None, stop_at=given(task.stop_at),
+        dwell=given(task.dwell), segment_durations=given(task.segment_durations),
+        sample_period=ANY_PERIOD)
 
 
 def _named(path: Path, positions: JointPositions) -> JointPositions:

@@ -36,10 +36,10 @@ ECHO_END = '---\n'  # after every message that ros2 topic echo prints
 @pytest.fixture
 def read(tmp_path):
     """Return a function that reads a file of a given content."""
-    def of(content, name='points.yaml'):
+    def of(content, name='points.yaml', **options):
         file = tmp_path / name
         file.write_text(content)
-        return read_task(str(file))
+        return read_task(str(file), **options)
 
     return of
 
@@ -169,10 +169,10 @@ def test_joint_positions_are_read_from_a_table(read, content):
 
 
 def test_units_of_a_table_s_header_are_converted(read):
-    degrees = read('shoulder [deg],upper (°),elbow\n180,90,0.2\n', 'points.csv')
+    degrees = read('shoulder [deg],upper (°),elbow\n180,90,0.2\n', 'points.csv', started=True)
     assert degrees.joint_via_points(NAMES) == pytest.approx(np.array([[pi, pi / 2.0, 0.2]]))
-    assert read('x [mm],y [cm],z [m],dwell [ms]\n1020,59,0.97,250\n',
-                'points.csv').via_points == pytest.approx(np.array([TIPS[0]]))
+    assert read('x [mm],y [cm],z [m],dwell [ms]\n1020,59,0.97,250\n', 'points.csv',
+                started=True).via_points == pytest.approx(np.array([TIPS[0]]))
 
 
 def test_stops_and_dwells_are_columns_of_a_table(read):
@@ -245,7 +245,7 @@ def test_malformed_points_are_named_with_line_and_key(read, content, text):
     ('shoulder [grad],upper,elbow\n1,2,3\n', 'points.csv', 'line 1: the header is shoulder '
      "[grad], upper, elbow, and shoulder is in 'grad': must be in rad, deg, °")])
 def test_joints_that_are_missing_are_named_once_the_arm_is_known(read, content, name, text):
-    task = read(content, name)
+    task = read(content, name, started=True)
     with pytest.raises(InvalidInputError) as caught:
         task.joint_via_points(NAMES)
     assert str(caught.value).endswith(f'{name}: {text}')
@@ -263,4 +263,5 @@ def test_malformed_columns_are_named(read, content, text):
 
 
 def test_other_columns_are_nobody_s_business(read):
-    assert read('x,y,z,state\n1,2,3,open\n', 'points.csv').via_points.tolist() == [[1.0, 2.0, 3.0]]
+    assert read('x,y,z,state\n1,2,3,open\n1,2,4,\n', 'points.csv').via_points.tolist() == [
+        [1.0, 2.0, 3.0], [1.0, 2.0, 4.0]]

@@ -30,9 +30,9 @@ POINTS = np.array([[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]])
 @pytest.fixture
 def read(tmp_path):
     """Return a function that reads the text of a table."""
-    def read_text(text):
+    def read_text(text, **options):
         (tmp_path / 'points.csv').write_text(text)
-        return read_task(str(tmp_path / 'points.csv'))
+        return read_task(str(tmp_path / 'points.csv'), **options)
 
     return read_text
 
@@ -58,7 +58,7 @@ def test_what_the_csv_module_writes_is_read(read):
     csv.writer(joints).writerow(['arm, joint 1', 'b', 'c'])
     csv.writer(joints).writerow([0.1, 0.2, 0.3])
     with pytest.raises(InvalidInputError, match='the header is arm, joint 1, b, c, and must name'):
-        read(joints.getvalue()).joint_via_points(['joint 1', 'b', 'c'])
+        read(joints.getvalue(), started=True).joint_via_points(['joint 1', 'b', 'c'])
 
 
 @pytest.mark.parametrize(('text', 'message'), [
