@@ -96,9 +96,23 @@ class Client:
 
     def pursue(self, trajectory: JointTrajectory) -> Any:
         """Return the handle of a new goal, and the future of its result."""
-        handle = answer(self.action.send_goal_async(
-            FollowJointTrajectory.Goal(trajectory=trajectory)))
-        return handle, handle.get_result_async()
+        return pursued(self._executor, self.action, FollowJointTrajectory.Goal(
+            trajectory=trajectory))
+
+    def cancel(self, handle: Any) -> None:
+        """Cancel a goal."""
+        answer(spun(self._executor, handle.cancel_goal_async))
+
+
+def spun(executor: SingleThreadedExecutor, function: Any, *args: Any) -> Any:
+    """Return what a function returns in the thread that spins: action clients are for that."""
+    return answer(executor.create_task(function, *args))
+
+
+def pursued(executor: SingleThreadedExecutor, action: ActionClient, goal: Any) -> tuple[Any, Any]:
+    """Return the handle of a new goal, and the future of its result."""
+    handle = answer(spun(executor, action.send_goal_async, goal))
+    return handle, spun(executor, handle.get_result_async)
 
 
 def answer(future: Any) -> Any:
@@ -157,7 +171,7 @@ def soak(client: Client, goals: int, rng: np.random.Generator) -> list[str]:
         sleep(float(rng.uniform(0.0, 1.1 * seconds)))
         following = None
         message, _ = trajectory(rng)
-        act = {'cancel': lambda goal=handle: answer(goal.cancel_goal_async()),
+        act = {'cancel': partial(client.cancel, handle),
                'topic': partial(client.topic.publish, message),
                'hold': partial(client.hold.call, Trigger.Request(), timeout_sec=DEADLINE)}
         if kind in act:

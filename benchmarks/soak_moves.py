@@ -46,7 +46,7 @@ from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner_interfaces.action import MoveThrough
 from sensor_msgs.msg import JointState
-from soak_goals import answer, DEADLINE, steps, trajectory
+from soak_goals import answer, DEADLINE, pursued, spun, steps, trajectory
 from trajectory_msgs.msg import JointTrajectory
 
 KINDS = ('cancel', 'next goal', 'refused goal', 'nothing', 'other motion')
@@ -93,8 +93,11 @@ class Client:
         """Return the handle of a new goal, and the future of its result."""
         goal = MoveThrough.Goal()
         goal.via_points.poses = [Pose(position=Point(x=x, y=y, z=z)) for x, y, z in places]
-        handle = answer(self.action.send_goal_async(goal))
-        return handle, handle.get_result_async()
+        return pursued(self._executor, self.action, goal)
+
+    def cancel(self, handle: Any) -> None:
+        """Cancel a goal."""
+        answer(spun(self._executor, handle.cancel_goal_async))
 
     def tip(self) -> Any:
         """Return where the arm's tip is [m]."""
@@ -120,7 +123,7 @@ def soak(client: Client, goals: int, rng: np.random.Generator) -> list[str]:
         following = None
         sleep(float(rng.uniform(0.0, 2.5)))
         if kind == 'cancel':
-            answer(handle.cancel_goal_async())
+            client.cancel(handle)
         elif kind == 'next goal':
             following = places(rng)
             following = following, *client.move(following)

@@ -42,16 +42,21 @@ class GoalClient:
     """Sends goals to an arm; everything is waited for, with a deadline."""
 
     def __init__(self, ros, name='simulated_arm/follow_joint_trajectory'):
+        self._run = ros.run
         self._client = ros.action_client(FollowJointTrajectory, name)
 
     def send(self, message, feedback=None, goal_id=None):
         """Return the handle of a goal; feedback messages are appended to a list."""
         take = None if feedback is None else lambda m: feedback.append(m.feedback)
-        return waited_for(self._client.send_goal_async(message, take, goal_id))
+        return waited_for(self._run(self._client.send_goal_async, message, take, goal_id))
+
+    def result_to_come(self, handle):
+        """Return the future of the response with a goal's result."""
+        return self._run(handle.get_result_async)
 
     def result(self, handle):
         """Return status, code and text of a goal's end, which may be to come."""
-        response = waited_for(handle.get_result_async())
+        response = waited_for(self.result_to_come(handle))
         return response.status, response.result.error_code, response.result.error_string
 
     def run(self, message):
@@ -60,7 +65,7 @@ class GoalClient:
 
     def cancel(self, handle):
         """Ask for a goal's end; return how many goals are canceled."""
-        return len(waited_for(handle.cancel_goal_async()).goals_canceling)
+        return len(waited_for(self._run(handle.cancel_goal_async)).goals_canceling)
 
 
 def waited_for(future):

@@ -40,23 +40,24 @@ class MoveClient:
     """Sends goals to a motion server; everything is waited for, with a deadline."""
 
     def __init__(self, ros, name='move_through'):
+        self._run = ros.run
         self._client = ros.action_client(MoveThrough, name)
 
     def send(self, goal, feedback=None):
         """Return the handle of an accepted goal; feedback is appended to a list."""
         take = None if feedback is None else lambda m: feedback.append(m.feedback)
-        handle = waited_for(self._client.send_goal_async(goal, take))
+        handle = waited_for(self._run(self._client.send_goal_async, goal, take))
         assert handle.accepted
         return handle
 
     def result(self, handle):
         """Return status and result of a goal's end, which may be to come."""
-        response = waited_for(handle.get_result_async())
+        response = waited_for(self._run(handle.get_result_async))
         return response.status, response.result
 
     def result_while(self, handle, go_on):
         """Return the same, calling a function again and again until it is there."""
-        over, future = Event(), handle.get_result_async()
+        over, future = Event(), self._run(handle.get_result_async)
         future.add_done_callback(lambda _: over.set())
         while not over.is_set():
             go_on()
@@ -68,7 +69,7 @@ class MoveClient:
 
     def cancel(self, handle):
         """Ask for a goal's end; return how many goals are canceled."""
-        return len(waited_for(handle.cancel_goal_async()).goals_canceling)
+        return len(waited_for(self._run(handle.cancel_goal_async)).goals_canceling)
 
 
 def joints_of(message):

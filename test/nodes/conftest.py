@@ -92,6 +92,17 @@ class Ros:
         self._executor.create_task(remove_here)
         assert removed.wait(DEADLINE)
 
+    def run(self, function, *args):
+        """
+        Return what a function returns in the thread that spins.
+
+        rclpy's action clients are for that thread: to others an answer may come unexpected.
+        """
+        done, task = Event(), self._executor.create_task(function, *args)
+        task.add_done_callback(lambda _: done.set())
+        assert done.wait(DEADLINE)
+        return task.result()
+
     def listen(self, message_type, topic, qos=10):
         """Return a listener to a topic."""
         return Listener(self.node, message_type, topic, qos)

@@ -36,7 +36,7 @@ BOTH = pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_client_that_waits_for_the_result_gets_it(ros, number):
     with Script(script('simulated_arm')) as arm:
         client = GoalClient(ros)
-        future = client.send(goal(FAR)).get_result_async()
+        future = client.result_to_come(client.send(goal(FAR)))
         ros.listen(JointState, 'joint_states').wait_for(moving)
         arm.process.send_signal(number)
         assert arm.is_over_in(END)
@@ -70,7 +70,8 @@ def test_client_that_never_asks_holds_nothing_up(ros):
 
 def test_signal_to_bringup_aborts_the_goal_too(ros):
     with Script(script('bringup')) as bringup:
-        future = GoalClient(ros).send(goal(FAR)).get_result_async()
+        client = GoalClient(ros)
+        future = client.result_to_come(client.send(goal(FAR)))
         bringup.process.send_signal(signal.SIGTERM)
         assert waited_for(future).result.error_string == TEXT
         assert bringup.is_over_in(END)

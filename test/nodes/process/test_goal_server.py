@@ -85,9 +85,9 @@ class Served(Node):
 def test_result_is_told_to_who_asks_before_and_after_the_end(ros):
     served = Served(ros)
     handle = served.send(Served.GO_ON)
-    early = handle.get_result_async()
+    early = served.client.result_to_come(handle)
     assert served.client.cancel(handle) == 1
-    late = handle.get_result_async()
+    late = served.client.result_to_come(handle)
     for future in (early, late):
         response = waited_for(future)
         assert (response.status, response.result.error_string) == (
@@ -166,7 +166,7 @@ def test_response_that_is_dropped_is_sent_again(ros, monkeypatch):
 def test_goal_that_is_aborted_from_outside_is_told(ros):
     served = Served(ros)
     handle = served.send(Served.GO_ON)
-    future = handle.get_result_async()
+    future = served.client.result_to_come(handle)
     served.create_timer(0.01, lambda: served.begun and served.server.end(
         served.begun.pop()[0], ABORTED, Result(error_string='over')))
     assert waited_for(future).result.error_string == 'over'
