@@ -129,9 +129,10 @@ def soak(client: Client, goals: int, rng: np.random.Generator) -> list[str]:
             following = following, *client.move(following)
         elif kind == 'refused goal':
             _, refused = client.move([(9.0, 9.0, 9.0)])
-            code = answer(refused).result.error_code
-            if code != Result.NO_IK_SOLUTION:
-                failures.append(f'goal {number}: a goal out of reach ended with {code}')
+            found = answer(refused).result
+            if found.error_code != Result.NO_IK_SOLUTION:
+                failures.append(f'goal {number}: a goal out of reach ended with '
+                                f'{found.error_code}: {found.message}')
         response = answer(result)
         end = response.status, response.result.error_code
         counts[(kind, *end)] += 1

@@ -31,6 +31,7 @@ from sensor_msgs.msg import JointState
 
 FRESH = 1.0    # s after its arrival for which a state counts
 MOVING = 0.01  # rad/s, above which an arm moves; the planner's start_state_tolerance
+ROUNDING = 1e-6  # rad/s^2, of a reference at rest
 
 
 class ArmState(NamedTuple):
@@ -51,8 +52,9 @@ class ArmState(NamedTuple):
 
     @property
     def is_moving(self) -> bool:
-        """Return whether any joint moves."""
-        return any(abs(velocity) > MOVING for _, velocity, _ in self.joints.values())
+        """Return whether any joint moves, or is about to."""
+        return any(abs(qd) > MOVING or abs(qdd) > ROUNDING
+                   for _, qd, qdd in self.joints.values())
 
     def at_rest(self) -> ArmState:
         """Return the state without velocities and accelerations."""

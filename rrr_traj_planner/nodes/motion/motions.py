@@ -79,7 +79,7 @@ class Motions:
     Plans and runs motions.
 
     A motion that is asked for while another is in progress takes over from it without a stop; if
-    it is refused, the one in progress goes on.
+    it is refused, the one in progress goes on. One is planned at a time; the newest waits.
 
     Parameters
     ----------
@@ -98,7 +98,8 @@ class Motions:
         self._controller = Controller(node, options.controller, self._continue)
         self.action = self._controller.action
         self.states = ArmStates(node, options.controller)
-        self._next: Motion | None = None  # the newest, before it is sent
+        self._current: Motion | None = None  # before it is sent
+        self._waiting: Motion | None = None  # the newest that is to be planned afterwards
         self._asked_at: float | None = None  # the planner, whose answer is to come
         self._check_timer = node.create_timer(CHECK_PERIOD, self._check, clock=self._steady)
 
@@ -128,7 +129,7 @@ class Motions:
 
     def move(self, request: PlanTrajectory.Request, watch: Watch, sends: bool = True) -> Motion:
         """
-        Plan a motion, and run it; it replaces one that is not sent yet.
+        Plan a motion, and run it; it replaces one whose planning has not begun yet.
 
         Parameters
         ----------
@@ -146,12 +147,10 @@ class Motions:
 
         """
         motion = Motion(request, watch, sends)
-        replaced, self._next = self._next, motion
+        replaced, self._waiting = self._waiting, motion
         if replaced is not None:
-            self._finish(replaced, REPLACED)
-        self._asked_at = None
-        if not self._controller.is_sending:  # else as soon as that is answered
-            self._begin(motion)
+            replaced.finish(REPLACED)
+        self._continue()
         return motion
 
     def cancel(self, motion: Motion) -> None:
@@ -164,7 +163,7 @@ class Motions:
             Nothing happens if it has ended.
 
         """
-        if motion is self._next:
+        if motion in (self._current, self._waiting):
             self._finish(motion, CANCELED)
         else:
             self._controller.cancel(motion)
@@ -176,7 +175,7 @@ class Motions:
 
     def _begin(self, motion: Motion) -> None:
         """Plan a motion as soon as all is there."""
-        if motion.end is not None or motion is not self._next:
+        if motion is not self._current:
             return
         missing = self.missing(motion.sends)
         if not missing:
@@ -188,8 +187,8 @@ class Motions:
                 EndCode.COMMUNICATION_FAILURE, f'not there: {", ".join(missing)}'))
 
     def _plan(self, motion: Motion, lead: float) -> None:
-        """Ask the planner for a motion from where the arm is, unless it has been asked."""
-        if motion is not self._next or self._asked_at is not None:
+        """Ask the planner for a motion from where the arm is."""
+        if motion is not self._current:
             return
         latest = self.states.latest()
         if latest is None:
@@ -210,7 +209,7 @@ class Motions:
 
     def _planned(self, motion: Motion, begin: Departure, lead: float, answer: Future) -> None:
         """Send a motion to the controller, or tell that the planner refuses."""
-        if motion is not self._next:
+        if motion is not self._current:
             return
         self._asked_at = None
         motion.response = response = answer.result()
@@ -242,41 +241,45 @@ class Motions:
             self._again(motion, 2.0 * lead, MotionEnd(EndCode.START_STATE_INVALID, str(error)))
             return
         motion.watch.planned(motion)
-        self._next = None
+        self._current = None
         self._controller.send(motion, partial(self._rejected, motion, begin, lead))
 
     def _again(self, motion: Motion, lead: float, end: MotionEnd) -> None:
         """Plan a motion again a little later; after `RETRY_TIME` it has ended."""
-        if monotonic() > motion.since + RETRY_TIME or motion is not self._next:
+        if monotonic() > motion.since + RETRY_TIME or motion is not self._current:
             self._finish(motion, end)
         else:
             self._later(partial(self._plan, motion, lead))
 
     def _rejected(self, motion: Motion, begin: Departure, lead: float, end: MotionEnd) -> None:
         """End a motion that the controller rejects, or try again if it began at an estimate."""
-        if begin.is_estimate and self._next is None and not motion.canceled:
-            self._next = motion
+        if begin.is_estimate and not motion.canceled:
+            self._current = motion
             self._again(motion, lead, end)
         else:
             motion.finish(end)
 
     def _continue(self) -> None:
-        """Plan the motion that has waited until the one before was accepted or rejected."""
-        if self._next is not None and self._asked_at is None:
-            self._begin(self._next)
+        """Plan the motion that waits, unless one is planned or sent now."""
+        if self._waiting is not None and self._current is None and not self._controller.is_sending:
+            self._current, self._waiting = self._waiting, None
+            self._begin(self._current)
 
     def _finish(self, motion: Motion, end: MotionEnd) -> None:
         """End a motion that is not sent."""
-        if motion is self._next:
-            self._next = self._asked_at = None
+        if motion is self._current:
+            self._current = self._asked_at = None
+        else:
+            self._waiting = None
         motion.finish(end)
+        self._continue()
 
     def _check(self) -> None:
         """End motions for which the planner or the controller has gone."""
-        if self._next is not None and self._asked_at is not None:
+        if self._current is not None and self._asked_at is not None:
             timeout = self.options.planning_timeout
             if not self._planner.service_is_ready() or monotonic() > self._asked_at + timeout:
-                self._finish(self._next, MotionEnd(
+                self._finish(self._current, MotionEnd(
                     EndCode.COMMUNICATION_FAILURE, 'the planner has gone, or has not answered for '
                     f'{timeout:g} s'))
         self._controller.check()
