@@ -21,12 +21,13 @@ from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import UnreachableError
+from rrr_traj_planner.core.errors import InvalidInputError, UnreachableError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.nodes.motion.arm_states import ArmState
 from rrr_traj_planner.nodes.motion.motions import IN_MOTION
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.point_files.reading import read_task
 from rrr_traj_planner.nodes.point_files.task import Task
 
 THERE = 'the arm is at via point 0: the motion starts there'
@@ -52,6 +53,36 @@ class FromHere(NamedTuple):
     task: Task
     skipped: int = 0
     notes: tuple[str, ...] = ()
+
+
+def read_task_from_here(file: str) -> Task:
+    """
+    Read a via-point file for a motion from where the arm is.
+
+    Parameters
+    ----------
+    file : str
+        See `read_task`; one via point is enough. Files for motions that start at the first via
+        point are read too: with a rest there, or without a duration of the way to it.
+
+    Returns
+    -------
+    Task
+        The content.
+
+    Raises
+    ------
+    InvalidInputError
+        If the file is neither; see `read_task`.
+
+    """
+    try:
+        return read_task(file, started=True)
+    except InvalidInputError as error:
+        try:
+            return read_task(file)
+        except InvalidInputError:
+            raise error from None
 
 
 def from_here(task: Task, config: PlannerConfig, state: ArmState | None, tolerance: float

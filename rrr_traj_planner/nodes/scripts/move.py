@@ -77,13 +77,13 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.core.errors import counted
     from rrr_traj_planner.nodes.move.client import MoveClient
     from rrr_traj_planner.nodes.move.dry_run import answer_text
-    from rrr_traj_planner.nodes.point_files.reading import read_task
+    from rrr_traj_planner.nodes.move.from_here import read_task_from_here
     from rrr_traj_planner.nodes.process.node_runner import spin_in_background
     from rrr_traj_planner.nodes.recording.bag import Bag
     from rrr_traj_planner.nodes.runs.answer import refused_text
     from rrr_traj_planner.nodes.runs.table import table
 
-    task = read_task(options.points)
+    task = read_task_from_here(options.points)
     task = replace(task, planner_id=options.planner or task.planner_id)
     with ExitStack() as stack:
         client = stack.enter_context(spin_in_background(

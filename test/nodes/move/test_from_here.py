@@ -21,11 +21,13 @@ from dataclasses import replace
 from helpers.plan_requests import NAMES, START, TABLE_6_1
 import numpy as np
 import pytest
+from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.motion.arm_states import ArmState
 from rrr_traj_planner.nodes.move.from_here import (
     from_here,
     in_base_frame,
     MOVING,
+    read_task_from_here,
     THERE,
     WAY_TIME,
 )
@@ -41,6 +43,17 @@ CONFIG = PlannerConfig.from_values({
 @pytest.fixture(scope='module')
 def task():
     return read_task('table_6_1.yaml')
+
+
+def test_files_for_either_start_are_read(tmp_path):
+    two, file = 'via_points: [[1.0, 0.6, 1.0], [1.0, 0.5, 1.0]]\n', tmp_path / 'points.yaml'
+    for text in ('via_points: [[1.0, 0.6, 1.0]]\n', two + 'segment_durations: [2.0]\n',
+                 two + 'segment_durations: [1.0, 2.0]\n', two + 'dwell: [0.5, 0.5]\n'):
+        file.write_text(text)
+        assert len(read_task_from_here(str(file)).via_points) in (1, 2)
+    file.write_text(two + 'segment_durations: [1.0, 2.0, 3.0]\n')
+    with pytest.raises(InvalidInputError, match='3 segment_durations given for 2 segments'):
+        read_task_from_here(str(file))
 
 
 def state(q=START, qd=(0.0, 0.0, 0.0)):
