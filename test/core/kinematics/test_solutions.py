@@ -51,7 +51,7 @@ def distance(q, other):
 
 def distance_from(arm, point, start):
     """Return the tip's least distance from a point that a search finds [m]."""
-    search = least_squares(lambda q: forward_kinematics(arm, q) - point, start,
+    search = least_squares(lambda q: forward_kinematics(arm, q) - point, start, method='lm',
                            jac=lambda q: jacobian(arm, q), xtol=1e-12, ftol=1e-14)
     return np.sqrt(2.0 * search.cost)
 
