@@ -26,6 +26,7 @@ from rrr_traj_planner.core.path.design import line_arc, line_polynomial
 from rrr_traj_planner.core.path.workspace_check import check_workspace
 
 REGULAR = 0.02  # of the arm's size: least singular value along a path that is far from singular
+REACHED = 1e-13  # of the arm's size: Newton's steps go no nearer than rounding
 
 
 def arm_path_in(model, limits, path, elbow='up', shoulder='front', start=None):
@@ -34,13 +35,16 @@ def arm_path_in(model, limits, path, elbow='up', shoulder='front', start=None):
     return check_workspace(model, limits, path, first, start)
 
 
-def continued(model, path, first, steps=1500):
+def continued(model, path, first, steps=1000):
     """Return path coordinates and joint positions by Newton's method in small equal steps."""
     s = np.linspace(0.0, path.length, steps)
     q, found = np.array(first, dtype=float), []
     for p in path(s)[0]:
         for _ in range(4):
-            q = q + np.linalg.solve(jacobian(model, q), p - forward_kinematics(model, q))
+            miss = p - forward_kinematics(model, q)
+            if np.abs(miss).max() <= REACHED * model.chain.size:
+                break
+            q = q + np.linalg.solve(jacobian(model, q), miss)
         found.append(q)
     return s, np.array(found)
 

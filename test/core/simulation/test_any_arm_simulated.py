@@ -86,8 +86,7 @@ def test_unactuated_chain_keeps_its_energy_for_ten_seconds(seed):
         assert abs(energy(arm, state) - before) <= BALANCE * scale
 
 
-@pytest.mark.parametrize('width', [0.0, 0.2])
-@pytest.mark.parametrize('seed', SEEDS)
+@pytest.mark.parametrize(('seed', 'width'), [(0, 0.2), (1, 0.0), (2, 0.2), (3, 0.0)])
 def test_work_is_energy_and_losses_with_friction_and_stops(seed, width):
     arm, rng = with_friction(random_arm(seed), seed), np.random.default_rng(seed)
     soft = SoftStops(width, 3000.0, 0.3)

@@ -227,8 +227,7 @@ def test_next_to_no_friction_is_no_friction():
 # Energy
 
 
-@pytest.mark.parametrize('width', [0.0, 0.2])
-@pytest.mark.parametrize('seed', range(4))
+@pytest.mark.parametrize(('seed', 'width'), [(0, 0.2), (1, 0.0), (2, 0.2), (3, 0.0)])
 def test_work_is_energy_and_losses_for_ten_seconds(seed, width):
     rng = np.random.default_rng(seed)
     soft = SoftStops(width, 3000.0, 0.3)

@@ -214,8 +214,7 @@ def test_features_that_are_off_change_no_bit():
     assert arms[0].ledger.motors == pytest.approx(arms[1].ledger.motors, rel=1e-12)
 
 
-@pytest.mark.parametrize('width', [0.0, 0.15])
-@pytest.mark.parametrize('seed', range(4))
+@pytest.mark.parametrize(('seed', 'width'), [(0, 0.0), (1, 0.15), (2, 0.15), (3, 0.0)])
 def test_energy_balance_closes_over_ten_seconds_with_everything_on(seed, width):
     rng = np.random.default_rng(seed)
     friction = Friction(rng.uniform(0.5, 5.0, 3), rng.uniform(1.0, 15.0, 3))
