@@ -25,6 +25,10 @@ import pytest
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
 
+# As in every script: threads for matrices as small as these only wait for one another. For NumPy,
+# which nothing may have imported before.
+os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
+
 # A shell ignores SIGINT for what it runs in the background, and so would the scripts under test.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 

@@ -16,8 +16,6 @@
 
 from __future__ import annotations
 
-import os
-
 from helpers import browser
 import numpy as np
 import pytest
@@ -30,7 +28,6 @@ from rrr_traj_planner.report.plan_report import write_plan_report
 from rrr_traj_planner.report.thesis_report import sections, TEXT, thesis_plans, TITLE
 from rrr_traj_planner.report.thesis_tasks import table_6_1
 
-os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
 REFUSAL = ("via point 2: (2, 0, 0.5) m is out of the arm's reach: it misses by 0.4 m; "
            'no_word_of_a_message_that_is_as_long_as_this_one_leaves_the_page_where_it_is_narrow')
 COMPARED = ('cycloid', 'line_arc', 'time_optimal')
