@@ -23,6 +23,7 @@ import sys
 import time
 
 from helpers.places import CONFIG, ROOT
+from helpers.script_calls import script_calls
 import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
@@ -54,6 +55,12 @@ def without(*modules):
     return f'import sys; sys.modules.update(dict.fromkeys({modules!r})); ' + RUN
 
 
+@pytest.fixture(scope='module')
+def called():
+    """Give tests the script without ROS, in one process."""
+    yield from script_calls('report', 'rclpy', 'ament_index_python')
+
+
 def test_plan_is_drawn_without_ros_and_nothing_is_written_elsewhere(tmp_path):
     code, output, errors = ended(report(
         '--plan', 'pick_and_place.yaml', '--planner', 'cycloid', '--planner', 'septic', '--output',
@@ -72,13 +79,12 @@ def test_plan_is_drawn_without_ros_and_nothing_is_written_elsewhere(tmp_path):
                          r'/ 64 Hz: 0\.\d+ / 0\.\d+ / 0\.\d+$', output, re.MULTILINE)
 
 
-def test_plan_of_a_urdf_s_arm_is_drawn(tmp_path):
+def test_plan_of_a_urdf_s_arm_is_drawn(called, tmp_path):
     limits = tmp_path / 'slow.yaml'
     limits.write_text('joint_limits:\n' + ''.join(
         f'  joint_{i}: {{max_velocity: 0.5, max_acceleration: 9.0}}\n' for i in (1, 2, 3)))
-    code, _, errors = ended(report(
-        '--plan', 'go1_leg.yaml', '--joint-limits', limits, '--output', 'out', cwd=tmp_path,
-        code=without('rclpy', 'ament_index_python')))
+    code, _, errors = called(
+        '--plan', 'go1_leg.yaml', '--joint-limits', limits, '--output', 'out', cwd=tmp_path)
     assert (code, errors) == (0, '')
     profile = np.genfromtxt(tmp_path / 'out' / 'profiles_cycloid.csv', delimiter=',', names=True)
     speed = [profile[name] for name in profile.dtype.names if 'velocity' in name]
@@ -86,7 +92,7 @@ def test_plan_of_a_urdf_s_arm_is_drawn(tmp_path):
     assert np.abs(speed).max() == pytest.approx(0.5, abs=1e-3)
 
 
-def test_points_of_a_table_are_planned_for_the_arm_of_ros_arguments(tmp_path):
+def test_points_of_a_table_are_planned_for_the_arm_of_ros_arguments(called, tmp_path):
     """Without ROS; relative paths refer to the parameter file's folder."""
     (tmp_path / 'arms').mkdir()
     (tmp_path / 'arms' / 'own.urdf').write_text(
@@ -97,10 +103,9 @@ def test_points_of_a_table_are_planned_for_the_arm_of_ros_arguments(tmp_path):
     (tmp_path / 'points.csv').write_text('1.2,0.1,1.2\n1.0,0.4,1.3\n')
 
     def peak(*more):
-        code, _, errors = ended(report(
+        code, _, errors = called(
             '--plan', 'points.csv', '--planner', 'cycloid', '--output', 'out', '--ros-args',
-            '--params-file', 'arms/own.yaml', *more, cwd=tmp_path,
-            code=without('rclpy', 'ament_index_python')))
+            '--params-file', 'arms/own.yaml', *more, cwd=tmp_path)
         assert (code, errors) == (0, '')
         profile = np.genfromtxt(tmp_path / 'out' / 'profiles_cycloid.csv', delimiter=',',
                                 names=True)
@@ -117,29 +122,29 @@ def test_points_of_a_table_are_planned_for_the_arm_of_ros_arguments(tmp_path):
     (('-p', 'payload.mas:=1.0'), 'parameter payload.mas is unknown, the nearest known one is '),
     (('-p', 'payload.mass:=[1'), 'report: parameter payload.mass: while parsing'),
     (('--params-file', 'nope.yaml'), 'report: nope.yaml: ')])
-def test_wrong_ros_arguments_are_reported(tmp_path, arguments, text):
-    code, _, errors = ended(report('--plan', 'table_6_1.yaml', '--ros-args', *arguments,
-                                   cwd=tmp_path))
+def test_wrong_ros_arguments_are_reported(called, tmp_path, arguments, text):
+    code, _, errors = called(
+        '--plan', 'table_6_1.yaml', '--ros-args', *arguments, cwd=tmp_path)
     assert code == 1
     assert text in errors
     assert errors.count('\n') == 1
 
 
-def test_refused_plan_is_shown_with_its_reason(tmp_path):
+def test_refused_plan_is_shown_with_its_reason(called, tmp_path):
     (tmp_path / 'heavy.yaml').write_text(HEAVY)
-    code, _, errors = ended(report('--plan', 'heavy.yaml', cwd=tmp_path))
+    code, _, errors = called('--plan', 'heavy.yaml', cwd=tmp_path)
     reason = 'via point 2: joint_2 needs 218.9 N m to hold, limit 200 N m'
     assert code == 1
     assert errors == f'report: planner line_arc refuses: {reason}\n'
     assert f'refused: {reason}' in (tmp_path / 'report_heavy' / 'index.html').read_text()
 
 
-def test_one_refusal_does_not_hide_the_other_plan(tmp_path):
+def test_one_refusal_does_not_hide_the_other_plan(called, tmp_path):
     points = tmp_path / 'timed.yaml'
     points.write_text('via_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n'
                       'segment_durations: [3.0]\n')
-    code, _, errors = ended(report('--plan', points, '--planner', 'cycloid', '--planner',
-                                   'line_arc', '--output', 'o', cwd=tmp_path))
+    code, _, errors = called('--plan', points, '--planner', 'cycloid', '--planner', 'line_arc',
+                             '--output', 'o', cwd=tmp_path)
     page = (tmp_path / 'o' / 'index.html').read_text()
     assert code == 1
     assert 'planner line_arc takes no segment_durations' in errors
@@ -160,8 +165,8 @@ def test_one_refusal_does_not_hide_the_other_plan(tmp_path):
     (('--thesis', 'a', '--planner', 'cycloid'), 2,
      '--planner, --output and --joint-limits go with --plan'),
     (('--thesis', 'a', '--plan', 'b'), 2, 'not allowed with argument')])
-def test_wrong_arguments_are_reported(tmp_path, arguments, code, text):
-    found, _, errors = ended(report(*arguments, cwd=tmp_path))
+def test_wrong_arguments_are_reported(called, tmp_path, arguments, code, text):
+    found, _, errors = called(*arguments, cwd=tmp_path)
     assert found == code
     assert text in errors
     assert 'Traceback' not in errors
@@ -172,11 +177,11 @@ def test_wrong_arguments_are_reported(tmp_path, arguments, code, text):
     ('arm: {d1: 5}', 'arm.d1 is 5, must be in [-100, 100] m (written with a point'),
     ('joint_limits: {joint_3: {max_position: -4.0}}', 'joint_limits.joint_3.min_position is'),
     ('joint_limits: [', 'while parsing')])
-def test_wrong_arm_is_reported_with_its_file(tmp_path, yaml, text):
+def test_wrong_arm_is_reported_with_its_file(called, tmp_path, yaml, text):
     (tmp_path / 'arm.yaml').write_text(f'/**:\n  ros__parameters: {{{yaml}}}\n')
     (tmp_path / 'points.yaml').write_text(
         'arm: arm.yaml\nvia_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n')
-    code, _, errors = ended(report('--plan', 'points.yaml', cwd=tmp_path))
+    code, _, errors = called('--plan', 'points.yaml', cwd=tmp_path)
     assert code == 1
     assert errors.startswith(f'report: {tmp_path}/arm.yaml: ')
     assert 'Traceback' not in errors
@@ -198,7 +203,7 @@ def test_file_without_parameters_of_the_planner_is_refused(tmp_path, text):
         planner_config(tmp_path / 'arm.yaml')
 
 
-def test_arm_of_ones_own_is_used(tmp_path):
+def test_arm_of_ones_own_is_used(called, tmp_path):
     (tmp_path / 'arm.yaml').write_text(
         '/**:\n  ros__parameters:\n    joint_names: [base, shoulder, elbow]\n'
         '    joint_limits: {base: &all {min_position: 0.0, max_position: 3.0, max_jerk: 10.0, '
@@ -207,7 +212,7 @@ def test_arm_of_ones_own_is_used(tmp_path):
         'trajectory_planner:\n  ros__parameters: {default_planner_id: septic}\n')
     (tmp_path / 'points.yaml').write_text(
         'arm: arm.yaml\nvia_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n')
-    code, _, errors = ended(report('--plan', 'points.yaml', '--output', 'o', cwd=tmp_path))
+    code, _, errors = called('--plan', 'points.yaml', '--output', 'o', cwd=tmp_path)
     assert (code, errors) == (0, '')
     text = (tmp_path / 'o' / 'peaks_septic.csv').read_text()
     assert text.startswith('peak,base,shoulder,elbow\n')

@@ -16,49 +16,42 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 from helpers.places import CONFIG, ROOT
+from helpers.script_calls import script_calls
 import pytest
 from rrr_traj_planner.planners.method_summaries import method_summaries
 
-DEADLINE = 60.0  # s
 
-# ROS's own packages cannot be imported.
-RUN = ("import sys; sys.modules.update(dict.fromkeys(('rclpy', 'rcl_interfaces'))); "
-       'from rrr_traj_planner.nodes.scripts.planner import main; sys.exit(main())')
-
-
-def check(*arguments, cwd):
-    return subprocess.run([sys.executable, '-c', RUN, *map(str, arguments)], text=True, cwd=cwd,
-                          capture_output=True, timeout=DEADLINE, check=False)
+@pytest.fixture(scope='module')
+def check():
+    yield from script_calls('planner', 'rclpy', 'rcl_interfaces')
 
 
 @pytest.mark.parametrize('name', ['go1_leg', 'kr16_2_first3', 'puma560_first3', 'tilted_arm',
                                   'trifinger_pro', 'uarm_swift_pro'])
-def test_the_package_s_arms_can_be_planned_for(tmp_path, name):
-    found = check('--check', f'{name}.urdf', '--joint-limits', f'{name}_limits.yaml', cwd=tmp_path)
-    assert (found.returncode, found.stderr) == (0, '')
-    assert found.stdout.startswith(f'{name}.urdf: three joints from link base to link tip\n')
-    assert found.stdout.endswith('this arm can be planned for\n')
-    assert 'no limit' not in found.stdout
+def test_the_package_s_arms_can_be_planned_for(check, tmp_path, name):
+    code, output, errors = check(
+        '--check', f'{name}.urdf', '--joint-limits', f'{name}_limits.yaml', cwd=tmp_path)
+    assert (code, errors) == (0, '')
+    assert output.startswith(f'{name}.urdf: three joints from link base to link tip\n')
+    assert output.endswith('this arm can be planned for\n')
+    assert 'no limit' not in output
 
 
-def test_missing_limits_and_oddities_are_warned_of(tmp_path):
-    found = check('--check', 'puma560_first3.urdf', '--base-frame', 'base', '--tip-frame', 'tip',
-                  cwd=tmp_path)
-    assert found.returncode == 0
-    assert "warning: joint 'joint_1': velocity 1000 rad/s is taken for no limit\n" in found.stdout
-    assert "warning: link 'link_1' has an impossible inertia" in found.stdout
-    assert 'a planner that needs one takes default_max_acceleration, 1.0 rad/s^2' in found.stdout
+def test_missing_limits_and_oddities_are_warned_of(check, tmp_path):
+    code, output, _ = check('--check', 'puma560_first3.urdf', '--base-frame', 'base',
+                            '--tip-frame', 'tip', cwd=tmp_path)
+    assert code == 0
+    assert "warning: joint 'joint_1': velocity 1000 rad/s is taken for no limit\n" in output
+    assert "warning: link 'link_1' has an impossible inertia" in output
+    assert 'a planner that needs one takes default_max_acceleration, 1.0 rad/s^2' in output
 
 
-def test_parameters_beside_the_urdf_count(tmp_path):
+def test_parameters_beside_the_urdf_count(check, tmp_path):
     def held(*more):
-        found = check('--check', 'kr16_2_first3.urdf', *more, cwd=tmp_path)
-        assert (found.returncode, found.stderr) == (0, '')
-        return found.stdout.partition('  joint_1: up to ')[2].partition(' of ')[0]
+        code, output, errors = check('--check', 'kr16_2_first3.urdf', *more, cwd=tmp_path)
+        assert (code, errors) == (0, '')
+        return output.partition('  joint_1: up to ')[2].partition(' of ')[0]
 
     assert held() == '0'  # its axis is vertical
     sideways = held('--ros-args', '-p', 'gravity:=[9.81, 0.0, 0.0]')
@@ -82,14 +75,14 @@ def test_parameters_beside_the_urdf_count(tmp_path):
      'thesis_arm.yaml: /** is unknown'),
     (('--check', CONFIG / 'thesis_arm.yaml'), 1, "no URDF, whose text begins with '<'"),
     (('--tip-frame', 'tip'), 2, '--tip-frame goes with --check; the node has the parameter')])
-def test_refusals_are_one_line(tmp_path, arguments, code, text):
-    found = check(*arguments, cwd=tmp_path)
-    assert (found.returncode, found.stdout) == (code, '')
-    assert text in found.stderr
-    assert found.stderr.count('\n') == 1
+def test_refusals_are_one_line(check, tmp_path, arguments, code, text):
+    found, output, errors = check(*arguments, cwd=tmp_path)
+    assert (found, output) == (code, '')
+    assert text in errors
+    assert errors.count('\n') == 1
 
 
-def test_help_lists_every_planner_id_in_a_line(tmp_path):
-    lines = [line.split(maxsplit=1) for line in check('--help', cwd=tmp_path).stdout.splitlines()]
+def test_help_lists_every_planner_id_in_a_line(check, tmp_path):
+    lines = [line.split(maxsplit=1) for line in check('--help', cwd=tmp_path)[1].splitlines()]
     for planner_id, summary in method_summaries().items():
         assert [planner_id, summary] in lines
