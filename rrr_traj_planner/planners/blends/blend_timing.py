@@ -153,7 +153,7 @@ class _Program:
         """Return the solution of the program with tangents at given times; None if it fails."""
         rates, unit, n = self.unit / at.lines, self.unit, self.n
         self.tangents.append(rates)
-        rows = [self._transitions_fit(rates), *self._times_above_tangents()]
+        rows = [self._transitions_fit(rates), self._times_above_tangents()]
         rows += self._changes_within_limits() if self.transitions is not None else (
             self._long_transitions(rates, at.transitions / unit))
         with np.errstate(divide='ignore'):
@@ -183,10 +183,14 @@ class _Program:
         """Return the constraint that half of both transitions is at most 1 / r, by its tangent."""
         return self._row(sparse.diags(1.0 / rates ** 2), self.halves, None, 2.0 / rates)
 
-    def _times_above_tangents(self) -> list[_Rows]:
+    def _times_above_tangents(self) -> _Rows:
         """Return the constraint that times are at least 1 / r, by its tangents."""
-        return [self._row(sparse.diags(-1.0 / r ** 2), None, -sparse.eye(self.n),
-                          -2.0 / r) for r in self.tangents]
+        r = np.concatenate(self.tangents)
+        line = np.tile(np.arange(self.n), len(self.tangents))
+        by_rate, by_time = (sparse.csr_array(
+            (values, (np.arange(r.size), line)), shape=(r.size, self.n))
+            for values in (-1.0 / r ** 2, np.full(r.size, -1.0)))
+        return self._row(by_rate, None, by_time, -2.0 / r)
 
     def _changes_within_limits(self) -> list[_Rows]:
         """Return the constraint on changes of velocity by transitions of fixed durations."""
