@@ -176,13 +176,12 @@ def nearly_tangent_lines(points: Array, radii: Array, kind: ZoneKind, near: Arra
         miss = _largest(misses)
         if miss <= accuracy.aimed_at * scale or 0.5 * before < miss <= accuracy.tolerance * scale:
             break
-        step = _newton_step(points, radii, kind, lines, basis)
+        step = _newton_step(points, radii, kind, lines, basis, misses)
         better = None if step is None else _damped(
             points, radii, kind, lines, basis, step, miss, accuracy.halvings)
         if better is None:
             break
-        lines, basis, before = better, _basis(better.direction), miss
-        misses = _misses(lines, basis)
+        (lines, basis, misses), before = better, miss
     return lines, np.nan_to_num(np.abs(misses).max(axis=-1) / scale, nan=np.inf)
 
 
@@ -216,27 +215,33 @@ def frames(first: Array, second: Array) -> tuple[Array, Array]:
 
 
 def _damped(points: Array, radii: Array, kind: ZoneKind, lines: Tangents, basis: Array,
-            step: Array, miss: float, halvings: int) -> Tangents | None:
-    """Return the lines after the largest halving of a step that reduces their error, or None."""
+            step: Array, miss: float, halvings: int) -> tuple[Tangents, Array, Array] | None:
+    """
+    Return the lines after the largest halving of a step that reduces their error, or None.
+
+    With the vectors across them, and their misses.
+
+    """
     fraction = min(1.0, LARGEST_STEP / max(float(np.abs(step).max()), 1e-300))
     for _ in range(halvings):
         tried = tangents(points, radii, kind, _turned(lines.direction, basis, fraction * step))
-        if _largest(_misses(tried, _basis(tried.direction))) < miss:
-            return tried
+        across = _basis(tried.direction)
+        misses = _misses(tried, across)
+        if _largest(misses) < miss:
+            return tried, across, misses
         fraction *= 0.5
     return None
 
 
 def _newton_step(points: Array, radii: Array, kind: ZoneKind, lines: Tangents,
-                 basis: Array) -> Array | None:
+                 basis: Array, misses: Array) -> Array | None:
     """Return the Newton step: turns of the lines, shape (n - 1, 2) [rad]; None if singular."""
     n = len(lines.direction)
     turns = np.zeros((COLOURS, 2, n, 2))
     for colour in range(COLOURS):
         turns[colour, :, colour::COLOURS] = np.eye(2)[:, np.newaxis] * DIFFERENCE
     turned = tangents(points, radii, kind, _turned(lines.direction, basis, turns))
-    base = _misses(lines, basis)
-    slope = (_misses(turned, basis) - base) / DIFFERENCE  # colour, turn, line, component
+    slope = (_misses(turned, basis) - misses) / DIFFERENCE  # colour, turn, line, component
     band = np.zeros((2 * BAND + 1, n, 2))  # diagonals of LAPACK's band, by line and turn
     for offset in (-1, 0, 1):  # the turn of a line affects itself and its neighbours
         own = np.arange(max(-offset, 0), n - max(offset, 0))
@@ -247,7 +252,7 @@ def _newton_step(points: Array, radii: Array, kind: ZoneKind, lines: Tangents,
     if not np.isfinite(band).all():
         return None
     try:
-        step = solve_banded((BAND, BAND), band.reshape(2 * BAND + 1, 2 * n), -base.ravel(),
+        step = solve_banded((BAND, BAND), band.reshape(2 * BAND + 1, 2 * n), -misses.ravel(),
                             overwrite_ab=True, overwrite_b=True, check_finite=False)
     except np.linalg.LinAlgError:
         return None
