@@ -139,6 +139,7 @@ def write_thesis_report(folder: Path) -> Path:
         The page.
 
     """
+    folder.mkdir(parents=True, exist_ok=True)  # where that fails, before all the work
     plans = thesis_plans()
     return write_page(folder, TITLE, TEXT, sections(plans))
 
