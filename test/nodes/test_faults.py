@@ -44,7 +44,7 @@ QUIET = ('--ros-args', '--log-level', 'fatal')
 TIMEOUT, SLACK = 1.0, 4.0
 DEADLINE = 30.0
 
-FLOOD_SECONDS, FLOOD_RATE = 10.0, 1000.0
+FLOOD_SECONDS, FLOOD_RATE = 4.0, 1000.0
 
 # Shared memory that one participant writes; that of ports is used by all, whatever their domain.
 OF_ONE_PROCESS = re.compile('fastrtps_[0-9a-f]{16}(_el)?')

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 import re
 
 from helpers.places import ROOT
@@ -44,6 +45,7 @@ def described(name, gravity=(0.0, 0.0, -9.81), **limits):
             'min_position', 'max_position', 'max_velocity', 'max_effort')}, **limits})
 
 
+@cache
 def lines(name, **more):
     return '\n'.join(summary(*described(name, **more)))
 

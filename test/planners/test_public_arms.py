@@ -39,9 +39,9 @@ def requests(name, planner_id, number):
 def test_joint_space_motions_exist_and_keep_every_limit_by_pinocchio(name):
     k = list(ARMS).index(name)
     for planner_id in ('cycloid', 'time_optimal', OTHERS[k % len(OTHERS)]):
-        for request in requests(name, planner_id, 2):
-            found = plan(ARMS[name].model, ARMS[name].limits, request)
-            assert violations(ARMS[name], request, found) == [], planner_id
+        request, = requests(name, planner_id, 1)
+        found = plan(ARMS[name].model, ARMS[name].limits, request)
+        assert violations(ARMS[name], request, found) == [], planner_id
 
 
 @pytest.mark.parametrize('planner_id', PATHS)

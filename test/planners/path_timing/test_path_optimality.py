@@ -44,7 +44,7 @@ from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.splines import LEAST_INTERVALS, Mesh, uniform_mesh, Variables
 from scipy.optimize import minimize, nnls
 
-SEEDS = range(8)
+SEEDS = range(5)
 SAMPLES = 8    # evaluations of the limits in an interval
 BESIDE = 1e-9  # part of a piece, from its ends: one-sided limits
 ROOM = 0.2     # part of a limit; what leaves more can have no multiplier to speak of
