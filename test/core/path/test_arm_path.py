@@ -56,7 +56,7 @@ def arm_paths(name):
     rng = np.random.default_rng(82)
     if elbow is not None:
         return [arm_path_in(arm, FREE, random_path(arm, rng), elbow) for _ in range(3)]
-    return [followed_path(arm, *regular_path(arm, rng)) for _ in range(5)]
+    return [followed_path(arm, *regular_path(arm, rng)) for _ in range(3)]
 
 
 @pytest.mark.parametrize('arm', ARMS)

@@ -80,7 +80,7 @@ def test_path_beyond_the_reach_is_refused_by_as_much_as_a_dense_scan_finds(name)
 def test_verdict_is_that_of_the_least_singular_value_along_small_steps(name):
     arm, rng = ANY_ARM[name], np.random.default_rng(87)
     followed = refused = 0
-    for _ in range(12):
+    for _ in range(8):
         first = regular_path(arm, rng, 2)[1]
         line = forward_kinematics(arm, first) + np.outer((0.0, 1.0), rng.normal(
             0.0, 0.3 * arm.chain.size, 3))

@@ -174,13 +174,13 @@ def test_bumper_holds_a_load_where_its_spring_balances_it_and_does_not_chatter()
     soft = SoftStops(0.1, 2000.0, 0.5)
     physics, state = one_body(viscous=1e-3, q=1.5, w=1.0, bounds=(LOW, HIGH), soft=soft)
     turns, before = 0, 1.0
-    for _ in range(20000):
+    for _ in range(10_000):
         state = advanced(physics, state, (100.0, 0.0, 0.0), 1)
         turns += state[3] * before < 0.0
         before = state[3] or before
     assert state[0] == pytest.approx(HIGH[0] + 100.0 / 2000.0, abs=1e-6)
     assert abs(state[3]) < 1e-6
-    assert turns < 300  # of its 4 Hz: it swings, it does not chatter
+    assert turns < 150  # of its 4 Hz: it swings, it does not chatter
 
 
 def test_bumper_that_is_driven_through_ends_at_the_hard_stop():
@@ -250,10 +250,12 @@ def test_falling_arm_with_friction_never_gains_energy(seed):
     soft = SoftStops(0.1 * (seed % 2), 5000.0, 0.2)
     physics = ArmPhysics(rubbing(random_friction(rng)), LOW, HIGH, soft)
     state = (*rng.uniform(LOW, HIGH).tolist(), *rng.uniform(-3.0, 3.0, 3).tolist())
+    before = energy(state, soft)
     for _ in range(3000):
-        before = energy(state, soft)
         state = advanced(physics, state, (0.0,) * 3, 1)
-        assert energy(state, soft) <= before + 1e-6
+        after = energy(state, soft)
+        assert after <= before + 1e-6
+        before = after
         assert all(low - soft.width <= q <= high + soft.width
                    for q, low, high in zip(state, LOW, HIGH))
     assert state[3:] == (0.0, 0.0, 0.0) or soft.width  # it comes to rest, exactly
