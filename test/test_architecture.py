@@ -16,6 +16,7 @@
 
 import ast
 from collections import Counter
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from importlib import import_module
 from importlib.util import find_spec
@@ -97,6 +98,7 @@ def place_of(module):
     return '.'.join(module.removesuffix('.__init__').split('.')[:3])
 
 
+@cache
 def imports_of_places():
     """Return for each folder, and each module beside folders, those that it imports."""
     found = {}
@@ -105,9 +107,6 @@ def imports_of_places():
         found.setdefault(place_of(module), set()).update(
             place_of(name) for name in names & KNOWN)
     return {place: names - {place} for place, names in found.items()}
-
-
-TREE = imports_of_places()
 
 
 def is_single(place):
@@ -140,25 +139,25 @@ def in_order(imports):
 
 
 def test_folders_and_the_modules_beside_them_import_one_another_without_circles():
-    assert in_order(TREE)
-    assert in_order(by_folders(TREE))
+    assert in_order(imports_of_places())
+    assert in_order(by_folders(imports_of_places()))
 
 
 def test_an_import_of_a_whole_package_is_seen():
-    assert f'{PACKAGE}.planners.methods' in TREE[f'{PACKAGE}.planners.registry']
+    assert f'{PACKAGE}.planners.methods' in imports_of_places()[f'{PACKAGE}.planners.registry']
 
 
 def test_a_circle_of_folders_would_be_found():
     with pytest.raises(CycleError):
-        in_order({**TREE, f'{PACKAGE}.core.dynamics': {f'{PACKAGE}.core.path'}})
+        in_order({**imports_of_places(), f'{PACKAGE}.core.dynamics': {f'{PACKAGE}.core.path'}})
 
 
 def test_a_circle_through_the_modules_beside_a_folder_would_be_found(monkeypatch):
     """A module that imports `transitions` and serves `methods` was once beside the folders."""
     planners, single = f'{PACKAGE}.planners', f'{PACKAGE}.planners.prescribed_by_search'
     monkeypatch.setitem(MODULES, single, None)
-    imports = {**TREE, single: {f'{planners}.transitions', f'{planners}.tasks'},
-               f'{planners}.methods': {*TREE[f'{planners}.methods'], single}}
+    imports = {**imports_of_places(), single: {f'{planners}.transitions', f'{planners}.tasks'},
+               f'{planners}.methods': {*imports_of_places()[f'{planners}.methods'], single}}
     assert in_order(imports)
     with pytest.raises(CycleError):
         in_order(by_folders(imports))
@@ -175,7 +174,7 @@ def rows_of(layer):
 def test_the_picture_shows_every_folder_and_module_above_what_it_imports(layer):
     row = {f'{PACKAGE}.{layer}.{name}': k for k, names in enumerate(rows_of(layer))
            for name in names}
-    places = {place: names for place, names in TREE.items()
+    places = {place: names for place, names in imports_of_places().items()
               if layer_of(place) == layer and place.count('.') == 2}
     assert row.keys() == places.keys()
     assert [(place, name) for place, names in places.items() for name in names & row.keys()

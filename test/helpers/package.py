@@ -15,6 +15,7 @@
 """Syntax trees and layers of the package's modules."""
 
 import ast
+from functools import cache
 
 from helpers.places import ROOT
 
@@ -33,6 +34,7 @@ def layer_of(module):
     return parts[1] if len(parts) > 1 and parts[1] in LAYERS else ''
 
 
+@cache
 def imports_of(module):
     """Return the full names of everything that a module imports, anywhere in it."""
     names = set()
