@@ -88,7 +88,7 @@ def test_path_that_leaves_a_range_is_refused_where_it_leaves_it():
 @pytest.mark.parametrize('name', NAMES)
 def test_no_path_is_refused_at_its_beginning_that_is_in_range(name):
     arm, rng, refused = arm_named(name), np.random.default_rng(8), 0
-    for _ in range(8):
+    for _ in range(12):
         points = np.array([forward_kinematics(arm.model, pose(arm, rng)) for _ in range(3)])
         try:
             plan(arm.model, arm.limits, PlanningRequest(points, planner_id='line_arc'))
