@@ -35,7 +35,7 @@ LIMITED = (('qd', 'max_velocity'), ('qdd', 'max_acceleration'), ('qddd', 'max_je
            ('torque', 'max_effort'))
 
 JOINT_SPACE = [name for name in planner_ids() if name not in CARTESIAN]
-SEEDS = range(40)  # five of every kind of task
+SEEDS = range(32)  # four of every kind of task
 CARTESIAN_SEEDS = range(16)
 # 'time_optimal' has each kind with each of three sets of limits, twice.
 TIME_OPTIMAL_SEEDS = range(48)
