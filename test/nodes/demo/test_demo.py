@@ -55,7 +55,7 @@ def test_demo_runs_its_task_and_shows_it(tmp_path, arguments, name, seconds):
     assert [f.name for f in tmp_path.iterdir()] == [file.name]
 
 
-@pytest.mark.parametrize('name', ['go1_leg', 'tilted_arm'])
+@pytest.mark.parametrize('name', ['go1_leg', 'kr16_2_first3', 'tilted_arm'])
 def test_demo_runs_arms_of_urdfs(tmp_path, name):
     with Script(script('demo'), f'{name}.yaml', '--plot', '', cwd=tmp_path) as demo:
         code, output, errors = demo.ended()
