@@ -206,9 +206,10 @@ def test_file_without_parameters_of_the_planner_is_refused(tmp_path, text):
 def test_arm_of_ones_own_is_used(called, tmp_path):
     (tmp_path / 'arm.yaml').write_text(
         '/**:\n  ros__parameters:\n    joint_names: [base, shoulder, elbow]\n'
-        '    joint_limits: {base: &all {min_position: 0.0, max_position: 3.0, max_jerk: 10.0, '
-        'max_velocity: 1.0, max_acceleration: 1.0, has_effort_limits: false}, elbow: *all, '
-        'shoulder: {<<: *all, max_velocity: 0.3}}\n'
+        '    joint_limits:\n' + ''.join(
+            f'      {name}: {{min_position: 0.0, max_position: 3.0, max_velocity: {velocity}, '
+            'max_acceleration: 1.0, max_jerk: 10.0, has_effort_limits: false}\n'
+            for name, velocity in (('base', 1.0), ('shoulder', 0.3), ('elbow', 1.0))) +
         'trajectory_planner:\n  ros__parameters: {default_planner_id: septic}\n')
     (tmp_path / 'points.yaml').write_text(
         'arm: arm.yaml\nvia_points: [[1.02, 0.59, 0.97], [0.46, 0.55, 1.44]]\n')

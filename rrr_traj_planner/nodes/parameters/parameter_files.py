@@ -22,7 +22,7 @@ import re
 from typing import Any
 
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.nodes.parameters.yaml_loader import RosLoader
+from rrr_traj_planner.nodes.parameters.yaml_loader import input_error, RosLoader
 import yaml
 
 # Sections that apply to the planner node; values of later ones take precedence.
@@ -54,7 +54,8 @@ def planner_values(file: Path) -> dict[str, Any]:
     try:
         return _values(file)
     except (OSError, UnicodeDecodeError, yaml.YAMLError, InvalidInputError) as error:
-        raise InvalidInputError(f'{file}: {" ".join(str(error).split())}') from None
+        text = input_error(error) if isinstance(error, yaml.YAMLError) else error
+        raise InvalidInputError(f'{file}: {" ".join(str(text).split())}') from None
 
 
 def has_section_for(file: Path, node: str) -> bool:

@@ -27,6 +27,7 @@ from typing import Any
 
 from rrr_traj_planner.core.errors import InvalidInputError, shown
 import yaml
+from yaml.composer import ComposerError
 from yaml.constructor import ConstructorError
 
 # What PyYAML lets through where a text is not of its tag: of int(), float(), dates and others.
@@ -112,6 +113,14 @@ Loader.add_implicit_resolver(f'{TAG}float', FLOAT, list('-+.0123456789'))
 
 class RosLoader(Loader):
     """Reads plain values as ROS does in parameter files and behind `-p NAME:=`; keys are texts."""
+
+    def compose_node(self, parent: yaml.Node, index: Any) -> Any:
+        """Return the next node; ROS refuses aliases."""
+        if self.check_event(yaml.AliasEvent):
+            event = self.peek_event()
+            raise ComposerError(
+                None, None, f'the alias *{event.anchor} is refused by ROS', event.start_mark)
+        return super().compose_node(parent, index)
 
     def resolve(self, kind: type[yaml.Node], value: Any, implicit: Any) -> Any:
         """Return the tag of a node that has none."""

@@ -23,7 +23,7 @@ import pytest
 import rclpy
 from rclpy.context import Context
 from rclpy.node import Node
-from rrr_traj_planner.nodes.parameters.yaml_loader import Loader, ros_value, RosLoader
+from rrr_traj_planner.nodes.parameters.yaml_loader import input_error, Loader, ros_value, RosLoader
 import yaml
 
 # YAML 1.2.2, 10.3.2 (and example 10.9); what its patterns do not match is a text.
@@ -88,3 +88,16 @@ def test_keys_are_texts_as_in_ros():
 def test_no_text_is_no_value():
     assert ros_value('') is None
     assert yaml.load('x:', RosLoader) == {'x': None}
+
+
+def test_aliases_are_refused_as_by_ros(tmp_path):
+    text = '/**:\n  ros__parameters:\n    a: &all {x: 1}\n    b: *all\n'
+    with pytest.raises(yaml.YAMLError) as refused:
+        yaml.load(text, RosLoader)
+    assert str(input_error(refused.value)) == 'line 4: the alias *all is refused by ROS'
+    file = tmp_path / 'aliases.yaml'
+    file.write_text(text)
+    context = Context()
+    with pytest.raises(RuntimeError, match='Will not support aliasing at line 4'):
+        rclpy.init(args=['--ros-args', '--params-file', str(file)], context=context)
+    assert yaml.load('a: &all {x: 1}\nb: *all\n', Loader)['b'] == {'x': 1}
