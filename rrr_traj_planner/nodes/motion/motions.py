@@ -23,7 +23,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from time import monotonic
-from typing import NamedTuple
 
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
@@ -38,6 +37,7 @@ from rrr_traj_planner.nodes.motion.departure import (
     TooLateError,
 )
 from rrr_traj_planner.nodes.motion.motion import CANCELED, EndCode, Motion, MotionEnd, Watch
+from rrr_traj_planner.nodes.motion.options import Options
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
 IN_MOTION = 'time_optimal'  # the planner that plans from any state
@@ -45,33 +45,11 @@ RETRY_PERIOD = 0.05  # s between two attempts to join a motion
 RETRY_TIME = 5.0     # s since the motion was asked for, after which there is none
 CHECK_PERIOD = 0.5   # s between two checks whether planner and controller are still there
 
+# A trajectory has its start time: a controller by another clock would wait for years, or be late.
+CLOCKS_DIFFER = 5.0  # s by which states may be late where simulated time lags behind
+WRONG_TIME = ("the arm's time (its states are stamped by another clock than this one; "
+              'use_sim_time must be the same for controller and this node)')
 UNKNOWN_STATE = 'the state of the arm is not known any more'
-
-
-class Options(NamedTuple):
-    """
-    How motions are run.
-
-    Attributes
-    ----------
-    controller : str
-        Name of the controller, which serves `CONTROLLER/follow_joint_trajectory`.
-    lead : float
-        How far ahead of the arm a motion in progress is gone on from [s].
-    planning_timeout : float
-        How long the planner may take to answer [s].
-    discovery_timeout : float
-        How long planner, controller and the arm's state are waited for [s].
-    start_tolerance : float
-        How far each joint may be from the start of a plan when it is sent [rad].
-
-    """
-
-    controller: str = 'simulated_arm'
-    lead: float = 0.25
-    planning_timeout: float = 30.0
-    discovery_timeout: float = 10.0
-    start_tolerance: float = 0.01
 
 
 class Motions:
@@ -123,8 +101,12 @@ class Motions:
             found.append(f'the planner (service {self._service})')
         if sends and not self._controller.is_there():
             found.append(f'the controller (action {self.action})')
-        if self.states.latest() is None:
+        latest = self.states.latest()
+        if latest is None:
             found.append(f"the arm's state (topic {' or '.join(self.states.sources)})")
+        elif sends and latest.stamp and (
+                abs(latest.stamp - self._now()) > CLOCKS_DIFFER * SECOND):
+            found.append(WRONG_TIME)
         return found
 
     def move(self, request: PlanTrajectory.Request, watch: Watch, sends: bool = True) -> Motion:

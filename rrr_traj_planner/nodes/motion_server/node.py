@@ -23,7 +23,8 @@ from typing import Any
 
 from rclpy.action.server import ServerGoalHandle
 from rrr_traj_planner.nodes.motion.motion import EndCode, Motion, MotionEnd, Progress, Watch
-from rrr_traj_planner.nodes.motion.motions import Motions, Options
+from rrr_traj_planner.nodes.motion.motions import Motions
+from rrr_traj_planner.nodes.motion.options import Options
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.parameter_files import files_given
 from rrr_traj_planner.nodes.parameters.table import MOTION

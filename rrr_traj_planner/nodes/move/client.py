@@ -27,7 +27,8 @@ from rclpy.validate_topic_name import validate_topic_name
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.motion.departure import duration_of
 from rrr_traj_planner.nodes.motion.motion import EndCode, Motion, Watch
-from rrr_traj_planner.nodes.motion.motions import Motions, Options
+from rrr_traj_planner.nodes.motion.motions import Motions
+from rrr_traj_planner.nodes.motion.options import Options
 from rrr_traj_planner.nodes.move.from_here import from_here, FromHere, in_base_frame
 from rrr_traj_planner.nodes.move.progress import ProgressLines
 from rrr_traj_planner.nodes.move.spun_node import GRACE, pause, POLL_PERIOD, SpunNode
@@ -49,9 +50,6 @@ SETTLING_TIME = 0.5  # s that is recorded after the end
 STATES_TIME = 5.0    # s by which states may be late
 ACTION, TYPE = '/follow_joint_trajectory', 'control_msgs/action/FollowJointTrajectory'
 
-CLOCKS_DIFFER = 5.0  # s by which states may be late where simulated time lags behind
-WRONG_TIME = ("the arm's time (its states are stamped by another clock than this one; "
-              'use_sim_time must be the same for controller and move)')
 NO_STATE = 'nobody publishes where the arm is: planned from rest at the first via point'
 
 
@@ -163,15 +161,7 @@ class MoveClient(SpunNode):
                   if TYPE in types and name != action
                   and self.count_publishers(f'{name}/_action/feedback')]
         return [f'{text[:-1]}; there is {", ".join(sorted(others))})' if others and action in text
-                else text for text in found] or self._wrong_time()
-
-    def _wrong_time(self) -> list[str]:
-        """Return what is wrong if the arm's clock is another: a trajectory has its start time."""
-        state = self._motions.states.latest()
-        now = int(self.get_clock().now().nanoseconds)
-        if state is None or not state.stamp or abs(state.stamp - now) < CLOCKS_DIFFER * SECOND:
-            return []
-        return [WRONG_TIME]
+                else text for text in found]
 
     def _missing_to_plan(self, grace: float) -> list[str]:
         """Return what a plan needs; the arm's state only if somebody publishes it."""

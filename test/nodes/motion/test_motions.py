@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from control_msgs.action import FollowJointTrajectory
-from helpers.arm_in_ros import NAMES, START
+from helpers.arm_in_ros import Arm, moving, NAMES, START
 from helpers.move_client import move_goal, MoveClient, start_motion_server
 from helpers.plan_requests import TABLE_6_1
 from helpers.planner_in_ros import start_planner
@@ -177,6 +177,18 @@ def test_silent_planner_ends_a_goal_after_its_time_and_the_next_goal_is_served(
     while result.error_code == Result.COMMUNICATION_FAILURE:  # the old one is still discovered
         result = client.run(move_goal(TABLE_6_1[1]))[1]
     assert result.error_code == Result.SUCCESS, result.message
+
+
+def test_nothing_is_sent_to_an_arm_by_another_clock(ros):
+    start_planner(ros)
+    arm = Arm(ros, publish_clock=True)  # its own time, from 0
+    start_motion_server(ros, discovery_timeout=3.0)
+    arm.desired.wait_for()
+    result = MoveClient(ros).run(move_goal(TABLE_6_1[1]))[1]
+    assert (result.error_code, result.message) == (
+        Result.COMMUNICATION_FAILURE, "not there: the arm's time (its states are stamped by "
+        'another clock than this one; use_sim_time must be the same for controller and this node)')
+    assert not any(moving(m) for m in arm.desired.messages[:])
 
 
 def test_goals_that_come_while_one_is_planned_replace_it(ros, ended_in_order):
