@@ -3,8 +3,9 @@
 SHELL := /bin/bash
 in_env := source scripts/env.bash &&
 
-# Tests of nodes wait more than they compute: one process more than cores, four at most.
-WORKERS := $(shell n=$$(nproc); echo $$((n < 4 ? n + 1 : 4)))
+# Tests of nodes wait more than they compute: three or four processes. A process
+# that has nothing left takes half of what another one has left.
+WORKERS := $(shell n=$$(nproc); echo $$((n < 2 ? 3 : 4)))
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
 .PHONY: help setup demo test lint bench clean
@@ -22,7 +23,7 @@ demo: setup  ## plan a motion through via points and run it on the simulated arm
 CHECKED_BY_LINT := test/test_ament_linters.py::test_code_is_as_ament_flake8_wants_it
 
 test: lint  ## linters and every test; options for pytest in ARGS
-	@$(in_env) python -m pytest -n $(WORKERS) --dist loadfile --deselect $(CHECKED_BY_LINT) $(ARGS)
+	@$(in_env) python -m pytest -n $(WORKERS) --dist worksteal --deselect $(CHECKED_BY_LINT) $(ARGS)
 
 lint: setup  ## ruff, flake8 with ament_flake8's rules, mypy on the core and the planners
 	@$(in_env) ruff check && python -m flake8 && mypy

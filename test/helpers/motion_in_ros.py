@@ -24,7 +24,8 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 
-TICK = SECOND // 200
+RATE = 100.0  # Hz, of the arm's states
+TICK = round(SECOND / RATE)
 LIMITS = JointLimits()
 ROUNDING = 1e-6  # rad, rad/s: of stamps, a nanosecond each, and of the fields of a message
 MORE = 1.1      # times jerk's limit, by a quintic between two points

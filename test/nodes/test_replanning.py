@@ -20,7 +20,7 @@ import re
 import sys
 
 from helpers.arm_in_ros import ALL, Arm
-from helpers.motion_in_ros import assert_steady, random_places, SteppedClock
+from helpers.motion_in_ros import assert_steady, random_places, RATE, SteppedClock
 from helpers.places import DOCS
 from helpers.plan_requests import points_of
 from helpers.planner_in_ros import start_planner
@@ -46,7 +46,7 @@ def the_document_s():
 
 def test_the_arm_joins_plans_made_in_motion_without_a_step(ros):
     rng, model, example = np.random.default_rng(4), RobotModel(), the_document_s()
-    arm = Arm(ros, use_sim_time=True)
+    arm = Arm(ros, use_sim_time=True, publish_rate=RATE)
     start_planner(ros)
     clock = SteppedClock(ros)
     publisher = ros.publisher(JointTrajectory, 'joint_trajectory')

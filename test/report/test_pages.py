@@ -160,7 +160,7 @@ def test_page_of_many_points_and_a_refusal_is_legible(window, many_points_page, 
     assert window.value("document.querySelector('header p').textContent") == (
         '60 via points [m]: from (0.809104, 0.8, 1) to (0.809104, 0.8, 1).')
     assert window.value("document.querySelector('#refusals td').textContent").startswith(
-        'refused: via point 2: (2, 0, 0.5) m is 2 m')
+        "refused: via point 2: (2, 0, 0.5) m is out of the arm's reach: it misses by 0.4 m")
     cut = window.value("""[...document.querySelectorAll('#refusals td, #refusals th')].filter(
       (c) => { const r = document.createRange(); r.selectNodeContents(c);
         const box = c.closest('.scroll').getBoundingClientRect();

@@ -20,7 +20,7 @@ import signal
 
 from helpers.arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
 from helpers.examples import example
-from helpers.motion_in_ros import assert_steady, random_places, SteppedClock
+from helpers.motion_in_ros import assert_steady, random_places, RATE, SteppedClock
 from helpers.move_client import move_goal, MoveClient, start_motion_server
 from helpers.places import DOCS
 from helpers.plan_requests import TABLE_6_1
@@ -96,14 +96,14 @@ def test_new_goals_take_over_in_motion_without_a_step(ros):
     rng = np.random.default_rng(18)
     start_planner(ros)
     start_motion_server(ros, use_sim_time=True)
-    arm, clock = Arm(ros, use_sim_time=True), SteppedClock(ros)
+    arm, clock = Arm(ros, use_sim_time=True, publish_rate=RATE), SteppedClock(ros)
     client = MoveClient(ros)
     clock.advance(arm, 0.1)
     handle, in_motion = client.send(move_goal(FAR)), 0
     for _ in range(TAKEOVERS):
         places = random_places(rng, MODEL)
         following = client.send(move_goal(*places))
-        status, result = client.result_while(handle, lambda: clock.advance(arm, 0.005))
+        status, result = client.result_while(handle, lambda: clock.advance(arm, 0.01))
         if status != SUCCEEDED:
             assert (status, result.error_code) == (ABORTED, Result.PREEMPTED)
             assert result.message == 'replaced by a newer goal'
