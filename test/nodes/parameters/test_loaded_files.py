@@ -25,10 +25,12 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.parameter import parameter_dict_from_yaml_file
 from rclpy.parameter_client import AsyncParameterClient
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
+from rrr_traj_planner.nodes.motion_server.node import MotionServer
 from rrr_traj_planner.nodes.planner_node.node import TrajectoryPlanner
 
 DEADLINE = 20.0
-NODES = {'trajectory_planner': TrajectoryPlanner, 'simulated_arm': SimulatedArm}
+NODES = {'trajectory_planner': TrajectoryPlanner, 'simulated_arm': SimulatedArm,
+         'motion_server': MotionServer}
 
 
 def start(ros, name, *files):
