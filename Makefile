@@ -8,7 +8,7 @@ in_env := source scripts/env.bash &&
 WORKERS := $(shell n=$$(nproc); echo $$((n < 2 ? 3 : 4)))
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
 
-.PHONY: help setup demo test lint bench clean
+.PHONY: help setup demo studio test lint bench clean
 
 help:
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile | expand -t 16
@@ -18,6 +18,10 @@ setup:  ## ROS 2 Jazzy, Python packages and the build, unless they are there
 
 demo: setup  ## plan a motion through via points and run it on the simulated arm; options in ARGS
 	@$(in_env) demo $(ARGS)
+
+studio: setup  ## a page in the browser to plan with the mouse and run the plan; options in ARGS
+	@$(in_env) python -m pip install --quiet --no-deps -r requirements/studio.txt
+	@$(in_env) studio $(ARGS)
 
 # Its rules are those of flake8, which `lint` has just run; `colcon test` runs it.
 CHECKED_BY_LINT := test/test_ament_linters.py::test_code_is_as_ament_flake8_wants_it

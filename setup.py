@@ -103,14 +103,16 @@ setup(
     # urdf_parser_py, which reads URDFs, is urdfdom_py to ROS (package.xml) and urdf-parser-py to
     # PyPI: here, it would be installed twice beside ROS's
     install_requires=['numpy', 'PyYAML', 'scipy', 'setuptools'],
-    extras_require={'figures': ['matplotlib'], 'record': ['mcap'], 'test': ['pytest'],
+    extras_require={'figures': ['matplotlib'], 'record': ['mcap'], 'studio': ['viser'],
+                    'test': ['pytest'],
                     'urdf': ['urdf-parser-py']},
     zip_safe=False,
     entry_points={
         'console_scripts': [
             f'{script} = {NAME}.nodes.scripts.{script}:main'
             for script in (
-                'bringup', 'demo', 'motion_server', 'move', 'planner', 'report', 'simulated_arm')
+                'bringup', 'demo', 'motion_server', 'move', 'planner', 'report', 'simulated_arm',
+                'studio')
         ],
     },
 )

@@ -163,8 +163,8 @@ if [ "$AMENT_PREFIX_PATH" != "$root/.venv" ]; then
     [ "$ros" = jazzy ] || die "this shell has ROS 2 $ros sourced, and Jazzy is needed: use another"
 fi
 
-key=$({ echo "$ros $root" && cat $(find requirements -type f ! -name 'bench.*' | sort); } |
-    sha256sum)  # make bench installs its own
+key=$({ echo "$ros $root" && cat $(find requirements -type f ! -name 'bench.*' ! -name 'studio.*' | sort); } |
+    sha256sum)  # make bench and make studio install their own
 is_fresh .venv "$key" && is_same_python || make_venv "$key"
 hash -r
 build_interfaces

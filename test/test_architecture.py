@@ -83,6 +83,12 @@ def test_nodes_alone_know_ros():
             if layer_of(module) != 'nodes' and is_ros(name)] == []
 
 
+def test_only_what_draws_the_studio_s_page_knows_viser():
+    assert {module for module in MODULES
+            if any(name.split('.')[0] == 'viser' for name in imports_of(module))} == {
+        f'{PACKAGE}.nodes.studio.{name}' for name in ('page', 'panel', 'scene')}
+
+
 def test_files_are_short():
     assert {str(path.relative_to(ROOT)): lines for path in FILES
             if (lines := path.read_text().count('\n')) > LONGEST} == {}

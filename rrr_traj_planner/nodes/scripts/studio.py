@@ -1,0 +1,123 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The script `studio`: a page in the browser: drag via points, see the plan, run it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from contextlib import ExitStack
+
+from rrr_traj_planner.nodes.process.entry import (
+    add_limits_option,
+    limits_arguments,
+    parse,
+    run_script,
+    StartError,
+)
+
+DESCRIPTION = """\
+Show a page in the browser, on which via points are dragged with the mouse, and the motion through
+them is planned at once and run on the simulated arm.
+
+Starts the planner, the arm and the motion server, and prints the page's address. SIGINT (Ctrl-C)
+ends all."""
+
+NO_VISER = (
+    'the page needs the Python package viser, which is not installed: call `make studio`, or '
+    "pip install viser (the package's extra 'studio')")
+
+NODES = ('planner', 'simulated_arm', 'motion_server')
+PORT = 8080
+FRAME_PERIOD = 0.04  # s between two pictures of the arm
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """
+    Show the page until SIGINT or SIGTERM.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The command line without the script's name; None: `sys.argv`'s.
+
+    Returns
+    -------
+    int
+        Exit code: 0 after a signal, 1 if it cannot start, or if a node has ended.
+
+    """
+    def work() -> int:
+        options, ros_arguments = parse('studio', DESCRIPTION, arguments, _add_options)
+        return _run(options, ros_arguments)
+
+    return run_script('studio', work)
+
+
+def _add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('task', nargs='?', default='table_6_1.yaml', metavar='FILE',
+                        help="via points: a file, or one of the package's config/ or "
+                             'config/arms/ (default: %(default)s)')
+    parser.add_argument('--host', default='127.0.0.1', metavar='ADDRESS',
+                        help='address to listen at (default: %(default)s, this machine only); '
+                             'everyone who can reach it can move the arm')
+    parser.add_argument('--port', type=int, default=PORT, metavar='N',
+                        help='port (default: %(default)s); the next free one if it is in use')
+    add_limits_option(parser)
+
+
+def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
+    _check_viser()
+    from rrr_traj_planner.nodes.move.spun_node import pause
+    from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
+    from rrr_traj_planner.nodes.point_files.reading import read_task
+    from rrr_traj_planner.nodes.process.node_runner import spin_in_background
+    from rrr_traj_planner.nodes.process.processes import NodeProcesses
+    from rrr_traj_planner.nodes.scripts.bringup import node_arguments
+    from rrr_traj_planner.nodes.studio.page import Page, serving
+    from rrr_traj_planner.nodes.studio.ros_client import StudioClient
+    from rrr_traj_planner.nodes.studio.studio import Studio
+    from rrr_traj_planner.nodes.studio.wanted import wanted_of
+    from rrr_traj_planner.planners.registry import planner_ids
+
+    ros_arguments = [*own_arguments, *limits_arguments(options.joint_limits)]
+    task = read_task(options.task)
+    arm = None if describes_an_arm(ros_arguments) else task.arm
+    with ExitStack() as stack:
+        server = stack.enter_context(serving(options.host, options.port))
+        client = stack.enter_context(spin_in_background(StudioClient, ros_arguments))
+        nodes = stack.enter_context(NodeProcesses(NODES, node_arguments(arm, ros_arguments)))
+        config = client.connect(nodes.ended)
+        wanted = wanted_of(task, config.model, config.base_frame, config.default_planner_id)
+        page = Page(server, config.model.chain.size, planner_ids(), wanted)
+        studio = Studio(client, config, wanted, page)
+        page.connect(studio, client.executor.create_task)
+        client.in_executor(studio.start)
+        client.in_executor(lambda: client.create_timer(FRAME_PERIOD, studio.tick))
+        print(f'studio: http://{options.host}:{server.get_port()}  (Ctrl-C ends)', flush=True)
+        while True:  # until a signal, by KeyboardInterrupt
+            client.check_nodes()
+            pause()
+
+
+def _check_viser() -> None:
+    """Refuse to start without viser, before anything else is started."""
+    from importlib.util import find_spec
+    if find_spec('viser') is None:
+        raise StartError(NO_VISER)
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

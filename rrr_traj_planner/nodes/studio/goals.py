@@ -1,0 +1,75 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The goal that has the arm do what is planned, from where it is."""
+
+from __future__ import annotations
+
+import numpy as np
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.nodes.studio.planned import Planned
+from rrr_traj_planner.nodes.studio.ros_client import request_of
+from rrr_traj_planner.nodes.studio.wanted import Wanted
+from rrr_traj_planner_interfaces.action import MoveThrough
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+AT_START = 0.01       # rad, of a joint from the plan's start, by which the arm is there
+AT_VIA_POINT = 1e-6   # m, by which a plan passes through its via points
+FIELDS = ('via_points', 'dwell', 'max_velocity_scaling_factor', 'max_acceleration_scaling_factor')
+
+
+def goal_of(wanted: Wanted, plan: Planned, model: RobotModel, q: Array, moves: bool
+            ) -> MoveThrough.Goal:
+    """
+    Return the goal for a plan.
+
+    An arm that rests elsewhere than at the first via point stops there, so that the rest is the
+    motion that is planned. One that moves is taken over by the planner that can do so.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+    plan : Planned
+        Its plan: its postures are gone through.
+    model : RobotModel
+        The arm.
+    q : ndarray, shape (3,)
+        Where the arm is [rad].
+    moves : bool
+        Whether it moves.
+
+    Returns
+    -------
+    MoveThrough.Goal
+        Without the first via point if the arm rests there.
+
+    """
+    request, count = request_of(wanted), len(wanted.points)
+    goal = MoveThrough.Goal(**{name: getattr(request, name) for name in FIELDS})
+    stops = list(request.stop_at) or [False] * (count - 1) + [True]
+    goal.stop_at = [True, *stops[1:]]
+    goal.planner_id = '' if moves else request.planner_id
+    tips = forward_kinematics(model, plan.via_joints)
+    if np.linalg.norm(tips - wanted.points, axis=1).max() <= AT_VIA_POINT:
+        goal.joint_via_points = [
+            JointTrajectoryPoint(positions=at) for at in plan.via_joints.tolist()]
+        goal.via_points.poses = []
+    if not moves and np.abs(q - plan.via_joints[0]).max() <= AT_START:
+        for name in ('joint_via_points', 'stop_at', 'dwell'):
+            setattr(goal, name, getattr(goal, name)[1:])
+        goal.via_points.poses = goal.via_points.poses[1:]
+    return goal

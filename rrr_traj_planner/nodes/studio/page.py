@@ -1,0 +1,149 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The page: scene and panel, and the server that brings them to the browser."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout
+from io import StringIO
+from logging import CRITICAL, getLogger
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.link_positions import Point
+from rrr_traj_planner.nodes.process.entry import StartError
+from rrr_traj_planner.nodes.studio.panel import Panel, Post
+from rrr_traj_planner.nodes.studio.planned import Planned
+from rrr_traj_planner.nodes.studio.scene import Scene
+from rrr_traj_planner.nodes.studio.session import Refusal
+from rrr_traj_planner.nodes.studio.studio import Studio
+from rrr_traj_planner.nodes.studio.wanted import Wanted
+import viser
+
+VIEW = np.array((0.7, -1.1, 0.5))  # from where it is looked at the arm, times the arm's size
+
+
+class _Server(viser.ViserServer):
+    """A server that does not offer the page to the internet: viser's own does at a click."""
+
+    def request_share_url(self, verbose: bool = True) -> None:
+        """Refuse."""
+
+
+class Page:
+    """
+    The page; implements `studio.Page`.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+        What brings it to the browser.
+    size : float
+        The arm's [m].
+    planner_ids : sequence of str
+        To choose from.
+    wanted : Wanted
+        What is shown at the beginning.
+
+    """
+
+    def __init__(self, server: viser.ViserServer, size: float, planner_ids: Sequence[str],
+                 wanted: Wanted) -> None:
+        self._server = server
+        server.gui.configure_theme(show_share_button=False, show_logo=False,
+                                   control_width='large')
+        self._panel = Panel(server.gui, planner_ids, wanted)
+        self._scene = Scene(server.scene, size, self._moved)
+        self._post: Post = lambda _: None
+        self._studio: Studio | None = None
+        centre = np.vstack((wanted.points, np.zeros(3))).mean(axis=0)
+        server.initial_camera.look_at = tuple(centre)
+        server.initial_camera.position = tuple(centre + size * VIEW)
+
+    def connect(self, studio: Studio, post: Post) -> None:
+        """
+        Have handles and controls act on the studio.
+
+        Parameters
+        ----------
+        studio : Studio
+            What they act on.
+        post : callable
+            Calls a function in the studio's thread.
+
+        """
+        self._studio, self._post = studio, post
+        self._panel.connect(studio, post)
+
+    def show_points(self, points: Array, refusal: Refusal | None) -> None:
+        """Show the via points, and which one is at fault."""
+        self._scene.show_points(points, refusal)
+
+    def show_plan(self, plan: Planned | None, is_current: bool, text: str) -> None:
+        """Show a plan's path and figures."""
+        with self._server.atomic():
+            self._scene.show_plan(plan, is_current)
+            self._panel.show_plan(text)
+
+    def show_arm(self, places: tuple[Point, ...], driven: list[Point]) -> None:
+        """Show the arm, and where its tip has been."""
+        with self._server.atomic():
+            self._scene.show_arm(places, driven)
+
+    def show_status(self, text: str, share: float) -> None:
+        """Show a text about the motion, and the share of it that is done."""
+        self._panel.show_status(text, share)
+
+    def _moved(self, index: int, position: Point) -> None:
+        studio = self._studio
+        if studio is not None:
+            self._post(lambda: studio.move_point(index, position))
+
+
+@contextmanager
+def serving(host: str, port: int) -> Iterator[viser.ViserServer]:
+    """
+    Serve pages until the end of the context.
+
+    Parameters
+    ----------
+    host : str
+        Address to listen at.
+    port : int
+        Port; the next free one where it is in use.
+
+    Yields
+    ------
+    viser.ViserServer
+        The server.
+
+    Raises
+    ------
+    StartError
+        If it cannot listen there.
+
+    """
+    getLogger('websockets').setLevel(CRITICAL)  # a request that is no page's is no news
+    try:
+        with redirect_stdout(StringIO()):  # a box around the address, which the script prints
+            server = _Server(host, port, label='studio', verbose=False)
+    except (OSError, RuntimeError, AssertionError) as error:
+        raise StartError(f'cannot serve at {host}, port {port}: {error}') from None
+    try:
+        yield server
+    finally:
+        with redirect_stdout(StringIO()):
+            server.stop()

@@ -1,0 +1,107 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A plan as the page shows it, made from the planner's answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.nodes.output.wireframe import picked
+from rrr_traj_planner.nodes.runs.messages import trajectory_points
+from rrr_traj_planner.nodes.studio.session import Refusal
+
+MOST_POINTS = 600  # of the path, that are drawn
+
+
+@dataclass(frozen=True, eq=False)
+class Planned:
+    """
+    A plan.
+
+    Attributes
+    ----------
+    planner_id : str
+        Its planner.
+    duration : float
+        Of the motion [s].
+    planning_time : float
+        [s].
+    note : str
+        The planner's remark; mostly empty.
+    path : ndarray, shape (n, 3)
+        Positions of the tip along the motion [m].
+    speed : ndarray, shape (n - 1,)
+        Mean speed of the tip from each of them to the next [m/s].
+    via_joints : ndarray, shape (k, 3)
+        Joint positions when the via points are reached [rad].
+    peaks : tuple of (str, ndarray, ndarray)
+        For velocity, acceleration, jerk and torque: name with unit, peaks and limits of the
+        joints.
+
+    """
+
+    planner_id: str
+    duration: float
+    planning_time: float
+    note: str
+    path: Array
+    speed: Array
+    via_joints: Array
+    peaks: tuple[tuple[str, Array, Array], ...]
+
+
+def planned(response: Any, planner_id: str, model: RobotModel, limits: JointLimits
+            ) -> Planned | Refusal:
+    """
+    Return a plan, or why there is none.
+
+    Parameters
+    ----------
+    response : PlanTrajectory.Response
+        The planner's answer.
+    planner_id : str
+        The planner.
+    model : RobotModel
+        The arm.
+    limits : JointLimits
+        Of the planner.
+
+    Returns
+    -------
+    Planned or Refusal
+        The message in other words.
+
+    """
+    if response.error_code != response.SUCCESS:
+        return Refusal(response.message, response.failed_via_point)
+    points = trajectory_points(response.trajectory)
+    at = [int(np.abs(points.times - t).argmin()) for t in response.via_times]
+    drawn = picked(len(points.times), MOST_POINTS, np.array(at))
+    path = forward_kinematics(model, points.positions[drawn])
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    return Planned(
+        planner_id, float(points.times[-1]), response.planning_time, response.message, path,
+        steps / np.diff(points.times[drawn]), points.positions[at], (
+            ('velocity [rad/s]', np.array(response.peak_velocity), limits.max_velocity),
+            ('acceleration [rad/s²]', np.array(response.peak_acceleration),
+             limits.max_acceleration),
+            ('jerk [rad/s³]', np.array(response.peak_jerk), limits.max_jerk),
+            ('torque [N m]', np.array(response.peak_effort), limits.max_effort)))

@@ -1,0 +1,224 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The studio's node: asks the planner, sends goals to the motion server, follows the arm."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rcl_interfaces.srv import GetParameters
+from rclpy.action import ActionClient
+from rclpy.client import Client as ServiceClient
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.nodes.move.spun_node import SpunNode, TIMEOUT
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.process.entry import StartError
+from rrr_traj_planner.nodes.process.processes import exit_message
+from rrr_traj_planner.nodes.runs.messages import plan_request
+from rrr_traj_planner.nodes.runs.planner_config import planner_config, SERVICE
+from rrr_traj_planner.nodes.runs.recorded import in_order
+from rrr_traj_planner.nodes.studio.wanted import Wanted
+from rrr_traj_planner_interfaces.action import MoveThrough
+from rrr_traj_planner_interfaces.srv import PlanTrajectory
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+
+class StudioClient(SpunNode):
+    """
+    A client of planner, arm and motion server.
+
+    Parameters
+    ----------
+    **kwargs
+        For `Node`.
+
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__('studio', **kwargs)
+        self._ended: Callable[[], tuple[str, int] | None] = lambda: None
+        self._state: JointState | None = None
+        self._goals = 0
+        self.create_subscription(JointState, 'joint_states', self._take_state, 10)
+        self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
+        self._get_parameters = self.create_client(GetParameters, SERVICE)
+        self._triggers = {
+            name: self.create_client(Trigger, f'simulated_arm/{name}') for name in (
+                'hold', 'reset')}
+        self._action = ActionClient(self, MoveThrough, 'move_through')
+
+    def destroy_node(self) -> None:
+        """Release the action's client too."""
+        self._action.destroy()
+        super().destroy_node()
+
+    def connect(self, ended: Callable[[], tuple[str, int] | None]) -> PlannerConfig:
+        """
+        Wait for all nodes; called from the main thread.
+
+        Parameters
+        ----------
+        ended : callable
+            Returns name and exit code of a node's process that has ended, else None.
+
+        Returns
+        -------
+        PlannerConfig
+            The planner's.
+
+        Raises
+        ------
+        StartError
+            If a node does not appear, or ends.
+        KeyboardInterrupt
+            After SIGINT or SIGTERM.
+
+        """
+        self._ended = ended
+        self.wait(self._plan.service_is_ready, 'the planner')
+        self.wait(lambda: self._state is not None and all(
+            client.service_is_ready() for client in self._triggers.values()), 'the arm')
+        self.wait(self._action.server_is_ready, 'the motion server')
+        return planner_config(lambda names: self.answer(
+            self._get_parameters, GetParameters.Request(names=names)).values, '')
+
+    def wait(self, ready: Callable[[], Any], what: str, timeout: float = TIMEOUT) -> None:
+        """Wait as `SpunNode.wait` does; raise StartError as soon as a node's process ends."""
+        def checked() -> Any:
+            self.check_nodes()
+            return ready()
+
+        super().wait(checked, what, timeout)
+
+    def check_nodes(self) -> None:
+        """
+        Refuse to go on without a node.
+
+        Raises
+        ------
+        StartError
+            If a node's process has ended.
+
+        """
+        ended = self._ended()
+        if ended is not None:
+            raise StartError(exit_message(*ended))
+
+    def joints(self, joint_names: tuple[str, ...], field: str = 'position') -> Array:
+        """
+        Return the arm's newest state.
+
+        Parameters
+        ----------
+        joint_names : tuple of str
+            The arm's joints.
+        field : str
+            'position' [rad] or 'velocity' [rad/s].
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            In the order of the joints.
+
+        """
+        found: Array = in_order([self._state], joint_names, field)[0]
+        return found
+
+    def plan(self, wanted: Wanted, answered: Callable[[PlanTrajectory.Response], None]) -> None:
+        """
+        Have a motion planned; called, as all that follows, in the executor's thread.
+
+        Parameters
+        ----------
+        wanted : Wanted
+            The motion, from its first via point.
+        answered : callable
+            Gets the planner's answer.
+
+        """
+        self._call(self._plan, request_of(wanted), answered)
+
+    def trigger(self, name: str, answered: Callable[[Trigger.Response], None]) -> None:
+        """
+        Call a service of the arm.
+
+        Parameters
+        ----------
+        name : str
+            'hold' or 'reset'.
+        answered : callable
+            Gets its answer.
+
+        """
+        self._call(self._triggers[name], Trigger.Request(), answered)
+
+    def move(self, goal: MoveThrough.Goal, progress: Callable[[MoveThrough.Feedback], None],
+             ended: Callable[[MoveThrough.Result], None]) -> None:
+        """
+        Have the arm moved; of the goal before, nothing is told any more.
+
+        Parameters
+        ----------
+        goal : MoveThrough.Goal
+            The motion.
+        progress : callable
+            Gets the feedback.
+        ended : callable
+            Gets the result.
+
+        """
+        self._goals += 1
+        number = self._goals
+
+        def newest(function: Callable[[Any], None], value: Any) -> None:
+            if number == self._goals:
+                function(value)
+
+        def accepted(future: Any) -> None:
+            future.result().get_result_async().add_done_callback(
+                lambda result: newest(ended, result.result().result))
+
+        self._action.send_goal_async(
+            goal, lambda message: newest(progress, message.feedback)).add_done_callback(accepted)
+
+    def _take_state(self, message: JointState) -> None:
+        self._state = message
+
+    @staticmethod
+    def _call(client: ServiceClient, request: Any, answered: Callable[[Any], None]) -> None:
+        client.call_async(request).add_done_callback(lambda future: answered(future.result()))
+
+
+def request_of(wanted: Wanted) -> PlanTrajectory.Request:
+    """
+    Return the request for a motion.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        The motion.
+
+    Returns
+    -------
+    PlanTrajectory.Request
+        From rest at the first via point.
+
+    """
+    request = plan_request(wanted.task, ())
+    request.max_velocity_scaling_factor = float(wanted.velocity_scaling)
+    request.max_acceleration_scaling_factor = float(wanted.acceleration_scaling)
+    return request

@@ -1,0 +1,165 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The page's scene: the arm, the via points with their handles, planned and driven path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.link_positions import Point
+from rrr_traj_planner.nodes.output.wireframe import rod
+from rrr_traj_planner.nodes.studio.figures import speed_colours
+from rrr_traj_planner.nodes.studio.planned import Planned
+from rrr_traj_planner.nodes.studio.session import Refusal
+import viser
+
+ARM, VIA, AT_FAULT, DRIVEN = (70, 90, 120), (245, 140, 30), (200, 30, 30), (0, 150, 130)
+
+# Sizes, as fractions of the arm's.
+THICK, BALL, HANDLE, CELL = 0.018, 0.018, 0.16, 0.1
+PLAN_LINE, DRIVEN_LINE = 6.0, 2.0  # pixels
+
+Moved = Callable[[int, Point], None]
+
+
+class Scene:
+    """
+    What is drawn in three dimensions, in the arm's base frame.
+
+    Parameters
+    ----------
+    scene : viser.SceneApi
+        Where to draw.
+    size : float
+        The arm's [m].
+    moved : callable
+        Gets index and position [m] of a via point that the user drags.
+
+    """
+
+    def __init__(self, scene: viser.SceneApi, size: float, moved: Moved) -> None:
+        self._scene, self._size, self._moved = scene, size, moved
+        self._points: list[_Handle] = []
+        self._links: list[tuple[Any, Any]] = []  # a rod and the ball at its end
+        scene.add_grid('/grid', width=4.0 * size, height=4.0 * size, cell_size=CELL * size,
+                       section_size=10.0 * CELL * size)
+        scene.add_frame('/base', axes_length=CELL * size, axes_radius=0.05 * CELL * size)
+
+    def show_points(self, points: Array, refusal: Refusal | None) -> None:
+        """
+        Show the via points; one that is dragged stays where the user has it.
+
+        Parameters
+        ----------
+        points : ndarray, shape (n, 3)
+            [m].
+        refusal : Refusal, optional
+            Tells which one is red, and why.
+
+        """
+        while len(self._points) > len(points):
+            self._points.pop().remove()
+        while len(self._points) < len(points):
+            index = len(self._points)
+            self._points.append(
+                _Handle(self._scene, index, points[index], self._size, self._moved))
+        for index, handle in enumerate(self._points):
+            handle.mark(refusal.text if refusal is not None and refusal.via_point == index
+                        else '')
+
+    def show_plan(self, plan: Planned | None, is_current: bool) -> None:
+        """
+        Show the planned path.
+
+        Parameters
+        ----------
+        plan : Planned, optional
+            None: there is nothing to show yet.
+        is_current : bool
+            Whether it is coloured; else it is grey.
+
+        """
+        if plan is not None:
+            self._draw('/plan', plan.path, speed_colours(plan.speed, is_current), PLAN_LINE)
+
+    def show_arm(self, places: tuple[Point, ...], driven: list[Point]) -> None:
+        """
+        Show the arm, and where its tip has been.
+
+        Parameters
+        ----------
+        places : tuple of points
+            Base, joints and tip [m].
+        driven : list of points
+            The driven path [m].
+
+        """
+        rods = [rod(a, b) for a, b in zip(places, places[1:])]
+        while len(self._links) < len(rods):
+            self._add_link(len(self._links), rods[len(self._links)].length)
+        for (bar, ball), shape, end in zip(self._links, rods, places[1:]):
+            x, y, z, w = shape.quaternion
+            bar.position, bar.wxyz, ball.position = shape.centre, (w, x, y, z), end
+        self._draw('/driven', np.array(driven).reshape(-1, 3), DRIVEN, DRIVEN_LINE)
+
+    def _add_link(self, index: int, length: float) -> None:
+        name, radius = f'/arm/{index}', THICK * self._size
+        self._links.append((
+            self._scene.add_cylinder(f'{name}/rod', radius, max(length, radius), ARM),
+            self._scene.add_icosphere(f'{name}/end', 1.4 * radius, ARM)))
+
+    def _draw(self, name: str, path: Array, colours: Any, width: float) -> None:
+        """Draw a path in place of the one of the same name, which may be a single point."""
+        ends = np.stack((path[:-1], path[1:]), axis=1)
+        if not len(ends):
+            ends, colours = np.zeros((1, 2, 3)), (0, 0, 0)  # a line without length: not to be seen
+        self._scene.add_line_segments(
+            name, ends.astype(np.float32), np.asarray(colours, dtype=np.uint8),
+            thickness=width, thickness_units='screen')
+
+
+class _Handle:
+    """A via point: a ball with its number, and arrows to drag it by."""
+
+    def __init__(self, scene: viser.SceneApi, index: int, position: Array, size: float,
+                 moved: Moved) -> None:
+        name = f'/via_point_{index}'
+        self._index, self._text = index, ''
+        self._controls = scene.add_transform_controls(
+            name, HANDLE * size, disable_rotations=True, depth_test=False,
+            position=tuple(position))
+        self._ball = scene.add_icosphere(f'{name}/ball', BALL * size, VIA)
+        self._label = scene.add_label(
+            f'{name}/label', str(index), anchor='bottom-right')
+
+        async def dragged(_: Any) -> None:  # not in a pool of threads, where the order is lost
+            x, y, z = self._controls.position.tolist()
+            moved(index, (x, y, z))
+
+        self._controls.on_update(dragged)
+
+    def mark(self, text: str) -> None:
+        """Make the via point red, with a text beside it; empty: neither."""
+        if text != self._text:
+            self._text = text
+            self._ball.color = AT_FAULT if text else VIA
+            self._label.text = f'{self._index}: {text}' if text else str(self._index)
+
+    def remove(self) -> None:
+        """Remove it from the scene."""
+        self._controls.remove()

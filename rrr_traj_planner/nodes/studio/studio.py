@@ -1,0 +1,182 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""What the page does: plans what is dragged, shows it, and runs it on the arm."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.link_positions import link_positions, Point
+from rrr_traj_planner.nodes.output.wireframe import Trail
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.studio.figures import plan_html, status_html
+from rrr_traj_planner.nodes.studio.goals import goal_of
+from rrr_traj_planner.nodes.studio.planned import Planned, planned
+from rrr_traj_planner.nodes.studio.ros_client import StudioClient
+from rrr_traj_planner.nodes.studio.session import Refusal, Session
+from rrr_traj_planner.nodes.studio.wanted import Wanted
+from rrr_traj_planner_interfaces.action import MoveThrough
+
+MOVES = 0.01            # rad/s, of a joint above which the arm moves
+TRAIL_STEP = 1.0 / 200  # distance of the driven path's points, as a fraction of the arm's size
+TRAIL_POINTS = 1000     # of the driven path
+NO_PLAN = 'these via points have no plan to run'
+TAKEN_OVER = 'the arm moves: time_optimal takes over'
+
+
+class Page(Protocol):
+    """What shows the page; any thread may call it."""
+
+    def show_points(self, points: Array, refusal: Refusal | None) -> None:
+        """Show the via points, and which one is at fault."""
+
+    def show_plan(self, plan: Planned | None, is_current: bool, text: str) -> None:
+        """Show a plan's path and figures."""
+
+    def show_arm(self, places: tuple[Point, ...], driven: list[Point]) -> None:
+        """Show the arm, and where its tip has been."""
+
+    def show_status(self, text: str, share: float) -> None:
+        """Show a text about the motion, and the share of it that is done."""
+
+
+class Studio:
+    """
+    The state of the page; every method is called in the executor's thread.
+
+    Parameters
+    ----------
+    client : StudioClient
+        Connected.
+    config : PlannerConfig
+        The planner's.
+    wanted : Wanted
+        What is planned at the beginning.
+    page : Page
+        What shows it.
+
+    """
+
+    def __init__(self, client: StudioClient, config: PlannerConfig, wanted: Wanted,
+                 page: Page) -> None:
+        self._client, self._config, self._page = client, config, page
+        self._model = config.model
+        self._trail = Trail(TRAIL_STEP * config.model.chain.size, TRAIL_POINTS)
+        self._shown: tuple[Point, ...] = ()
+        self._duration = 0.0  # of the motion in progress [s]
+        self.session: Session[Planned] = Session(wanted, self._ask)
+
+    def start(self) -> None:
+        """Show everything, and plan."""
+        self._page.show_status(status_html('at rest'), 0.0)
+        self.change(self.session.wanted)
+        self.tick()
+
+    def tick(self) -> None:
+        """Show where the arm is, if it has moved."""
+        places = link_positions(self._model, self._client.joints(self._model.joint_names).tolist())
+        if places != self._shown:
+            self._shown = places
+            self._trail.add(places[-1])
+            self._page.show_arm(places, list(self._trail.places))
+
+    def change(self, wanted: Wanted) -> None:
+        """
+        Plan something else.
+
+        Parameters
+        ----------
+        wanted : Wanted
+            What is wanted from now on.
+
+        """
+        self.session.change(wanted)
+        self._page.show_points(wanted.points, self.session.refusal)
+
+    def move_point(self, index: int, position: Point) -> None:
+        """
+        Plan with one via point elsewhere.
+
+        Parameters
+        ----------
+        index : int
+            Which one; nothing happens where it is no longer there.
+        position : tuple of 3 floats
+            Where it is now [m].
+
+        """
+        if index < len(self.session.wanted.points):
+            self.session.change(self.session.wanted.moved(index, position))
+
+    def run(self) -> None:
+        """Have the arm do what is planned."""
+        plan, wanted = self.session.plan, self.session.wanted
+        if plan is None or not self.session.is_current:
+            self._page.show_status(status_html(NO_PLAN, is_error=True), 0.0)
+            return
+        names = self._model.joint_names
+        moves = bool(np.abs(self._client.joints(names, 'velocity')).max() > MOVES)
+        goal = goal_of(wanted, plan, self._model, self._client.joints(names), moves)
+        if not moves:
+            self._trail.clear()
+        self._duration = 0.0
+        self._page.show_status(status_html(TAKEN_OVER if moves else 'planning'), 0.0)
+        self._client.move(goal, self._progress, self._ended)
+
+    def trigger(self, name: str) -> None:
+        """
+        Call a service of the arm.
+
+        Parameters
+        ----------
+        name : str
+            'hold' or 'reset'; this one clears the driven path too.
+
+        """
+        def answered(response: Any) -> None:
+            if name == 'reset':
+                self._trail.clear()
+            self._page.show_status(
+                status_html(response.message or name, not response.success), 0.0)
+
+        self._client.trigger(name, answered)
+
+    def _ask(self, wanted: Wanted) -> None:
+        planner_id = wanted.task.planner_id
+        limits = self._config.limits_for(planner_id)
+        self._client.plan(wanted, lambda response: self._planned(
+            planned(response, planner_id, self._model, limits)))
+
+    def _planned(self, answer: Planned | Refusal) -> None:
+        self.session.answered(answer)
+        session = self.session
+        self._page.show_points(session.wanted.points, session.refusal)
+        self._page.show_plan(session.plan, session.refusal is None, plan_html(
+            session.plan, session.refusal, self._model.joint_names))
+
+    def _progress(self, feedback: MoveThrough.Feedback) -> None:
+        self._duration = max(self._duration, feedback.time_left)
+        error = max(map(abs, feedback.tracking_error), default=0.0)
+        done = 1.0 - feedback.time_left / self._duration if self._duration else 0.0
+        self._page.show_status(status_html(
+            f'{feedback.time_left:.2f} s left, tracking error {error:.1e} rad'), done)
+
+    def _ended(self, result: MoveThrough.Result) -> None:
+        if result.error_code == result.SUCCESS:
+            self._page.show_status(status_html('reached the last via point'), 1.0)
+        else:
+            self._page.show_status(status_html(result.message, is_error=True), 0.0)

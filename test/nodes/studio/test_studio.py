@@ -1,0 +1,181 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The studio with real nodes: the plan follows the drag, refusals are shown, the arm is run."""
+
+from __future__ import annotations
+
+from threading import Condition
+
+from helpers.arm_in_ros import Arm
+from helpers.move_client import start_motion_server
+from helpers.plan_requests import TABLE_6_1
+from helpers.planner_in_ros import plan, start_planner
+import numpy as np
+import pytest
+from rrr_traj_planner.nodes.point_files.reading import read_task
+from rrr_traj_planner.nodes.studio.ros_client import StudioClient
+from rrr_traj_planner.nodes.studio.studio import NO_PLAN, Studio, TAKEN_OVER
+from rrr_traj_planner.nodes.studio.wanted import wanted_of
+
+DEADLINE = 20.0  # s
+FAR_AWAY = (9.0, 9.0, 9.0)
+DRAGS = 30
+REACHED = 1e-3   # m, of the tip: what computed torque leaves of the reference
+
+
+class Page:
+    """Keeps what is shown, to be waited for."""
+
+    def __init__(self):
+        self.refusal, self.is_current, self.figures, self.statuses = None, False, '', []
+        self.places, self.driven, self._shown = (), [], Condition()
+
+    def show_points(self, points, refusal):
+        self._show(points=points, refusal=refusal)
+
+    def show_plan(self, plan, is_current, text):
+        self._show(plan=plan, is_current=is_current, figures=text)
+
+    def show_arm(self, places, driven):
+        self._show(places=places, driven=driven)
+
+    def show_status(self, text, share):
+        self._show(statuses=[*self.statuses, (text, share)])
+
+    def _show(self, **shown):
+        with self._shown:
+            vars(self).update(shown)
+            self._shown.notify_all()
+
+    def wait(self, ready):
+        with self._shown:
+            assert self._shown.wait_for(lambda: ready(self), DEADLINE), (
+                self.figures, self.statuses[-3:])
+
+
+class Client(StudioClient):
+    """Counts what the planner is asked for."""
+
+    asked = 0
+
+    def plan(self, wanted, answered):
+        self.asked += 1
+        super().plan(wanted, answered)
+
+
+@pytest.fixture
+def page():
+    return Page()
+
+
+@pytest.fixture
+def client(ros):
+    start_planner(ros)
+    start_motion_server(ros)
+    return ros.add(Client(context=ros.context))
+
+
+@pytest.fixture
+def studio(ros, client, page):
+    """Give a test the studio with all nodes, and its first plan."""
+    Arm(ros)
+    config = client.connect(lambda: None)
+    wanted = wanted_of(read_task('table_6_1.yaml'), config.model, config.base_frame, 'cycloid')
+    studio = Studio(client, config, wanted, page)
+    ros.run(studio.start)
+    page.wait(lambda p: p.is_current)
+    ros.run(lambda: client.create_timer(0.02, studio.tick))
+    return studio
+
+
+def test_plan_follows_the_drag_and_none_piles_up(ros, client, page, studio):
+    first, asked = studio.session.plan, client.asked
+    places = [(0.46, 0.55, 1.44 - 0.01 * k) for k in range(DRAGS)]
+
+    def drag():  # faster than the planner answers
+        for place in places:
+            studio.move_point(1, place)
+
+    ros.run(drag)
+    page.wait(lambda p: studio.session.is_current and studio.session.plan is not first)
+    assert client.asked == asked + 2
+    response = plan(ros, (TABLE_6_1[0], places[-1], TABLE_6_1[2]))
+    assert studio.session.plan.duration == pytest.approx(response.via_times[-1], abs=1e-9)
+    assert f'{response.via_times[-1]:.3f} s' in page.figures
+
+
+def test_path_passes_through_the_via_points(page, studio):
+    path = page.plan.path
+    for place in TABLE_6_1:
+        assert np.linalg.norm(path - place, axis=1).min() < 1e-9
+    assert len(page.plan.speed) == len(path) - 1
+    name, peaks, limits = page.plan.peaks[0]
+    assert name.startswith('velocity') and limits.tolist() == [1.0, 1.0, 1.0]
+    assert (peaks <= limits).all()
+
+
+def test_refused_point_is_at_fault_and_the_last_plan_stays(ros, page, studio):
+    last = studio.session.plan
+    ros.run(lambda: studio.move_point(1, FAR_AWAY))
+    page.wait(lambda p: p.refusal is not None)
+    response = plan(ros, (TABLE_6_1[0], FAR_AWAY, TABLE_6_1[2]))
+    page.wait(lambda p: not p.is_current)
+    assert (page.refusal.text, page.refusal.via_point) == (response.message, 1)
+    assert page.plan is last
+    ros.run(studio.run)
+    assert NO_PLAN in page.statuses[-1][0]
+    ros.run(lambda: studio.move_point(1, TABLE_6_1[1]))
+    page.wait(lambda p: p.is_current and p.refusal is None)
+
+
+def test_run_moves_the_arm_along_the_plan(ros, page, studio):
+    ros.run(studio.run)
+    page.wait(lambda p: any('tracking error' in text for text, _ in p.statuses))
+    page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
+    shares = [share for text, share in page.statuses if 'tracking error' in text]
+    assert shares == sorted(shares) and 0.0 <= shares[0] and shares[-1] <= 1.0
+    page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[2])) < REACHED)
+    driven = np.array(page.driven)
+    for place in TABLE_6_1:
+        assert np.linalg.norm(driven - place, axis=1).min() < 0.02  # between two pictures
+    ros.run(lambda: studio.trigger('reset'))
+    page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) < REACHED)
+
+
+def test_second_run_goes_to_the_first_point_and_one_in_motion_takes_over(ros, page, studio):
+    def run_again():
+        assert studio.session.is_current
+        studio.run()
+
+    ros.run(studio.run)
+    page.wait(lambda p: any('tracking error' in text for text, _ in p.statuses))
+    page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) > 0.05)
+    ros.run(run_again)
+    assert TAKEN_OVER in page.statuses[-1][0]
+    page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
+    page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[2])) < REACHED)
+    ros.run(run_again)
+    page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) < 0.01)
+    page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
+
+
+def test_hold_stops_the_arm_and_the_page_says_so(ros, client, page, studio):
+    names = ('joint_1', 'joint_2', 'joint_3')
+    ros.run(studio.run)
+    page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) > 0.05)
+    ros.run(lambda: studio.trigger('hold'))
+    page.wait(lambda p: p.statuses[-1][0] != '' and 'left' not in p.statuses[-1][0])
+    page.wait(lambda p: np.abs(client.joints(names, 'velocity')).max() < 1e-3)
+    assert np.linalg.norm(np.subtract(page.places[-1], TABLE_6_1[2])) > 0.1
