@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+from math import nan
+
 from control_msgs.action import FollowJointTrajectory
 from control_msgs.msg import JointTrajectoryControllerState
 from helpers.arm_in_ros import NAMES, START
@@ -31,15 +33,21 @@ ORDER = ['gripper', *reversed(NAMES)]  # of the states that it publishes
 
 
 class OtherController:
-    """Measures positions alone, and publishes them by one of two topics."""
+    """
+    Measures positions alone, and publishes them by one of two topics.
 
-    def __init__(self, ros, name, by_joint_states=True, late=0.0):
+    By `joint_states` in one of several forms: `plain`, `without time`, `in parts` (each message
+    has some of the joints) or `nan` (in place of velocities and efforts).
+    """
+
+    def __init__(self, ros, name, by_joint_states=True, late=0.0, form='plain'):
+        self._form = form
         self._late = Duration(seconds=late)  # of its clock
         self._clock = ros.node.get_clock()
         self.q, self._goal = np.array(START), None
         self._server = GoalServer(
             ros.node, FollowJointTrajectory, f'{name}/follow_joint_trajectory', lambda goal: None,
-            self._begin, lambda handle: None)
+            self._begin, self._cancel)
         self._by_joint_states = by_joint_states
         kind, topic = ((JointState, 'joint_states') if by_joint_states else
                        (JointTrajectoryControllerState, f'{name}/controller_state'))
@@ -51,6 +59,10 @@ class OtherController:
 
     def _begin(self, handle, _):
         self._goal = handle
+
+    def _cancel(self, _):
+        self._goal = None
+        return FollowJointTrajectory.Result()
 
     def _update(self):
         """Follow the goal by straight lines between its points, and publish the state."""
@@ -64,7 +76,13 @@ class OtherController:
             if time > times[-1]:
                 self._server.end(self._goal, SUCCEEDED, FollowJointTrajectory.Result())
                 self._goal = None
-        self._states.publish(self._message(now.to_msg()))
+        message = self._message(now.to_msg())
+        if self._form != 'in parts':
+            self._states.publish(message)
+            return
+        for part in (slice(0, 2), slice(2, 4)):
+            self._states.publish(JointState(
+                header=message.header, name=message.name[part], position=message.position[part]))
 
     def _message(self, stamp):
         q = [0.0, *self.q[::-1].tolist()]
@@ -73,5 +91,8 @@ class OtherController:
         else:
             message = JointTrajectoryControllerState(joint_names=ORDER)
             message.reference = message.feedback = JointTrajectoryPoint(positions=q)
-        message.header.stamp = stamp
+        if self._form == 'nan':
+            message.velocity = message.effort = [nan] * len(ORDER)
+        if self._form != 'without time':
+            message.header.stamp = stamp
         return message

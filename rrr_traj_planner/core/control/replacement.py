@@ -28,16 +28,16 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.control.takeover import Segment, Takeover
 from rrr_traj_planner.core.control.trajectory_limits import outside_ranges
 from rrr_traj_planner.core.control.trajectory_start import (
+    ends_outside,
     is_ahead,
     is_on,
     lead_keeps_limits,
     led_into,
 )
-from rrr_traj_planner.core.errors import counted, format_distinct
+from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.nanoseconds import nanoseconds
 from rrr_traj_planner.core.stopping.joint_brake import LEAST_TIME
 from rrr_traj_planner.core.stopping.point_to_point import extended_by_move
@@ -50,9 +50,6 @@ from rrr_traj_planner.core.trajectory.reference_trajectory import (
     ReferenceTrajectory,
 )
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
-
-ENDS_OUTSIDE = (
-    'the trajectory would end with {} at {} rad, range [{}, {}] rad{}: holding position')
 
 BATCH = 256        # points that are tried at once; chosen: 2.5 s of points at 100 Hz
 
@@ -184,7 +181,8 @@ def _gone_to(takeover: Takeover, motion: ReferenceTrajectory) -> Replacement:
     that velocity, if the arm can stop inside its ranges from there. If the move would exceed a
     torque limit, or the end is outside a range, the arm holds the position where it stopped.
     """
-    if outside := _ends_outside(takeover, motion):
+    outside = tuple(f'{text}: holding position' for text in ends_outside(takeover, motion))
+    if outside:
         stopped, warnings = _stopped(takeover)
         return Replacement(stopped, warnings + outside, holds=True)
     due = motion.end - takeover.now
@@ -214,15 +212,3 @@ def _stopped(takeover: Takeover) -> Stop:
     """Return a stop from the present."""
     moving = takeover.running or from_state(takeover.command, nanoseconds(takeover.now))
     return stop(moving, takeover.now, takeover.limits, takeover.model)
-
-
-def _ends_outside(takeover: Takeover, motion: ReferenceTrajectory) -> tuple[str, ...]:
-    """Return a sentence for each joint that a motion leaves outside its range."""
-    q, limits = motion.final, takeover.limits
-    return tuple(
-        ENDS_OUTSIDE.format(
-            name, *format_distinct(*map(float, bounds)),
-            HINT if explained_by_degrees(sent, *bounds[1:]) else '')
-        for name, beyond, sent, *bounds in zip(
-            takeover.model.joint_names, outside_ranges(q, limits), motion.states()[0].T, q,
-            limits.min_position, limits.max_position) if beyond)

@@ -23,6 +23,7 @@ it arrived: `unmet_start` says what stands in the way.
 from __future__ import annotations
 
 import numpy as np
+from rrr_traj_planner.core.arm.degrees import explained_by_degrees, HINT
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.control.takeover import Segment, Takeover
 from rrr_traj_planner.core.control.trajectory_limits import furthest, outside_ranges
@@ -52,6 +53,7 @@ REACHES = '{} reaches {} {unit}, limit {} {unit}'
 GOES = '{} goes to {} {unit}, range [{}, {}] {unit}'
 NEEDS = '{} needs {} N m, limit {} N m'
 STEP = '{} needs {} rad/s^2 for its step of velocity, limit {} rad/s^2'
+ENDS_OUTSIDE = 'the trajectory would end with {} at {} rad, range [{}, {}] rad{}'
 UNMET = 'The first point cannot be reached in time, it is due in {:.3f} s: {}'
 AWAY = '{} is commanded {} {unit}, the first point, which is due now, has {} {unit}'
 AWAY_END = ' (they may differ by {:g} {unit}; a point that is due later is moved to)'
@@ -172,12 +174,14 @@ def unmet_start(takeover: Takeover, points: TrajectoryPoints, origin_ns: int,
     Returns
     -------
     str
-        A sentence: which joint exceeds what by how much. Empty if the trajectory can be followed,
-        if its first point has passed, or if it ends outside a range, which `replacement` refuses.
+        A sentence: which joint exceeds what by how much, at the start or at the end. Empty if the
+        trajectory can be followed, or if its first point has passed.
 
     """
     motion = reference_through(points, origin_ns)
-    if motion.start < takeover.now or outside_ranges(motion.final, takeover.limits).any():
+    if outside := ends_outside(takeover, motion):
+        return '; '.join(outside)
+    if motion.start < takeover.now:
         return ''
     if not is_ahead(takeover, motion, least_lead):
         return '' if is_on(takeover, motion, points) else _away(takeover, motion, points)
@@ -185,6 +189,33 @@ def unmet_start(takeover: Takeover, points: TrajectoryPoints, origin_ns: int,
     if lead_keeps_limits(takeover, whole):
         return ''
     return UNMET.format(motion.start - takeover.now, '; '.join(_lead_excesses(takeover, whole)))
+
+
+def ends_outside(takeover: Takeover, motion: ReferenceTrajectory) -> tuple[str, ...]:
+    """
+    Return which joints a motion leaves outside their ranges.
+
+    Parameters
+    ----------
+    takeover : Takeover
+        The present.
+    motion : ReferenceTrajectory
+        The motion.
+
+    Returns
+    -------
+    tuple of str
+        A sentence for each.
+
+    """
+    q, limits = motion.final, takeover.limits
+    return tuple(
+        ENDS_OUTSIDE.format(
+            name, *format_distinct(*map(float, bounds)),
+            HINT if explained_by_degrees(sent, *bounds[1:]) else '')
+        for name, beyond, sent, *bounds in zip(
+            takeover.model.joint_names, outside_ranges(q, limits), motion.states()[0].T, q,
+            limits.min_position, limits.max_position) if beyond)
 
 
 def _lead(takeover: Takeover, whole: TrajectoryPoints) -> Segment:

@@ -20,7 +20,7 @@ from array import array
 from collections.abc import Mapping, Sequence
 from math import isfinite
 from time import monotonic
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from control_msgs.msg import JointTrajectoryControllerState
 from rclpy.node import Node
@@ -112,6 +112,7 @@ class ArmStates:
     """
 
     def __init__(self, node: Node, controller: str) -> None:
+        self._clock = node.get_clock()
         self._references = LatestMessages(
             node, JointTrajectoryControllerState, f'{controller}/controller_state')
         self._measurements = LatestMessages(node, JointState, 'joint_states')
@@ -146,19 +147,32 @@ class ArmStates:
             joints = _states(message.joint_names, reference.positions, reference.velocities,
                              reference.accelerations)
             if joints:
-                self._reference = now - age, ArmState(joints, nanoseconds(message.header.stamp))
+                self._reference = now - age, ArmState(joints, self._time_of(message, age))
         for message, age in self._measurements.take():
             self._measured.update({name: (now - age, state) for name, state in _states(
                 message.name, message.position, message.velocity, ()).items()})
-            self._stamp = nanoseconds(message.header.stamp)
+            self._stamp = self._time_of(message, age)
+
+    def _time_of(self, message: Any, age: float) -> int:
+        """Return the time of a message, of its arrival if it has none [ns]."""
+        return nanoseconds(message.header.stamp) or (
+            int(self._clock.now().nanoseconds) - round(age * SECOND))
 
 
 def _states(names: Sequence[str], *columns: Sequence[float]
             ) -> dict[str, tuple[float, float, float]]:
-    """Return finite states by name; what has no value for each name is zero."""
+    """
+    Return states by name; velocities and accelerations that are not known are zero.
+
+    Controllers that do not know a value leave it out, or give NaN.
+    """
     filled = [column if len(column) == len(names) else [0.0] * len(names)
               for column in columns]
     if not len(columns[0]) == len(names) > 0:
         return {}
-    return {name: (float(q), float(qd), float(qdd)) for name, q, qd, qdd in zip(names, *filled)
-            if isfinite(q) and isfinite(qd) and isfinite(qdd)}
+    return {name: (float(q), _known(qd), _known(qdd)) for name, q, qd, qdd in zip(names, *filled)
+            if isfinite(q)}
+
+
+def _known(value: float) -> float:
+    return float(value) if isfinite(value) else 0.0

@@ -27,11 +27,12 @@ from rclpy.node import Node
 from rclpy.task import Future
 from rrr_traj_planner.nodes.motion.controller_goal import end_of_goal, progress_of
 from rrr_traj_planner.nodes.motion.motion import CANCELED, EndCode, Motion, MotionEnd
+from rrr_traj_planner.nodes.motion.options import ACTION
 
 ANSWER_TIME = 5.0  # s for the controller to accept or reject a goal
 
 REPLACED = MotionEnd(EndCode.PREEMPTED, 'replaced by a newer goal')
-SILENT = MotionEnd(EndCode.COMMUNICATION_FAILURE, 'the controller does not answer any more')
+SILENT = 'the controller (action {}) does not answer any more'
 
 Rejected = Callable[[MotionEnd], None]
 
@@ -59,7 +60,7 @@ class Controller:
     """
 
     def __init__(self, node: Node, controller: str, changed: Callable[[], None]) -> None:
-        self.action = node.resolve_service_name(f'{controller}/follow_joint_trajectory')
+        self.action = node.resolve_service_name(f'{controller}{ACTION}')
         self._client = ActionClient(node, FollowJointTrajectory, self.action)
         self._changed = changed
         self.running: Motion | None = None
@@ -116,7 +117,8 @@ class Controller:
         gone, self._sent, self.running = (self._sent, self.running), None, None
         for motion in gone:
             if motion is not None:
-                motion.finish(SILENT)
+                motion.finish(MotionEnd(
+                    EndCode.COMMUNICATION_FAILURE, SILENT.format(self.action)))
 
     def close(self) -> None:
         """Release the client, which would keep the node alive."""

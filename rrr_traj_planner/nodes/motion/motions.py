@@ -104,8 +104,7 @@ class Motions:
         latest = self.states.latest()
         if latest is None:
             found.append(f"the arm's state (topic {' or '.join(self.states.sources)})")
-        elif sends and latest.stamp and (
-                abs(latest.stamp - self._now()) > CLOCKS_DIFFER * SECOND):
+        elif sends and abs(latest.stamp - self._now()) > CLOCKS_DIFFER * SECOND:
             found.append(WRONG_TIME)
         return found
 
@@ -260,10 +259,11 @@ class Motions:
         """End motions for which the planner or the controller has gone."""
         if self._current is not None and self._asked_at is not None:
             timeout = self.options.planning_timeout
-            if not self._planner.service_is_ready() or monotonic() > self._asked_at + timeout:
+            gone = not self._planner.service_is_ready()
+            if gone or monotonic() > self._asked_at + timeout:
                 self._finish(self._current, MotionEnd(
-                    EndCode.COMMUNICATION_FAILURE, 'the planner has gone, or has not answered for '
-                    f'{timeout:g} s'))
+                    EndCode.COMMUNICATION_FAILURE, f'the planner (service {self._service}) has '
+                    + ('gone' if gone else f'not answered for {timeout:g} s')))
         self._controller.check()
 
     def _later(self, call: Callable[[], None]) -> None:

@@ -18,6 +18,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from rclpy.exceptions import InvalidTopicNameException
+from rclpy.validate_topic_name import validate_topic_name
+from rrr_traj_planner.core.errors import InvalidInputError, quoted
+
+ACTION = '/follow_joint_trajectory'
+
 
 class Options(NamedTuple):
     """
@@ -43,3 +49,36 @@ class Options(NamedTuple):
     planning_timeout: float = 30.0
     discovery_timeout: float = 10.0
     start_tolerance: float = 0.01
+
+
+def controller_of(name: str, what: str) -> str:
+    """
+    Return a controller's name.
+
+    Parameters
+    ----------
+    name : str
+        The controller's, or its action's.
+    what : str
+        What messages call it.
+
+    Returns
+    -------
+    str
+        Without the action's name.
+
+    Raises
+    ------
+    InvalidInputError
+        If it is not a name in ROS.
+
+    """
+    controller = name.removesuffix(ACTION).rstrip('/')
+    try:
+        validate_topic_name(controller + ACTION)
+    except InvalidTopicNameException:
+        controller = ''
+    if not controller:
+        raise InvalidInputError(
+            f'{what} is {quoted(name)}, must be a name such as arm_controller or /arm_controller')
+    return controller

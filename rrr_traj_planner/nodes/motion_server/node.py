@@ -24,7 +24,7 @@ from typing import Any
 from rclpy.action.server import ServerGoalHandle
 from rrr_traj_planner.nodes.motion.motion import EndCode, Motion, MotionEnd, Progress, Watch
 from rrr_traj_planner.nodes.motion.motions import Motions
-from rrr_traj_planner.nodes.motion.options import Options
+from rrr_traj_planner.nodes.motion.options import controller_of, Options
 from rrr_traj_planner.nodes.parameters.declared import DeclaredParameters
 from rrr_traj_planner.nodes.parameters.parameter_files import files_given
 from rrr_traj_planner.nodes.parameters.table import MOTION
@@ -157,7 +157,8 @@ class MotionServer(ServiceNode):
 
 def _options(values: Mapping[str, Any]) -> Options:
     """Return how motions are run."""
-    return Options(values['controller_name'], values['replanning_lead'],
+    controller = controller_of(values['controller_name'], 'parameter controller_name')
+    return Options(controller, values['replanning_lead'],
                    values['planning_timeout'], values['discovery_timeout'],
                    values['start_tolerance'])
 

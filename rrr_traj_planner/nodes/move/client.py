@@ -18,20 +18,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+import sys
 from time import monotonic, sleep
 
 import numpy as np
 from rcl_interfaces.srv import GetParameters
 from rclpy.action import get_action_names_and_types
-from rclpy.validate_topic_name import validate_topic_name
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.motion.departure import duration_of
 from rrr_traj_planner.nodes.motion.motion import EndCode, Motion, Watch
 from rrr_traj_planner.nodes.motion.motions import Motions
-from rrr_traj_planner.nodes.motion.options import Options
+from rrr_traj_planner.nodes.motion.options import controller_of, Options
 from rrr_traj_planner.nodes.move.from_here import from_here, FromHere, in_base_frame
 from rrr_traj_planner.nodes.move.progress import ProgressLines
-from rrr_traj_planner.nodes.move.spun_node import GRACE, pause, POLL_PERIOD, SpunNode
+from rrr_traj_planner.nodes.move.spun_node import pause, POLL_PERIOD, SpunNode
 from rrr_traj_planner.nodes.move.state_record import StateRecord
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.point_files.task import Task
@@ -48,7 +48,8 @@ from rrr_traj_planner_interfaces.srv import PlanTrajectory
 CANCEL_TIME = 1.0    # s for the controller to say that it has canceled the goal
 SETTLING_TIME = 0.5  # s that is recorded after the end
 STATES_TIME = 5.0    # s by which states may be late
-ACTION, TYPE = '/follow_joint_trajectory', 'control_msgs/action/FollowJointTrajectory'
+DISCOVERY_TIME = 6.0  # s in which who publishes states is found; DDS announces itself every 3 s
+TYPE = 'control_msgs/action/FollowJointTrajectory'
 
 NO_STATE = 'nobody publishes where the arm is: planned from rest at the first via point'
 
@@ -65,8 +66,7 @@ class MoveClient(SpunNode):
     """
 
     def __init__(self, controller: str) -> None:
-        name = controller.removesuffix(ACTION).rstrip('/')
-        validate_topic_name(name + ACTION)
+        name = controller_of(controller, '--controller')
         super().__init__('move')
         self._motions = Motions(self, Options(controller=name))
         self._record = StateRecord(self, name)
@@ -102,7 +102,7 @@ class MoveClient(SpunNode):
             After SIGINT or SIGTERM.
 
         """
-        self.wait_for_all(partial(self._missing_to_plan, monotonic() + GRACE))
+        self.wait_for_all(partial(self._missing_to_plan, monotonic() + DISCOVERY_TIME))
         config = self._planner_config(task)
         asked = self._from_here(task, config)
         if self.in_executor(self._motions.states.latest) is None:
@@ -113,7 +113,7 @@ class MoveClient(SpunNode):
             raise StartError(_reason(motion, asked))
         return motion.response, config
 
-    def run(self, task: Task, bag: Bag | None = None) -> Run:
+    def run(self, task: Task, bag: Bag | None = None) -> Run | None:
         """
         Plan a task from where the arm is, and have the controller run the plan.
 
@@ -126,8 +126,8 @@ class MoveClient(SpunNode):
 
         Returns
         -------
-        Run
-            Task, plan and recorded motion.
+        Run or None
+            Task, plan and recorded motion; None: nobody has published what the arm did.
 
         Raises
         ------
@@ -203,19 +203,24 @@ class MoveClient(SpunNode):
         deadline = monotonic() + CANCEL_TIME
         while motion.end is None and monotonic() < deadline:
             sleep(POLL_PERIOD)
-        if motion.end is not None:
+        if motion.end is None:
+            print(f'move: the controller has not confirmed that in {CANCEL_TIME:g} s: the arm may '
+                  'go on moving', file=sys.stderr, flush=True)
+        else:
             print('the controller stops the arm' if motion.goal is not None else 'not sent',
                   flush=True)
 
     def _recorded_run(self, task: Task, asked: FromHere, config: PlannerConfig,
-                      motion: Motion) -> Run:
+                      motion: Motion) -> Run | None:
         """Return the run of a motion that has reached its end, once the arm has settled."""
         response, planned = motion.response, trajectory_points(motion.response.trajectory)
         end = motion.begins + duration_of(response.trajectory) + round(SETTLING_TIME * SECOND)
         self._wait_for_states(lambda: self._record.has_since(end))
         names = config.model.joint_names
-        recorded, torque = recorded_motion(
-            self._record.states(names), names, motion.begins / SECOND)
+        states = self._record.states(names)
+        if len(states) < 2:
+            return None
+        recorded, torque = recorded_motion(states, names, motion.begins / SECOND)
         if asked.skipped:
             response.via_times = [0.0, *response.via_times]
         at = [int(np.abs(planned.times - t).argmin()) for t in response.via_times]

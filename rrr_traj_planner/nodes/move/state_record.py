@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import nan
 
 from control_msgs.msg import JointTrajectoryControllerState
 from rclpy.node import Node
@@ -42,6 +43,8 @@ class StateRecord:
     """
 
     def __init__(self, node: Node, controller: str) -> None:
+        self._clock = node.get_clock()
+        self._joints: dict[str, tuple[float, float, float]] = {}  # the latest of each
         self._measured: list[JointState] = []
         self._of_controller: list[JointState] = []
         self._begun = False
@@ -58,7 +61,7 @@ class StateRecord:
 
     def states(self, joint_names: Sequence[str]) -> list[JointState]:
         """
-        Return the states that have all joints of an arm.
+        Return the states that have all joints of an arm, of increasing times.
 
         Parameters
         ----------
@@ -72,8 +75,18 @@ class StateRecord:
 
         """
         names = set(joint_names)
-        return ([s for s in list(self._measured) if names <= set(s.name)]
-                or [s for s in list(self._of_controller) if names <= set(s.name)])
+        for kept in (self._measured, self._of_controller):
+            found: list[JointState] = []
+            for state in list(kept):
+                time = nanoseconds(state.header.stamp)
+                if found and nanoseconds(found[-1].header.stamp) == time:
+                    found.pop()  # the later one has more joints of this time
+                if names <= set(state.name) and (
+                        not found or nanoseconds(found[-1].header.stamp) < time):
+                    found.append(state)
+            if len(found) > 1:
+                return found
+        return []
 
     def has_since(self, stamp: int) -> bool:
         """
@@ -95,11 +108,30 @@ class StateRecord:
 
     def _take(self, message: JointState) -> None:
         if self._begun:
-            self._measured.append(message)
+            self._measured.append(self._whole(self._stamped(message)))
 
     def _take_of_controller(self, message: JointTrajectoryControllerState) -> None:
         """Keep what a controller has measured."""
         if self._begun:
-            self._of_controller.append(JointState(
+            self._of_controller.append(self._stamped(JointState(
                 header=message.header, name=message.joint_names,
-                position=message.feedback.positions, velocity=message.feedback.velocities))
+                position=message.feedback.positions, velocity=message.feedback.velocities)))
+
+    def _stamped(self, message: JointState) -> JointState:
+        """Give a message that has no time that of its arrival."""
+        if not nanoseconds(message.header.stamp):
+            message.header.stamp = self._clock.now().to_msg()
+        return message
+
+    def _whole(self, message: JointState) -> JointState:
+        """Return a message of some of the joints with the latest of the others."""
+        if not len(message.position) == len(message.name) > 0:
+            return message
+        columns = [values if len(values) == len(message.name) else [nan] * len(message.name)
+                   for values in (message.position, message.velocity, message.effort)]
+        self._joints.update(zip(message.name, zip(*columns)))
+        if len(message.name) == len(self._joints):
+            return message
+        position, velocity, effort = zip(*self._joints.values())
+        return JointState(header=message.header, name=list(self._joints), position=position,
+                          velocity=velocity, effort=effort)

@@ -34,6 +34,9 @@ controller run its answer, and show what was planned and reached. SIGINT (Ctrl-C
   subscribes  joint_states, CONTROLLER/controller_state
 
 The exit code is 0 only if the controller has reported success, or after a signal."""
+NO_TABLE = """\
+The controller has reported success. What was reached is not known: no positions of all joints were
+published meanwhile."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -83,6 +86,8 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.runs.answer import refused_text
     from rrr_traj_planner.nodes.runs.table import table
 
+    if options.dry_run and options.record is not None:
+        raise StartError('--record records a motion, and --dry-run has none: leave one out')
     task = read_task_from_here(options.points)
     task = replace(task, planner_id=options.planner or task.planner_id)
     with ExitStack() as stack:
@@ -98,7 +103,7 @@ def _run(options: argparse.Namespace, ros_arguments: list[str]) -> int:
         if response.error_code != response.SUCCESS:
             raise StartError(refused_text(response))
         return 0
-    print(table(run), flush=True)
+    print(NO_TABLE if run is None else table(run), flush=True)
     if bag is not None:
         print(f'recording: {bag.file}, {counted(bag.count, "message")}', flush=True)
     return 0

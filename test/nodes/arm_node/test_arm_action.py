@@ -67,8 +67,13 @@ ENDINGS = {
                  'reaches 1.'),
     'elsewhere': (goal((0.0, NEAR + 0.02), rest_to_rest(NEAR + 0.2, 2.0)), REFUSED, -1,
                   'joint_1 is commanded '),
-    'out of range': (goal(rest_to_rest(OUTSIDE, 0.3)), ABORTED, -1,
-                     'Aborted: the trajectory would end with joint_1 at -1 rad, range [0, '),
+    'out of range': (goal(rest_to_rest(OUTSIDE, 0.3)), REFUSED, -1,
+                     'the trajectory would end with joint_1 at -1 rad, range [0, 1.5708] rad'),
+    'slowly out of range': (goal(rest_to_rest(OUTSIDE, 9.0)), REFUSED, -1,
+                            'the trajectory would end with joint_1 at -1 rad, range [0, 1.5708]'),
+    'in degrees': (goal(rest_to_rest((30.0, 54.0, 14.0), 9.0)), REFUSED, -1,
+                   'the trajectory would end with joint_1 at 30 rad, range [0, 1.5708] rad (in '
+                   'degrees?)'),
     'wrong tolerance': (goal(rest_to_rest(NEAR, 0.3), path=[('joint_9', 1e-9)]), SUCCEEDED, 0,
                         'Goal successfully reached!')}
 

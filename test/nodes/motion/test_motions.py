@@ -169,7 +169,8 @@ def test_silent_planner_ends_a_goal_after_its_time_and_the_next_goal_is_served(
     client = MoveClient(ros)
     result = client.run(move_goal(TABLE_6_1[1]))[1]
     assert (result.error_code, result.message) == (
-        Result.COMMUNICATION_FAILURE, 'the planner has gone, or has not answered for 0.1 s')
+        Result.COMMUNICATION_FAILURE,
+        'the planner (service /plan_trajectory) has not answered for 0.1 s')
     assert controller.goals == []
     ros.node.destroy_service(service)
     start_planner(ros)

@@ -29,6 +29,7 @@ from helpers.scripts import python, Script, script
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.arm_node.node import SimulatedArm
 from rrr_traj_planner.nodes.motion_server.node import MotionServer
@@ -202,6 +203,16 @@ def test_what_is_missing_is_named(ros):
         'not there: the planner (service /plan_trajectory), the controller (action '
         "/a/controller/follow_joint_trajectory), the arm's state (topic "
         '/a/controller/controller_state or /joint_states)')
+
+
+def test_controller_is_named_with_or_without_its_action(ros):
+    for name in ('/a/controller/', '/a/controller/follow_joint_trajectory'):
+        server = start_motion_server(ros, controller_name=name, discovery_timeout=0.0)
+        result = MoveClient(ros).run(move_goal(FAR))[1]
+        assert '(action /a/controller/follow_joint_trajectory)' in result.message
+        ros.remove(server)
+    with pytest.raises(InvalidInputError, match="^parameter controller_name is 'my arm', must be"):
+        start_motion_server(ros, controller_name='my arm')
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])

@@ -196,7 +196,9 @@ def test_dry_run_needs_no_arm(module_ros, tmp_path):
 
 @pytest.mark.parametrize(('arguments', 'text'), [
     (('nowhere.yaml',), 'nowhere.yaml'),
-    (('taught.csv', '--controller', 'a b'), 'a b'),
+    (('taught.csv', '--controller', 'a b'), "--controller is 'a b', must be a name such as"),
+    (('taught.csv', '--controller', ''), "--controller is '', must be a name such as"),
+    (('taught.csv', '--dry-run', '--record', 'a.mcap'), '--record records a motion'),
     (('taught.csv', '--record', 'taught.csv'), 'taught.csv exists already')])
 def test_wrong_arguments_are_refused_in_a_line(tmp_path, arguments, text):
     code, output, errors = moved(*arguments, cwd=tmp_path)

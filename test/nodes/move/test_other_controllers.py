@@ -26,10 +26,11 @@ import numpy as np
 import pytest
 
 
-@pytest.mark.parametrize('by_joint_states', [True, False])
-def test_arm_of_which_positions_alone_are_known_is_moved(ros, tmp_path, by_joint_states):
+@pytest.mark.parametrize('form', ['without time', 'in parts', 'nan', 'of the controller'])
+def test_arm_of_which_positions_alone_are_known_is_moved(ros, tmp_path, form):
     start_planner(ros)
-    controller = OtherController(ros, '/arm_controller', by_joint_states)
+    controller = OtherController(
+        ros, '/arm_controller', form != 'of the controller', form=form)
     try:
         (tmp_path / 'taught.csv').write_text('joint_1,joint_2,joint_3\n0.6,1.0,0.2\n' + ','.join(
             f'{x:.6f}' for x in GOAL) + '\n')
