@@ -69,6 +69,7 @@ class Page:
         self._scene = Scene(server.scene, size, self._moved)
         self._post: Post = lambda _: None
         self._studio: Studio | None = None
+        self._ghost: tuple[Point, ...] = ()
         centre = np.vstack((wanted.points, np.zeros(3))).mean(axis=0)
         server.initial_camera.look_at = tuple(centre)
         server.initial_camera.position = tuple(centre + size * VIEW)
@@ -102,6 +103,13 @@ class Page:
         """Show the arm, and where its tip has been."""
         with self._server.atomic():
             self._scene.show_arm(places, driven)
+
+    def show_ghost(self, places: tuple[Point, ...]) -> None:
+        """Show the arm at another moment; hide it where there are no places."""
+        if places != self._ghost:
+            self._ghost = places
+            with self._server.atomic():
+                self._scene.show_ghost(places)
 
     def show_status(self, text: str, share: float) -> None:
         """Show a text about the motion, and the share of it that is done."""

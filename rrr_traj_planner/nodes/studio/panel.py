@@ -57,6 +57,9 @@ class Panel:
             self._remove = gui.add_button('Remove the last one')
         with gui.add_folder('Plan'):
             self._figures = gui.add_html('')
+            self._play = gui.add_checkbox('play', False, hint='the arm does the plan as a ghost')
+            self._moment = gui.add_slider('moment', 0.0, 1.0, 0.001, 0.0,
+                                          hint='of the motion, as a fraction of its duration')
         with gui.add_folder('Arm'):
             self._status = gui.add_html('')
             self._progress = gui.add_progress_bar(0.0)
@@ -88,9 +91,18 @@ class Panel:
                 *(float(s.value) for s in self._scalings)))
         changing(self._add, lambda wanted: wanted.with_point())
         changing(self._remove, lambda wanted: wanted.without_last())
+        when(self._play, lambda: studio.play(bool(self._play.value)))
+        when(self._moment, self._go_to(studio))
         when(self._run, studio.run)
         when(self._hold, lambda: studio.trigger('hold'))
         when(self._reset, lambda: studio.trigger('reset'))
+
+    def _go_to(self, studio: Studio) -> Callable[[], None]:
+        def act() -> None:
+            self._play.value = False
+            studio.go_to(float(self._moment.value))
+
+        return act
 
     def show_plan(self, text: str) -> None:
         """

@@ -50,6 +50,10 @@ class Planned:
         Positions of the tip along the motion [m].
     speed : ndarray, shape (n - 1,)
         Mean speed of the tip from each of them to the next [m/s].
+    times : ndarray, shape (n,)
+        When the tip is there [s].
+    joints : ndarray, shape (n, 3)
+        Joint positions then [rad].
     via_joints : ndarray, shape (k, 3)
         Joint positions when the via points are reached [rad].
     peaks : tuple of (str, ndarray, ndarray)
@@ -64,8 +68,27 @@ class Planned:
     note: str
     path: Array
     speed: Array
+    times: Array
+    joints: Array
     via_joints: Array
     peaks: tuple[tuple[str, Array, Array], ...]
+
+    def joints_at(self, time: float) -> list[float]:
+        """
+        Return joint positions at any time, for drawing.
+
+        Parameters
+        ----------
+        time : float
+            [s].
+
+        Returns
+        -------
+        list of 3 floats
+            Linear between the points that are drawn [rad].
+
+        """
+        return [float(np.interp(time, self.times, q)) for q in self.joints.T]
 
 
 def planned(response: Any, planner_id: str, model: RobotModel, limits: JointLimits
@@ -99,7 +122,8 @@ def planned(response: Any, planner_id: str, model: RobotModel, limits: JointLimi
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
     return Planned(
         planner_id, float(points.times[-1]), response.planning_time, response.message, path,
-        steps / np.diff(points.times[drawn]), points.positions[at], (
+        steps / np.diff(points.times[drawn]), points.times[drawn], points.positions[drawn],
+        points.positions[at], (
             ('velocity [rad/s]', np.array(response.peak_velocity), limits.max_velocity),
             ('acceleration [rad/s²]', np.array(response.peak_acceleration),
              limits.max_acceleration),

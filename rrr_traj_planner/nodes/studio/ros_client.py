@@ -53,6 +53,7 @@ class StudioClient(SpunNode):
         self._ended: Callable[[], tuple[str, int] | None] = lambda: None
         self._state: JointState | None = None
         self._goals = 0
+        self.moved: Callable[[], None] = lambda: None  # called at every new state of the arm
         self.create_subscription(JointState, 'joint_states', self._take_state, 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
         self._get_parameters = self.create_client(GetParameters, SERVICE)
@@ -197,6 +198,7 @@ class StudioClient(SpunNode):
 
     def _take_state(self, message: JointState) -> None:
         self._state = message
+        self.moved()
 
     @staticmethod
     def _call(client: ServiceClient, request: Any, answered: Callable[[Any], None]) -> None:

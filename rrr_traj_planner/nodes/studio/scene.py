@@ -28,13 +28,16 @@ from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.session import Refusal
 import viser
 
-ARM, VIA, AT_FAULT, DRIVEN = (70, 90, 120), (245, 140, 30), (200, 30, 30), (0, 150, 130)
+ARM, GHOST, DRIVEN = (70, 90, 120), (150, 170, 200), (0, 150, 130)
+VIA, AT_FAULT = (245, 140, 30), (200, 30, 30)
+GHOST_OPACITY = 0.4
 
 # Sizes, as fractions of the arm's.
 THICK, BALL, HANDLE, CELL = 0.018, 0.018, 0.16, 0.1
 PLAN_LINE, DRIVEN_LINE = 6.0, 2.0  # pixels
 
 Moved = Callable[[int, Point], None]
+Colour = tuple[int, int, int]
 
 
 class Scene:
@@ -55,7 +58,8 @@ class Scene:
     def __init__(self, scene: viser.SceneApi, size: float, moved: Moved) -> None:
         self._scene, self._size, self._moved = scene, size, moved
         self._points: list[_Handle] = []
-        self._links: list[tuple[Any, Any]] = []  # a rod and the ball at its end
+        self._arm = _Rods(scene, '/arm', THICK * size, ARM)
+        self._ghost = _Rods(scene, '/ghost', THICK * size, GHOST, GHOST_OPACITY)
         scene.add_grid('/grid', width=4.0 * size, height=4.0 * size, cell_size=CELL * size,
                        section_size=10.0 * CELL * size)
         scene.add_frame('/base', axes_length=CELL * size, axes_radius=0.05 * CELL * size)
@@ -109,19 +113,20 @@ class Scene:
             The driven path [m].
 
         """
-        rods = [rod(a, b) for a, b in zip(places, places[1:])]
-        while len(self._links) < len(rods):
-            self._add_link(len(self._links), rods[len(self._links)].length)
-        for (bar, ball), shape, end in zip(self._links, rods, places[1:]):
-            x, y, z, w = shape.quaternion
-            bar.position, bar.wxyz, ball.position = shape.centre, (w, x, y, z), end
+        self._arm.show(places)
         self._draw('/driven', np.array(driven).reshape(-1, 3), DRIVEN, DRIVEN_LINE)
 
-    def _add_link(self, index: int, length: float) -> None:
-        name, radius = f'/arm/{index}', THICK * self._size
-        self._links.append((
-            self._scene.add_cylinder(f'{name}/rod', radius, max(length, radius), ARM),
-            self._scene.add_icosphere(f'{name}/end', 1.4 * radius, ARM)))
+    def show_ghost(self, places: tuple[Point, ...]) -> None:
+        """
+        Show the arm at another moment, shining through.
+
+        Parameters
+        ----------
+        places : tuple of points
+            Base, joints and tip [m]; empty: it is hidden.
+
+        """
+        self._ghost.show(places)
 
     def _draw(self, name: str, path: Array, colours: Any, width: float) -> None:
         """Draw a path in place of the one of the same name, which may be a single point."""
@@ -131,6 +136,35 @@ class Scene:
         self._scene.add_line_segments(
             name, ends.astype(np.float32), np.asarray(colours, dtype=np.uint8),
             thickness=width, thickness_units='screen')
+
+
+class _Rods:
+    """An arm, drawn as rods with balls at their ends."""
+
+    def __init__(self, scene: viser.SceneApi, name: str, radius: float, colour: Colour,
+                 opacity: float | None = None) -> None:
+        self._scene, self._name, self._radius = scene, name, radius
+        self._colour, self._opacity = colour, opacity
+        self._links: list[tuple[Any, Any]] = []
+
+    def show(self, places: tuple[Point, ...]) -> None:
+        """Show the arm between base, joints and tip; hide it where there are none."""
+        rods = [rod(a, b) for a, b in zip(places, places[1:])]
+        while len(self._links) < len(rods):
+            self._add(len(self._links), rods[len(self._links)].length)
+        for link in self._links:
+            for part in link:
+                part.visible = bool(places)
+        for (bar, ball), shape, end in zip(self._links, rods, places[1:]):
+            x, y, z, w = shape.quaternion
+            bar.position, bar.wxyz, ball.position = shape.centre, (w, x, y, z), end
+
+    def _add(self, index: int, length: float) -> None:
+        name, radius, look = f'{self._name}/{index}', self._radius, {'opacity': self._opacity}
+        self._links.append((
+            self._scene.add_cylinder(
+                f'{name}/rod', radius, max(length, radius), self._colour, **look),
+            self._scene.add_icosphere(f'{name}/end', 1.4 * radius, self._colour, **look)))
 
 
 class _Handle:
@@ -158,7 +192,7 @@ class _Handle:
         if text != self._text:
             self._text = text
             self._ball.color = AT_FAULT if text else VIA
-            self._label.text = f'{self._index}: {text}' if text else str(self._index)
+            self._label.text = text or str(self._index)
 
     def remove(self) -> None:
         """Remove it from the scene."""

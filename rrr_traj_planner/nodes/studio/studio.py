@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from time import monotonic
 from typing import Any, Protocol
 
 import numpy as np
@@ -24,6 +25,7 @@ from rrr_traj_planner.core.kinematics.link_positions import link_positions, Poin
 from rrr_traj_planner.nodes.output.wireframe import Trail
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.studio.figures import plan_html, status_html
+from rrr_traj_planner.nodes.studio.ghost import Ghost
 from rrr_traj_planner.nodes.studio.goals import goal_of
 from rrr_traj_planner.nodes.studio.planned import Planned, planned
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
@@ -49,6 +51,9 @@ class Page(Protocol):
 
     def show_arm(self, places: tuple[Point, ...], driven: list[Point]) -> None:
         """Show the arm, and where its tip has been."""
+
+    def show_ghost(self, places: tuple[Point, ...]) -> None:
+        """Show the arm at another moment; hide it where there are no places."""
 
     def show_status(self, text: str, share: float) -> None:
         """Show a text about the motion, and the share of it that is done."""
@@ -76,7 +81,9 @@ class Studio:
         self._client, self._config, self._page = client, config, page
         self._model = config.model
         self._trail = Trail(TRAIL_STEP * config.model.chain.size, TRAIL_POINTS)
+        self._places: tuple[Point, ...] = ()  # of the arm
         self._shown: tuple[Point, ...] = ()
+        self._ghost = Ghost()
         self._duration = 0.0  # of the motion in progress [s]
         self.session: Session[Planned] = Session(wanted, self._ask)
 
@@ -84,15 +91,16 @@ class Studio:
         """Show everything, and plan."""
         self._page.show_status(status_html('at rest'), 0.0)
         self.change(self.session.wanted)
+        self._client.moved = self._moved
+        self._moved()
         self.tick()
 
     def tick(self) -> None:
         """Show where the arm is, if it has moved."""
-        places = link_positions(self._model, self._client.joints(self._model.joint_names).tolist())
-        if places != self._shown:
-            self._shown = places
-            self._trail.add(places[-1])
-            self._page.show_arm(places, list(self._trail.places))
+        if self._places != self._shown:
+            self._shown = self._places
+            self._page.show_arm(self._places, list(self._trail.places))
+        self._page.show_ghost(self._ghost_places())
 
     def change(self, wanted: Wanted) -> None:
         """
@@ -121,6 +129,30 @@ class Studio:
         """
         if index < len(self.session.wanted.points):
             self.session.change(self.session.wanted.moved(index, position))
+
+    def play(self, plays: bool) -> None:
+        """
+        Play the plan, again and again, or end that.
+
+        Parameters
+        ----------
+        plays : bool
+            Whether to play.
+
+        """
+        self._ghost.play(plays, monotonic())
+
+    def go_to(self, share: float) -> None:
+        """
+        Show one moment of the plan, which is played no longer.
+
+        Parameters
+        ----------
+        share : float
+            Of its duration, 0 to 1.
+
+        """
+        self._ghost.go_to(share)
 
     def run(self) -> None:
         """Have the arm do what is planned."""
@@ -154,6 +186,18 @@ class Studio:
                 status_html(response.message or name, not response.success), 0.0)
 
         self._client.trigger(name, answered)
+
+    def _moved(self) -> None:
+        self._places = link_positions(
+            self._model, self._client.joints(self._model.joint_names).tolist())
+        self._trail.add(self._places[-1])
+
+    def _ghost_places(self) -> tuple[Point, ...]:
+        plan = self.session.plan
+        time = None if plan is None else self._ghost.time(monotonic(), plan.duration)
+        if plan is None or time is None:
+            return ()
+        return link_positions(self._model, plan.joints_at(time))
 
     def _ask(self, wanted: Wanted) -> None:
         planner_id = wanted.task.planner_id

@@ -29,7 +29,8 @@ from rrr_traj_planner.nodes.studio.session import Refusal
 
 NAMES = ('joint_1', 'joint_2', 'joint_3')
 PLAN = Planned(
-    'cycloid', 2.85, 0.012, '', np.zeros((3, 3)), np.array([0.0, 0.784]), np.zeros((2, 3)),
+    'cycloid', 2.85, 0.012, '', np.zeros((3, 3)), np.array([0.0, 0.784]), np.arange(3.0),
+    np.zeros((3, 3)), np.zeros((2, 3)),
     (('velocity [rad/s]', np.array([0.5, 0.25, 0.125]), np.array([1.0, 2.0, np.inf])),))
 
 

@@ -40,7 +40,7 @@ class Page:
 
     def __init__(self):
         self.refusal, self.is_current, self.figures, self.statuses = None, False, '', []
-        self.places, self.driven, self._shown = (), [], Condition()
+        self.ghost, self.places, self.driven, self._shown = None, (), [], Condition()
 
     def show_points(self, points, refusal):
         self._show(points=points, refusal=refusal)
@@ -50,6 +50,9 @@ class Page:
 
     def show_arm(self, places, driven):
         self._show(places=places, driven=driven)
+
+    def show_ghost(self, places):
+        self._show(ghost=places)
 
     def show_status(self, text, share):
         self._show(statuses=[*self.statuses, (text, share)])
@@ -126,6 +129,16 @@ def test_path_passes_through_the_via_points(page, studio):
     assert (peaks <= limits).all()
 
 
+def test_ghost_is_the_arm_where_the_plan_has_it(ros, page, studio):
+    page.wait(lambda p: p.ghost == ())
+    for share, place in ((0.0, TABLE_6_1[0]), (1.0, TABLE_6_1[2])):
+        ros.run(lambda share=share: studio.go_to(share))
+        page.wait(lambda p, place=place: p.ghost and np.linalg.norm(
+            np.subtract(p.ghost[-1], place)) < 1e-9)
+    ros.run(lambda: studio.play(True))
+    page.wait(lambda p: p.ghost and np.linalg.norm(np.subtract(p.ghost[-1], TABLE_6_1[2])) > 0.1)
+
+
 def test_refused_point_is_at_fault_and_the_last_plan_stays(ros, page, studio):
     last = studio.session.plan
     ros.run(lambda: studio.move_point(1, FAR_AWAY))
@@ -149,7 +162,7 @@ def test_run_moves_the_arm_along_the_plan(ros, page, studio):
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[2])) < REACHED)
     driven = np.array(page.driven)
     for place in TABLE_6_1:
-        assert np.linalg.norm(driven - place, axis=1).min() < 0.02  # between two pictures
+        assert np.linalg.norm(driven - place, axis=1).min() < 0.01  # between two states
     ros.run(lambda: studio.trigger('reset'))
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) < REACHED)
 
