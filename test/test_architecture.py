@@ -86,7 +86,7 @@ def test_nodes_alone_know_ros():
 def test_only_what_draws_the_studio_s_page_knows_viser():
     assert {module for module in MODULES
             if any(name.split('.')[0] == 'viser' for name in imports_of(module))} == {
-        f'{PACKAGE}.nodes.studio.{name}' for name in ('page', 'panel', 'scene')}
+        f'{PACKAGE}.nodes.studio.{name}' for name in ('chart', 'page', 'panel', 'scene')}
 
 
 def test_files_are_short():

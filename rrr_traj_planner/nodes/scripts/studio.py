@@ -101,7 +101,7 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
         nodes = stack.enter_context(NodeProcesses(NODES, node_arguments(arm, ros_arguments)))
         config = client.connect(nodes.ended)
         wanted = wanted_of(task, config.model, config.base_frame, config.default_planner_id)
-        page = Page(server, config.model.chain.size, planner_ids(), wanted)
+        page = Page(server, config.model, planner_ids(), wanted)
         studio = Studio(client, config, wanted, page)
         page.connect(studio, client.executor.create_task)
         client.in_executor(studio.start)

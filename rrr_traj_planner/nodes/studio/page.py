@@ -22,6 +22,7 @@ from io import StringIO
 from logging import CRITICAL, getLogger
 
 import numpy as np
+from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.link_positions import Point
 from rrr_traj_planner.nodes.process.entry import StartError
@@ -51,8 +52,8 @@ class Page:
     ----------
     server : viser.ViserServer
         What brings it to the browser.
-    size : float
-        The arm's [m].
+    model : RobotModel
+        The arm.
     planner_ids : sequence of str
         To choose from.
     wanted : Wanted
@@ -60,12 +61,13 @@ class Page:
 
     """
 
-    def __init__(self, server: viser.ViserServer, size: float, planner_ids: Sequence[str],
+    def __init__(self, server: viser.ViserServer, model: RobotModel, planner_ids: Sequence[str],
                  wanted: Wanted) -> None:
         self._server = server
         server.gui.configure_theme(show_share_button=False, show_logo=False,
                                    control_width='large')
-        self._panel = Panel(server.gui, planner_ids, wanted)
+        size = model.chain.size
+        self._panel = Panel(server.gui, planner_ids, wanted, model.joint_names)
         self._scene = Scene(server.scene, size, self._moved)
         self._post: Post = lambda _: None
         self._studio: Studio | None = None
@@ -97,7 +99,7 @@ class Page:
         """Show a plan's path and figures."""
         with self._server.atomic():
             self._scene.show_plan(plan, is_current)
-            self._panel.show_plan(text)
+            self._panel.show_plan(plan, text)
 
     def show_arm(self, places: tuple[Point, ...], driven: list[Point]) -> None:
         """Show the arm, and where its tip has been."""

@@ -12,13 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The page's panel: planner, scalings, via points, figures of the plan, and the arm's buttons."""
+"""The page's panel: planner, scalings, via points, the arm's buttons, and the plan's figures."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from rrr_traj_planner.nodes.studio.chart import Chart
+from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
@@ -41,10 +43,13 @@ class Panel:
         To choose from.
     wanted : Wanted
         What is chosen at the beginning.
+    joint_names : sequence of str
+        The arm's joints.
 
     """
 
-    def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted) -> None:
+    def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted,
+                 joint_names: Sequence[str]) -> None:
         with gui.add_folder('Motion'):
             self._planner = gui.add_dropdown(
                 'planner', planner_ids, initial_value=wanted.task.planner_id)
@@ -55,16 +60,17 @@ class Panel:
                     ('acceleration', wanted.acceleration_scaling))]
             self._add = gui.add_button('Add a via point')
             self._remove = gui.add_button('Remove the last one')
-        with gui.add_folder('Plan'):
-            self._figures = gui.add_html('')
-            self._play = gui.add_checkbox('play', False, hint='the arm does the plan as a ghost')
-            self._moment = gui.add_slider('moment', 0.0, 1.0, 0.001, 0.0,
-                                          hint='of the motion, as a fraction of its duration')
         with gui.add_folder('Arm'):
             self._status = gui.add_html('')
             self._progress = gui.add_progress_bar(0.0)
             self._run = gui.add_button('Run', color='green')
             self._hold, self._reset = gui.add_button('Hold'), gui.add_button('Reset')
+        with gui.add_folder('Plan'):
+            self._figures = gui.add_html('')
+            self._chart = Chart(gui, joint_names)
+            self._play = gui.add_checkbox('play', False, hint='the arm does the plan as a ghost')
+            self._moment = gui.add_slider('moment', 0.0, 1.0, 0.001, 0.0,
+                                          hint='of the motion, as a fraction of its duration')
 
     def connect(self, studio: Studio, post: Post) -> None:
         """
@@ -104,17 +110,21 @@ class Panel:
 
         return act
 
-    def show_plan(self, text: str) -> None:
+    def show_plan(self, plan: Planned | None, text: str) -> None:
         """
-        Show a plan's figures.
+        Show a plan's figures and curves.
 
         Parameters
         ----------
+        plan : Planned, optional
+            The last plan.
         text : str
             HTML.
 
         """
         self._figures.content = text
+        if plan is not None:
+            self._chart.show(plan)
 
     def show_status(self, text: str, share: float) -> None:
         """

@@ -16,13 +16,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque, rest_speed_of
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.output.wireframe import picked
 from rrr_traj_planner.nodes.runs.messages import trajectory_points
@@ -59,6 +60,8 @@ class Planned:
     peaks : tuple of (str, ndarray, ndarray)
         For velocity, acceleration, jerk and torque: name with unit, peaks and limits of the
         joints.
+    curves : dict of str to ndarray, shape (n, 3)
+        By quantity: values over `times` as shares of the limits, -1 to 1; 0 where there is none.
 
     """
 
@@ -72,6 +75,7 @@ class Planned:
     joints: Array
     via_joints: Array
     peaks: tuple[tuple[str, Array, Array], ...]
+    curves: dict[str, Array] = field(default_factory=dict)
 
     def joints_at(self, time: float) -> list[float]:
         """
@@ -128,4 +132,19 @@ def planned(response: Any, planner_id: str, model: RobotModel, limits: JointLimi
             ('acceleration [rad/s²]', np.array(response.peak_acceleration),
              limits.max_acceleration),
             ('jerk [rad/s³]', np.array(response.peak_jerk), limits.max_jerk),
-            ('torque [N m]', np.array(response.peak_effort), limits.max_effort)))
+            ('torque [N m]', np.array(response.peak_effort), limits.max_effort)),
+        _curves(model, limits, *(values[drawn] for values in (
+            points.positions, points.velocities, points.accelerations))))
+
+
+def _curves(model: RobotModel, limits: JointLimits, q: Array, qd: Array, qdd: Array
+            ) -> dict[str, Array]:
+    """Return positions within their ranges, velocities, accelerations and torques, as shares."""
+    bounded = np.isfinite(limits.min_position) & np.isfinite(limits.max_position)
+    low, high = (np.where(bounded, end, 0.0) for end in (
+        limits.min_position, limits.max_position))
+    half = np.where(bounded, 0.5 * (high - low), np.inf)
+    return {'position in its range': (q - 0.5 * (low + high)) / half,
+            'velocity': qd / limits.max_velocity,
+            'acceleration': qdd / limits.max_acceleration,
+            'torque': motor_torque(model, q, qd, qdd, rest_speed_of(qd)) / limits.max_effort}

@@ -129,6 +129,20 @@ def test_path_passes_through_the_via_points(page, studio):
     assert (peaks <= limits).all()
 
 
+def test_curves_are_shares_of_the_limits(page, studio):
+    plan = page.plan
+    peaks = {name.split(' [')[0]: peaks / limits for name, peaks, limits in plan.peaks}
+    for name in ('velocity', 'acceleration', 'torque'):
+        assert plan.curves[name].shape == (len(plan.times), 3)
+        share = np.abs(plan.curves[name]).max(axis=0)
+        np.testing.assert_allclose(share, peaks[name], atol=0.01)  # the peaks are exact
+    # joint 1 has the range 0 to pi/2, and turns to where the points are
+    x, y, _ = TABLE_6_1[0]
+    ends = plan.curves['position in its range'][[0, -1], 0]
+    assert ends[0] == pytest.approx((np.arctan2(y, x) - np.pi / 4) / (np.pi / 4), abs=1e-6)
+    assert (np.abs(plan.curves['position in its range']) <= 1.0).all()
+
+
 def test_ghost_is_the_arm_where_the_plan_has_it(ros, page, studio):
     page.wait(lambda p: p.ghost == ())
     for share, place in ((0.0, TABLE_6_1[0]), (1.0, TABLE_6_1[2])):
