@@ -20,12 +20,14 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from rrr_traj_planner.nodes.studio.chart import Chart
+from rrr_traj_planner.nodes.studio.files import saved
 from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
 
 LEAST_SCALING = 0.05
+SAVED = 'via_points.yaml'
 
 # Calls a function in the thread in which the studio is to be called.
 Post = Callable[[Callable[[], None]], Any]
@@ -60,6 +62,8 @@ class Panel:
                     ('acceleration', wanted.acceleration_scaling))]
             self._add = gui.add_button('Add a via point')
             self._remove = gui.add_button('Remove the last one')
+            self._load = gui.add_upload_button('Load a via-point file')
+            self._save = gui.add_button('Save')
         with gui.add_folder('Arm'):
             self._status = gui.add_html('')
             self._progress = gui.add_progress_bar(0.0)
@@ -99,9 +103,21 @@ class Panel:
         changing(self._remove, lambda wanted: wanted.without_last())
         when(self._play, lambda: studio.play(bool(self._play.value)))
         when(self._moment, self._go_to(studio))
+        self._save.on_click(lambda event: event.client.send_file_download(
+            SAVED, saved(studio.session.wanted).encode()))
+        self._load.on_upload(lambda _: self._loaded(studio, post))
         when(self._run, studio.run)
         when(self._hold, lambda: studio.trigger('hold'))
         when(self._reset, lambda: studio.trigger('reset'))
+
+    def _loaded(self, studio: Studio, post: Post) -> None:
+        file = self._load.value
+
+        def load() -> None:
+            studio.load(file.name, file.content)
+            self._planner.value = studio.session.wanted.task.planner_id
+
+        post(load)
 
     def _go_to(self, studio: Studio) -> Callable[[], None]:
         def act() -> None:

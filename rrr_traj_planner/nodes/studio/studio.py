@@ -21,16 +21,18 @@ from typing import Any, Protocol
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.link_positions import link_positions, Point
 from rrr_traj_planner.nodes.output.wireframe import Trail
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.studio.figures import plan_html, status_html
+from rrr_traj_planner.nodes.studio.files import loaded
 from rrr_traj_planner.nodes.studio.ghost import Ghost
 from rrr_traj_planner.nodes.studio.goals import goal_of
 from rrr_traj_planner.nodes.studio.planned import Planned, planned
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
 from rrr_traj_planner.nodes.studio.session import Refusal, Session
-from rrr_traj_planner.nodes.studio.wanted import Wanted
+from rrr_traj_planner.nodes.studio.wanted import Wanted, wanted_of
 from rrr_traj_planner_interfaces.action import MoveThrough
 
 MOVES = 0.01            # rad/s, of a joint above which the arm moves
@@ -129,6 +131,28 @@ class Studio:
         """
         if index < len(self.session.wanted.points):
             self.session.change(self.session.wanted.moved(index, position))
+
+    def load(self, name: str, content: bytes) -> None:
+        """
+        Plan the via points of a file.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+        content : bytes
+            Its content.
+
+        """
+        config, before = self._config, self.session.wanted
+        try:
+            found = wanted_of(loaded(name, content), self._model, config.base_frame,
+                              before.task.planner_id)
+        except InvalidInputError as error:
+            self._page.show_status(status_html(str(error), is_error=True), 0.0)
+            return
+        self._page.show_points(found.points[:0], None)  # handles stay where they are otherwise
+        self.change(found.with_scalings(before.velocity_scaling, before.acceleration_scaling))
 
     def play(self, plays: bool) -> None:
         """
