@@ -17,13 +17,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from time import monotonic, sleep
 from typing import Any
 
 import numpy as np
-from rcl_interfaces.srv import GetParameters
-from rclpy.client import Client as ServiceClient
-from rclpy.node import Node
 from rclpy.time import Time
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.nodes.output.message_times import seconds
@@ -32,15 +28,14 @@ from rrr_traj_planner.nodes.point_files.task import Task
 from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.process.node_claim import is_claimed
 from rrr_traj_planner.nodes.process.node_start import KEEP_APART
-from rrr_traj_planner.nodes.process.processes import exit_message
-from rrr_traj_planner.nodes.process.signals import signal_arrived
 from rrr_traj_planner.nodes.recording.bag import Bag
 from rrr_traj_planner.nodes.runs.answer import planned_text, refused_text
 from rrr_traj_planner.nodes.runs.messages import plan_request, trajectory_points, way_to
-from rrr_traj_planner.nodes.runs.planner_config import planner_config, SERVICE
+from rrr_traj_planner.nodes.runs.planner_config import planner_config
 from rrr_traj_planner.nodes.runs.recorded import in_order, recorded_motion
 from rrr_traj_planner.nodes.runs.recording import run_recorder
 from rrr_traj_planner.nodes.runs.run import Run
+from rrr_traj_planner.nodes.runs.spun_node import SpunNode
 from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
@@ -48,26 +43,22 @@ from trajectory_msgs.msg import JointTrajectory
 
 NODES = ('trajectory_planner', 'simulated_arm')
 
-TIMEOUT = 20.0         # s for a node to appear, to answer, or to make progress
 START_DELAY = 0.5      # s between sending a trajectory and its start
 SETTLING_TIME = 0.5    # s that is recorded after the end
 PROGRESS_PERIOD = 0.5  # s between two progress lines
-POLL_PERIOD = 0.02     # s between two checks of a condition that is waited for
 AT_START = 1e-6        # rad, largest distance of a joint at which the motion can start
 IN_JOINT_SPACE = 'cycloid'  # planner of the way to the start of a path of the tip
 
 
-class Client(Node):
+class Client(SpunNode):
     """A client of both nodes."""
 
     def __init__(self) -> None:
         super().__init__('demo')
-        self._ended: Callable[[], tuple[str, int] | None] = lambda: None
         self._states: list[JointState] = []
         self.create_subscription(JointState, 'joint_states', self._states.append, 100)
         self._send = self.create_publisher(JointTrajectory, 'joint_trajectory', 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
-        self._get_parameters = self.create_client(GetParameters, SERVICE)
 
     def run(self, task: Task, ended: Callable[[], tuple[str, int] | None],
             bag: Bag | None = None) -> Run:
@@ -96,15 +87,15 @@ class Client(Node):
             After SIGINT or SIGTERM.
 
         """
-        self._ended = ended
+        self.ended = ended
         print('waiting for planner and arm ...', flush=True)
-        self._wait(lambda: len(self._claimed()) == len(NODES), 'planner and arm to start')
-        self._wait(self._plan.service_is_ready, 'the planner')
-        self._wait(lambda: self._states and self._send.get_subscription_count(), 'the arm')
+        self.wait(lambda: len(self._claimed()) == len(NODES), 'planner and arm to start')
+        self.wait(self._plan.service_is_ready, 'the planner')
+        self.wait(lambda: self._states and self._send.get_subscription_count(), 'the arm')
         self.check_alone()
         if bag is not None:
-            self._wait(run_recorder(self, bag).is_connected, 'the topics to record')
-        config = self._planner_config(task)
+            self.wait(run_recorder(self, bag).is_connected, 'the topics to record')
+        config = planner_config(self, task.planner_id)
         task.check_frame(config.base_frame)
         response = self._planned(plan_request(task, config.model.joint_names))
         print(planned_text(response, task.planner_id or config.default_planner_id), flush=True)
@@ -153,11 +144,6 @@ class Client(Node):
         names = [f'{prefix}/{node}' for node in NODES]
         return [name for name in names if is_claimed(domain, name)]
 
-    def _planner_config(self, task: Task) -> PlannerConfig:
-        """Return the planner's configuration for a task, read from the running node."""
-        return planner_config(lambda names: self._answer(
-            self._get_parameters, GetParameters.Request(names=names)).values, task.planner_id)
-
     def _go_to(self, q: Array, task: Task, config: PlannerConfig) -> None:
         """Move the arm to where the motion begins [rad], if it is elsewhere."""
         state = self._states[-1]
@@ -171,17 +157,10 @@ class Client(Node):
         self._execute(way, 'moving to the first via point')
 
     def _planned(self, request: PlanTrajectory.Request) -> Any:
-        response = self._answer(self._plan, request)
+        response = self.answer(self._plan, request)
         if response.error_code != response.SUCCESS:
             raise StartError(refused_text(response))
         return response
-
-    def _answer(self, client: ServiceClient, request: Any) -> Any:
-        """Return a service's answer."""
-        self._wait(client.service_is_ready, client.srv_name)
-        future = client.call_async(request)
-        self._wait(future.done, f'an answer of {client.srv_name}')
-        return future.result()
 
     def _execute(self, trajectory: JointTrajectory, what: str) -> float:
         """Send a trajectory, wait for its end, and return its start time [s]."""
@@ -202,22 +181,6 @@ class Client(Node):
             return now >= duration + SETTLING_TIME
 
         # On a busy machine simulated time lags behind the clock: wait as long as it advances.
-        self._wait(finished, 'the arm to continue',
-                   lambda: self._states and seconds(self._states[-1].header.stamp))
+        self.wait(finished, 'the arm to continue',
+                  lambda: self._states and seconds(self._states[-1].header.stamp))
         return begin
-
-    def _wait(self, ready: Callable[[], Any], what: str,
-              progress: Callable[[], Any] = lambda: None) -> None:
-        """Wait until ready; raise StartError if a node ended or without progress for TIMEOUT."""
-        reached, deadline = progress(), monotonic() + TIMEOUT
-        while not ready():
-            if progress() != reached:
-                reached, deadline = progress(), monotonic() + TIMEOUT
-            if signal_arrived():
-                raise KeyboardInterrupt
-            ended = self._ended()
-            if ended is not None:
-                raise StartError(exit_message(*ended))
-            if monotonic() > deadline:
-                raise StartError(f'timed out after {TIMEOUT:.0f} s waiting for {what}')
-            sleep(POLL_PERIOD)

@@ -22,7 +22,6 @@ import sys
 from time import monotonic, sleep
 
 import numpy as np
-from rcl_interfaces.srv import GetParameters
 from rclpy.action import get_action_names_and_types
 from rrr_traj_planner.core.nanoseconds import SECOND
 from rrr_traj_planner.nodes.motion.departure import duration_of
@@ -31,7 +30,6 @@ from rrr_traj_planner.nodes.motion.motions import Motions
 from rrr_traj_planner.nodes.motion.options import controller_of, Options
 from rrr_traj_planner.nodes.move.from_here import from_here, FromHere, in_base_frame
 from rrr_traj_planner.nodes.move.progress import ProgressLines
-from rrr_traj_planner.nodes.move.spun_node import pause, POLL_PERIOD, SpunNode
 from rrr_traj_planner.nodes.move.state_record import StateRecord
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.point_files.task import Task
@@ -39,10 +37,11 @@ from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.recording.bag import Bag
 from rrr_traj_planner.nodes.runs.answer import planned_text, refused_text
 from rrr_traj_planner.nodes.runs.messages import plan_request, trajectory_points
-from rrr_traj_planner.nodes.runs.planner_config import planner_config, SERVICE
+from rrr_traj_planner.nodes.runs.planner_config import planner_config
 from rrr_traj_planner.nodes.runs.recorded import recorded_motion
 from rrr_traj_planner.nodes.runs.recording import run_recorder
 from rrr_traj_planner.nodes.runs.run import Run
+from rrr_traj_planner.nodes.runs.spun_node import pause, POLL_PERIOD, SpunNode
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 
 CANCEL_TIME = 1.0    # s for the controller to say that it has canceled the goal
@@ -71,7 +70,6 @@ class MoveClient(SpunNode):
         self._motions = Motions(self, Options(controller=name))
         self._record = StateRecord(self, name)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
-        self._get_parameters = self.create_client(GetParameters, SERVICE)
 
     def destroy_node(self) -> None:
         """Release the action's client too."""
@@ -103,7 +101,7 @@ class MoveClient(SpunNode):
 
         """
         self.wait_for_all(partial(self._missing_to_plan, monotonic() + DISCOVERY_TIME))
-        config = self._planner_config(task)
+        config = planner_config(self, task.planner_id)
         asked = self._from_here(task, config)
         if self.in_executor(self._motions.states.latest) is None:
             print(NO_STATE, flush=True)
@@ -140,7 +138,7 @@ class MoveClient(SpunNode):
         self.wait_for_all(self._missing)
         if bag is not None:
             self.wait(run_recorder(self, bag).is_connected, 'the topics to record')
-        config = self._planner_config(task)
+        config = planner_config(self, task.planner_id)
         asked = self._from_here(task, config)
 
         def planned(motion: Motion) -> None:
@@ -170,11 +168,6 @@ class MoveClient(SpunNode):
         if self._plan.service_is_ready() and not published and monotonic() > grace:
             return []
         return found
-
-    def _planner_config(self, task: Task) -> PlannerConfig:
-        """Return the planner's configuration for a task."""
-        return planner_config(lambda names: self.answer(
-            self._get_parameters, GetParameters.Request(names=names)).values, task.planner_id)
 
     def _from_here(self, task: Task, config: PlannerConfig) -> FromHere:
         """Return what to ask the planner for, and print notes about that."""

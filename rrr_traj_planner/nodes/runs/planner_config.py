@@ -16,25 +16,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
+from rcl_interfaces.srv import GetParameters
 from rclpy.parameter import parameter_value_to_python
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
+from rrr_traj_planner.nodes.runs.spun_node import SpunNode
 
 SERVICE = 'trajectory_planner/get_parameters'
 
 
-def planner_config(ask: Callable[[list[str]], Sequence[Any]], planner_id: str) -> PlannerConfig:
+def planner_config(node: SpunNode, planner_id: str) -> PlannerConfig:
     """
     Return the configuration of a running planner.
 
     Parameters
     ----------
-    ask : callable
-        Gets names of parameters, and returns their values (rcl_interfaces/msg/ParameterValue).
+    node : SpunNode
+        Asks for the planner's parameters.
     planner_id : str
         The planner whose limits are wanted; empty: the default one.
 
@@ -43,9 +44,17 @@ def planner_config(ask: Callable[[list[str]], Sequence[Any]], planner_id: str) -
     PlannerConfig
         With the limits that hold for this planner.
 
+    Raises
+    ------
+    StartError
+        If there is no answer.
+
     """
+    client = node.create_client(GetParameters, SERVICE)
+
     def values(names: list[str]) -> dict[str, Any]:
-        return dict(zip(names, map(parameter_value_to_python, ask(names))))
+        answer = node.answer(client, GetParameters.Request(names=names))
+        return dict(zip(names, map(parameter_value_to_python, answer.values)))
 
     joint_names = values(['joint_names'])['joint_names']
     config = PlannerConfig.from_values(values(list(rows_of(PLANNER, joint_names))))

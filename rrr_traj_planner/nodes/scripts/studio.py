@@ -80,11 +80,11 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     _check_viser()
-    from rrr_traj_planner.nodes.move.spun_node import pause
     from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
     from rrr_traj_planner.nodes.point_files.reading import read_task
     from rrr_traj_planner.nodes.process.node_runner import spin_in_background
     from rrr_traj_planner.nodes.process.processes import NodeProcesses
+    from rrr_traj_planner.nodes.runs.spun_node import pause
     from rrr_traj_planner.nodes.scripts.bringup import node_arguments
     from rrr_traj_planner.nodes.studio.page import Page, serving
     from rrr_traj_planner.nodes.studio.ros_client import StudioClient
@@ -108,7 +108,7 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
         client.in_executor(lambda: client.create_timer(FRAME_PERIOD, studio.tick))
         print(f'studio: http://{options.host}:{server.get_port()}  (Ctrl-C ends)', flush=True)
         while True:  # until a signal, by KeyboardInterrupt
-            client.check_nodes()
+            client.check_processes()
             pause()
 
 

@@ -19,17 +19,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from rcl_interfaces.srv import GetParameters
 from rclpy.action import ActionClient
 from rclpy.client import Client as ServiceClient
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.nodes.move.spun_node import SpunNode, TIMEOUT
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.process.entry import StartError
-from rrr_traj_planner.nodes.process.processes import exit_message
 from rrr_traj_planner.nodes.runs.messages import plan_request
-from rrr_traj_planner.nodes.runs.planner_config import planner_config, SERVICE
+from rrr_traj_planner.nodes.runs.planner_config import planner_config
 from rrr_traj_planner.nodes.runs.recorded import in_order
+from rrr_traj_planner.nodes.runs.spun_node import SpunNode
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner_interfaces.action import MoveThrough
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
@@ -50,13 +47,11 @@ class StudioClient(SpunNode):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('studio', **kwargs)
-        self._ended: Callable[[], tuple[str, int] | None] = lambda: None
         self._state: JointState | None = None
         self._goals = 0
         self.moved: Callable[[], None] = lambda: None  # called at every new state of the arm
         self.create_subscription(JointState, 'joint_states', self._take_state, 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
-        self._get_parameters = self.create_client(GetParameters, SERVICE)
         self._triggers = {
             name: self.create_client(Trigger, f'simulated_arm/{name}') for name in (
                 'hold', 'reset')}
@@ -89,35 +84,12 @@ class StudioClient(SpunNode):
             After SIGINT or SIGTERM.
 
         """
-        self._ended = ended
+        self.ended = ended
         self.wait(self._plan.service_is_ready, 'the planner')
         self.wait(lambda: self._state is not None and all(
             client.service_is_ready() for client in self._triggers.values()), 'the arm')
         self.wait(self._action.server_is_ready, 'the motion server')
-        return planner_config(lambda names: self.answer(
-            self._get_parameters, GetParameters.Request(names=names)).values, '')
-
-    def wait(self, ready: Callable[[], Any], what: str, timeout: float = TIMEOUT) -> None:
-        """Wait as `SpunNode.wait` does; raise StartError as soon as a node's process ends."""
-        def checked() -> Any:
-            self.check_nodes()
-            return ready()
-
-        super().wait(checked, what, timeout)
-
-    def check_nodes(self) -> None:
-        """
-        Refuse to go on without a node.
-
-        Raises
-        ------
-        StartError
-            If a node's process has ended.
-
-        """
-        ended = self._ended()
-        if ended is not None:
-            raise StartError(exit_message(*ended))
+        return planner_config(self, '')
 
     def joints(self, joint_names: tuple[str, ...], field: str = 'position') -> Array:
         """

@@ -23,11 +23,12 @@ from typing import Any, TypeVar
 from rclpy.client import Client as ServiceClient
 from rclpy.node import Node
 from rrr_traj_planner.nodes.process.entry import StartError
+from rrr_traj_planner.nodes.process.processes import exit_message
 from rrr_traj_planner.nodes.process.signals import signal_arrived
 
 POLL_PERIOD = 0.02  # s between two checks of a condition that is waited for
 GRACE = 2.0         # s in which nodes that run are found, before missing ones are named
-TIMEOUT = 20.0      # s for what should take no time
+TIMEOUT = 20.0      # s for what should take no time, or between two signs of progress
 
 Value = TypeVar('Value')
 
@@ -37,7 +38,29 @@ class SpunNode(Node):
     A node whose methods are called from the main thread.
 
     They raise `KeyboardInterrupt` after SIGINT or SIGTERM.
+
+    Attributes
+    ----------
+    ended : callable
+        Returns name and exit code of a process that is needed and has ended, else None.
+
     """
+
+    ended: Callable[[], tuple[str, int] | None] = staticmethod(lambda: None)
+
+    def check_processes(self) -> None:
+        """
+        Refuse to go on without a process.
+
+        Raises
+        ------
+        StartError
+            If one has ended.
+
+        """
+        ended = self.ended()
+        if ended is not None:
+            raise StartError(exit_message(*ended))
 
     def in_executor(self, function: Callable[[], Value]) -> Value:
         """
@@ -103,7 +126,8 @@ class SpunNode(Node):
                 said = found
             pause()
 
-    def wait(self, ready: Callable[[], Any], what: str, timeout: float = TIMEOUT) -> None:
+    def wait(self, ready: Callable[[], Any], what: str,
+             progress: Callable[[], Any] = lambda: None) -> None:
         """
         Wait for something that should come.
 
@@ -113,19 +137,22 @@ class SpunNode(Node):
             Whether it is there.
         what : str
             For the message if it does not come.
-        timeout : float
-            For how long to wait [s].
+        progress : callable
+            What changes as long as it is worth waiting.
 
         Raises
         ------
         StartError
-            If it does not come.
+            If it does not come for `TIMEOUT` without progress, or a process has ended.
 
         """
-        deadline = monotonic() + timeout
+        reached, deadline = progress(), monotonic() + TIMEOUT
         while not ready():
+            if progress() != reached:
+                reached, deadline = progress(), monotonic() + TIMEOUT
+            self.check_processes()
             if monotonic() > deadline:
-                raise StartError(f'timed out after {timeout:.0f} s waiting for {what}')
+                raise StartError(f'timed out after {TIMEOUT:.0f} s waiting for {what}')
             pause()
 
 
