@@ -161,9 +161,10 @@ def test_a_circle_of_folders_would_be_found():
 def test_a_circle_through_the_modules_beside_a_folder_would_be_found(monkeypatch):
     """A module that imports `transitions` and serves `methods` was once beside the folders."""
     planners, single = f'{PACKAGE}.planners', f'{PACKAGE}.planners.prescribed_by_search'
+    there = imports_of_places()
     monkeypatch.setitem(MODULES, single, None)
-    imports = {**imports_of_places(), single: {f'{planners}.transitions', f'{planners}.tasks'},
-               f'{planners}.methods': {*imports_of_places()[f'{planners}.methods'], single}}
+    imports = {**there, single: {f'{planners}.transitions', f'{planners}.tasks'},
+               f'{planners}.methods': {*there[f'{planners}.methods'], single}}
     assert in_order(imports)
     with pytest.raises(CycleError):
         in_order(by_folders(imports))

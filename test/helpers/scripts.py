@@ -30,6 +30,9 @@ from ament_index_python.packages import get_package_prefix
 # Timeout of every wait [s].
 DEADLINE = 60.0
 
+# Time that a script has to end when it is asked to [s].
+GRACE = 5.0
+
 
 def script(name):
     """Return the command that `ros2 run` executes."""
@@ -54,6 +57,18 @@ class Script:
         return self
 
     def __exit__(self, *_):
+        """
+        End it as a user does; kill what does not end.
+
+        A killed process may hold a lock of another one's shared memory: Fast DDS 2.14 then ends
+        the other one with a segmentation fault.
+        """
+        self.children = self.children or children_of(self.process.pid)
+        self.process.terminate()
+        try:
+            self.process.communicate(timeout=GRACE)
+        except subprocess.TimeoutExpired:
+            pass
         self._kill()
         self.process.communicate()
 

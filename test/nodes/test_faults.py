@@ -184,6 +184,8 @@ def test_arm_answers_and_moves_under_a_thousand_trajectories_a_second(ros):
     with Script(script('simulated_arm'), *QUIET) as arm:
         states.wait_for()
         publisher = ros.publisher(JointTrajectory, 'joint_trajectory')
+        client = ros.node.create_client(GetParameters, 'simulated_arm/get_parameters')
+        assert client.wait_for_service(DEADLINE)
         message = trajectory([(0.5, GOAL), (1.0, START)])
         began, sent, slowest, since = monotonic(), 0, 0.0, len(states.messages)
         while (now := monotonic()) < began + FLOOD_SECONDS:
@@ -191,8 +193,7 @@ def test_arm_answers_and_moves_under_a_thousand_trajectories_a_second(ros):
                 publisher.publish(message)
                 sent += 1
             called = monotonic()
-            answer = ros.call(GetParameters, 'simulated_arm/get_parameters',
-                              GetParameters.Request(names=['publish_rate']))
+            answer = client.call(GetParameters.Request(names=['publish_rate']), DEADLINE)
             slowest = max(slowest, monotonic() - called)
             assert answer.values[0].double_value == 200.0
         assert sent >= 0.9 * FLOOD_RATE * FLOOD_SECONDS
