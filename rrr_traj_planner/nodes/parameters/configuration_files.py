@@ -16,9 +16,10 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from pathlib import Path
 
-from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.errors import did_you_mean, InvalidInputError
 
 SOURCE_FOLDER = Path(__file__).resolve().parents[3] / 'config'  # of the source tree
 SHIPPED = ('.yaml', '.urdf')  # kinds of the package's own files
@@ -44,7 +45,7 @@ def found_file(name: str, folder: Path) -> Path:
     Raises
     ------
     InvalidInputError
-        If there is no such file.
+        If there is no such file; the message names similar ones, or else all of the package's.
 
     """
     shipped = (shipped_folder(), shipped_folder() / 'arms')
@@ -54,8 +55,10 @@ def found_file(name: str, folder: Path) -> Path:
         if path.is_dir():
             raise InvalidInputError(f"'{name}' is a folder, must be a file")
     ending = Path(name).suffix if Path(name).suffix in SHIPPED else SHIPPED[0]
-    names = ', '.join(sorted(p.name for place in shipped for p in place.glob(f'*{ending}')))
-    raise InvalidInputError(f"no file '{name}' in {folder}, nor among the package's: {names}")
+    names = sorted(p.name for place in shipped for p in place.glob(f'*{ending}'))
+    near = get_close_matches(Path(name).name, names)
+    raise InvalidInputError(f"no file '{name}' in {folder}, nor among the package's" + (
+        f'; {did_you_mean(*near)}' if near else f': {", ".join(names)}'))
 
 
 def shipped_folder() -> Path:

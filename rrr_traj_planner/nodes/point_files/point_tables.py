@@ -36,6 +36,8 @@ TRUTH = {'true': True, 'yes': True, '1': True, 'false': False, 'no': False, '0':
 LENGTHS = {'m': 1.0, 'cm': 0.01, 'mm': 0.001}
 ANGLES = {'rad': 1.0, 'deg': np.pi / 180.0, '°': np.pi / 180.0}
 TIMES = {'s': 1.0, 'ms': 0.001}
+MESSAGE_FIELD = re.compile(r'(?:.*[./])?(?:position|point)[./]([xyz])')  # pose.position.x
+AXIS_AND_UNIT = re.compile(r'([xyz])_(mm|cm|m)')
 QUOTED = re.compile(r'"(?:[^"]|"")*"')
 
 POSITION = ' position'  # after a joint's name, in the columns of `Plan.to_csv`
@@ -202,11 +204,20 @@ def _rows(text: str) -> Iterator[_Row]:
 
 
 def _column(index: int, field: str) -> _Column:
-    """Return a column of a header: `NAME`, `NAME [UNIT]`, `NAME (UNIT)` or `"NAME, UNIT"`."""
+    """
+    Return a column of a header: `NAME`, `NAME [UNIT]`, `NAME (UNIT)` or `"NAME, UNIT"`.
+
+    An axis may also be named with its unit, as in `x_mm`, or as a message's field is in tables of
+    recorded topics, as in `pose.position.x` or `/target/pose/position/x`.
+    """
     parts = re.fullmatch(r'(.*?)\s*[\[(]\s*(.*?)\s*[\])]|(.*?)\s*,\s*(.*)', field)
     name, unit = (field, '') if parts is None else filter(
         lambda part: part is not None, parts.groups())
     lower = name.lower()
+    if of_message := MESSAGE_FIELD.fullmatch(lower):
+        lower = of_message[1]
+    elif not unit and (with_unit := AXIS_AND_UNIT.fullmatch(lower)):
+        lower, unit = with_unit.groups()
     return _Column(index, lower if lower in (*AXES, STOP_AT, DWELL) else name, unit)
 
 

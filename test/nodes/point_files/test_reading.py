@@ -141,12 +141,28 @@ def test_missing_file_is_reported_with_the_package_s_own(here, find):
     assert 'table_6_1.yaml, table_6_3.yaml, thesis_arm.yaml' in text
 
 
+@pytest.mark.parametrize(('name', 'near'), [
+    ('table_6_2.yaml', '"table_6_3.yaml" or "table_6_1.yaml"'), ('go1leg.yaml', '"go1_leg.yaml"'),
+    ('arms/go1-leg.yaml', '"go1_leg.yaml"')])
+def test_missing_file_is_reported_with_similar_ones_only(here, name, near):
+    with pytest.raises(InvalidInputError, match="the package's; did you mean ") as caught:
+        read_task(name)
+    assert near in str(caught.value)
+    assert 'thesis_arm.yaml' not in str(caught.value)
+
+
 @pytest.mark.parametrize('content', [
     '1.02,0.59,0.97\n0.46,0.55,1.44\n', 'x,y,z\n1.02,0.59,0.97\n0.46,0.55,1.44\n',
     '\ufeff# measured\n\nX [m]; Y [m]; Z [m]\n1.02; 0.59; 0.97 # first\n\n0.46; 0.55; 1.44',
     'x\ty\tz\r\n1.02\t0.59\t0.97\r\n0.46\t0.55\t1.44\r\n',
     'x;y;z\n1,02;0,59;0,97\n0,46;0,55;1,44\n', '"z","x","y"\n0.97,1.02,0.59\n1.44,0.46,0.55\n',
-    't, x, y, z, note\n0, 1.02, 0.59, 0.97, start\n1, 46e-2, 0.55, 1.44, end\n,,,,\n'])
+    't, x, y, z, note\n0, 1.02, 0.59, 0.97, start\n1, 46e-2, 0.55, 1.44, end\n,,,,\n',
+    'x_mm, Y_cm, z_m\n1020, 59, 0.97\n460, 55, 1.44\n',
+    'pose.orientation.x,pose.position.z,pose.position.y,pose.position.x\n'
+    '0,0.97,0.59,1.02\n0,1.44,0.55,0.46\n',
+    '__time;/target/pose/position/x;/target/pose/position/y;/target/pose/position/z\n'
+    '0,1;1,02;0,59;0,97\n0,2;0,46;0,55;1,44\n', 'point.x,point.y,point.z [mm]\n'
+    '1.02,0.59,970\n0.46,0.55,1440\n'])
 @pytest.mark.parametrize('name', ['points.csv', 'points.CSV'])
 def test_table_of_points_is_read(here, name, content):
     (here / name).write_text(content, encoding='utf-8', newline='')
@@ -168,6 +184,9 @@ def test_table_of_points_is_read(here, name, content):
     ('x,y,z\n1.0,2.O,3.0\n', "line 2: y is '2.O', must be a number"),
     ('1.0,2.0,nan\n', 'line 1: z is nan, must be finite'),
     ('x,y,z\n-inf,2.0,3.0\n', 'line 2: x is -inf, must be finite'),
+    ('x,x_mm,y,z\n1,2,3,4\n', 'the header is x, x_mm, y, z, and must name one column x'),
+    ('orientation.x,y,z\n1,2,3\n', 'line 1: the header is orientation.x, y, z, and must name one '
+     'column x'),
     ('x,y\n1.0,2.0\n', 'line 1: the header is x, y, and must name one column z'),
     ('x,y,z,z\n1,2,3,4\n', 'the header is x, y, z, z, and must name one column z'),
     ('1.0 2.0 3.0\n', 'line 1: the header is 1.0 2.0 3.0, and must name one column x')])
