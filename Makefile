@@ -7,6 +7,7 @@ in_env := source scripts/env.bash &&
 # that has nothing left takes half of what another one has left.
 WORKERS := $(shell n=$$(nproc); echo $$((n < 2 ? 3 : 4)))
 export ROS_AUTOMATIC_DISCOVERY_RANGE ?= LOCALHOST
+export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: help setup demo studio test lint bench clean
 
@@ -23,11 +24,12 @@ studio: setup  ## a page in the browser to plan with the mouse and run the plan;
 	@$(in_env) python -m pip install --quiet --no-deps -r requirements/studio.txt
 	@$(in_env) studio $(ARGS)
 
-# Its rules are those of flake8, which `lint` has just run; `colcon test` runs it.
-CHECKED_BY_LINT := test/test_ament_linters.py::test_code_is_as_ament_flake8_wants_it
+# Their rules are those of flake8, which `lint` has just run; `colcon test` runs them.
+CHECKED_BY_LINT := $(addprefix --deselect test/test_ament_linters.py::test_,\
+	code_is_as_ament_flake8_wants_it docstrings_are_as_ament_pep257_wants_them)
 
 test: lint  ## linters and every test; options for pytest in ARGS
-	@$(in_env) python -m pytest -n $(WORKERS) --dist worksteal --deselect $(CHECKED_BY_LINT) $(ARGS)
+	@$(in_env) python -m pytest -n $(WORKERS) --dist worksteal $(CHECKED_BY_LINT) $(ARGS)
 
 lint: setup  ## ruff, flake8 with ament_flake8's rules, mypy on the core and the planners
 	@$(in_env) ruff check && python -m flake8 && mypy

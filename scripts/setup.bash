@@ -115,14 +115,15 @@ is_built() {  # PACKAGE FILE...: whether the package was built from the files as
 }
 
 build() {  # DURATION PACKAGE...: build packages side by side
-    local duration=$1 package
+    local duration=$1 package python_only=OFF
     shift
     [ $# -gt 0 ] || return 0
+    [ "$ros" = jazzy ] || python_only=ON  # the wheels have no rclcpp
     rm -rf "${@/#/build/}" "${@/#/install/}"
     step "building $(sed 's/ /, /g' <<< "$*") ($duration)" \
         python "$(command -v colcon)" build --packages-select "$@" \
         --base-paths . rrr_traj_planner_interfaces scripts/ros_messages/*/ --cmake-args \
-        -DPython3_EXECUTABLE="$root/.venv/bin/python" \
+        -DPython3_EXECUTABLE="$root/.venv/bin/python" -DRRR_PYTHON_ONLY="$python_only" \
         -DCMAKE_PROJECT_INCLUDE="$root/scripts/cmake/wheel_include_dirs.cmake"
     for package; do
         echo "${keys[$package]}" > "install/$package/.stamp"
@@ -169,3 +170,6 @@ is_fresh .venv "$key" && is_same_python || make_venv "$key"
 hash -r
 build_interfaces
 build_package
+
+# Bytecode of what is new, also where Python is told to write none: nodes start a quarter faster.
+python -m compileall -q rrr_traj_planner
