@@ -26,7 +26,8 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.link_positions import Point
 from rrr_traj_planner.nodes.process.entry import StartError
-from rrr_traj_planner.nodes.studio.panel import Panel, Post
+from rrr_traj_planner.nodes.studio.panel.controls import Post
+from rrr_traj_planner.nodes.studio.panel.panel import Panel
 from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.scene import Scene
 from rrr_traj_planner.nodes.studio.session import Refusal

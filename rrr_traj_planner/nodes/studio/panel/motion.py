@@ -12,16 +12,15 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The page's panel: planner, scalings, via points, the arm's buttons, and the plan's figures."""
+"""The folder of the motion: what is to be planned."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from rrr_traj_planner.nodes.studio.chart import Chart
 from rrr_traj_planner.nodes.studio.files import saved
-from rrr_traj_planner.nodes.studio.planned import Planned
+from rrr_traj_planner.nodes.studio.panel.controls import Post, when
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
@@ -29,13 +28,10 @@ import viser
 LEAST_SCALING = 0.05
 SAVED = 'via_points.yaml'
 
-# Calls a function in the thread in which the studio is to be called.
-Post = Callable[[Callable[[], None]], Any]
 
-
-class Panel:
+class MotionFolder:
     """
-    What stands beside the scene.
+    Planner, scalings, via points and their files.
 
     Parameters
     ----------
@@ -45,13 +41,10 @@ class Panel:
         To choose from.
     wanted : Wanted
         What is chosen at the beginning.
-    joint_names : sequence of str
-        The arm's joints.
 
     """
 
-    def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted,
-                 joint_names: Sequence[str]) -> None:
+    def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted) -> None:
         with gui.add_folder('Motion'):
             self._planner = gui.add_dropdown(
                 'planner', planner_ids, initial_value=wanted.task.planner_id)
@@ -64,17 +57,6 @@ class Panel:
             self._remove = gui.add_button('Remove the last one')
             self._load = gui.add_upload_button('Load a via-point file')
             self._save = gui.add_button('Save')
-        with gui.add_folder('Arm'):
-            self._status = gui.add_html('')
-            self._progress = gui.add_progress_bar(0.0)
-            self._run = gui.add_button('Run', color='green')
-            self._hold, self._reset = gui.add_button('Hold'), gui.add_button('Reset')
-        with gui.add_folder('Plan'):
-            self._figures = gui.add_html('')
-            self._chart = Chart(gui, joint_names)
-            self._play = gui.add_checkbox('play', False, hint='the arm does the plan as a ghost')
-            self._moment = gui.add_slider('moment', 0.0, 1.0, 0.001, 0.0,
-                                          hint='of the motion, as a fraction of its duration')
 
     def connect(self, studio: Studio, post: Post) -> None:
         """
@@ -89,11 +71,7 @@ class Panel:
 
         """
         def changing(handle: Any, change: Callable[[Wanted], Wanted]) -> None:
-            when(handle, lambda: studio.change(change(studio.session.wanted)))
-
-        def when(handle: Any, act: Callable[[], None]) -> None:
-            attach = handle.on_click if hasattr(handle, 'on_click') else handle.on_update
-            attach(lambda _: post(act))
+            when(handle, post, lambda: studio.change(change(studio.session.wanted)))
 
         changing(self._planner, lambda wanted: wanted.with_planner(self._planner.value))
         for slider in self._scalings:
@@ -101,14 +79,9 @@ class Panel:
                 *(float(s.value) for s in self._scalings)))
         changing(self._add, lambda wanted: wanted.with_point())
         changing(self._remove, lambda wanted: wanted.without_last())
-        when(self._play, lambda: studio.play(bool(self._play.value)))
-        when(self._moment, self._go_to(studio))
         self._save.on_click(lambda event: event.client.send_file_download(
             SAVED, saved(studio.session.wanted).encode()))
         self._load.on_upload(lambda _: self._loaded(studio, post))
-        when(self._run, studio.run)
-        when(self._hold, lambda: studio.trigger('hold'))
-        when(self._reset, lambda: studio.trigger('reset'))
 
     def _loaded(self, studio: Studio, post: Post) -> None:
         file = self._load.value
@@ -118,41 +91,3 @@ class Panel:
             self._planner.value = studio.session.wanted.task.planner_id
 
         post(load)
-
-    def _go_to(self, studio: Studio) -> Callable[[], None]:
-        def act() -> None:
-            self._play.value = False
-            studio.go_to(float(self._moment.value))
-
-        return act
-
-    def show_plan(self, plan: Planned | None, text: str) -> None:
-        """
-        Show a plan's figures and curves.
-
-        Parameters
-        ----------
-        plan : Planned, optional
-            The last plan.
-        text : str
-            HTML.
-
-        """
-        self._figures.content = text
-        if plan is not None:
-            self._chart.show(plan)
-
-    def show_status(self, text: str, share: float) -> None:
-        """
-        Show what the arm does.
-
-        Parameters
-        ----------
-        text : str
-            HTML.
-        share : float
-            Of the motion that is done, 0 to 1.
-
-        """
-        self._status.content = text
-        self._progress.value = 100.0 * min(max(share, 0.0), 1.0)

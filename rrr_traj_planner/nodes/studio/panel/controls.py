@@ -1,0 +1,45 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""How the panel's controls call the studio: in its thread, in order, and only for the user."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+# Calls a function in the thread in which the studio is to be called.
+Post = Callable[[Callable[[], None]], Any]
+
+
+def when(handle: Any, post: Post, act: Callable[[], None]) -> None:
+    """
+    Have a control do something.
+
+    Parameters
+    ----------
+    handle : viser's handle of a control
+        A button, or what has a value.
+    post : callable
+        Calls a function in the studio's thread.
+    act : callable
+        What to do there when the user has clicked, or has changed the value: not when the page
+        itself has.
+
+    """
+    async def changed(event: Any) -> None:  # not in a pool of threads, where the order is lost
+        if event.client_id is not None:
+            post(act)
+
+    (handle.on_click if hasattr(handle, 'on_click') else handle.on_update)(changed)

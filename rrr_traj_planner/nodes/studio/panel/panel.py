@@ -1,0 +1,68 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The page's panel: its folders, from top to bottom."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rrr_traj_planner.nodes.studio.panel.arm import ArmFolder
+from rrr_traj_planner.nodes.studio.panel.controls import Post
+from rrr_traj_planner.nodes.studio.panel.motion import MotionFolder
+from rrr_traj_planner.nodes.studio.panel.plan import PlanFolder
+from rrr_traj_planner.nodes.studio.studio import Studio
+from rrr_traj_planner.nodes.studio.wanted import Wanted
+import viser
+
+
+class Panel:
+    """
+    What stands beside the scene.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+        Where to put it.
+    planner_ids : sequence of str
+        To choose from.
+    wanted : Wanted
+        What is chosen at the beginning.
+    joint_names : sequence of str
+        The arm's joints.
+
+    """
+
+    def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted,
+                 joint_names: Sequence[str]) -> None:
+        self._motion = MotionFolder(gui, planner_ids, wanted)
+        self._arm = ArmFolder(gui)
+        self._plan = PlanFolder(gui, joint_names)
+        self.show_status = self._arm.show_status
+        self.show_plan = self._plan.show
+
+    def connect(self, studio: Studio, post: Post) -> None:
+        """
+        Have the controls do something.
+
+        Parameters
+        ----------
+        studio : Studio
+            What they act on.
+        post : callable
+            Calls a function in the studio's thread.
+
+        """
+        for folder in (self._motion, self._arm, self._plan):
+            folder.connect(studio, post)

@@ -1,0 +1,82 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The folder of the plan: its figures and curves, and the ghost that does it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rrr_traj_planner.nodes.studio.chart import Chart
+from rrr_traj_planner.nodes.studio.panel.controls import Post, when
+from rrr_traj_planner.nodes.studio.planned import Planned
+from rrr_traj_planner.nodes.studio.studio import Studio
+import viser
+
+
+class PlanFolder:
+    """
+    What tells about the plan.
+
+    Parameters
+    ----------
+    gui : viser.GuiApi
+        Where to put it.
+    joint_names : sequence of str
+        The arm's joints.
+
+    """
+
+    def __init__(self, gui: viser.GuiApi, joint_names: Sequence[str]) -> None:
+        with gui.add_folder('Plan'):
+            self._figures = gui.add_html('')
+            self._chart = Chart(gui, joint_names)
+            self._play = gui.add_checkbox('play', False, hint='the arm does the plan as a ghost')
+            self._moment = gui.add_slider('moment', 0.0, 1.0, 0.001, 0.0,
+                                          hint='of the motion, as a fraction of its duration')
+
+    def connect(self, studio: Studio, post: Post) -> None:
+        """
+        Have the controls do something.
+
+        Parameters
+        ----------
+        studio : Studio
+            What they act on.
+        post : callable
+            Calls a function in the studio's thread.
+
+        """
+        def go_to() -> None:
+            self._play.value = False
+            studio.go_to(float(self._moment.value))
+
+        when(self._play, post, lambda: studio.play(bool(self._play.value)))
+        when(self._moment, post, go_to)
+
+    def show(self, plan: Planned | None, text: str) -> None:
+        """
+        Show a plan's figures and curves.
+
+        Parameters
+        ----------
+        plan : Planned, optional
+            The last plan.
+        text : str
+            HTML.
+
+        """
+        self._figures.content = text
+        if plan is not None:
+            self._chart.show(plan)
