@@ -157,7 +157,7 @@ def _via_points(fields: dict[str, Located]) -> dict[str, Any]:
 def _others(fields: dict[str, Located]) -> dict[str, Any]:
     """Return what a file says beside its via points."""
     return {'planner_id': _text(fields, 'planner_id'), 'arm': _text(fields, 'arm'),
-            'segment_durations': _numbers(fields, 'segment_durations'),
+            'segment_durations': _numbers(fields, 'segment_durations', or_nan=True),
             'dwell': _numbers(fields, 'dwell'), 'stop_at': _flags(fields, 'stop_at')}
 
 
@@ -165,14 +165,15 @@ def _text(fields: dict[str, Located], name: str) -> str:
     return fields[name].text() if name in fields else ''
 
 
-def _numbers(fields: dict[str, Located], name: str) -> Array:
-    """Return a list of numbers, empty where there is none."""
+def _numbers(fields: dict[str, Located], name: str, or_nan: bool = False) -> Array:
+    """Return a list of numbers, empty where there is none; NaN only where it has a meaning."""
     if name not in fields or fields[name].value is None:
         return np.zeros(0)
     given = fields[name]
     if not isinstance(given.value, list):
         raise given.error(f'is {shown(given.value)}, must be a list of numbers')
-    return np.array([item.number() for item in given.items()])
+    return np.array([item.value if or_nan and item.value != item.value else item.number()
+                     for item in given.items()])
 
 
 def _flags(fields: dict[str, Located], name: str) -> BoolArray:

@@ -105,7 +105,8 @@ def test_durations_are_read(here):
     ('via_points: [[1.0, -.inf, 3.0]]\n', 'via_points[0][1] is -inf, must be finite'),
     (POINTS + POINTS, 'line 2: via_points is repeated (first in line 1)'),
     (POINTS + 'segment_durations: [1.0, x]\n', "segment_durations[1] is 'x', must be a number"),
-    (POINTS + 'segment_durations: [.nan]\n', 'segment_durations[0] is nan, must be finite'),
+    (POINTS + 'segment_durations: [.inf]\n', 'segment_durations[0] is inf, must be finite'),
+    (POINTS + 'dwell: [.nan, 0.0]\n', 'dwell[0] is nan, must be finite'),
     (POINTS + 'segment_durations: 3.0\n', 'line 2: segment_durations is 3.0, must be a list of '
      'numbers'),
     (POINTS + 'planer_id: x\n', 'line 2: unknown planer_id (did you mean "planner_id"?); known '
