@@ -31,6 +31,7 @@ from rrr_traj_planner.nodes.parameters.yaml_loader import RosLoader
 import yaml
 
 PARAMETER = ('-p', '--param')
+FILE = '--params-file'
 
 
 def describes_an_arm(ros_arguments: Sequence[str]) -> bool:
@@ -86,6 +87,31 @@ def parameters_in(ros_arguments: Sequence[str]) -> Iterator[tuple[dict[str, Any]
             except yaml.YAMLError as error:
                 raise InvalidInputError(
                     f'parameter {name}: {" ".join(str(error).split())}') from None
+
+
+def without_parameters(ros_arguments: Sequence[str]) -> list[str]:
+    """
+    Return arguments for ROS without parameters and their files.
+
+    Parameters
+    ----------
+    ros_arguments : sequence of str
+        The user's.
+
+    Returns
+    -------
+    list of str
+        The rest.
+
+    """
+    found: list[str] = []
+    is_value = False
+    for argument in ros_arguments:
+        is_option = not is_value and argument in (*PARAMETER, FILE)
+        if not is_option and not is_value:
+            found.append(argument)
+        is_value = is_option
+    return found
 
 
 def _assigned(ros_arguments: Sequence[str]) -> Iterator[tuple[str, str, str]]:
