@@ -25,7 +25,7 @@ from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.parameters.table import PLANNER, rows_of
 from rrr_traj_planner.nodes.runs.spun_node import SpunNode
 
-SERVICE = 'trajectory_planner/get_parameters'
+PLANNER_NODE = 'trajectory_planner'
 
 
 def planner_config(node: SpunNode, planner_id: str) -> PlannerConfig:
@@ -50,12 +50,58 @@ def planner_config(node: SpunNode, planner_id: str) -> PlannerConfig:
         If there is no answer.
 
     """
-    client = node.create_client(GetParameters, SERVICE)
-
-    def values(names: list[str]) -> dict[str, Any]:
-        answer = node.answer(client, GetParameters.Request(names=names))
-        return dict(zip(names, map(parameter_value_to_python, answer.values)))
-
-    joint_names = values(['joint_names'])['joint_names']
-    config = PlannerConfig.from_values(values(list(rows_of(PLANNER, joint_names))))
+    config = PlannerConfig.from_values(planner_values(node))
     return replace(config, limits=config.limits_for(planner_id))
+
+
+def planner_values(node: SpunNode) -> dict[str, Any]:
+    """
+    Return the parameters of a running planner.
+
+    Parameters
+    ----------
+    node : SpunNode
+        Asks for them.
+
+    Returns
+    -------
+    dict
+        Values by name.
+
+    Raises
+    ------
+    StartError
+        If there is no answer.
+
+    """
+    joint_names = values_of(node, PLANNER_NODE, ['joint_names'])['joint_names']
+    return values_of(node, PLANNER_NODE, list(rows_of(PLANNER, joint_names)))
+
+
+def values_of(node: SpunNode, name: str, parameters: list[str]) -> dict[str, Any]:
+    """
+    Return parameters of a running node.
+
+    Parameters
+    ----------
+    node : SpunNode
+        Asks for them.
+    name : str
+        The other node's name.
+    parameters : list of str
+        Their names.
+
+    Returns
+    -------
+    dict
+        Values by name.
+
+    Raises
+    ------
+    StartError
+        If there is no answer.
+
+    """
+    client = node.create_client(GetParameters, f'{name}/get_parameters')
+    answer = node.answer(client, GetParameters.Request(names=parameters))
+    return dict(zip(parameters, map(parameter_value_to_python, answer.values)))
