@@ -19,6 +19,8 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import replace
+from typing import Any, TYPE_CHECKING
 
 from rrr_traj_planner.nodes.process.entry import (
     add_limits_option,
@@ -27,6 +29,11 @@ from rrr_traj_planner.nodes.process.entry import (
     run_script,
     StartError,
 )
+
+if TYPE_CHECKING:
+    from rrr_traj_planner.nodes.studio.arms import Start
+    from rrr_traj_planner.nodes.studio.ros_client import StudioClient
+    from rrr_traj_planner.nodes.studio.studio import Studio
 
 DESCRIPTION = """\
 Show a page in the browser, on which via points are dragged with the mouse, and the motion through
@@ -80,36 +87,58 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     _check_viser()
-    from rrr_traj_planner.nodes.parameters.ros_arguments import describes_an_arm
     from rrr_traj_planner.nodes.point_files.reading import read_task
-    from rrr_traj_planner.nodes.process.node_runner import spin_in_background
-    from rrr_traj_planner.nodes.process.processes import NodeProcesses
     from rrr_traj_planner.nodes.runs.spun_node import pause
-    from rrr_traj_planner.nodes.scripts.bringup import node_arguments
-    from rrr_traj_planner.nodes.studio.page import Page, serving
-    from rrr_traj_planner.nodes.studio.ros_client import StudioClient
-    from rrr_traj_planner.nodes.studio.studio import Studio
-    from rrr_traj_planner.nodes.studio.wanted import wanted_of
-    from rrr_traj_planner.planners.registry import planner_ids
+    from rrr_traj_planner.nodes.studio.arms import another_start, first_start, started_again
+    from rrr_traj_planner.nodes.studio.page import serving, show_wait
 
     ros_arguments = [*own_arguments, *limits_arguments(options.joint_limits)]
-    task = read_task(options.task)
-    arm = None if describes_an_arm(ros_arguments) else task.arm
-    with ExitStack() as stack:
-        server = stack.enter_context(serving(options.host, options.port))
-        client = stack.enter_context(spin_in_background(StudioClient, ros_arguments))
-        nodes = stack.enter_context(NodeProcesses(NODES, node_arguments(arm, ros_arguments)))
-        config = client.connect(nodes.ended)
-        wanted = wanted_of(task, config.model, config.base_frame, config.default_planner_id)
-        page = Page(server, config.model, planner_ids(), wanted)
-        studio = Studio(client, config, wanted, page)
-        page.connect(studio, client.executor.create_task)
-        client.in_executor(studio.start)
-        client.in_executor(lambda: client.create_timer(FRAME_PERIOD, studio.tick))
-        print(f'studio: http://{options.host}:{server.get_port()}  (Ctrl-C ends)', flush=True)
+    start, before = first_start(read_task(options.task), ros_arguments), None
+    with serving(options.host, options.port) as server:
+        print_address = True
         while True:  # until a signal, by KeyboardInterrupt
-            client.check_processes()
-            pause()
+            with ExitStack() as stack:
+                try:
+                    client, studio = _started(stack, server, start)
+                except StartError as error:
+                    if before is None:
+                        raise
+                    start, before = started_again(before, start, str(error)), None
+                    continue
+                if print_address:
+                    print(f'studio: http://{options.host}:{server.get_port()}  (Ctrl-C ends)',
+                          flush=True)
+                    print_address = False
+                while studio.tasks.next is None:
+                    client.check_processes()
+                    pause()
+                before = replace(start, wanted=studio.editor.wanted)
+            start = another_start(studio.tasks.next, before)
+            show_wait(server, start.task.name)
+
+
+def _started(stack: ExitStack, server: Any, start: Start) -> tuple[StudioClient, Studio]:
+    """Start nodes, and show the page of their arm; all ends with a stack of contexts."""
+    from rrr_traj_planner.nodes.process.node_runner import spin_in_background
+    from rrr_traj_planner.nodes.process.processes import NodeProcesses
+    from rrr_traj_planner.nodes.scripts.bringup import node_arguments
+    from rrr_traj_planner.nodes.studio.page import Page
+    from rrr_traj_planner.nodes.studio.ros_client import StudioClient
+    from rrr_traj_planner.nodes.studio.studio import Studio
+    from rrr_traj_planner.planners.registry import planner_ids
+
+    client = stack.enter_context(spin_in_background(StudioClient, start.ros_arguments))
+    nodes = stack.enter_context(
+        NodeProcesses(NODES, node_arguments(start.arm, start.ros_arguments)))
+    config = client.connect(nodes.ended)
+    wanted = start.first_wanted(config, client.payload)
+    page = Page(server, config.model, planner_ids(), wanted)
+    studio = Studio(client, config, wanted, page, start.arm)
+    stack.callback(page.disconnect)
+    page.connect(studio, client.executor.create_task)
+    client.in_executor(lambda: studio.start(start.error))
+    client.in_executor(lambda: client.create_timer(FRAME_PERIOD, studio.tick))
+    return client, studio
 
 
 def _check_viser() -> None:

@@ -16,23 +16,28 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.nodes.parameters.configuration_files import found_file
+from rrr_traj_planner.nodes.point_files.document import document
 from rrr_traj_planner.nodes.point_files.reading import read_task
 from rrr_traj_planner.nodes.point_files.task import Task
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 
 
-def saved(wanted: Wanted) -> str:
+def saved(wanted: Wanted, arm: Path | None) -> str:
     """
-    Return a via-point file; the scalings are not in it.
+    Return a via-point file: with all that such files can have.
 
     Parameters
     ----------
     wanted : Wanted
         What is planned.
+    arm : Path, optional
+        The arm's parameter file.
 
     Returns
     -------
@@ -41,17 +46,33 @@ def saved(wanted: Wanted) -> str:
 
     """
     task = wanted.task
-    lines = [f'planner_id: {task.planner_id}', 'via_points:',
-             *(f'  - {point}' for point in wanted.points.tolist())]
-    if len(task.stop_at):
-        stops = ', '.join(str(stop).lower() for stop in task.stop_at.tolist())
-        lines.append(f'stop_at: [{stops}]')
-    if len(task.dwell):
-        lines.append(f'dwell: {task.dwell.tolist()}')
+    values, name = wanted.points, 'via_points'
+    if wanted.joints is not None and wanted.joints_known:
+        values, name = wanted.joints, 'joint_via_points'
+    lines = [] if arm is None else [f'arm: {json.dumps(_name_of(arm), ensure_ascii=False)}']
+    lines += [f'planner_id: {task.planner_id}', f'{name}:',
+              *(f'  - {point}' for point in values.tolist())]
+    for field in ('stop_at', 'dwell', 'segment_durations'):
+        given = getattr(task, field)
+        if len(given):
+            lines.append(f'{field}: {_listed(given.tolist())}')
     return '\n'.join(lines) + '\n'
 
 
-def loaded(name: str, content: bytes) -> Task:
+def _name_of(arm: Path) -> str:
+    """Return the name by which a file of parameters is found from everywhere."""
+    try:
+        return arm.name if found_file(arm.name, Path('/')) == arm else str(arm)
+    except InvalidInputError:
+        return str(arm)
+
+
+def _listed(values: list[bool] | list[float]) -> str:
+    """Return a list as YAML has it."""
+    return '[' + ', '.join('.nan' if v != v else json.dumps(v) for v in values) + ']'
+
+
+def loaded(name: str, content: bytes) -> tuple[Task, bool]:
     """
     Return what a file says.
 
@@ -64,8 +85,10 @@ def loaded(name: str, content: bytes) -> Task:
 
     Returns
     -------
-    Task
-        Its arm is of no meaning here.
+    task : Task
+        The file.
+    names_arm : bool
+        Whether it says which arm it is for; else `task.arm` is of no meaning.
 
     Raises
     ------
@@ -77,6 +100,8 @@ def loaded(name: str, content: bytes) -> Task:
         file = Path(folder, Path(name).name)
         file.write_bytes(content)
         try:
-            return read_task(str(file))
+            task = read_task(str(file))
+            return task, file.suffix.lower() != '.csv' and bool(
+                document(content.decode('utf-8-sig')).get('arm'))
         except InvalidInputError as error:
             raise InvalidInputError(str(error).replace(f'{folder}/', '')) from None

@@ -16,6 +16,8 @@
 
 from __future__ import annotations
 
+from math import nan, pi
+
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
@@ -23,12 +25,17 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.ros_client import request_of
 from rrr_traj_planner.nodes.studio.wanted import Wanted
+from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner_interfaces.action import MoveThrough
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 AT_START = 0.01       # rad, of a joint from the plan's start, by which the arm is there
 AT_VIA_POINT = 1e-6   # m, by which a plan passes through its via points
-FIELDS = ('via_points', 'dwell', 'max_velocity_scaling_factor', 'max_acceleration_scaling_factor')
+FIELDS = ('via_points', 'dwell', 'max_velocity_scaling_factor', 'max_acceleration_scaling_factor',
+          'max_deviation')
+TURN = 2.0 * pi
+MARGIN = 1.5  # for torque
+POSTURE = ('elbow', 'shoulder')
 
 
 def goal_of(wanted: Wanted, plan: Planned, model: RobotModel, q: Array, moves: bool
@@ -68,8 +75,30 @@ def goal_of(wanted: Wanted, plan: Planned, model: RobotModel, q: Array, moves: b
         goal.joint_via_points = [
             JointTrajectoryPoint(positions=at) for at in plan.via_joints.tolist()]
         goal.via_points.poses = []
+    else:
+        for name in POSTURE:
+            setattr(goal, name, getattr(wanted, name))
+    if len(request.segment_durations):
+        goal.segment_durations = [_way_there(wanted, plan, q, moves), *request.segment_durations]
     if not moves and np.abs(q - plan.via_joints[0]).max() <= AT_START:
-        for name in ('joint_via_points', 'stop_at', 'dwell'):
+        for name in ('joint_via_points', 'stop_at', 'dwell', 'segment_durations'):
             setattr(goal, name, getattr(goal, name)[1:])
         goal.via_points.poses = goal.via_points.poses[1:]
     return goal
+
+
+def _way_there(wanted: Wanted, plan: Planned, q: Array, moves: bool) -> float:
+    """
+    Return a time for the way to the first via point [s].
+
+    NaN, the planner's choice, where the planner lets it be chosen; else that of a cycloid well
+    within the limits.
+    """
+    if moves or planner(wanted.task.planner_id).some_durations:
+        return nan
+    way = np.abs(plan.via_joints[0] - q)
+    velocity, acceleration, jerk = (limits for _, _, limits in plan.peaks[:3])
+    times = (2.0 * way / (velocity * wanted.velocity_scaling),
+             np.sqrt(TURN * way / (acceleration * wanted.acceleration_scaling)),
+             np.cbrt(TURN ** 2 * way / jerk))
+    return MARGIN * float(max(time.max() for time in times))

@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from io import StringIO
 from logging import CRITICAL, getLogger
@@ -26,6 +26,9 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.link_positions import Point
 from rrr_traj_planner.nodes.process.entry import StartError
+from rrr_traj_planner.nodes.studio.arms import STARTING
+from rrr_traj_planner.nodes.studio.editor import Editor
+from rrr_traj_planner.nodes.studio.figures import status_html
 from rrr_traj_planner.nodes.studio.panel.controls import Post
 from rrr_traj_planner.nodes.studio.panel.panel import Panel
 from rrr_traj_planner.nodes.studio.planned import Planned
@@ -64,18 +67,20 @@ class Page:
 
     def __init__(self, server: viser.ViserServer, model: RobotModel, planner_ids: Sequence[str],
                  wanted: Wanted) -> None:
-        self._server = server
+        self._server, self._is_connected = server, False
+        server.gui.reset()
+        server.scene.reset()
         server.gui.configure_theme(show_share_button=False, show_logo=False,
                                    control_width='large')
         size = model.chain.size
-        self._panel = Panel(server.gui, planner_ids, wanted, model.joint_names)
-        self._scene = Scene(server.scene, size, self._moved)
-        self._post: Post = lambda _: None
-        self._studio: Studio | None = None
+        self._panel = Panel(server.gui, planner_ids, wanted, model)
+        self._hands = _Hands()
+        self._scene = Scene(server.scene, size, self._hands)
         self._ghost: tuple[Point, ...] = ()
         centre = np.vstack((wanted.points, np.zeros(3))).mean(axis=0)
-        server.initial_camera.look_at = tuple(centre)
-        server.initial_camera.position = tuple(centre + size * VIEW)
+        for camera in (server.initial_camera, *(
+                client.camera for client in server.get_clients().values())):
+            camera.look_at, camera.position = tuple(centre), tuple(centre + size * VIEW)
 
     def connect(self, studio: Studio, post: Post) -> None:
         """
@@ -89,12 +94,27 @@ class Page:
             Calls a function in the studio's thread.
 
         """
-        self._studio, self._post = studio, post
-        self._panel.connect(studio, post)
+        def post_if_connected(act: Callable[[], None]) -> None:
+            if self._is_connected:
+                post(act)
+
+        self._is_connected = True
+        self._hands.connect(studio.editor, post_if_connected)
+        self._panel.connect(studio, post_if_connected)
+
+    def disconnect(self) -> None:
+        """Have handles and controls do nothing any more."""
+        self._is_connected = False
 
     def show_points(self, points: Array, refusal: Refusal | None) -> None:
         """Show the via points, and which one is at fault."""
         self._scene.show_points(points, refusal)
+
+    def show_wanted(self, editor: Editor) -> None:
+        """Show all that the user can change."""
+        with self._server.atomic():
+            self._scene.show_chosen(editor.chosen)
+            self._panel.show_wanted(editor)
 
     def show_plan(self, plan: Planned | None, is_current: bool, text: str) -> None:
         """Show a plan's path and figures."""
@@ -118,10 +138,56 @@ class Page:
         """Show a text about the motion, and the share of it that is done."""
         self._panel.show_status(text, share)
 
-    def _moved(self, index: int, position: Point) -> None:
-        studio = self._studio
-        if studio is not None:
-            self._post(lambda: studio.move_point(index, position))
+
+class _Hands:
+    """Hands over to the editor what the user does in the scene, in the studio's thread."""
+
+    def __init__(self) -> None:
+        self._editor: Editor | None = None
+        self._post: Post = lambda _: None
+
+    def connect(self, editor: Editor, post: Post) -> None:
+        """Begin to do so."""
+        self._editor, self._post = editor, post
+
+    def choose(self, index: int) -> None:
+        """Take a click on a via point."""
+        self._act(lambda editor: editor.choose(index))
+
+    def drag(self, index: int, begins: bool, then: Callable[[], None] = lambda: None) -> None:
+        """Take the begin or the end of a drag; call a function when it has been taken."""
+        def act(editor: Editor) -> None:
+            then()
+            editor.drag(index, begins)
+
+        self._act(act)
+
+    def move(self, index: int, position: Point) -> None:
+        """Take the position [m] of a via point that is dragged."""
+        self._act(lambda editor: editor.move(index, position))
+
+    def _act(self, act: Callable[[Editor], None]) -> None:
+        editor = self._editor
+        if editor is not None:
+            self._post(lambda: act(editor))
+
+
+def show_wait(server: viser.ViserServer, name: str) -> None:
+    """
+    Show nothing but that nodes are started.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+        What brings it to the browser.
+    name : str
+        Of the task.
+
+    """
+    with server.atomic():
+        server.scene.reset()
+        server.gui.reset()
+        server.gui.add_html(status_html(STARTING.format(name)))
 
 
 @contextmanager

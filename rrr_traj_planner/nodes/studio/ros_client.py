@@ -19,12 +19,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.action import ActionClient
 from rclpy.client import Client as ServiceClient
+from rclpy.parameter import Parameter
+from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.runs.messages import plan_request
-from rrr_traj_planner.nodes.runs.planner_config import planner_config
+from rrr_traj_planner.nodes.runs.planner_config import PLANNER_NODE, planner_values, values_of
 from rrr_traj_planner.nodes.runs.recorded import in_order
 from rrr_traj_planner.nodes.runs.spun_node import SpunNode
 from rrr_traj_planner.nodes.studio.wanted import Wanted
@@ -32,6 +35,10 @@ from rrr_traj_planner_interfaces.action import MoveThrough
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
+from trajectory_msgs.msg import JointTrajectoryPoint
+
+ARM_NODE = 'simulated_arm'
+MASS, KNOWN = 'payload.mass', 'payload.known_to_controller'
 
 
 class StudioClient(SpunNode):
@@ -43,18 +50,32 @@ class StudioClient(SpunNode):
     **kwargs
         For `Node`.
 
+    Attributes
+    ----------
+    moved : callable
+        Called at every new state of the arm.
+    parameters : dict
+        The planner's, by name, as they were when it was connected to.
+    payload : Payload
+        What the arm carried then.
+
     """
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('studio', **kwargs)
         self._state: JointState | None = None
         self._goals = 0
-        self.moved: Callable[[], None] = lambda: None  # called at every new state of the arm
+        self.moved: Callable[[], None] = lambda: None
+        self.parameters: dict[str, Any] = {}
+        self.payload = Payload()
         self.create_subscription(JointState, 'joint_states', self._take_state, 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
         self._triggers = {
-            name: self.create_client(Trigger, f'simulated_arm/{name}') for name in (
+            name: self.create_client(Trigger, f'{ARM_NODE}/{name}') for name in (
                 'hold', 'reset')}
+        self._settings = {
+            name: self.create_client(SetParametersAtomically, f'{name}/set_parameters_atomically')
+            for name in (PLANNER_NODE, ARM_NODE)}
         self._action = ActionClient(self, MoveThrough, 'move_through')
 
     def destroy_node(self) -> None:
@@ -89,7 +110,10 @@ class StudioClient(SpunNode):
         self.wait(lambda: self._state is not None and all(
             client.service_is_ready() for client in self._triggers.values()), 'the arm')
         self.wait(self._action.server_is_ready, 'the motion server')
-        return planner_config(self, '')
+        self.parameters = planner_values(self)
+        self.payload = Payload(
+            self.parameters[MASS], values_of(self, ARM_NODE, [KNOWN])[KNOWN])
+        return PlannerConfig.from_values(self.parameters)
 
     def joints(self, joint_names: tuple[str, ...], field: str = 'position') -> Array:
         """
@@ -124,6 +148,35 @@ class StudioClient(SpunNode):
 
         """
         self._call(self._plan, request_of(wanted), answered)
+
+    def set_payload(self, payload: Payload, answered: Callable[[str], None]) -> None:
+        """
+        Have planner and arm know of another payload.
+
+        Parameters
+        ----------
+        payload : Payload
+            The payload.
+        answered : callable
+            Gets why it is refused; empty: it is not.
+
+        """
+        own = [Parameter(MASS, value=float(payload.mass))]
+        wanted = {PLANNER_NODE: own, ARM_NODE: [
+            *own, Parameter(KNOWN, value=payload.known_to_controller)]}
+        left = [name for name, client in self._settings.items() if client.service_is_ready()]
+
+        def set_next(response: SetParametersAtomically.Response | None) -> None:
+            if response is not None and not response.result.successful:
+                answered(response.result.reason)
+            elif not left:
+                answered('')
+            else:
+                name = left.pop()
+                self._call(self._settings[name], SetParametersAtomically.Request(
+                    parameters=[p.to_parameter_msg() for p in wanted[name]]), set_next)
+
+        set_next(None)
 
     def trigger(self, name: str, answered: Callable[[Trigger.Response], None]) -> None:
         """
@@ -193,6 +246,13 @@ def request_of(wanted: Wanted) -> PlanTrajectory.Request:
 
     """
     request = plan_request(wanted.task, ())
+    if wanted.joints is not None and wanted.joints_known:
+        request.joint_via_points = [
+            JointTrajectoryPoint(positions=q) for q in wanted.joints.tolist()]
+        request.via_points.poses = []
+    else:
+        request.elbow, request.shoulder = wanted.elbow, wanted.shoulder
+    request.max_deviation = float(wanted.max_deviation)
     request.max_velocity_scaling_factor = float(wanted.velocity_scaling)
     request.max_acceleration_scaling_factor = float(wanted.acceleration_scaling)
     return request

@@ -17,7 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
@@ -29,15 +29,28 @@ from rrr_traj_planner.nodes.studio.session import Refusal
 import viser
 
 ARM, GHOST, DRIVEN = (70, 90, 120), (150, 170, 200), (0, 150, 130)
-VIA, AT_FAULT = (245, 140, 30), (200, 30, 30)
+VIA, CHOSEN, AT_FAULT = (245, 140, 30), (250, 205, 60), (200, 30, 30)
 GHOST_OPACITY = 0.4
 
 # Sizes, as fractions of the arm's.
 THICK, BALL, HANDLE, CELL = 0.018, 0.018, 0.16, 0.1
+CHOSEN_SCALE = 1.5  # of a ball
 PLAN_LINE, DRIVEN_LINE = 6.0, 2.0  # pixels
 
-Moved = Callable[[int, Point], None]
 Colour = tuple[int, int, int]
+
+
+class Hands(Protocol):
+    """What the user does with via points in the scene; any thread may call it."""
+
+    def choose(self, index: int) -> None:
+        """Take a click on a via point."""
+
+    def drag(self, index: int, begins: bool, then: Callable[[], None] = lambda: None) -> None:
+        """Take the begin or the end of a drag; call a function when it has been taken."""
+
+    def move(self, index: int, position: Point) -> None:
+        """Take the position [m] of a via point that is dragged."""
 
 
 class Scene:
@@ -50,13 +63,13 @@ class Scene:
         Where to draw.
     size : float
         The arm's [m].
-    moved : callable
-        Gets index and position [m] of a via point that the user drags.
+    hands : Hands
+        Gets what the user does with via points.
 
     """
 
-    def __init__(self, scene: viser.SceneApi, size: float, moved: Moved) -> None:
-        self._scene, self._size, self._moved = scene, size, moved
+    def __init__(self, scene: viser.SceneApi, size: float, hands: Hands) -> None:
+        self._scene, self._size, self._hands = scene, size, hands
         self._points: list[_Handle] = []
         self._arm = _Rods(scene, '/arm', THICK * size, ARM)
         self._ghost = _Rods(scene, '/ghost', THICK * size, GHOST, GHOST_OPACITY)
@@ -81,10 +94,24 @@ class Scene:
         while len(self._points) < len(points):
             index = len(self._points)
             self._points.append(
-                _Handle(self._scene, index, points[index], self._size, self._moved))
+                _Handle(self._scene, index, points[index], self._size, self._hands))
         for index, handle in enumerate(self._points):
+            handle.put(points[index])
             handle.mark(refusal.text if refusal is not None and refusal.via_point == index
                         else '')
+
+    def show_chosen(self, chosen: int) -> None:
+        """
+        Show which via point is chosen.
+
+        Parameters
+        ----------
+        chosen : int
+            Its index.
+
+        """
+        for index, handle in enumerate(self._points):
+            handle.choose(index == chosen)
 
     def show_plan(self, plan: Planned | None, is_current: bool) -> None:
         """
@@ -168,12 +195,13 @@ class _Rods:
 
 
 class _Handle:
-    """A via point: a ball with its number, and arrows to drag it by."""
+    """A via point: a ball with its number, to be chosen by a click, and arrows to drag it by."""
 
     def __init__(self, scene: viser.SceneApi, index: int, position: Array, size: float,
-                 moved: Moved) -> None:
+                 hands: Hands) -> None:
         name = f'/via_point_{index}'
         self._index, self._text = index, ''
+        self._is_held = self._is_chosen = False
         self._controls = scene.add_transform_controls(
             name, HANDLE * size, disable_rotations=True, depth_test=False,
             position=tuple(position))
@@ -181,19 +209,46 @@ class _Handle:
         self._label = scene.add_label(
             f'{name}/label', str(index), anchor='bottom-right')
 
-        async def dragged(_: Any) -> None:  # not in a pool of threads, where the order is lost
+        async def dragged(event: Any) -> None:  # not in a pool of threads, where the order is lost
             x, y, z = self._controls.position.tolist()
-            moved(index, (x, y, z))
+            if event.phase == 'start':
+                self._is_held = True
+                hands.drag(index, True)
+            hands.move(index, (x, y, z))
+            if event.phase == 'end':
+                hands.drag(index, False, self._release)
+
+        async def clicked(_: Any) -> None:
+            hands.choose(index)
 
         self._controls.on_update(dragged)
+        self._ball.on_click(clicked)
+
+    def put(self, position: Array) -> None:
+        """Have it at another place, unless the user holds it."""
+        if not self._is_held and not np.array_equal(self._controls.position, position):
+            self._controls.position = tuple(position)
 
     def mark(self, text: str) -> None:
         """Make the via point red, with a text beside it; empty: neither."""
         if text != self._text:
             self._text = text
-            self._ball.color = AT_FAULT if text else VIA
             self._label.text = text or str(self._index)
+            self._colour()
+
+    def choose(self, is_chosen: bool) -> None:
+        """Show that it is chosen, or that it is not."""
+        if is_chosen != self._is_chosen:
+            self._is_chosen = is_chosen
+            self._ball.scale = CHOSEN_SCALE if is_chosen else 1.0
+            self._colour()
 
     def remove(self) -> None:
         """Remove it from the scene."""
         self._controls.remove()
+
+    def _colour(self) -> None:
+        self._ball.color = AT_FAULT if self._text else CHOSEN if self._is_chosen else VIA
+
+    def _release(self) -> None:
+        self._is_held = False

@@ -74,6 +74,11 @@ class Session(Generic[Plan]):
         self._planned: Wanted | None = None  # what `plan` is of
 
     @property
+    def is_new(self) -> bool:
+        """Return whether nothing has been asked for yet."""
+        return self._in_flight is None and self.plan is None and self.refusal is None
+
+    @property
     def is_current(self) -> bool:
         """Return whether the plan is of what is wanted now."""
         return self.plan is not None and self._planned is self.wanted

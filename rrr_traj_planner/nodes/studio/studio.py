@@ -16,29 +16,32 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from time import monotonic
 from typing import Any, Protocol
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.link_positions import link_positions, Point
 from rrr_traj_planner.nodes.output.wireframe import Trail
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
+from rrr_traj_planner.nodes.studio.arms import Tasks
+from rrr_traj_planner.nodes.studio.asking import Asking
+from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.figures import plan_html, status_html
-from rrr_traj_planner.nodes.studio.files import loaded
 from rrr_traj_planner.nodes.studio.ghost import Ghost
 from rrr_traj_planner.nodes.studio.goals import goal_of
-from rrr_traj_planner.nodes.studio.planned import Planned, planned
+from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
 from rrr_traj_planner.nodes.studio.session import Refusal, Session
-from rrr_traj_planner.nodes.studio.wanted import Wanted, wanted_of
+from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner_interfaces.action import MoveThrough
 
 MOVES = 0.01            # rad/s, of a joint above which the arm moves
 TRAIL_STEP = 1.0 / 200  # distance of the driven path's points, as a fraction of the arm's size
 TRAIL_POINTS = 1000     # of the driven path
 NO_PLAN = 'these via points have no plan to run'
+NO_PLAN_TO_KEEP = 'these via points have no plan whose joint positions could be kept'
 TAKEN_OVER = 'the arm moves: time_optimal takes over'
 
 
@@ -47,6 +50,9 @@ class Page(Protocol):
 
     def show_points(self, points: Array, refusal: Refusal | None) -> None:
         """Show the via points, and which one is at fault."""
+
+    def show_wanted(self, editor: Editor) -> None:
+        """Show all that the user can change."""
 
     def show_plan(self, plan: Planned | None, is_current: bool, text: str) -> None:
         """Show a plan's path and figures."""
@@ -75,24 +81,46 @@ class Studio:
         What is planned at the beginning.
     page : Page
         What shows it.
+    arm : Path, optional
+        The arm's parameter file; None: it is described otherwise.
+
+    Attributes
+    ----------
+    editor : Editor
+        What is wanted, and how it changes.
+    session : Session
+        What is planned of it.
+    tasks : Tasks
+        Opens others.
 
     """
 
     def __init__(self, client: StudioClient, config: PlannerConfig, wanted: Wanted,
-                 page: Page) -> None:
-        self._client, self._config, self._page = client, config, page
-        self._model = config.model
+                 page: Page, arm: Path | None = None) -> None:
+        self._client, self._page = client, page
+        self._asking = Asking(client, config, self._planned)
+        self._model = config.model  # how it moves; its payload may be another one
+        self.editor, self._is_shown = Editor(wanted, config.model, self._changed), False
+        self.tasks = Tasks(self.editor, config, arm, self._say)
         self._trail = Trail(TRAIL_STEP * config.model.chain.size, TRAIL_POINTS)
         self._places: tuple[Point, ...] = ()  # of the arm
         self._shown: tuple[Point, ...] = ()
         self._ghost = Ghost()
         self._duration = 0.0  # of the motion in progress [s]
-        self.session: Session[Planned] = Session(wanted, self._ask)
+        self.session: Session[Planned] = Session(wanted, self._asking.ask)
 
-    def start(self) -> None:
-        """Show everything, and plan."""
-        self._page.show_status(status_html('at rest'), 0.0)
-        self.change(self.session.wanted)
+    def start(self, error: str = '') -> None:
+        """
+        Show everything, and plan.
+
+        Parameters
+        ----------
+        error : str
+            What is said at first, in red; empty: that the arm is at rest.
+
+        """
+        self._page.show_status(status_html(error or 'at rest', bool(error)), 0.0)
+        self._changed()
         self._client.moved = self._moved
         self._moved()
         self.tick()
@@ -103,19 +131,9 @@ class Studio:
             self._shown = self._places
             self._page.show_arm(self._places, list(self._trail.places))
         self._page.show_ghost(self._ghost_places())
-
-    def change(self, wanted: Wanted) -> None:
-        """
-        Plan something else.
-
-        Parameters
-        ----------
-        wanted : Wanted
-            What is wanted from now on.
-
-        """
-        self.session.change(wanted)
-        self._page.show_points(wanted.points, self.session.refusal)
+        if not self._is_shown:
+            self._is_shown = True
+            self._page.show_wanted(self.editor)
 
     def move_point(self, index: int, position: Point) -> None:
         """
@@ -129,30 +147,24 @@ class Studio:
             Where it is now [m].
 
         """
-        if index < len(self.session.wanted.points):
-            self.session.change(self.session.wanted.moved(index, position))
+        self.editor.move(index, position)
 
-    def load(self, name: str, content: bytes) -> None:
+    def keep_joints(self, keeps: bool) -> None:
         """
-        Plan the via points of a file.
+        Plan through the joint positions of the plan, in place of positions of the tip, or not.
 
         Parameters
         ----------
-        name : str
-            Its name.
-        content : bytes
-            Its content.
+        keeps : bool
+            Whether to do so.
 
         """
-        config, before = self._config, self.session.wanted
-        try:
-            found = wanted_of(loaded(name, content), self._model, config.base_frame,
-                              before.task.planner_id)
-        except InvalidInputError as error:
-            self._page.show_status(status_html(str(error), is_error=True), 0.0)
-            return
-        self._page.show_points(found.points[:0], None)  # handles stay where they are otherwise
-        self.change(found.with_scalings(before.velocity_scaling, before.acceleration_scaling))
+        plan = self.session.plan if self.session.is_current else None
+        if keeps and plan is None:
+            self._page.show_status(status_html(NO_PLAN_TO_KEEP, is_error=True), 0.0)
+            self._is_shown = False
+        else:
+            self.editor.keep_joints(plan.via_joints if keeps and plan is not None else None)
 
     def play(self, plays: bool) -> None:
         """
@@ -223,11 +235,15 @@ class Studio:
             return ()
         return link_positions(self._model, plan.joints_at(time))
 
-    def _ask(self, wanted: Wanted) -> None:
-        planner_id = wanted.task.planner_id
-        limits = self._config.limits_for(planner_id)
-        self._client.plan(wanted, lambda response: self._planned(
-            planned(response, planner_id, self._model, limits)))
+    def _say(self, text: str, is_error: bool) -> None:
+        self._page.show_status(status_html(text, is_error), 0.0)
+
+    def _changed(self) -> None:
+        self._is_shown = False
+        wanted = self.editor.wanted
+        if wanted is not self.session.wanted or self.session.is_new:
+            self.session.change(wanted)
+        self._page.show_points(wanted.points, self.session.refusal)
 
     def _planned(self, answer: Planned | Refusal) -> None:
         self.session.answered(answer)

@@ -12,19 +12,20 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What the user of the page wants to be planned, and how it changes."""
+"""What the user of the page wants to be planned."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import UnreachableError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.nodes.point_files.task import Task
-
-FEWEST_POINTS = 2  # a motion begins at the first via point
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,20 +36,39 @@ class Wanted:
     Attributes
     ----------
     task : Task
-        Via points of the tip, planner, stops and rests.
+        Via points of the tip, planner, stops, rests and durations.
     velocity_scaling, acceleration_scaling : float
         Fractions of the limits that may be used.
+    elbow, shoulder : str
+        The posture, 'up' or 'down', 'front' or 'back'; empty: free.
+    max_deviation : float
+        Of a Cartesian planner's path from the polyline [m]; 0: the planner's own.
+    payload : Payload
+        What the arm carries.
+    joints : ndarray, shape (n, 3), optional
+        Joint positions at the via points [rad], where these are to be gone through: no choice of
+        posture, then. NaN where they are not known.
 
     """
 
     task: Task
     velocity_scaling: float = 1.0
     acceleration_scaling: float = 1.0
+    elbow: str = ''
+    shoulder: str = ''
+    max_deviation: float = 0.0
+    payload: Payload = field(default_factory=Payload)
+    joints: Array | None = None
 
     @property
     def points(self) -> Array:
         """Return the via points, shape (n, 3) [m]."""
         return self.task.via_points
+
+    @property
+    def joints_known(self) -> bool:
+        """Return whether the motion is through joint positions, all of which are known."""
+        return self.joints is not None and bool(np.isfinite(self.joints).all())
 
     def with_planner(self, planner_id: str) -> Wanted:
         """
@@ -98,49 +118,70 @@ class Wanted:
         Returns
         -------
         Wanted
-            The same otherwise.
+            The same otherwise; joint positions there are not known any more.
 
         """
-        points = np.array(self.points)
+        points, joints = np.array(self.points), self.joints
         points[index] = position
-        return replace(self, task=replace(self.task, via_points=points))
+        if joints is not None:
+            joints = np.array(joints)
+            joints[index] = np.nan
+        return replace(self, task=replace(self.task, via_points=points), joints=joints)
 
-    def with_point(self) -> Wanted:
+    def with_options(self, other: Wanted) -> Wanted:
         """
-        Return the same with one via point more, halfway from the last one to the first.
+        Return the same with the options of another: all that a via-point file does not have.
+
+        Parameters
+        ----------
+        other : Wanted
+            Whose scalings, posture, deviation and payload are taken; no posture where joint
+            positions are gone through.
 
         Returns
         -------
         Wanted
-            The arm stops at the new last via point, and at the one before only if it rests there.
+            With these via points.
 
         """
-        points, stop_at, dwell = self.points, self.task.stop_at, self.task.dwell
-        rests = len(dwell) > 0 and bool(dwell[-1] > 0.0)
-        if rests and not len(stop_at):
-            stop_at = np.arange(len(points)) == len(points) - 1
-        if len(stop_at):
-            stop_at = np.concatenate((stop_at[:-1], [rests, True]))
-        return replace(self, task=replace(
-            self.task, via_points=np.vstack((points, 0.5 * (points[-1] + points[0]))),
-            stop_at=stop_at, dwell=np.append(dwell, 0.0) if len(dwell) else dwell))
+        free = self.joints is not None
+        return replace(other, task=self.task, joints=self.joints,
+                       elbow='' if free else other.elbow,
+                       shoulder='' if free else other.shoulder)
 
-    def without_last(self) -> Wanted:
+    def completed(self, model: RobotModel, before: Wanted | None = None) -> Wanted:
         """
-        Return the same without the last via point.
+        Return the same with joint positions that are not known found from the tip's.
+
+        Parameters
+        ----------
+        model : RobotModel
+            The arm.
+        before : Wanted, optional
+            Via points of as many as now are nearest to their own joint positions in it; others to
+            those of the nearest via point that has some.
 
         Returns
         -------
         Wanted
-            The same where only `FEWEST_POINTS` are left.
+            Still not known where a via point is out of reach.
 
         """
-        if len(self.points) <= FEWEST_POINTS:
+        if self.joints is None or self.joints_known:
             return self
-        stop_at = np.array(self.task.stop_at[:-1])
-        stop_at[-1:] = True
-        return replace(self, task=replace(
-            self.task, via_points=self.points[:-1], stop_at=stop_at, dwell=self.task.dwell[:-1]))
+        joints = np.array(self.joints)
+        known = np.flatnonzero(np.isfinite(joints).all(axis=1))
+        own = before.joints if before is not None and before.joints is not None else joints
+        for index in np.flatnonzero(np.isnan(joints).any(axis=1)).tolist():
+            seed = own[index] if len(own) == len(joints) else joints[index]
+            if np.isnan(seed).any() and len(known):
+                seed = joints[known[np.abs(known - index).argmin()]]
+            try:
+                joints[index] = nearest_solution(
+                    model, self.points[index], np.nan_to_num(seed))
+            except UnreachableError:
+                continue
+        return replace(self, joints=joints)
 
 
 def wanted_of(task: Task, model: RobotModel, base_frame: str, default_planner: str) -> Wanted:
@@ -161,7 +202,7 @@ def wanted_of(task: Task, model: RobotModel, base_frame: str, default_planner: s
     Returns
     -------
     Wanted
-        Joint positions have become positions of the tip; durations are left out.
+        With the positions of the tip that belong to joint positions.
 
     Raises
     ------
@@ -172,6 +213,5 @@ def wanted_of(task: Task, model: RobotModel, base_frame: str, default_planner: s
     task.check_frame(base_frame)
     joints = task.joint_via_points(model.joint_names)
     points = task.via_points if joints is None else forward_kinematics(model, joints)
-    return Wanted(replace(task, via_points=points, joint_positions=None,
-                          segment_durations=np.zeros(0),
-                          planner_id=task.planner_id or default_planner))
+    return Wanted(replace(task, via_points=points, joint_positions=None, frame='',
+                          planner_id=task.planner_id or default_planner), joints=joints)

@@ -93,31 +93,6 @@ def test_a_refusal_of_what_is_no_longer_wanted_asks_again(session, asked):
     assert asked[-1] is second
 
 
-def test_points_are_moved_added_and_removed():
-    first = wanted()
-    points = first.points
-    moved = first.moved(2, (0.1, 0.2, 0.3))
-    np.testing.assert_array_equal(moved.points, [*points[:2], (0.1, 0.2, 0.3)])
-    np.testing.assert_array_equal(first.points, points)
-    more = first.with_point()
-    np.testing.assert_allclose(more.points, [*points, (points[0] + points[2]) / 2])
-    np.testing.assert_array_equal(more.without_last().points, points)
-    two = first.without_last()
-    assert len(two.points) == 2 and two.without_last() is two
-
-
-def test_stops_and_rests_follow_their_points():
-    first = wanted('pick_and_place.yaml')
-    stops, dwell = first.task.stop_at.tolist(), first.task.dwell.tolist()
-    assert any(stops[1:-1]) and any(dwell)
-    more = first.with_point()
-    assert more.task.stop_at.tolist() == [*stops[:-1], dwell[-1] > 0.0, True]
-    assert more.task.dwell.tolist() == [*dwell, 0.0]
-    fewer = first.without_last()
-    assert fewer.task.stop_at.tolist() == [*stops[:-2], True]
-    assert fewer.task.dwell.tolist() == dwell[:-1]
-
-
 def test_via_points_in_another_frame_are_refused(tmp_path):
     with pytest.raises(InvalidInputError, match="must be in 'base'"):
         file = tmp_path / 'points.yaml'
@@ -126,12 +101,13 @@ def test_via_points_in_another_frame_are_refused(tmp_path):
         wanted_of(read_task(str(file)), RobotModel(), 'base', 'cycloid')
 
 
-def test_joint_positions_become_positions_of_the_tip(tmp_path):
+def test_joint_positions_have_positions_of_the_tip_and_stay(tmp_path):
     file = tmp_path / 'points.yaml'
     file.write_text('joint_via_points: [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]]\n')
     found = wanted(str(file))
     # d1 = 0.5 m high, a2 + d4 = 1.6 m from joint 1's axis, which joint 1 turns about
     assert found.task.joint_positions is None
+    assert found.joints.tolist() == [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]]
     radius = np.linalg.norm(found.points[:, :2], axis=1)
     np.testing.assert_allclose(radius, radius[0])
     angle = np.arctan2(found.points[:, 1], found.points[:, 0])

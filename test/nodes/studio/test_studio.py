@@ -45,6 +45,9 @@ class Page:
     def show_points(self, points, refusal):
         self._show(points=points, refusal=refusal)
 
+    def show_wanted(self, editor):
+        self._show(wanted=editor.wanted, chosen=editor.chosen)
+
     def show_plan(self, plan, is_current, text):
         self._show(plan=plan, is_current=is_current, figures=text)
 
@@ -130,12 +133,12 @@ def test_path_passes_through_the_via_points(page, studio):
 
 
 def test_loaded_points_are_planned_and_a_wrong_file_changes_nothing(ros, page, studio):
-    ros.run(lambda: studio.load('own.csv', b'1.02,0.59,0.97\n0.46,0.55,1.44\n'))
+    ros.run(lambda: studio.tasks.load('own.csv', b'1.02,0.59,0.97\n0.46,0.55,1.44\n'))
     page.wait(lambda p: studio.session.is_current and len(p.points) == 2)
     response = plan(ros, TABLE_6_1[:2])
     assert page.plan.duration == pytest.approx(response.via_times[-1], abs=1e-9)
     before = studio.session.wanted
-    ros.run(lambda: studio.load('own.csv', b'1.02,0.59\n'))
+    ros.run(lambda: studio.tasks.load('own.csv', b'1.02,0.59\n'))
     assert 'own.csv' in page.statuses[-1][0] and studio.session.wanted is before
 
 

@@ -23,23 +23,59 @@ from typing import Any
 Post = Callable[[Callable[[], None]], Any]
 
 
-def when(handle: Any, post: Post, act: Callable[[], None]) -> None:
+def given(handle: Any, post: Post, act: Callable[[Any], None]) -> None:
     """
-    Have a control do something.
+    Have a control's value do something.
 
     Parameters
     ----------
     handle : viser's handle of a control
-        A button, or what has a value.
+        What has a value.
     post : callable
         Calls a function in the studio's thread.
     act : callable
-        What to do there when the user has clicked, or has changed the value: not when the page
-        itself has.
+        Gets the value that the user has given; not what the page itself has set.
 
     """
     async def changed(event: Any) -> None:  # not in a pool of threads, where the order is lost
+        value = handle.value
         if event.client_id is not None:
-            post(act)
+            post(lambda: act(value))
 
-    (handle.on_click if hasattr(handle, 'on_click') else handle.on_update)(changed)
+    (handle.on_update if hasattr(handle, 'on_update') else handle.on_click)(changed)
+
+
+def enable(handle: Any, is_enabled: bool) -> None:
+    """
+    Let the user use a control, or not.
+
+    Parameters
+    ----------
+    handle : viser's handle of a control
+        The control.
+    is_enabled : bool
+        Whether it can be used.
+
+    """
+    if handle.disabled == is_enabled:
+        handle.disabled = not is_enabled
+
+
+def when(handle: Any, post: Post, act: Callable[[], None]) -> None:
+    """
+    Have a button do something.
+
+    Parameters
+    ----------
+    handle : viser's handle of a control
+        A button or a command.
+    post : callable
+        Calls a function in the studio's thread.
+    act : callable
+        What to do there when the user has clicked.
+
+    """
+    async def clicked(_: Any) -> None:  # not in a pool of threads, where the order is lost
+        post(act)
+
+    (handle.on_click if hasattr(handle, 'on_click') else handle.on_trigger)(clicked)

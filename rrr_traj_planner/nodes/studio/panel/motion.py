@@ -12,26 +12,31 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The folder of the motion: what is to be planned."""
+"""The folder of the motion: its planner, how much of the limits it may use, and its options."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import replace
 
-from rrr_traj_planner.nodes.studio.files import saved
-from rrr_traj_planner.nodes.studio.panel.controls import Post, when
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.arm.payload import Payload
+from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
+from rrr_traj_planner.core.kinematics.postures import ELBOWS, SHOULDERS
+from rrr_traj_planner.nodes.studio.editor import Editor
+from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
+from rrr_traj_planner.planners.registry import planner
 import viser
 
 LEAST_SCALING = 0.05
-SAVED = 'via_points.yaml'
+FREE = 'free'
 
 
 class MotionFolder:
     """
-    Planner, scalings, via points and their files.
+    Planner, scalings, posture, deviation and payload.
 
     Parameters
     ----------
@@ -41,22 +46,36 @@ class MotionFolder:
         To choose from.
     wanted : Wanted
         What is chosen at the beginning.
+    model : RobotModel
+        The arm; only one whose postures have names can be asked for one.
 
     """
 
-    def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted) -> None:
+    def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted,
+                 model: RobotModel) -> None:
         with gui.add_folder('Motion'):
             self._planner = gui.add_dropdown(
                 'planner', planner_ids, initial_value=wanted.task.planner_id)
             self._scalings = [gui.add_slider(
-                f'max {name}', LEAST_SCALING, 1.0, LEAST_SCALING, value,
-                hint=f'fraction of the {name} limits') for name, value in (
-                    ('velocity', wanted.velocity_scaling),
-                    ('acceleration', wanted.acceleration_scaling))]
-            self._add = gui.add_button('Add a via point')
-            self._remove = gui.add_button('Remove the last one')
-            self._load = gui.add_upload_button('Load a via-point file')
-            self._save = gui.add_button('Save')
+                f'max {name}', LEAST_SCALING, 1.0, LEAST_SCALING, 1.0,
+                hint=f'fraction of the {name} limits') for name in ('velocity', 'acceleration')]
+            with gui.add_folder('Options', expand_by_default=False):
+                named = has_named_postures(model)
+                self._posture = [gui.add_dropdown(
+                    name, (FREE, *names), visible=named, hint=f'at all via points; {FREE}: '
+                    'the planner chooses') for name, names in (
+                        ('elbow', ELBOWS), ('shoulder', SHOULDERS))]
+                self._joints = gui.add_checkbox(
+                    'keep joints', False, hint='plan through the joint positions of the plan '
+                    'shown, in place of positions of the tip: no other posture is chosen')
+                self._deviation = gui.add_number(
+                    'max deviation', 0.0, min=0.0, step=0.001, hint="m, of the tip's path from "
+                    "straight lines; 0: the planner's parameter; for line_arc, line_polynomial")
+                self._mass = gui.add_number('payload', 0.0, min=0.0, step=0.1,
+                                            hint='kg at the tip, for planner and arm')
+                self._known = gui.add_checkbox(
+                    'controller knows', False, hint="whether the arm's controller has the payload "
+                    'in its model; else it is disturbed by it')
 
     def connect(self, studio: Studio, post: Post) -> None:
         """
@@ -70,24 +89,52 @@ class MotionFolder:
             Calls a function in the studio's thread.
 
         """
-        def changing(handle: Any, change: Callable[[Wanted], Wanted]) -> None:
-            when(handle, post, lambda: studio.change(change(studio.session.wanted)))
+        editor = studio.editor
 
-        changing(self._planner, lambda wanted: wanted.with_planner(self._planner.value))
+        def scale(_: float) -> None:
+            editor.change(editor.wanted.with_scalings(
+                *(float(slider.value) for slider in self._scalings)), 'scalings')
+
+        def pose(_: str) -> None:
+            elbow, shoulder = ('' if handle.value == FREE else handle.value
+                               for handle in self._posture)
+            editor.change(replace(editor.wanted, elbow=elbow, shoulder=shoulder))
+
+        def load(_: float) -> None:
+            editor.change(replace(editor.wanted, payload=Payload(
+                float(self._mass.value), bool(self._known.value))), 'payload')
+
+        given(self._planner, post, lambda name: editor.change(editor.wanted.with_planner(name)))
         for slider in self._scalings:
-            changing(slider, lambda wanted: wanted.with_scalings(
-                *(float(s.value) for s in self._scalings)))
-        changing(self._add, lambda wanted: wanted.with_point())
-        changing(self._remove, lambda wanted: wanted.without_last())
-        self._save.on_click(lambda event: event.client.send_file_download(
-            SAVED, saved(studio.session.wanted).encode()))
-        self._load.on_upload(lambda _: self._loaded(studio, post))
+            given(slider, post, scale)
+        for handle in self._posture:
+            given(handle, post, pose)
+        given(self._joints, post, studio.keep_joints)
+        given(self._deviation, post, lambda value: editor.change(
+            replace(editor.wanted, max_deviation=float(value)), 'max deviation'))
+        for handle in (self._mass, self._known):
+            given(handle, post, load)
 
-    def _loaded(self, studio: Studio, post: Post) -> None:
-        file = self._load.value
+    def show_wanted(self, editor: Editor) -> None:
+        """
+        Show what is wanted.
 
-        def load() -> None:
-            studio.load(file.name, file.content)
-            self._planner.value = studio.session.wanted.task.planner_id
+        Parameters
+        ----------
+        editor : Editor
+            Has it.
 
-        post(load)
+        """
+        wanted = editor.wanted
+        self._planner.value = wanted.task.planner_id
+        for slider, value in zip(self._scalings, (
+                wanted.velocity_scaling, wanted.acceleration_scaling)):
+            slider.value = value
+        for handle, value in zip(self._posture, (wanted.elbow, wanted.shoulder)):
+            handle.value = value or FREE
+            enable(handle, wanted.joints is None)
+        self._joints.value = wanted.joints is not None
+        self._deviation.value = wanted.max_deviation
+        enable(self._deviation, planner(wanted.task.planner_id).plan_path is not None)
+        self._mass.value = wanted.payload.mass
+        self._known.value = wanted.payload.known_to_controller

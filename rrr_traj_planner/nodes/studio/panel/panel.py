@@ -18,10 +18,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.panel.arm import ArmFolder
 from rrr_traj_planner.nodes.studio.panel.controls import Post
+from rrr_traj_planner.nodes.studio.panel.files import FilesFolder
 from rrr_traj_planner.nodes.studio.panel.motion import MotionFolder
 from rrr_traj_planner.nodes.studio.panel.plan import PlanFolder
+from rrr_traj_planner.nodes.studio.panel.points import PointsFolder
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
@@ -39,16 +43,18 @@ class Panel:
         To choose from.
     wanted : Wanted
         What is chosen at the beginning.
-    joint_names : sequence of str
-        The arm's joints.
+    model : RobotModel
+        The arm.
 
     """
 
     def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted,
-                 joint_names: Sequence[str]) -> None:
-        self._motion = MotionFolder(gui, planner_ids, wanted)
+                 model: RobotModel) -> None:
+        self._files = FilesFolder(gui)
+        self._points = PointsFolder(gui, wanted)
+        self._motion = MotionFolder(gui, planner_ids, wanted, model)
         self._arm = ArmFolder(gui)
-        self._plan = PlanFolder(gui, joint_names)
+        self._plan = PlanFolder(gui, model.joint_names)
         self.show_status = self._arm.show_status
         self.show_plan = self._plan.show
 
@@ -64,5 +70,18 @@ class Panel:
             Calls a function in the studio's thread.
 
         """
-        for folder in (self._motion, self._arm, self._plan):
+        for folder in (self._files, self._points, self._motion, self._arm, self._plan):
             folder.connect(studio, post)
+
+    def show_wanted(self, editor: Editor) -> None:
+        """
+        Show all that the user can change.
+
+        Parameters
+        ----------
+        editor : Editor
+            Has it.
+
+        """
+        for folder in (self._files, self._points, self._motion):
+            folder.show_wanted(editor)

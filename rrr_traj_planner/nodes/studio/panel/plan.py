@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rrr_traj_planner.nodes.studio.chart import Chart
-from rrr_traj_planner.nodes.studio.panel.controls import Post, when
+from rrr_traj_planner.nodes.studio.panel.controls import given, Post
 from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.studio import Studio
 import viser
@@ -58,12 +58,12 @@ class PlanFolder:
             Calls a function in the studio's thread.
 
         """
-        def go_to() -> None:
+        def go_to(share: float) -> None:
             self._play.value = False
-            studio.go_to(float(self._moment.value))
+            studio.go_to(float(share))
 
-        when(self._play, post, lambda: studio.play(bool(self._play.value)))
-        when(self._moment, post, go_to)
+        given(self._play, post, studio.play)
+        given(self._moment, post, go_to)
 
     def show(self, plan: Planned | None, text: str) -> None:
         """

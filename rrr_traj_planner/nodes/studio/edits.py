@@ -1,0 +1,266 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Changes of single via points: inserted, removed, exchanged; their stops, rests and times."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.nodes.studio.wanted import Wanted
+
+FEWEST_POINTS = 2  # a motion begins at the first via point
+
+
+def stops_of(wanted: Wanted) -> BoolArray:
+    """
+    Return whether the arm stops at each via point.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+        True at the last.
+
+    """
+    stops = np.zeros(len(wanted.points), dtype=bool)
+    if len(wanted.task.stop_at):
+        stops[:] = wanted.task.stop_at
+    stops[-1] = True
+    return stops
+
+
+def dwell_of(wanted: Wanted) -> Array:
+    """
+    Return the rest at each via point.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        0 where there is none [s].
+
+    """
+    return np.array(wanted.task.dwell) if len(wanted.task.dwell) else np.zeros(len(wanted.points))
+
+
+def durations_of(wanted: Wanted) -> Array:
+    """
+    Return the prescribed time of each segment.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+
+    Returns
+    -------
+    ndarray, shape (n - 1,)
+        NaN where the planner chooses it [s].
+
+    """
+    durations = wanted.task.segment_durations
+    return np.array(durations) if len(durations) else np.full(len(wanted.points) - 1, np.nan)
+
+
+def inserted(wanted: Wanted, index: int) -> Wanted:
+    """
+    Return the same with a via point more.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+    index : int
+        After which one: halfway to the next; after the last, halfway to the first.
+
+    Returns
+    -------
+    Wanted
+        The arm does not stop at the new one, unless it is the last; at the one that was the last
+        it does only if it rests there.
+
+    """
+    points, count = wanted.points, len(wanted.points)
+    is_last, new = index == count - 1, index + 1
+    stops, dwell, durations = stops_of(wanted), dwell_of(wanted), durations_of(wanted)
+    stops[-1] = not is_last
+    if is_last:
+        durations = np.append(durations, durations[-1])
+    else:
+        durations[index] *= 0.5
+        durations = np.insert(durations, new, durations[index])
+    joints = wanted.joints
+    return _with(wanted, np.insert(points, new, 0.5 * (points[index] + points[new % count]), 0),
+                 np.insert(stops, new, False), np.insert(dwell, new, 0.0), durations,
+                 None if joints is None else np.insert(joints, new, np.nan, 0))
+
+
+def removed(wanted: Wanted, index: int) -> Wanted:
+    """
+    Return the same without a via point.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+    index : int
+        Which one.
+
+    Returns
+    -------
+    Wanted
+        The same where only `FEWEST_POINTS` are left. The times of the segments on its sides are
+        added.
+
+    """
+    count = len(wanted.points)
+    if count <= FEWEST_POINTS:
+        return wanted
+    durations = durations_of(wanted)
+    if 0 < index < count - 1:
+        durations[index] += durations[index - 1]
+    joints = wanted.joints
+    return _with(wanted, *(np.delete(rows, index, 0) for rows in (
+        wanted.points, stops_of(wanted), dwell_of(wanted))),
+        np.delete(durations, max(index - 1, 0)),
+        None if joints is None else np.delete(joints, index, 0))
+
+
+def exchanged(wanted: Wanted, index: int, other: int) -> Wanted:
+    """
+    Return the same with two via points in one another's place.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+    index, other : int
+        Which ones; their stops and rests go with them, times of segments stay.
+
+    Returns
+    -------
+    Wanted
+        The same where one of them does not exist.
+
+    """
+    order = np.arange(len(wanted.points))
+    if not (0 <= index < len(order) and 0 <= other < len(order)):
+        return wanted
+    order[[index, other]] = other, index
+    stops, joints = stops_of(wanted), wanted.joints
+    stops[-1] = order[-1] == len(order) - 1  # no longer the end
+    return _with(wanted, wanted.points[order], stops[order], dwell_of(wanted)[order],
+                 durations_of(wanted), None if joints is None else joints[order])
+
+
+def with_stop(wanted: Wanted, index: int, stop: bool) -> Wanted:
+    """
+    Return the same with or without a stop.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+    index : int
+        At which via point.
+    stop : bool
+        Whether the arm stops there; if not, it does not rest there either.
+
+    Returns
+    -------
+    Wanted
+        The arm stops at the last in any case.
+
+    """
+    stops, dwell = stops_of(wanted), dwell_of(wanted)
+    stops[index] = stop
+    if not stop:
+        dwell[index] = 0.0
+    return _with(wanted, wanted.points, stops, dwell, durations_of(wanted), wanted.joints)
+
+
+def with_dwell(wanted: Wanted, index: int, dwell: float) -> Wanted:
+    """
+    Return the same with another rest.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+    index : int
+        At which via point.
+    dwell : float
+        How long [s]; the arm stops there if it is not 0.
+
+    Returns
+    -------
+    Wanted
+        The same otherwise.
+
+    """
+    rests = dwell_of(wanted)
+    rests[index] = dwell
+    return _with(wanted, wanted.points, stops_of(wanted), rests, durations_of(wanted),
+                 wanted.joints)
+
+
+def with_duration(wanted: Wanted, index: int, duration: float) -> Wanted:
+    """
+    Return the same with the time of a segment prescribed, or left to the planner.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+    index : int
+        Of the via point at the segment's end; nothing ends at the first.
+    duration : float
+        [s]; 0: as the planner chooses.
+
+    Returns
+    -------
+    Wanted
+        The same otherwise.
+
+    """
+    if not index:
+        return wanted
+    durations = durations_of(wanted)
+    durations[index - 1] = duration if duration > 0.0 else np.nan
+    return _with(wanted, wanted.points, stops_of(wanted), dwell_of(wanted), durations,
+                 wanted.joints)
+
+
+def _with(wanted: Wanted, points: Array, stops: BoolArray, dwell: Array, durations: Array,
+          joints: Array | None) -> Wanted:
+    """Return other via points; stops, rests and durations are empty where there are none."""
+    stops = stops | (dwell > 0.0)
+    stops[-1] = True
+    stops_between = bool(stops[:-1].any())
+    return replace(wanted, joints=joints, task=replace(
+        wanted.task, via_points=points,
+        stop_at=stops if stops_between else stops[:0],
+        dwell=dwell if (dwell > 0.0).any() else dwell[:0],
+        segment_durations=durations if np.isfinite(durations).any() else durations[:0]))
