@@ -147,7 +147,7 @@ def started_again(before: Start, failed: Start, error: str) -> Start:
         With a message for the page.
 
     """
-    return replace(before, error=f'{failed.task.name} cannot be started: {error}')
+    return replace(before, error=f'{failed.task.name} cannot be started: {error}; see the terminal')
 
 
 def check_arm(task: Task) -> None:
@@ -181,20 +181,40 @@ class Tasks:
         The planner's.
     arm : Path or None
         The parameter file of the arm that is shown; None: it is described otherwise.
-    say : callable
-        Gets a text for the page, and whether it is an error.
+    said : callable
+        Called when there is something else to be said.
 
     Attributes
     ----------
+    message : str
+        What there is to say about the last task; empty: nothing.
+    is_error : bool
+        Whether it is that the task could not be opened.
     next : Task or None
         A task for another arm, with which the nodes are to be started anew.
 
     """
 
     def __init__(self, editor: Editor, config: PlannerConfig, arm: Path | None,
-                 say: Callable[[str, bool], None]) -> None:
-        self._editor, self._config, self._say, self.arm = editor, config, say, arm
+                 said: Callable[[], None]) -> None:
+        self._editor, self._config, self._said, self.arm = editor, config, said, arm
+        self.message, self.is_error = '', False
         self.next: Task | None = None
+
+    def say(self, message: str, is_error: bool = False) -> None:
+        """
+        Have the page say something about the last task.
+
+        Parameters
+        ----------
+        message : str
+            Empty: nothing any more.
+        is_error : bool
+            Whether it is an error.
+
+        """
+        self.message, self.is_error = message, is_error
+        self._said()
 
     def load(self, name: str, content: bytes) -> None:
         """
@@ -234,13 +254,14 @@ class Tasks:
             task, with_arm = read()
             if with_arm and task.arm != self.arm:
                 check_arm(task)
-                self._say(STARTING.format(task.name), False)
+                self.say(STARTING.format(task.name))
                 self.next = task
                 return
             before, config = self._editor.wanted, self._config
             found = wanted_of(task, config.model, config.base_frame, before.task.planner_id)
         except InvalidInputError as error:
-            self._say(str(error), True)
+            self.say(str(error), is_error=True)
             return
+        self.say('')
         self._editor.chosen = 0
         self._editor.change(found.with_options(before))

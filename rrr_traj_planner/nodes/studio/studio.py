@@ -101,7 +101,7 @@ class Studio:
         self._asking = Asking(client, config, self._planned)
         self._model = config.model  # how it moves; its payload may be another one
         self.editor, self._is_shown = Editor(wanted, config.model, self._changed), False
-        self.tasks = Tasks(self.editor, config, arm, self._say)
+        self.tasks = Tasks(self.editor, config, arm, self._show_soon)
         self._trail = Trail(TRAIL_STEP * config.model.chain.size, TRAIL_POINTS)
         self._places: tuple[Point, ...] = ()  # of the arm
         self._shown: tuple[Point, ...] = ()
@@ -116,10 +116,11 @@ class Studio:
         Parameters
         ----------
         error : str
-            What is said at first, in red; empty: that the arm is at rest.
+            What is said about the task at first, in red.
 
         """
-        self._page.show_status(status_html(error or 'at rest', bool(error)), 0.0)
+        self.tasks.say(error, is_error=True)
+        self._page.show_status(status_html('at rest'), 0.0)
         self._changed()
         self._client.moved = self._moved
         self._moved()
@@ -162,7 +163,7 @@ class Studio:
         plan = self.session.plan if self.session.is_current else None
         if keeps and plan is None:
             self._page.show_status(status_html(NO_PLAN_TO_KEEP, is_error=True), 0.0)
-            self._is_shown = False
+            self._show_soon()
         else:
             self.editor.keep_joints(plan.via_joints if keeps and plan is not None else None)
 
@@ -235,11 +236,11 @@ class Studio:
             return ()
         return link_positions(self._model, plan.joints_at(time))
 
-    def _say(self, text: str, is_error: bool) -> None:
-        self._page.show_status(status_html(text, is_error), 0.0)
+    def _show_soon(self) -> None:
+        self._is_shown = False
 
     def _changed(self) -> None:
-        self._is_shown = False
+        self._show_soon()
         wanted = self.editor.wanted
         if wanted is not self.session.wanted or self.session.is_new:
             self.session.change(wanted)

@@ -39,31 +39,25 @@ POINTS = 'via_points: [[0.9, 0.3, 1.2], [0.9, 0.3, 1.0]]\n'
 
 
 @pytest.fixture
-def said():
-    """Give a test the list of what was said, and whether it was an error."""
-    return []
+def tasks():
+    return of_arm(THESIS_ARM)
 
 
-@pytest.fixture
-def tasks(said):
-    return of_arm(said, THESIS_ARM)
-
-
-def of_arm(said, arm):
+def of_arm(arm):
     config = planner_config(THESIS_ARM)
     start = first_start(read_task('table_6_1.yaml'), [])
     editor = Editor(start.first_wanted(config, Payload(2.0)), config.model, lambda: None)
-    found = Tasks(editor, config, arm, lambda *text: said.append(text))
+    found = Tasks(editor, config, arm, lambda: None)
     found.editor = editor
     return found
 
 
-def test_task_for_the_arm_that_is_shown_is_opened_with_the_options_kept(tasks, said):
+def test_task_for_the_arm_that_is_shown_is_opened_with_the_options_kept(tasks):
     editor = tasks.editor
     editor.choose(2)
     editor.change(replace(editor.wanted, max_deviation=0.01, elbow='up'))
     tasks.open_shipped('pick_and_place')
-    assert (tasks.next, said, editor.chosen) == (None, [], 0)
+    assert (tasks.next, tasks.message, editor.chosen) == (None, '', 0)
     wanted = editor.wanted
     assert (wanted.task.name, len(wanted.points)) == ('pick_and_place', 6)
     assert (wanted.max_deviation, wanted.elbow, wanted.payload) == (0.01, 'up', Payload(2.0))
@@ -71,11 +65,12 @@ def test_task_for_the_arm_that_is_shown_is_opened_with_the_options_kept(tasks, s
     assert editor.wanted.task.name == 'table_6_1'
 
 
-def test_task_for_another_arm_waits_for_its_nodes(tasks, said):
+def test_task_for_another_arm_waits_for_its_nodes(tasks):
     before = tasks.editor.wanted
     tasks.open_shipped('kr16_2_first3')
     assert tasks.next.name == 'kr16_2_first3' and tasks.editor.wanted is before
-    assert said == [('starting the nodes anew for the arm of kr16_2_first3', False)]
+    assert tasks.message == 'starting the nodes anew for the arm of kr16_2_first3'
+    assert not tasks.is_error
 
 
 def test_file_that_names_no_arm_is_for_the_one_that_is_shown(tasks):
@@ -88,8 +83,8 @@ def test_file_that_names_another_arm_waits_for_its_nodes(tasks):
     assert tasks.next.arm == CONFIG / 'thesis_arm_joint_2_250.yaml'
 
 
-def test_arm_of_the_command_line_is_kept_where_a_file_names_another(said):
-    tasks = of_arm(said, None)
+def test_arm_of_the_command_line_is_kept_where_a_file_names_another():
+    tasks = of_arm(None)
     tasks.load('own.yaml', f'arm: thesis_arm_joint_2_250.yaml\n{POINTS}'.encode())
     assert tasks.next is None and len(tasks.editor.wanted.points) == 2
     tasks.open_shipped('table_6_1')
@@ -103,15 +98,15 @@ def test_arm_of_the_command_line_is_kept_where_a_file_names_another(said):
     ('arm: thesis_arm_joint_2_250.yaml\njoint_via_points: [{a: 1.0}, {a: 2.0}]\n', 'joint_1'),
 ])
 def test_wrong_file_or_arm_is_refused_before_anything_changes(
-        tasks, said, tmp_path, content, message):
+        tasks, tmp_path, content, message):
     wrong = tmp_path / 'wrong_arm.yaml'
     wrong.write_text('/**:\n  ros__parameters:\n    payload: {mass: -1.0}\n')
     before = tasks.editor.wanted
     tasks.load('own.yaml', content.replace('{wrong}', str(wrong)).encode())
-    (text, is_error), = said
-    assert is_error
-    assert re.search(message, text), text
+    assert tasks.is_error and re.search(message, tasks.message), tasks.message
     assert tasks.next is None and tasks.editor.wanted is before
+    tasks.load('own.yaml', POINTS.encode())
+    assert tasks.message == ''
 
 
 def test_start_with_another_arm_has_no_parameters_of_the_arm_before():
@@ -135,7 +130,7 @@ def test_arm_that_comes_back_has_what_was_wanted_of_it(tasks):
     tasks.editor.move(1, (0.46, 0.55, 1.4))
     before = replace(first, wanted=tasks.editor.wanted)
     again = started_again(before, another_start(shipped_task('go1_leg'), before), 'it broke')
-    assert again.error == 'go1_leg cannot be started: it broke'
+    assert again.error == 'go1_leg cannot be started: it broke; see the terminal'
     assert again.arm == THESIS_ARM
     wanted = again.first_wanted(config, Payload())
     np.testing.assert_array_equal(wanted.points[1], (0.46, 0.55, 1.4))

@@ -139,7 +139,7 @@ def test_loaded_points_are_planned_and_a_wrong_file_changes_nothing(ros, page, s
     assert page.plan.duration == pytest.approx(response.via_times[-1], abs=1e-9)
     before = studio.session.wanted
     ros.run(lambda: studio.tasks.load('own.csv', b'1.02,0.59\n'))
-    assert 'own.csv' in page.statuses[-1][0] and studio.session.wanted is before
+    assert 'own.csv' in studio.tasks.message and studio.session.wanted is before
 
 
 def test_curves_are_shares_of_the_limits(page, studio):

@@ -19,6 +19,7 @@ from __future__ import annotations
 from typing import Any
 
 from rrr_traj_planner.nodes.point_files.shipped import shipped_tasks
+from rrr_traj_planner.nodes.studio.arms import Tasks
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.figures import status_html
 from rrr_traj_planner.nodes.studio.files import saved
@@ -41,7 +42,7 @@ class FilesFolder:
     """
 
     def __init__(self, gui: viser.GuiApi) -> None:
-        self._arm = ''
+        self._tasks: Tasks | None = None
         with gui.add_folder('Task'):
             self._name = gui.add_html('')
             self._shipped = gui.add_dropdown(
@@ -75,7 +76,7 @@ class FilesFolder:
         def load(file: Any) -> None:
             studio.tasks.load(file.name, file.content)
 
-        self._arm = 'own arm' if studio.tasks.arm is None else studio.tasks.arm.stem
+        self._tasks = studio.tasks
         given(self._shipped, post, open_shipped)
         self._save.on_click(save)
         self._load.on_upload(lambda _: post(lambda: load(self._load.value)))
@@ -90,4 +91,11 @@ class FilesFolder:
             Has the task.
 
         """
-        self._name.content = status_html(f'{editor.wanted.task.name}, {self._arm}')
+        tasks = self._tasks
+        if tasks is not None:
+            arm = 'own arm' if tasks.arm is None else tasks.arm.stem
+            text = status_html(f'{editor.wanted.task.name}, {arm}')
+            if tasks.message:
+                text += status_html(tasks.message, tasks.is_error)
+            if text != self._name.content:
+                self._name.content = text

@@ -69,12 +69,12 @@ class MotionFolder:
                     'keep joints', False, hint='plan through the joint positions of the plan '
                     'shown, in place of positions of the tip: no other posture is chosen')
                 self._deviation = gui.add_number(
-                    'max deviation', 0.0, min=0.0, step=0.001, hint="m, of the tip's path from "
-                    "straight lines; 0: the planner's parameter; for line_arc, line_polynomial")
-                self._mass = gui.add_number('payload', 0.0, min=0.0, step=0.1,
-                                            hint='kg at the tip, for planner and arm')
+                    'deviation [m]', 0.0, min=0.0, step=0.001, hint='at most, of the path of '
+                    "line_arc and line_polynomial from straight lines; 0: the planner's parameter")
+                self._mass = gui.add_number('payload [kg]', 0.0, min=0.0, step=0.1,
+                                            hint='at the tip, for planner and arm')
                 self._known = gui.add_checkbox(
-                    'controller knows', False, hint="whether the arm's controller has the payload "
+                    'payload known', False, hint="whether the arm's controller has the payload "
                     'in its model; else it is disturbed by it')
 
     def connect(self, studio: Studio, post: Post) -> None:

@@ -53,13 +53,14 @@ class PointsFolder:
         with gui.add_folder('Via points'):
             self._list = gui.add_dropdown('chosen', labels(wanted))
             self._position = gui.add_vector3(
-                'position', tuple(wanted.points[0].tolist()), step=0.001, hint='x, y, z in m')
+                'position [m]', tuple(wanted.points[0].tolist()), step=0.001,
+                hint='x, y, z in the base frame')
             self._stop = gui.add_checkbox('stop', False, hint='whether the arm stops there')
             self._dwell = gui.add_number(
-                'dwell', 0.0, min=0.0, step=0.1, hint='s, rest at this via point')
+                'dwell [s]', 0.0, min=0.0, step=0.1, hint='rest at this via point')
             self._duration = gui.add_number(
-                'time', 0.0, min=0.0, step=0.1,
-                hint='s, from the via point before to this one; 0: as fast as the limits allow')
+                'time [s]', 0.0, min=0.0, step=0.1,
+                hint='from the via point before to this one; 0: as fast as the limits allow')
             self._number = gui.add_button_group(
                 'points', (INSERT, REMOVE), hint='a via point after the chosen one; remove it')
             self._order = gui.add_button_group(
