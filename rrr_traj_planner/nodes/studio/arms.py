@@ -147,7 +147,8 @@ def started_again(before: Start, failed: Start, error: str) -> Start:
         With a message for the page.
 
     """
-    return replace(before, error=f'{failed.task.name} cannot be started: {error}; see the terminal')
+    return replace(
+        before, error=f'{failed.task.name} cannot be started: {error}; see the terminal')
 
 
 def check_arm(task: Task) -> None:

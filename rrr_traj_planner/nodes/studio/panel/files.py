@@ -71,7 +71,8 @@ class FilesFolder:
         def save(event: Any) -> None:
             wanted = studio.editor.wanted
             event.client.send_file_download(
-                f'{wanted.task.name}.yaml', saved(wanted, studio.tasks.arm).encode())
+                f'{wanted.task.name}.yaml', saved(wanted, studio.tasks.arm).encode(),
+                save_immediately=True)
 
         def load(file: Any) -> None:
             studio.tasks.load(file.name, file.content)
