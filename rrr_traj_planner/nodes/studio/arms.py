@@ -184,6 +184,8 @@ class Tasks:
         The parameter file of the arm that is shown; None: it is described otherwise.
     said : callable
         Called when there is something else to be said.
+    can_exchange : bool
+        Whether another arm can be started in place of the one that is shown.
 
     Attributes
     ----------
@@ -197,8 +199,9 @@ class Tasks:
     """
 
     def __init__(self, editor: Editor, config: PlannerConfig, arm: Path | None,
-                 said: Callable[[], None]) -> None:
+                 said: Callable[[], None], can_exchange: bool = True) -> None:
         self._editor, self._config, self._said, self.arm = editor, config, said, arm
+        self._can_exchange = can_exchange
         self.message, self.is_error = '', False
         self.next: Task | None = None
 
@@ -254,6 +257,9 @@ class Tasks:
         try:
             task, with_arm = read()
             if with_arm and task.arm != self.arm:
+                if not self._can_exchange:
+                    raise InvalidInputError(
+                        f'{task.name} is for {task.arm.stem}, not for the arm that is connected')
                 check_arm(task)
                 self.say(STARTING.format(task.name))
                 self.next = task

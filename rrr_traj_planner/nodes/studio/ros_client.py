@@ -58,8 +58,12 @@ class StudioClient(SpunNode):
         The planner's, by name, as they were when it was connected to.
     payload : Payload
         What the arm carried then.
+    controller : str
+        Of a real arm, which cannot be exchanged for another one; empty: the arm is simulated.
 
     """
+
+    controller = ''
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__('studio', **kwargs)
@@ -111,8 +115,8 @@ class StudioClient(SpunNode):
             client.service_is_ready() for client in self._triggers.values()), 'the arm')
         self.wait(self._action.server_is_ready, 'the motion server')
         self.parameters = planner_values(self)
-        self.payload = Payload(
-            self.parameters[MASS], values_of(self, ARM_NODE, [KNOWN])[KNOWN])
+        known = bool(self._triggers) and values_of(self, ARM_NODE, [KNOWN])[KNOWN]
+        self.payload = Payload(self.parameters[MASS], known)
         return PlannerConfig.from_values(self.parameters)
 
     def joints(self, joint_names: tuple[str, ...], field: str = 'position') -> Array:

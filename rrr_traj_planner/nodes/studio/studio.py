@@ -101,7 +101,7 @@ class Studio:
         self._asking = Asking(client, config, self._planned)
         self._model = config.model  # how it moves; its payload may be another one
         self.editor, self._is_shown = Editor(wanted, config.model, self._changed), False
-        self.tasks = Tasks(self.editor, config, arm, self._show_soon)
+        self.tasks = Tasks(self.editor, config, arm, self._show_soon, not client.controller)
         self._trail = Trail(TRAIL_STEP * config.model.chain.size, TRAIL_POINTS)
         self._places: tuple[Point, ...] = ()  # of the arm
         self._shown: tuple[Point, ...] = ()

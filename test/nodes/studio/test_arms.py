@@ -43,11 +43,11 @@ def tasks():
     return of_arm(THESIS_ARM)
 
 
-def of_arm(arm):
+def of_arm(arm, can_exchange=True):
     config = planner_config(THESIS_ARM)
     start = first_start(read_task('table_6_1.yaml'), [])
     editor = Editor(start.first_wanted(config, Payload(2.0)), config.model, lambda: None)
-    found = Tasks(editor, config, arm, lambda: None)
+    found = Tasks(editor, config, arm, lambda: None, can_exchange)
     found.editor = editor
     return found
 
@@ -107,6 +107,15 @@ def test_wrong_file_or_arm_is_refused_before_anything_changes(
     assert tasks.next is None and tasks.editor.wanted is before
     tasks.load('own.yaml', POINTS.encode())
     assert tasks.message == ''
+
+
+def test_real_arm_is_not_exchanged():
+    tasks = of_arm(THESIS_ARM, can_exchange=False)
+    tasks.open_shipped('go1_leg')
+    assert tasks.is_error and tasks.next is None
+    assert tasks.message == 'go1_leg is for go1_leg_arm, not for the arm that is connected'
+    tasks.open_shipped('pick_and_place')
+    assert len(tasks.editor.wanted.points) == 6
 
 
 def test_start_with_another_arm_has_no_parameters_of_the_arm_before():

@@ -66,7 +66,7 @@ class Form:
         self.browser.until(f'{OPTIONS}.includes({quoted(option)})')
         self.press(option, '[role=option]')
 
-    def type(self, value, text):
+    def write(self, value, text):
         """Type a text in place of a value."""
         found = self._field(value)
         self.browser.value(f'{found}.focus(); {found}.select()')
@@ -114,7 +114,7 @@ def change_points(form):
     """Choose via point 1, type its x, insert one after it, and undo all."""
     form.reads('table_6_1, thesis_arm')
     form.choose('0: 1.02, 0.59, 0.97', '1: 0.46, 0.55, 1.44')
-    form.type('0.46', '0.5')
+    form.write('0.46', '0.5')
     form.has('1: 0.5, 0.55, 1.44', '0.5')
     form.press('insert after')
     form.has('2: 0.475, 0.465, 1.44')

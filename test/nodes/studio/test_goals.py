@@ -65,6 +65,43 @@ def test_plan_that_misses_its_points_is_asked_for_by_positions_of_the_tip():
     np.testing.assert_array_equal(places, WANTED.points)
 
 
+LIMITS = (np.ones(3), np.ones(3), np.full(3, 10.0))
+TIMED = replace(PLAN, planner_id='cycloid', peaks=tuple(
+    (name, 0.0 * limits, limits) for name, limits in zip('vaj', LIMITS)))
+TIMES = np.array((2.0, 2.0, 4.0, 2.0, 2.0))
+
+
+def timed(planner_id):
+    return replace(WANTED, task=replace(
+        WANTED.task, planner_id=planner_id, segment_durations=TIMES))
+
+
+def test_times_are_those_of_the_plan_and_the_way_to_its_start_is_slow_enough():
+    at_start = goal_of(timed('cycloid'), TIMED, MODEL, JOINTS[0], moves=False)
+    assert list(at_start.segment_durations) == TIMES.tolist()
+    goal = goal_of(timed('cycloid'), TIMED, MODEL, JOINTS[0] + (0.0, 0.2, 0.1), moves=False)
+    way, *others = goal.segment_durations
+    assert others == TIMES.tolist()
+    # a cycloid's peaks are 2 d / T, 2 pi d / T^2 and 4 pi^2 d / T^3; the limits 1, 1 and 10
+    assert max(0.4 / way, 0.4 * np.pi / way ** 2, 0.8 * np.pi ** 2 / way ** 3 / 10.0) < 0.5
+
+
+@pytest.mark.parametrize(('planner_id', 'moves'), [('time_optimal', False), ('cycloid', True)])
+def test_time_of_the_way_is_the_planner_s_choice_where_it_can_choose(planner_id, moves):
+    goal = goal_of(timed(planner_id), TIMED, MODEL, JOINTS[0] + 0.2, moves=moves)
+    assert np.isnan(goal.segment_durations[0])
+    assert list(goal.segment_durations)[1:] == TIMES.tolist()
+
+
+def test_posture_is_asked_for_only_where_joint_positions_do_not_say_it():
+    wanted = replace(WANTED, elbow='up', shoulder='front', max_deviation=0.02)
+    goal = goal_of(wanted, PLAN, MODEL, JOINTS[0], moves=False)
+    assert (goal.elbow, goal.shoulder, goal.max_deviation) == ('', '', 0.02)
+    missing = replace(PLAN, via_joints=JOINTS + 0.01)
+    goal = goal_of(wanted, missing, MODEL, JOINTS[0] + 0.1, moves=False)
+    assert (goal.elbow, goal.shoulder) == ('up', 'front')
+
+
 @pytest.mark.parametrize('stop_at', [(), (False,) * 5 + (True,)])
 def test_scalings_and_stops_are_those_of_the_plan(stop_at):
     wanted = replace(WANTED, task=replace(
