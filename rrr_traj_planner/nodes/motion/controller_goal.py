@@ -87,7 +87,11 @@ def progress_of(feedback: FollowJointTrajectory.Feedback, motion: Motion) -> Pro
 
     """
     duration, via_times = duration_of(motion.response.trajectory), motion.response.via_times
-    time = elapsed(motion.begins, duration, nanoseconds(feedback.header.stamp))
+    stamp = nanoseconds(feedback.header.stamp)
+    time = elapsed(motion.begins, duration, stamp)
+    wait = max(motion.begins - stamp, 0) / SECOND if stamp else 0.0  # on the motion before
+    following = min(bisect_right(via_times, time), len(via_times) - 1)
     return Progress(
-        time, duration / SECOND, min(bisect_right(via_times, time), len(via_times) - 1),
-        list(feedback.joint_names), list(feedback.error.positions))
+        time, duration / SECOND, following, list(feedback.joint_names),
+        list(feedback.error.positions),
+        [max(t - time, 0.0) + wait for t in via_times[following:]])

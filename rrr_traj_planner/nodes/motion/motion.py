@@ -77,6 +77,8 @@ class Progress(NamedTuple):
         The controller's joints.
     tracking_error : list of float
         Commanded minus measured position of each of them [rad].
+    via_times_left : list of float
+        Until each via point from `next_via_point` on is reached [s].
 
     """
 
@@ -85,6 +87,7 @@ class Progress(NamedTuple):
     next_via_point: int
     joint_names: list[str]
     tracking_error: list[float]
+    via_times_left: list[float]
 
 
 def _ignored(_: Any) -> None:

@@ -108,6 +108,7 @@ class MotionServer(ServiceNode):
             handle.publish_feedback(MoveThrough.Feedback(
                 next_via_point=progress.next_via_point,
                 time_left=progress.duration - progress.time,
+                via_times_left=progress.via_times_left,
                 joint_names=progress.joint_names, tracking_error=progress.tracking_error))
 
     def _end(self, handle: ServerGoalHandle, end: MotionEnd) -> None:

@@ -42,6 +42,7 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6  # action_msgs/GoalStatus
 Result = MoveThrough.Result
 REACHED = 1e-5   # m, of the tip: what computed torque leaves of the reference
+DELAY = 0.1      # s, from sending a motion to its begin
 TAKEOVERS = 12
 FAR = TABLE_6_1[1]
 MODEL = RobotModel()
@@ -89,6 +90,9 @@ def test_goal_moves_the_arm_from_where_it_is_through_every_point(ros, arm):
     assert {f.next_via_point for f in feedback} == {0, 1}
     left = [f.time_left for f in feedback]
     assert left == sorted(left, reverse=True) and left[0] < result.via_times[-1] + 1e-9
+    for f in feedback:  # both via points, then the last one
+        left = np.array(result.via_times[f.next_via_point:]) - result.via_times[-1] + f.time_left
+        np.testing.assert_allclose(f.via_times_left, left, atol=DELAY)
     assert all(f.joint_names == NAMES and np.abs(f.tracking_error).max() < 1e-3
                for f in feedback)
 
