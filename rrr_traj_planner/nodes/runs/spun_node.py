@@ -118,12 +118,18 @@ class SpunNode(Node):
         missing : callable
             Returns what is missing, in words; called in the executor's thread.
 
+        Raises
+        ------
+        StartError
+            If a process that is needed has ended.
+
         """
         begin, said = monotonic(), None
         while found := self.in_executor(missing):
             if found != said and monotonic() > begin + GRACE:
                 print(f'waiting for {", ".join(found)} ...', flush=True)
                 said = found
+            self.check_processes()
             pause()
 
     def wait(self, ready: Callable[[], Any], what: str,

@@ -40,13 +40,17 @@ Show a page in the browser, on which via points are dragged with the mouse, and 
 them is planned at once and run on the simulated arm.
 
 Starts the planner, the arm and the motion server, and prints the page's address. SIGINT (Ctrl-C)
-ends all."""
+ends all. With --controller, a real arm is moved in place of the simulated one, after a question:
+
+  uses        CONTROLLER/follow_joint_trajectory (control_msgs/action/FollowJointTrajectory)
+  subscribes  joint_states, CONTROLLER/controller_state"""
 
 NO_VISER = (
     'the page needs the Python package viser, which is not installed: call `make studio`, or '
     "pip install viser (the package's extra 'studio')")
 
 NODES = ('planner', 'simulated_arm', 'motion_server')
+NODES_WITHOUT_ARM = ('planner', 'motion_server')
 PORT = 8080
 FRAME_PERIOD = 0.04  # s between two pictures of the arm
 
@@ -82,6 +86,9 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
                              'everyone who can reach it can move the arm')
     parser.add_argument('--port', type=int, default=PORT, metavar='N',
                         help='port (default: %(default)s); the next free one if it is in use')
+    parser.add_argument('--controller', default='', metavar='NAME',
+                        help='move a real arm, by this controller, such as /arm_controller; no '
+                             'arm is simulated (default: the simulated arm)')
     add_limits_option(parser)
 
 
@@ -99,7 +106,7 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
         while True:  # until a signal, by KeyboardInterrupt
             with ExitStack() as stack:
                 try:
-                    client, studio = _started(stack, server, start)
+                    client, studio = _started(stack, server, options.controller, start)
                 except StartError as error:
                     if before is None:
                         raise
@@ -117,8 +124,11 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
             show_wait(server, start.task.name)
 
 
-def _started(stack: ExitStack, server: Any, start: Start) -> tuple[StudioClient, Studio]:
+def _started(stack: ExitStack, server: Any, controller: str, start: Start
+             ) -> tuple[StudioClient, Studio]:
     """Start nodes, and show the page of their arm; all ends with a stack of contexts."""
+    from functools import partial
+
     from rrr_traj_planner.nodes.process.node_runner import spin_in_background
     from rrr_traj_planner.nodes.process.processes import NodeProcesses
     from rrr_traj_planner.nodes.scripts.bringup import node_arguments
@@ -127,9 +137,10 @@ def _started(stack: ExitStack, server: Any, start: Start) -> tuple[StudioClient,
     from rrr_traj_planner.nodes.studio.studio import Studio
     from rrr_traj_planner.planners.registry import planner_ids
 
-    client = stack.enter_context(spin_in_background(StudioClient, start.ros_arguments))
-    nodes = stack.enter_context(
-        NodeProcesses(NODES, node_arguments(start.arm, start.ros_arguments)))
+    client = stack.enter_context(spin_in_background(
+        partial(StudioClient, controller), start.ros_arguments))
+    nodes = stack.enter_context(NodeProcesses(*_nodes(
+        client.controller, node_arguments(start.arm, start.ros_arguments))))
     config = client.connect(nodes.ended)
     wanted = start.first_wanted(config, client.payload)
     page = Page(server, config.model, planner_ids(), wanted)
@@ -139,6 +150,14 @@ def _started(stack: ExitStack, server: Any, start: Start) -> tuple[StudioClient,
     client.in_executor(lambda: studio.start(start.error))
     client.in_executor(lambda: client.create_timer(FRAME_PERIOD, studio.tick))
     return client, studio
+
+
+def _nodes(controller: str, ros_arguments: list[str]) -> tuple[Sequence[str], list[str]]:
+    """Return the nodes to start and their arguments; no arm for the controller of a real one."""
+    if not controller:
+        return NODES, ros_arguments
+    return NODES_WITHOUT_ARM, [
+        *ros_arguments, '-p', f'motion_server:controller_name:={controller}']
 
 
 def _check_viser() -> None:

@@ -12,15 +12,17 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The goal that has the arm do what is planned, from where it is."""
+"""Goals that have the arm do what is planned, from where it is; what is asked before."""
 
 from __future__ import annotations
 
 from math import nan, pi
+from typing import NamedTuple
 
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.ros_client import request_of
@@ -31,11 +33,27 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 
 AT_START = 0.01       # rad, of a joint from the plan's start, by which the arm is there
 AT_VIA_POINT = 1e-6   # m, by which a plan passes through its via points
-FIELDS = ('via_points', 'dwell', 'max_velocity_scaling_factor', 'max_acceleration_scaling_factor',
-          'max_deviation')
+FIELDS = ('via_points', 'joint_via_points', 'elbow', 'shoulder', 'dwell', 'max_deviation',
+          'max_velocity_scaling_factor', 'max_acceleration_scaling_factor')
 TURN = 2.0 * pi
 MARGIN = 1.5  # for torque
-POSTURE = ('elbow', 'shoulder')
+
+
+class Question(NamedTuple):
+    """
+    What the user is asked before a real arm is moved.
+
+    Attributes
+    ----------
+    text : str
+        The question.
+    wanted : Wanted
+        What it is about.
+
+    """
+
+    text: str
+    wanted: Wanted
 
 
 def goal_of(wanted: Wanted, plan: Planned, model: RobotModel, q: Array, moves: bool
@@ -65,21 +83,17 @@ def goal_of(wanted: Wanted, plan: Planned, model: RobotModel, q: Array, moves: b
         Without the first via point if the arm rests there.
 
     """
-    request, count = request_of(wanted), len(wanted.points)
-    goal = MoveThrough.Goal(**{name: getattr(request, name) for name in FIELDS})
-    stops = list(request.stop_at) or [False] * (count - 1) + [True]
-    goal.stop_at = [True, *stops[1:]]
-    goal.planner_id = '' if moves else request.planner_id
+    goal = rest_goal(wanted, 0)
+    goal.planner_id = '' if moves else wanted.task.planner_id
     tips = forward_kinematics(model, plan.via_joints)
     if np.linalg.norm(tips - wanted.points, axis=1).max() <= AT_VIA_POINT:
         goal.joint_via_points = [
             JointTrajectoryPoint(positions=at) for at in plan.via_joints.tolist()]
         goal.via_points.poses = []
-    else:
-        for name in POSTURE:
-            setattr(goal, name, getattr(wanted, name))
-    if len(request.segment_durations):
-        goal.segment_durations = [_way_there(wanted, plan, q, moves), *request.segment_durations]
+        goal.elbow = goal.shoulder = ''
+    durations = wanted.task.segment_durations.tolist()
+    if durations:
+        goal.segment_durations = [_way_there(wanted, plan, q, moves), *durations]
     if not moves and np.abs(q - plan.via_joints[0]).max() <= AT_START:
         for name in ('joint_via_points', 'stop_at', 'dwell', 'segment_durations'):
             setattr(goal, name, getattr(goal, name)[1:])
@@ -102,3 +116,58 @@ def _way_there(wanted: Wanted, plan: Planned, q: Array, moves: bool) -> float:
              np.sqrt(TURN * way / (acceleration * wanted.acceleration_scaling)),
              np.cbrt(TURN ** 2 * way / jerk))
     return MARGIN * float(max(time.max() for time in times))
+
+
+def rest_goal(wanted: Wanted, first: int) -> MoveThrough.Goal:
+    """
+    Return the goal through the rest of the via points, for an arm that moves.
+
+    Parameters
+    ----------
+    wanted : Wanted
+        What is planned.
+    first : int
+        Index of the via point to begin with; the arm stops there only if it is to, and at 0.
+
+    Returns
+    -------
+    MoveThrough.Goal
+        Without planner: the motion server knows which one takes over in motion.
+
+    """
+    request, count = request_of(wanted), len(wanted.points)
+    goal = MoveThrough.Goal(**{name: getattr(request, name) for name in FIELDS})
+    goal.via_points.poses = goal.via_points.poses[first:]
+    goal.joint_via_points = goal.joint_via_points[first:]
+    stops = list(request.stop_at) or [False] * (count - 1) + [True]
+    goal.stop_at, goal.dwell = [True, *stops[1:]][first:], goal.dwell[first:]
+    return goal
+
+
+def question(controller: str, wanted: Wanted, plan: Planned, goal: MoveThrough.Goal) -> Question:
+    """
+    Return what to ask before a real arm is moved.
+
+    Parameters
+    ----------
+    controller : str
+        Its controller.
+    wanted : Wanted
+        What is planned.
+    plan : Planned
+        Its plan.
+    goal : MoveThrough.Goal
+        For this plan.
+
+    Returns
+    -------
+    Question
+        Plain text.
+
+    """
+    way = '' if len(goal.stop_at) < len(wanted.points) else (
+        ' It is not at via point 0, and goes there first.')
+    return Question(
+        f'{controller} moves the arm through {counted(len(wanted.points), "via point")}, by '
+        f'{plan.planner_id} in {plan.duration:.2f} s.{way} Via points that are dragged while it '
+        'moves change its motion.', wanted)

@@ -138,6 +138,9 @@ class Page:
         """Show a text about the motion, and the share of it that is done."""
         self._panel.show_status(text, share)
 
+    def show_tracking(self, times: Array, errors: Array) -> None:
+        """Show the joints' tracking errors [rad], shape (n, 3), over time [s]."""
+        self._panel.show_tracking(times, errors)
 
 class _Hands:
     """Hands over to the editor what the user does in the scene, in the studio's thread."""

@@ -16,19 +16,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from math import isfinite
 from typing import Any
 
+from control_msgs.action import FollowJointTrajectory
+from control_msgs.msg import JointTrajectoryControllerState
+import numpy as np
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.action import ActionClient
+from rclpy.action.client import ClientGoalHandle
 from rclpy.client import Client as ServiceClient
 from rclpy.parameter import Parameter
 from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.nodes.motion.options import ACTION, controller_of, Options
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.runs.messages import plan_request
 from rrr_traj_planner.nodes.runs.planner_config import PLANNER_NODE, planner_values, values_of
-from rrr_traj_planner.nodes.runs.recorded import in_order
 from rrr_traj_planner.nodes.runs.spun_node import SpunNode
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner_interfaces.action import MoveThrough
@@ -41,55 +46,101 @@ ARM_NODE = 'simulated_arm'
 MASS, KNOWN = 'payload.mass', 'payload.known_to_controller'
 
 
+class SentGoal:
+    """A goal of the motion server's, which can be ended before its time."""
+
+    def __init__(self) -> None:
+        self._handle: ClientGoalHandle | None = None
+        self._is_canceled = False
+
+    def cancel(self) -> None:
+        """Have the arm stopped, at the latest when the goal is accepted."""
+        self._is_canceled = True
+        if self._handle is not None:
+            self._handle.cancel_goal_async()
+
+    def accepted(self, handle: ClientGoalHandle) -> None:
+        """
+        Take the server's handle.
+
+        Parameters
+        ----------
+        handle : ClientGoalHandle
+            Of the accepted goal.
+
+        """
+        self._handle = handle
+        if self._is_canceled:
+            handle.cancel_goal_async()
+
+
 class StudioClient(SpunNode):
     """
     A client of planner, arm and motion server.
 
     Parameters
     ----------
+    controller : str
+        Name of a real arm's controller, or its action's; empty: the simulated arm.
     **kwargs
         For `Node`.
 
     Attributes
     ----------
+    controller : str
+        The controller's name, of a real arm, which cannot be exchanged for another one; empty: the
+        simulated arm.
     moved : callable
         Called at every new state of the arm.
     parameters : dict
         The planner's, by name, as they were when it was connected to.
     payload : Payload
         What the arm carried then.
-    controller : str
-        Of a real arm, which cannot be exchanged for another one; empty: the arm is simulated.
+    replanning_lead : float
+        The motion server's [s].
 
     """
 
-    controller = ''
-
-    def __init__(self, **kwargs: Any) -> None:
+    def __init__(self, controller: str = '', **kwargs: Any) -> None:
+        self.controller = controller_of(controller, '--controller') if controller else ''
         super().__init__('studio', **kwargs)
-        self._state: JointState | None = None
-        self._goals = 0
+        self._states: dict[str, tuple[float, float]] = {}  # by joint: position, velocity
+        self._measured: set[str] = set()  # joints that `joint_states` has
         self.moved: Callable[[], None] = lambda: None
         self.parameters: dict[str, Any] = {}
         self.payload = Payload()
+        self.replanning_lead = Options(self.controller).lead
         self.create_subscription(JointState, 'joint_states', self._take_state, 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
-        self._triggers = {
-            name: self.create_client(Trigger, f'{ARM_NODE}/{name}') for name in (
-                'hold', 'reset')}
+        self._triggers: dict[str, ServiceClient] = {}
+        self._controller: ActionClient | None = None
+        if self.controller:
+            self._controller = ActionClient(
+                self, FollowJointTrajectory, f'{self.controller}{ACTION}')
+            self.create_subscription(
+                JointTrajectoryControllerState, f'{self.controller}/controller_state',
+                self._take_controller_state, 10)
+        else:
+            self._triggers = {
+                name: self.create_client(Trigger, f'{ARM_NODE}/{name}') for name in (
+                    'hold', 'reset')}
         self._settings = {
             name: self.create_client(SetParametersAtomically, f'{name}/set_parameters_atomically')
-            for name in (PLANNER_NODE, ARM_NODE)}
+            for name in (PLANNER_NODE, *([] if self.controller else [ARM_NODE]))}
         self._action = ActionClient(self, MoveThrough, 'move_through')
 
     def destroy_node(self) -> None:
-        """Release the action's client too."""
+        """Release the actions' clients too."""
         self._action.destroy()
+        if self._controller is not None:
+            self._controller.destroy()
         super().destroy_node()
 
     def connect(self, ended: Callable[[], tuple[str, int] | None]) -> PlannerConfig:
         """
         Wait for all nodes; called from the main thread.
+
+        For a real arm it is waited without end, with a line that says what is missing.
 
         Parameters
         ----------
@@ -111,13 +162,31 @@ class StudioClient(SpunNode):
         """
         self.ended = ended
         self.wait(self._plan.service_is_ready, 'the planner')
-        self.wait(lambda: self._state is not None and all(
-            client.service_is_ready() for client in self._triggers.values()), 'the arm')
-        self.wait(self._action.server_is_ready, 'the motion server')
         self.parameters = planner_values(self)
+        config = PlannerConfig.from_values(self.parameters)
+        names = config.model.joint_names
+        if self.controller:
+            self.wait_for_all(lambda: self._missing(names))
+        else:
+            self.wait(lambda: not self._missing(names), 'the arm')
+        self.wait(self._action.server_is_ready, 'the motion server')
+        lead = 'replanning_lead'
+        self.replanning_lead = values_of(self, 'motion_server', [lead])[lead]
         known = bool(self._triggers) and values_of(self, ARM_NODE, [KNOWN])[KNOWN]
         self.payload = Payload(self.parameters[MASS], known)
-        return PlannerConfig.from_values(self.parameters)
+        return config
+
+    def _missing(self, joint_names: tuple[str, ...]) -> list[str]:
+        """Return what is not there of the arm."""
+        found = [f'the service {client.srv_name}' for client in self._triggers.values()
+                 if not client.service_is_ready()]
+        if self._controller is not None and not self._controller.server_is_ready():
+            found.append(f'the controller (action {self.controller}{ACTION})')
+        unknown = [name for name in joint_names if name not in self._states]
+        if unknown:
+            found.append(f'the position of {", ".join(unknown)} (topic '
+                         f'{self.resolve_topic_name("joint_states")})')
+        return found
 
     def joints(self, joint_names: tuple[str, ...], field: str = 'position') -> Array:
         """
@@ -128,7 +197,7 @@ class StudioClient(SpunNode):
         joint_names : tuple of str
             The arm's joints.
         field : str
-            'position' [rad] or 'velocity' [rad/s].
+            'position' [rad] or 'velocity' [rad/s]; velocities that nobody measures are 0.
 
         Returns
         -------
@@ -136,8 +205,8 @@ class StudioClient(SpunNode):
             In the order of the joints.
 
         """
-        found: Array = in_order([self._state], joint_names, field)[0]
-        return found
+        column = ('position', 'velocity').index(field)
+        return np.array([self._states[name][column] for name in joint_names])
 
     def plan(self, wanted: Wanted, answered: Callable[[PlanTrajectory.Response], None]) -> None:
         """
@@ -197,9 +266,9 @@ class StudioClient(SpunNode):
         self._call(self._triggers[name], Trigger.Request(), answered)
 
     def move(self, goal: MoveThrough.Goal, progress: Callable[[MoveThrough.Feedback], None],
-             ended: Callable[[MoveThrough.Result], None]) -> None:
+             ended: Callable[[MoveThrough.Result], None]) -> SentGoal:
         """
-        Have the arm moved; of the goal before, nothing is told any more.
+        Have the arm moved.
 
         Parameters
         ----------
@@ -210,23 +279,40 @@ class StudioClient(SpunNode):
         ended : callable
             Gets the result.
 
-        """
-        self._goals += 1
-        number = self._goals
+        Returns
+        -------
+        SentGoal
+            To end it before its time.
 
-        def newest(function: Callable[[Any], None], value: Any) -> None:
-            if number == self._goals:
-                function(value)
+        """
+        sent = SentGoal()
 
         def accepted(future: Any) -> None:
-            future.result().get_result_async().add_done_callback(
-                lambda result: newest(ended, result.result().result))
+            handle = future.result()
+            sent.accepted(handle)
+            handle.get_result_async().add_done_callback(
+                lambda result: ended(result.result().result))
 
         self._action.send_goal_async(
-            goal, lambda message: newest(progress, message.feedback)).add_done_callback(accepted)
+            goal, lambda message: progress(message.feedback)).add_done_callback(accepted)
+        return sent
 
     def _take_state(self, message: JointState) -> None:
-        self._state = message
+        self._measured.update(message.name)
+        self._take(message.name, message.position, message.velocity)
+
+    def _take_controller_state(self, message: JointTrajectoryControllerState) -> None:
+        """Take what the controller measures, of joints that nobody else publishes."""
+        if self._measured.issuperset(message.joint_names):
+            return
+        measured = message.feedback if message.feedback.positions else message.reference
+        self._take(message.joint_names, measured.positions, measured.velocities)
+
+    def _take(self, names: Sequence[str], q: Sequence[float], qd: Sequence[float]) -> None:
+        """Take states of some joints; a velocity that is not known is 0."""
+        qd = qd if len(qd) == len(names) else [0.0] * len(names)
+        self._states.update({name: (at, speed if isfinite(speed) else 0.0)
+                             for name, at, speed in zip(names, q, qd) if isfinite(at)})
         self.moved()
 
     @staticmethod

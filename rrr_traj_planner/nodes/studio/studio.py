@@ -18,9 +18,8 @@ from __future__ import annotations
 
 from pathlib import Path
 from time import monotonic
-from typing import Any, Protocol
+from typing import Protocol
 
-import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.link_positions import link_positions, Point
 from rrr_traj_planner.nodes.output.wireframe import Trail
@@ -28,21 +27,17 @@ from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.studio.arms import Tasks
 from rrr_traj_planner.nodes.studio.asking import Asking
 from rrr_traj_planner.nodes.studio.editor import Editor
+from rrr_traj_planner.nodes.studio.execution.commands import Commands
 from rrr_traj_planner.nodes.studio.figures import plan_html, status_html
 from rrr_traj_planner.nodes.studio.ghost import Ghost
-from rrr_traj_planner.nodes.studio.goals import goal_of
 from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
 from rrr_traj_planner.nodes.studio.session import Refusal, Session
 from rrr_traj_planner.nodes.studio.wanted import Wanted
-from rrr_traj_planner_interfaces.action import MoveThrough
 
-MOVES = 0.01            # rad/s, of a joint above which the arm moves
 TRAIL_STEP = 1.0 / 200  # distance of the driven path's points, as a fraction of the arm's size
 TRAIL_POINTS = 1000     # of the driven path
-NO_PLAN = 'these via points have no plan to run'
 NO_PLAN_TO_KEEP = 'these via points have no plan whose joint positions could be kept'
-TAKEN_OVER = 'the arm moves: time_optimal takes over'
 
 
 class Page(Protocol):
@@ -65,6 +60,9 @@ class Page(Protocol):
 
     def show_status(self, text: str, share: float) -> None:
         """Show a text about the motion, and the share of it that is done."""
+
+    def show_tracking(self, times: Array, errors: Array) -> None:
+        """Show the joints' tracking errors [rad], shape (n, 3), over time [s]."""
 
 
 class Studio:
@@ -92,6 +90,8 @@ class Studio:
         What is planned of it.
     tasks : Tasks
         Opens others.
+    commands : Commands
+        What moves the arm.
 
     """
 
@@ -106,8 +106,8 @@ class Studio:
         self._places: tuple[Point, ...] = ()  # of the arm
         self._shown: tuple[Point, ...] = ()
         self._ghost = Ghost()
-        self._duration = 0.0  # of the motion in progress [s]
         self.session: Session[Planned] = Session(wanted, self._asking.ask)
+        self.commands = Commands(client, config.model, self.session, page, self._trail)
 
     def start(self, error: str = '') -> None:
         """
@@ -138,7 +138,7 @@ class Studio:
 
     def move_point(self, index: int, position: Point) -> None:
         """
-        Plan with one via point elsewhere.
+        Plan with one via point elsewhere; so does the arm, if it is on the way there.
 
         Parameters
         ----------
@@ -191,38 +191,28 @@ class Studio:
         """
         self._ghost.go_to(share)
 
-    def run(self) -> None:
-        """Have the arm do what is planned."""
-        plan, wanted = self.session.plan, self.session.wanted
-        if plan is None or not self.session.is_current:
-            self._page.show_status(status_html(NO_PLAN, is_error=True), 0.0)
-            return
-        names = self._model.joint_names
-        moves = bool(np.abs(self._client.joints(names, 'velocity')).max() > MOVES)
-        goal = goal_of(wanted, plan, self._model, self._client.joints(names), moves)
-        if not moves:
-            self._trail.clear()
-        self._duration = 0.0
-        self._page.show_status(status_html(TAKEN_OVER if moves else 'planning'), 0.0)
-        self._client.move(goal, self._progress, self._ended)
-
-    def trigger(self, name: str) -> None:
+    def report(self) -> tuple[str, bytes]:
         """
-        Call a service of the arm.
+        Return the report of what is planned; takes seconds, so that any other thread may call it.
 
-        Parameters
-        ----------
+        Returns
+        -------
         name : str
-            'hold' or 'reset'; this one clears the driven path too.
+            Of the file.
+        content : bytes
+            A self-contained page.
+
+        Raises
+        ------
+        InvalidInputError
+            If what is wanted is malformed.
+        ImportError
+            If matplotlib is missing.
 
         """
-        def answered(response: Any) -> None:
-            if name == 'reset':
-                self._trail.clear()
-            self._page.show_status(
-                status_html(response.message or name, not response.success), 0.0)
-
-        self._client.trigger(name, answered)
+        from rrr_traj_planner.nodes.studio.report_page import report_name, report_page
+        wanted = self.session.wanted
+        return report_name(wanted), report_page(wanted, self._asking.config)
 
     def _moved(self) -> None:
         self._places = link_positions(
@@ -241,9 +231,10 @@ class Studio:
 
     def _changed(self) -> None:
         self._show_soon()
-        wanted = self.editor.wanted
-        if wanted is not self.session.wanted or self.session.is_new:
+        before, wanted = self.session.wanted, self.editor.wanted
+        if wanted is not before or self.session.is_new:
             self.session.change(wanted)
+            self.commands.changed(before, wanted)
         self._page.show_points(wanted.points, self.session.refusal)
 
     def _planned(self, answer: Planned | Refusal) -> None:
@@ -252,16 +243,3 @@ class Studio:
         self._page.show_points(session.wanted.points, session.refusal)
         self._page.show_plan(session.plan, session.refusal is None, plan_html(
             session.plan, session.refusal, self._model.joint_names))
-
-    def _progress(self, feedback: MoveThrough.Feedback) -> None:
-        self._duration = max(self._duration, feedback.time_left)
-        error = max(map(abs, feedback.tracking_error), default=0.0)
-        done = 1.0 - feedback.time_left / self._duration if self._duration else 0.0
-        self._page.show_status(status_html(
-            f'{feedback.time_left:.2f} s left, tracking error {error:.1e} rad'), done)
-
-    def _ended(self, result: MoveThrough.Result) -> None:
-        if result.error_code == result.SUCCESS:
-            self._page.show_status(status_html('reached the last via point'), 1.0)
-        else:
-            self._page.show_status(status_html(result.message, is_error=True), 0.0)

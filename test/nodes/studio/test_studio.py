@@ -16,59 +16,25 @@
 
 from __future__ import annotations
 
-from threading import Condition
+import re
 
 from helpers.arm_in_ros import Arm
 from helpers.move_client import start_motion_server
 from helpers.plan_requests import TABLE_6_1
 from helpers.planner_in_ros import plan, start_planner
+from helpers.studio_page import Page
 import numpy as np
 import pytest
 from rrr_traj_planner.nodes.point_files.reading import read_task
+from rrr_traj_planner.nodes.studio.execution.commands import NO_PLAN
+from rrr_traj_planner.nodes.studio.execution.execution import GOES_ON, TAKEN_OVER
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
-from rrr_traj_planner.nodes.studio.studio import NO_PLAN, Studio, TAKEN_OVER
+from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import wanted_of
 
-DEADLINE = 20.0  # s
 FAR_AWAY = (9.0, 9.0, 9.0)
 DRAGS = 30
 REACHED = 1e-3   # m, of the tip: what computed torque leaves of the reference
-
-
-class Page:
-    """Keeps what is shown, to be waited for."""
-
-    def __init__(self):
-        self.refusal, self.is_current, self.figures, self.statuses = None, False, '', []
-        self.ghost, self.places, self.driven, self._shown = None, (), [], Condition()
-
-    def show_points(self, points, refusal):
-        self._show(points=points, refusal=refusal)
-
-    def show_wanted(self, editor):
-        self._show(wanted=editor.wanted, chosen=editor.chosen)
-
-    def show_plan(self, plan, is_current, text):
-        self._show(plan=plan, is_current=is_current, figures=text)
-
-    def show_arm(self, places, driven):
-        self._show(places=places, driven=driven)
-
-    def show_ghost(self, places):
-        self._show(ghost=places)
-
-    def show_status(self, text, share):
-        self._show(statuses=[*self.statuses, (text, share)])
-
-    def _show(self, **shown):
-        with self._shown:
-            vars(self).update(shown)
-            self._shown.notify_all()
-
-    def wait(self, ready):
-        with self._shown:
-            assert self._shown.wait_for(lambda: ready(self), DEADLINE), (
-                self.figures, self.statuses[-3:])
 
 
 class Client(StudioClient):
@@ -174,14 +140,14 @@ def test_refused_point_is_at_fault_and_the_last_plan_stays(ros, page, studio):
     page.wait(lambda p: not p.is_current)
     assert (page.refusal.text, page.refusal.via_point) == (response.message, 1)
     assert page.plan is last
-    ros.run(studio.run)
+    ros.run(studio.commands.run)
     assert NO_PLAN in page.statuses[-1][0]
     ros.run(lambda: studio.move_point(1, TABLE_6_1[1]))
     page.wait(lambda p: p.is_current and p.refusal is None)
 
 
 def test_run_moves_the_arm_along_the_plan(ros, page, studio):
-    ros.run(studio.run)
+    ros.run(studio.commands.run)
     page.wait(lambda p: any('tracking error' in text for text, _ in p.statuses))
     page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
     shares = [share for text, share in page.statuses if 'tracking error' in text]
@@ -190,16 +156,16 @@ def test_run_moves_the_arm_along_the_plan(ros, page, studio):
     driven = np.array(page.driven)
     for place in TABLE_6_1:
         assert np.linalg.norm(driven - place, axis=1).min() < 0.01  # between two states
-    ros.run(lambda: studio.trigger('reset'))
+    ros.run(studio.commands.reset)
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) < REACHED)
 
 
 def test_second_run_goes_to_the_first_point_and_one_in_motion_takes_over(ros, page, studio):
     def run_again():
         assert studio.session.is_current
-        studio.run()
+        studio.commands.run()
 
-    ros.run(studio.run)
+    ros.run(studio.commands.run)
     page.wait(lambda p: any('tracking error' in text for text, _ in p.statuses))
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) > 0.05)
     ros.run(run_again)
@@ -213,9 +179,71 @@ def test_second_run_goes_to_the_first_point_and_one_in_motion_takes_over(ros, pa
 
 def test_hold_stops_the_arm_and_the_page_says_so(ros, client, page, studio):
     names = ('joint_1', 'joint_2', 'joint_3')
-    ros.run(studio.run)
+    ros.run(studio.commands.run)
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) > 0.05)
-    ros.run(lambda: studio.trigger('hold'))
+    ros.run(studio.commands.hold)
     page.wait(lambda p: p.statuses[-1][0] != '' and 'left' not in p.statuses[-1][0])
     page.wait(lambda p: np.abs(client.joints(names, 'velocity')).max() < 1e-3)
     assert np.linalg.norm(np.subtract(page.places[-1], TABLE_6_1[2])) > 0.1
+
+
+def distance(page, place):
+    """Return how close the tip has come to a place [m]."""
+    return np.linalg.norm(np.array(page.driven) - place, axis=1).min()
+
+
+def test_point_that_is_dragged_in_motion_is_gone_to(ros, client, page, studio):
+    goals = keep_goals(client)
+    elsewhere = (0.55, 0.3, 1.3)
+    ros.run(studio.commands.run)
+    page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) > 0.05)
+    ros.run(lambda: studio.move_point(0, (1.0, 0.5, 1.0)))  # passed
+    for x in np.linspace(TABLE_6_1[2][0], elsewhere[0], 5).tolist():
+        ros.run(lambda x=x: studio.move_point(2, (x, *elsewhere[1:])))
+    page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
+    page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], elsewhere)) < REACHED)
+    assert 2 <= len(goals) <= 1 + 5
+    assert [len(goal.via_points.poses) for goal in goals[1:]] == [2] * (len(goals) - 1)
+    assert distance(page, TABLE_6_1[1]) < 0.01  # between two states
+    driven = np.array(page.driven)
+    turned = np.linalg.norm(driven - TABLE_6_1[1], axis=1).argmin()
+    away = np.linalg.norm(driven[:turned] - TABLE_6_1[0], axis=1)
+    assert (np.diff(away) > 0.0).all()  # it did not go back
+    assert page.errors.shape == (len(page.times), 3) and np.abs(page.errors).max() < 1e-3
+
+
+def test_refused_drag_in_motion_is_told_and_the_motion_goes_on(ros, page, studio):
+    ros.run(studio.commands.run)
+    page.wait(lambda p: any('tracking error' in text for text, _ in p.statuses))
+    ros.run(lambda: studio.move_point(2, FAR_AWAY))
+    page.wait(lambda p: GOES_ON in p.statuses[-1][0])
+    assert 'via point 2: (9, 9, 9) m' in page.statuses[-1][0]
+    page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
+    page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[2])) < REACHED)
+    assert page.refusal.via_point == 2
+
+
+def keep_goals(client):
+    """Return a list that gets every goal that a client sends."""
+    goals, move = [], client.move
+
+    def keeping(goal, *functions):
+        goals.append(goal)
+        return move(goal, *functions)
+
+    client.move = keeping
+    return goals
+
+
+def test_report_is_a_page_of_what_is_planned_or_why_not(ros, page, studio):
+    pytest.importorskip('matplotlib')
+    ros.run(lambda: studio.editor.change(studio.editor.wanted.with_scalings(0.5, 0.5)))
+    page.wait(lambda p: studio.session.is_current)
+    name, content = studio.report()
+    text = content.decode()
+    assert name == 'report_table_6_1_cycloid.html'
+    assert f'{studio.session.plan.duration:.3f}' in text
+    assert text.startswith('<!DOCTYPE html>') and '<svg' in text
+    assert not re.search(r'(src|href)="[^#"d]', text)  # one file
+    ros.run(lambda: studio.move_point(1, FAR_AWAY))
+    assert '(9, 9, 9) m' in studio.report()[1].decode()

@@ -76,6 +76,22 @@ def test_page_is_served_on_this_machine_and_ctrl_c_ends_all(tmp_path):
     assert 'Traceback' not in errors
 
 
+def test_real_arm_that_is_not_there_is_waited_for_and_none_is_simulated(tmp_path):
+    pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
+    with Script(script('studio'), '--port', free_port(), '--controller', '/arm_controller',
+                cwd=tmp_path) as studio:
+        line = studio.read_until('waiting for')[-1]
+        assert 'the controller (action /arm_controller/follow_joint_trajectory)' in line
+        assert 'the position of joint_1, joint_2, joint_3 (topic /joint_states)' in line
+        children = studio.started(2)
+        studio.process.send_signal(signal.SIGINT)
+        assert studio.is_over_in(STOP_TIME)
+        assert all(child.has_ended() for child in children)
+        code, _, errors = studio.ended()
+    assert code == 0
+    assert 'serves /move_through with /arm_controller/follow_joint_trajectory' in errors
+
+
 def test_node_that_cannot_start_ends_the_studio(tmp_path):
     pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
     with Script(script('studio'), '--ros-args', '-p', 'arm.d1:=1000.0', cwd=tmp_path) as studio:

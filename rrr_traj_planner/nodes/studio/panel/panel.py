@@ -26,6 +26,7 @@ from rrr_traj_planner.nodes.studio.panel.files import FilesFolder
 from rrr_traj_planner.nodes.studio.panel.motion import MotionFolder
 from rrr_traj_planner.nodes.studio.panel.plan import PlanFolder
 from rrr_traj_planner.nodes.studio.panel.points import PointsFolder
+from rrr_traj_planner.nodes.studio.panel.report import ReportButton
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
@@ -53,9 +54,10 @@ class Panel:
         self._files = FilesFolder(gui)
         self._points = PointsFolder(gui, wanted)
         self._motion = MotionFolder(gui, planner_ids, wanted, model)
-        self._arm = ArmFolder(gui)
+        self._arm = ArmFolder(gui, model.joint_names)
         self._plan = PlanFolder(gui, model.joint_names)
-        self.show_status = self._arm.show_status
+        self._report = ReportButton(gui)
+        self.show_status, self.show_tracking = self._arm.show_status, self._arm.show_tracking
         self.show_plan = self._plan.show
 
     def connect(self, studio: Studio, post: Post) -> None:
@@ -70,7 +72,8 @@ class Panel:
             Calls a function in the studio's thread.
 
         """
-        for folder in (self._files, self._points, self._motion, self._arm, self._plan):
+        for folder in (self._files, self._points, self._motion, self._arm, self._plan,
+                       self._report):
             folder.connect(studio, post)
 
     def show_wanted(self, editor: Editor) -> None:

@@ -1,0 +1,60 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""A page of the studio for tests: keeps what it is to show."""
+
+from __future__ import annotations
+
+from threading import Condition
+
+DEADLINE = 20.0  # s
+
+
+class Page:
+    """Keeps what is shown, to be waited for."""
+
+    def __init__(self):
+        self.refusal, self.is_current, self.figures, self.statuses = None, False, '', []
+        self.ghost, self.places, self.driven, self._shown = None, (), [], Condition()
+
+    def show_points(self, points, refusal):
+        self._show(points=points, refusal=refusal)
+
+    def show_wanted(self, editor):
+        self._show(wanted=editor.wanted, chosen=editor.chosen)
+
+    def show_plan(self, plan, is_current, text):
+        self._show(plan=plan, is_current=is_current, figures=text)
+
+    def show_arm(self, places, driven):
+        self._show(places=places, driven=driven)
+
+    def show_ghost(self, places):
+        self._show(ghost=places)
+
+    def show_status(self, text, share):
+        self._show(statuses=[*self.statuses, (text, share)])
+
+    def show_tracking(self, times, errors):
+        self._show(times=times, errors=errors)
+
+    def _show(self, **shown):
+        with self._shown:
+            vars(self).update(shown)
+            self._shown.notify_all()
+
+    def wait(self, ready):
+        with self._shown:
+            assert self._shown.wait_for(lambda: ready(self), DEADLINE), (
+                self.figures, self.statuses[-3:])
