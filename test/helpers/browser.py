@@ -37,6 +37,15 @@ OPTIONS = (
     '--disable-background-timer-throttling', '--disable-backgrounding-occluded-windows',
     '--disable-renderer-backgrounding')
 
+# of pages with WebGL, drawn by software: SwiftShader
+WEBGL = (*(option for option in OPTIONS if option != '--disable-gpu'),
+         '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader')
+MISSING = ('no Chromium or Chrome to look at pages with: apt install chromium, or say where one '
+           'is in $CHROMIUM')
+
+BUTTON = ('text => [...document.querySelectorAll("button")].find(b => b.innerText.trim() === '
+          'text)')
+
 
 def found():
     """Return the browser's path ($CHROMIUM, or the first one installed), None if there is none."""
@@ -47,13 +56,13 @@ def found():
 class Browser:
     """A browser with one page; a context manager that ends it."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, options=OPTIONS):
         command_read, self._out = os.pipe()
         self._in, answer_write = os.pipe()
         # the browser reads from descriptor 3 and writes to 4
         shell = f'exec "$@" 3<&{command_read} 4>&{answer_write}'
         self._process = subprocess.Popen(
-            ['bash', '-c', shell, 'bash', found(), *OPTIONS, f'--user-data-dir={folder}',
+            ['bash', '-c', shell, 'bash', found(), *options, f'--user-data-dir={folder}',
              'about:blank'], pass_fds=(command_read, answer_write), stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(command_read)
@@ -102,13 +111,17 @@ class Browser:
         return json.loads(message)
 
     def show(self, page, width, height, dark):
+        """Load a page from a file in a window of a size, with a dark or light theme."""
+        self.open(Path(page).resolve().as_uri(), width, height, dark)
+
+    def open(self, url, width, height, dark=False):
         """Load a page in a window of a size, with a dark or light theme."""
         self.events.clear()
         self.ask('Emulation.setDeviceMetricsOverride', width=width, height=height,
                  deviceScaleFactor=2 if width < 600 else 1, mobile=width < 600)
         self.ask('Emulation.setEmulatedMedia', features=[
             {'name': 'prefers-color-scheme', 'value': 'dark' if dark else 'light'}])
-        self.ask('Page.navigate', url=Path(page).resolve().as_uri())
+        self.ask('Page.navigate', url=url)
         deadline = time.monotonic() + DEADLINE
         while not any(e.get('method') == 'Page.loadEventFired' for e in self.events):
             self.events.append(self._next(deadline))
@@ -127,13 +140,38 @@ class Browser:
             assert time.monotonic() < deadline, f'never true: {expression}'
             time.sleep(0.02)
 
+    def click(self, text):
+        """Click the button with a text, as a user does."""
+        self.until(f'({BUTTON})({json.dumps(text)}) !== undefined')
+        x, y = self.value(
+            f'(() => {{ const b = ({BUTTON})({json.dumps(text)}); b.scrollIntoView({{block: '
+            '"center"}); const r = b.getBoundingClientRect(); return [r.x + r.width / 2, r.y + '
+            'r.height / 2]; })()')
+        self.mouse('mouseMoved', x, y)
+        self.mouse('mousePressed', x, y)
+        self.mouse('mouseReleased', x, y)
+
+    def mouse(self, what, x, y, **more):
+        """Do something with the mouse's left button at a place in the window."""
+        button = {} if what == 'mouseMoved' and not more else {'button': 'left', 'clickCount': 1}
+        self.ask('Input.dispatchMouseEvent', type=what, x=x, y=y, **{**button, **more})
+
+    def drag(self, begin, end, steps=10):
+        """Drag with the mouse from one place to another."""
+        self.mouse('mouseMoved', *begin)
+        self.mouse('mousePressed', *begin)
+        for k in range(1, steps + 1):
+            self.mouse('mouseMoved', *(a + (b - a) * k / steps for a, b in zip(begin, end)),
+                       buttons=1)
+        self.mouse('mouseReleased', *end)
+
     def complaints(self):
         """Return the page's errors, warnings and exceptions."""
         self.value('1')  # events before this answer have been received
-        methods = ('Runtime.exceptionThrown', 'Log.entryAdded')
-        methods = ('Runtime.consoleAPICalled',)
-        return [e['params'] for e in self.events if e.get('method') in methods
-                or e.get('method') in methods and e['params']['type'] in ('error', 'warning')]
+        faults = ('Runtime.exceptionThrown', 'Log.entryAdded')
+        return [e['params'] for e in self.events if e.get('method') in faults
+                or e.get('method') == 'Runtime.consoleAPICalled'
+                and e['params']['type'] in ('error', 'warning')]
 
     def requests(self):
         """Return every address that the page has given."""

@@ -69,7 +69,6 @@ def many_points_page(tmp_path_factory):
 def window(tmp_path_factory):
     """Return a browser; without one, skip."""
     if browser.found() is None:
-        pytest.skip('no Chromium or Chrome to look at pages with: apt install chromium, or say '
-                    'where one is in $CHROMIUM')
+        pytest.skip(browser.MISSING)
     with browser.Browser(tmp_path_factory.mktemp('profile')) as opened:
         yield opened
