@@ -112,19 +112,23 @@ class Browser:
 
     def show(self, page, width, height, dark):
         """Load a page from a file in a window of a size, with a dark or light theme."""
-        self.open(Path(page).resolve().as_uri(), width, height, dark)
+        self.load(Path(page).resolve().as_uri(), width, height, dark)
 
-    def open(self, url, width, height, dark=False):
+    def load(self, url, width, height, dark=False):
         """Load a page in a window of a size, with a dark or light theme."""
         self.events.clear()
-        self.ask('Emulation.setDeviceMetricsOverride', width=width, height=height,
-                 deviceScaleFactor=2 if width < 600 else 1, mobile=width < 600)
+        self.resize(width, height)
         self.ask('Emulation.setEmulatedMedia', features=[
             {'name': 'prefers-color-scheme', 'value': 'dark' if dark else 'light'}])
         self.ask('Page.navigate', url=url)
         deadline = time.monotonic() + DEADLINE
         while not any(e.get('method') == 'Page.loadEventFired' for e in self.events):
             self.events.append(self._next(deadline))
+
+    def resize(self, width, height):
+        """Give the window a size; a small one is a phone's."""
+        self.ask('Emulation.setDeviceMetricsOverride', width=width, height=height,
+                 deviceScaleFactor=2 if width < 600 else 1, mobile=width < 600)
 
     def value(self, expression):
         """Evaluate a JavaScript expression in the page."""
@@ -177,6 +181,10 @@ class Browser:
         """Return every address that the page has given."""
         return [e['params']['request']['url'] for e in self.events
                 if e.get('method') == 'Network.requestWillBeSent']
+
+    def picture(self):
+        """Return a picture of the window, as PNG."""
+        return base64.b64decode(self.ask('Page.captureScreenshot', format='png')['data'])
 
     def screenshot(self, file, selector=None):
         """Save a picture of the whole page, or of an element."""

@@ -72,6 +72,7 @@ class Page:
         server.scene.reset()
         server.gui.configure_theme(show_share_button=False, show_logo=False,
                                    control_width='large')
+        server.gui.main_panel.dock_right()  # a panel that floats hides the scene
         size = model.chain.size
         self._panel = Panel(server.gui, planner_ids, wanted, model)
         self._hands = _Hands()

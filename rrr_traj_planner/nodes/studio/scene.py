@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from textwrap import fill
 from typing import Any, Protocol
 
 import numpy as np
@@ -36,6 +37,7 @@ GHOST_OPACITY = 0.4
 THICK, BALL, HANDLE, CELL = 0.018, 0.018, 0.16, 0.1
 CHOSEN_SCALE = 1.5  # of a ball
 PLAN_LINE, DRIVEN_LINE = 6.0, 2.0  # pixels
+COLUMNS = 28  # characters of a refusal's line beside its via point
 
 Colour = tuple[int, int, int]
 
@@ -233,7 +235,7 @@ class _Handle:
         """Make the via point red, with a text beside it; empty: neither."""
         if text != self._text:
             self._text = text
-            self._label.text = text or str(self._index)
+            self._label.text = fill(text, COLUMNS) or str(self._index)
             self._colour()
 
     def choose(self, is_chosen: bool) -> None:

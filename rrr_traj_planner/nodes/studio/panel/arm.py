@@ -29,6 +29,7 @@ import viser
 
 HEIGHT = 130   # pixels, of the chart
 MILLI = 1e-3   # rad
+NO_TICKS = {'ticks': {'show': False}}
 
 
 class ArmFolder:
@@ -46,16 +47,18 @@ class ArmFolder:
 
     def __init__(self, gui: viser.GuiApi, joint_names: Sequence[str]) -> None:
         with gui.add_folder('Arm'):
+            self._run = gui.add_button('Run', color='green')
+            self._hold, self._reset = gui.add_button('Hold'), gui.add_button('Reset')
+            # below, where it does not move the buttons as it comes and grows
             self._status = gui.add_html('')
             self._progress = gui.add_progress_bar(0.0)
             self._errors = gui.add_uplot(
                 (np.zeros(1),) * 4, ({'label': 's'}, *(
-                    {'label': f'{name} [mrad]', 'stroke': colour, 'width': 1.5}
+                    {'label': name, 'stroke': colour, 'width': 1.5}
                     for name, colour in zip(joint_names, COLOURS))),
-                scales={'x': {'time': False}}, title='tracking error', height=HEIGHT,
+                scales={'x': {'time': False}}, title='tracking error [mrad]', height=HEIGHT,
+                axes=(NO_TICKS, {**NO_TICKS, 'size': 60, 'space': 20}),
                 legend={'show': True}, visible=False)
-            self._run = gui.add_button('Run', color='green')
-            self._hold, self._reset = gui.add_button('Hold'), gui.add_button('Reset')
 
     def connect(self, studio: Studio, post: Post) -> None:
         """
