@@ -26,6 +26,7 @@ from rrr_traj_planner.nodes.studio.execution.execution import (
     Execution,
     GOES_ON,
     STOPPED,
+    TRIES,
 )
 from rrr_traj_planner.nodes.studio.execution.tracking import MOST_POINTS, PERIOD, Tracking
 from rrr_traj_planner.nodes.studio.goals import rest_goal
@@ -152,6 +153,19 @@ def test_what_was_dragged_during_a_refusal_is_tried(arm):
     arm.drag(3, 1.2)
     arm.sent[1].end(Result.NO_IK_SOLUTION, 'via point 1: out of reach')
     np.testing.assert_array_equal(arm.sent[2].places(), arm.wanted.points[2:])
+
+
+def test_goal_that_is_too_late_for_the_controller_is_sent_again(arm):
+    arm.drag(3, 1.2)
+    for _ in range(10):
+        arm.sent[-1].end(Result.CONTROL_FAILED, 'the controller has rejected the trajectory')
+    assert len(arm.sent) == 2 + TRIES
+    for sent in arm.sent[1:]:
+        np.testing.assert_array_equal(sent.places(), arm.wanted.points[2:])
+    arm.sent[0].feedback(1, 0.9, 1.9)
+    assert 'rejected' in arm.text and GOES_ON in arm.text
+    arm.drag(3, 1.21)
+    assert len(arm.sent) == 3 + TRIES
 
 
 @pytest.mark.parametrize('change', [

@@ -32,6 +32,7 @@ from rrr_traj_planner_interfaces.action import MoveThrough
 # A via point that is reached within so many leads of the motion server's is passed as it was: the
 # new motion begins after one lead, or after two where planning takes longer than one.
 LEADS = 2.0
+TRIES = 2  # of the same again, after one that came too late
 
 TAKEN_OVER = 'the arm moves: time_optimal takes over'
 STOPPED = 'stopped'
@@ -74,6 +75,7 @@ class Execution:
         self._sent: Progress | None = None     # the newest one, if it has not
         self._wanted: Wanted | None = None  # what the motion leads through, as it is by now
         self._dragged: set[int] = set()     # via points, since the newest goal was sent
+        self._tries = 0                     # of the same again
         self._done = 0.0                    # of the goals before the one in progress [s]
         self._tracking = Tracking()
         self._refusal = ''
@@ -126,6 +128,7 @@ class Execution:
         self._wanted = after if moved is not None and len(moved) <= 1 else None
         if moved and self._wanted is not None:
             self._dragged.update(moved)
+            self._tries = 0
             self._replan()
 
     def stop(self) -> bool:
@@ -145,8 +148,8 @@ class Execution:
         return bool(found)
 
     def _send(self, goal: MoveThrough.Goal, wanted: Wanted, first: int) -> None:
-        self._dragged.clear()
-        self._sent = sent = Progress(wanted, first)
+        self._sent = sent = Progress(wanted, first, moved=self._dragged)
+        self._dragged = set()
         sent.sent = self._client.move(goal, lambda feedback: self._progress(sent, feedback),
                                       lambda result: self._ended(sent, result))
 
@@ -206,8 +209,16 @@ class Execution:
         self._show_end(sent, result)
 
     def _refuse(self, running: Progress, sent: Progress, result: MoveThrough.Result) -> None:
-        """Show why a goal does not take over, and try what the user has dragged meanwhile."""
+        """
+        Show why a goal does not take over, and try what the user has dragged meanwhile.
+
+        One that came too late for the controller, or not where the arm was, is tried again.
+        """
         self._refusal = '' if result.error_code == result.PREEMPTED else sent.text_of(result)
+        if result.error_code in (result.CONTROL_FAILED, result.START_STATE_INVALID) and (
+                self._tries < TRIES):
+            self._tries += 1
+            self._dragged |= sent.moved
         self._show(running)
         self._replan()
 

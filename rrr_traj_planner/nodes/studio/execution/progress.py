@@ -40,6 +40,8 @@ class Progress:
         Index in `wanted` of the goal's first via point.
     sent : SentGoal
         To end it before its time.
+    moved : set of int
+        Via points for whose sake it was sent.
     duration, left : float
         Of the motion, and until its end [s].
 
@@ -48,6 +50,7 @@ class Progress:
     wanted: Wanted
     first: int
     sent: SentGoal = field(default_factory=SentGoal)
+    moved: set[int] = field(default_factory=set)
     duration: float = 0.0
     left: float = 0.0
     _heard: float = 0.0  # when the last feedback came [s]
