@@ -90,7 +90,7 @@ setup(
     maintainer_email='rrr-traj-planner@users.noreply.github.com',
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={f'{NAME}.report': ['*.css', '*.js']},
+    package_data={f'{NAME}.report': ['*.css', '*.js'], f'{NAME}.nodes.studio.panel': ['*.js']},
     ext_modules=[KERNELS],
     cmdclass={'build_ext': BuildKernels, 'develop': Develop, 'install_scripts': InstallScripts},
     data_files=[
@@ -103,8 +103,8 @@ setup(
     # urdf_parser_py, which reads URDFs, is urdfdom_py to ROS (package.xml) and urdf-parser-py to
     # PyPI: here, it would be installed twice beside ROS's
     install_requires=['numpy', 'PyYAML', 'scipy', 'setuptools'],
-    extras_require={'figures': ['matplotlib'], 'record': ['mcap'], 'studio': ['viser'],
-                    'test': ['pytest'],
+    extras_require={'figures': ['matplotlib'], 'record': ['mcap'],
+                    'studio': ['viser', 'pycollada'], 'test': ['pytest'],
                     'urdf': ['urdf-parser-py']},
     zip_safe=False,
     entry_points={

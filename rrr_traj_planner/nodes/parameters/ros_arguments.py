@@ -20,7 +20,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from rrr_traj_planner.core.arm.urdf_xml import is_xml
 from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.nodes.parameters.configuration_files import found_file
 from rrr_traj_planner.nodes.parameters.parameter_files import (
     files_given,
     gives,
@@ -111,6 +113,29 @@ def without_parameters(ros_arguments: Sequence[str]) -> list[str]:
         if not is_option and not is_value:
             found.append(argument)
         is_value = is_option
+    return found
+
+
+def description_folder(ros_arguments: Sequence[str]) -> Path:
+    """
+    Return the folder of the URDF that arguments for ROS name.
+
+    Parameters
+    ----------
+    ros_arguments : sequence of str
+        Of the nodes.
+
+    Returns
+    -------
+    Path
+        The present folder where there is no URDF, or where its text is given.
+
+    """
+    found = Path.cwd()
+    for values, folder in parameters_in(ros_arguments):
+        description = values.get('robot_description', '')
+        if isinstance(description, str) and description:
+            found = Path.cwd() if is_xml(description) else found_file(description, folder).parent
     return found
 
 
