@@ -26,6 +26,7 @@ from rrr_traj_planner.core.errors import UnreachableError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.nodes.point_files.task import Task
+from rrr_traj_planner.planners.registry import planner
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,10 +208,11 @@ def wanted_of(task: Task, model: RobotModel, base_frame: str, default_planner: s
     Raises
     ------
     InvalidInputError
-        If the via points are in another frame, or of other joints.
+        If the via points are in another frame, or of other joints, or the planner is unknown.
 
     """
     task.check_frame(base_frame)
+    planner(task.planner_id or default_planner)
     joints = task.joint_via_points(model.joint_names)
     points = task.via_points if joints is None else forward_kinematics(model, joints)
     return Wanted(replace(task, via_points=points, joint_positions=None, frame='',

@@ -93,6 +93,7 @@ def test_arm_of_the_command_line_is_kept_where_a_file_names_another():
 
 @pytest.mark.parametrize(('content', 'message'), [
     ('via_points: [[1, 2]]\n', r'own.yaml: line 1: via_points\[0\]'),
+    (f'planner_id: line_ark\n{POINTS}', 'line_ark.*line_arc'),
     (f'arm: none.yaml\n{POINTS}', "own.yaml: no file 'none.yaml'"),
     ('arm: {wrong}\n' + POINTS, 'payload.mass is -1 kg, must be in'),
     ('arm: thesis_arm_joint_2_250.yaml\njoint_via_points: [{a: 1.0}, {a: 2.0}]\n', 'joint_1'),

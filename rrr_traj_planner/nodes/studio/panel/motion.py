@@ -32,6 +32,7 @@ import viser
 
 LEAST_SCALING = 0.05
 FREE = 'free'
+METRE_DIGITS, GRAM_DIGITS = 6, 3  # that can be typed; by default, those of the steps
 
 
 class MotionFolder:
@@ -73,6 +74,7 @@ class MotionFolder:
                     "line_arc and line_polynomial from straight lines; 0: the planner's parameter")
                 self._mass = gui.add_number('payload [kg]', 0.0, min=0.0, step=0.1,
                                             hint='at the tip, for planner and arm')
+                self._deviation.precision, self._mass.precision = METRE_DIGITS, GRAM_DIGITS
                 self._known = gui.add_checkbox(
                     'payload known', False, hint="whether the arm's controller has the payload "
                     'in its model; else it is disturbed by it')
@@ -102,7 +104,7 @@ class MotionFolder:
 
         def load(_: float) -> None:
             editor.change(replace(editor.wanted, payload=Payload(
-                float(self._mass.value), bool(self._known.value))), 'payload')
+                max(float(self._mass.value), 0.0), bool(self._known.value))), 'payload')
 
         given(self._planner, post, lambda name: editor.change(editor.wanted.with_planner(name)))
         for slider in self._scalings:

@@ -33,6 +33,7 @@ import viser
 
 EARLIER, LATER = 'move earlier', 'move later'
 INSERT, REMOVE = 'insert after', 'remove'
+METRE_DIGITS, SECOND_DIGITS = 6, 3  # that can be typed; by default, those of the steps
 UNDO, REDO = 'undo', 'redo'
 
 
@@ -61,6 +62,8 @@ class PointsFolder:
             self._duration = gui.add_number(
                 'time [s]', 0.0, min=0.0, step=0.1,
                 hint='from the via point before to this one; 0: as fast as the limits allow')
+            self._position.precision = METRE_DIGITS
+            self._dwell.precision = self._duration.precision = SECOND_DIGITS
             self._number = gui.add_button_group(
                 'points', (INSERT, REMOVE), hint='a via point after the chosen one; remove it')
             self._order = gui.add_button_group(
