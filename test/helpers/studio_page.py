@@ -18,6 +18,10 @@ from __future__ import annotations
 
 from threading import Condition
 
+from rrr_traj_planner.core.arm.model import RobotModel
+from rrr_traj_planner.core.kinematics.link_positions import link_positions
+
+ARM = RobotModel()
 DEADLINE = 20.0  # s
 
 
@@ -26,6 +30,7 @@ class Page:
 
     def __init__(self):
         self.refusal, self.is_current, self.figures, self.statuses = None, False, '', []
+        self.rows, self.waits_for, self.time = [], '', None
         self.ghost, self.places, self.driven, self._shown = None, (), [], Condition()
 
     def show_points(self, points, refusal):
@@ -37,11 +42,14 @@ class Page:
     def show_plan(self, plan, is_current, text):
         self._show(plan=plan, is_current=is_current, figures=text)
 
-    def show_arm(self, places, driven):
-        self._show(places=places, driven=driven)
+    def show_arm(self, joints, driven):
+        self._show(places=link_positions(ARM, joints), driven=driven)
 
-    def show_ghost(self, places):
-        self._show(ghost=places)
+    def show_ghost(self, joints, time):
+        self._show(ghost=() if joints is None else link_positions(ARM, joints), time=time)
+
+    def show_comparison(self, comparison):
+        self._show(rows=list(comparison.rows), waits_for=comparison.waits_for)
 
     def show_status(self, text, share):
         self._show(statuses=[*self.statuses, (text, share)])

@@ -109,13 +109,13 @@ def _turned(cell: tuple[IntArray, IntArray], start: Array, angle: float) -> Arra
 
 def _smooth(values: Array) -> Array:
     """
-    Return means of three cells in each direction, with the cells around.
+    Return means of neighbouring cells in each direction, with the cells around.
 
     Beyond the axis are the values before it; around it the last cell is beside the first.
     """
     padded = np.pad(np.pad(values, ((2, 0), (0, 0), (0, 0)), mode='edge'),
                     ((0, 2), (2, 2), (0, 0)))
-    for axis in (0, 1):
+    for axis in (0, 1, 0, 1):  # twice, so that steps from cell to cell are not seen
         middle = np.moveaxis(padded, axis, 0)
         middle[1:-1] = (middle[:-2] + middle[1:-1] + middle[2:]) / 3.0
     padded[0] = padded[1]

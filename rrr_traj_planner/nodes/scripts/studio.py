@@ -129,6 +129,7 @@ def _started(stack: ExitStack, server: Any, controller: str, start: Start
     """Start nodes, and show the page of their arm; all ends with a stack of contexts."""
     from functools import partial
 
+    from rrr_traj_planner.nodes.parameters.ros_arguments import description_folder
     from rrr_traj_planner.nodes.process.node_runner import spin_in_background
     from rrr_traj_planner.nodes.process.processes import NodeProcesses
     from rrr_traj_planner.nodes.scripts.bringup import node_arguments
@@ -139,11 +140,11 @@ def _started(stack: ExitStack, server: Any, controller: str, start: Start
 
     client = stack.enter_context(spin_in_background(
         partial(StudioClient, controller), start.ros_arguments))
-    nodes = stack.enter_context(NodeProcesses(*_nodes(
-        client.controller, node_arguments(start.arm, start.ros_arguments))))
+    arguments = node_arguments(start.arm, start.ros_arguments)
+    nodes = stack.enter_context(NodeProcesses(*_nodes(client.controller, arguments)))
     config = client.connect(nodes.ended)
     wanted = start.first_wanted(config, client.payload)
-    page = Page(server, config.model, planner_ids(), wanted)
+    page = Page(server, config, description_folder(arguments), planner_ids(), wanted)
     studio = Studio(client, config, wanted, page, start.arm)
     stack.callback(page.disconnect)
     page.connect(studio, client.executor.create_task)

@@ -15,6 +15,6 @@
 """
 The script `studio`: a page in the browser, on which motions are planned and run.
 
-Nothing but `scene`, `chart`, `panel` and `page` knows viser, which draws the page. All state
-changes in the executor's thread of `ros_client`.
+Nothing but `scene`, `arm_drawing`, `chart`, `panel` and `page` knows viser, which draws the page.
+All state changes in the executor's thread of `ros_client`.
 """

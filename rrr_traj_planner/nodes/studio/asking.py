@@ -63,7 +63,7 @@ class Asking:
 
         """
         if wanted.payload == self._payload:
-            self._plan(wanted)
+            self.plan(wanted, self._answered)
             return
         try:
             config = PlannerConfig.from_values({
@@ -77,11 +77,22 @@ class Asking:
                 self._answered(Refusal(refused))
                 return
             self.config, self._payload = config, wanted.payload
-            self._plan(wanted)
+            self.plan(wanted, self._answered)
 
         self._client.set_payload(wanted.payload, set_)
 
-    def _plan(self, wanted: Wanted) -> None:
+    def plan(self, wanted: Wanted, answered: Callable[[Planned | Refusal], None]) -> None:
+        """
+        Have a motion planned with the payload of the last one.
+
+        Parameters
+        ----------
+        wanted : Wanted
+            The motion.
+        answered : callable
+            Gets the answer.
+
+        """
         planner_id, config = wanted.task.planner_id, self.config
-        self._client.plan(wanted, lambda response: self._answered(planned(
+        self._client.plan(wanted, lambda response: answered(planned(
             response, planner_id, config.model, config.limits_for(planner_id))))

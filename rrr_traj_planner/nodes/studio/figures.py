@@ -23,13 +23,19 @@ from math import isinf
 import numpy as np
 from numpy.typing import NDArray
 from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.nodes.studio.planned import Planned
+from rrr_traj_planner.nodes.studio.planned import LIMITED, Planned
 from rrr_traj_planner.nodes.studio.session import Refusal
 
 RED = '#c62828'
 # From slow to fast, each in red, green and blue: dark blue, purple, pink, orange (some of plasma).
 SPEED_COLOURS = ((13, 8, 135), (126, 3, 168), (204, 71, 120), (248, 149, 64))
 GREY = (160, 160, 160)
+
+# Of the limits in `LIMITED`, where they are reached; where nothing of them is used, the last.
+LIMIT_COLOURS = ((0, 90, 190), (225, 140, 0), (190, 40, 150), (50, 150, 40))
+UNUSED = (225, 225, 225)
+
+SPEED, TIGHTEST = 'speed of the tip', 'tightest limit'
 
 
 def plan_html(plan: Planned | None, refusal: Refusal | None, joint_names: Sequence[str]) -> str:
@@ -102,31 +108,111 @@ def status_html(text: str, is_error: bool = False) -> str:
     return _block(f'<p{colour}>{escape(text)}</p>')
 
 
+def notes_html(notes: Sequence[str]) -> str:
+    """
+    Return notes.
+
+    Parameters
+    ----------
+    notes : sequence of str
+        One a line.
+
+    Returns
+    -------
+    str
+        HTML.
+
+    """
+    return _block(*(f'<p>{escape(note)}</p>' for note in notes))
+
+
 def _block(*parts: str) -> str:
     return f'<div style="padding:0 .75em;font-size:90%">{"".join(parts)}</div>'
 
 
-def speed_colours(speed: Array, is_current: bool) -> NDArray[np.uint8]:
+def path_colours(plan: Planned, meaning: str, is_current: bool) -> NDArray[np.uint8]:
     """
     Return the colours of a path's segments.
 
     Parameters
     ----------
-    speed : ndarray, shape (n,)
-        Of the tip [m/s].
+    plan : Planned
+        With n points.
+    meaning : str
+        `SPEED`: from the first of `SPEED_COLOURS` at rest to the last at the highest speed;
+        `TIGHTEST`: of `LIMIT_COLOURS` the one of the limit that is used most, paler the less of it
+        is used.
     is_current : bool
         Whether the plan is of the via points as they are; else all is grey.
 
     Returns
     -------
-    ndarray, shape (n, 2, 3)
-        Red, green and blue at both ends: from the first of `SPEED_COLOURS` at rest to the last at
-        the highest speed.
+    ndarray, shape (n - 1, 2, 3)
+        Red, green and blue at both ends.
 
     """
     if not is_current:
-        return np.full((len(speed), 2, 3), GREY, dtype=np.uint8)
+        rgb = np.broadcast_to(np.array(GREY, dtype=float), (len(plan.path), 3))
+    elif meaning == SPEED:
+        return np.repeat(_rounded(_speed_colours(plan.speed))[:, None], 2, axis=1)
+    else:
+        shares = plan.shares
+        used = np.clip(shares.max(axis=1, keepdims=True), 0.0, 1.0)
+        rgb = (1.0 - used) * UNUSED + used * np.array(LIMIT_COLOURS)[shares.argmax(axis=1)]
+    return np.stack((_rounded(rgb[:-1]), _rounded(rgb[1:])), axis=1)
+
+
+def _speed_colours(speed: Array) -> Array:
     share = speed / max(float(speed.max(initial=0.0)), np.finfo(float).tiny)
     at = np.linspace(0.0, 1.0, len(SPEED_COLOURS))
-    rgb = np.stack([np.interp(share, at, channel) for channel in zip(*SPEED_COLOURS)], axis=-1)
-    return np.repeat(rgb.round().astype(np.uint8)[:, None], 2, axis=1)
+    return np.stack([np.interp(share, at, channel) for channel in zip(*SPEED_COLOURS)], axis=-1)
+
+
+def _rounded(rgb: Array) -> NDArray[np.uint8]:
+    return rgb.round().astype(np.uint8)
+
+
+def legend_html(plan: Planned | None, meaning: str) -> str:
+    """
+    Return what the colours of a path mean.
+
+    Parameters
+    ----------
+    plan : Planned, optional
+        The path's.
+    meaning : str
+        As in `path_colours`.
+
+    Returns
+    -------
+    str
+        HTML; empty without a plan.
+
+    """
+    if plan is None:
+        return ''
+    if meaning == SPEED:
+        fastest = float(plan.speed.max(initial=0.0))
+        return _block(_bar(SPEED_COLOURS), _ends('at rest', f'{fastest:.2f} m/s'))
+    used = plan.shares.argmax(axis=1)
+    steps = np.diff(plan.times, append=plan.times[-1:])
+    whole = max(plan.duration, np.finfo(float).tiny)
+    rows = ''.join(
+        f'<tr><td style="padding-right:.6em">{name}</td><td style="width:55%">'
+        f'{_bar((UNUSED, colour))}</td><td style="padding-left:.6em">'
+        f'{100.0 * steps[used == i].sum() / whole:.0f} %</td></tr>'
+        for i, (name, colour) in enumerate(zip(LIMITED, LIMIT_COLOURS)))
+    return _block(f'<table style="width:100%">{rows}</table>',
+                  '<p>The limit of which a joint uses most, and for how much of the time; paler '
+                  'where less of it is used.</p>')
+
+
+def _bar(colours: Sequence[tuple[int, int, int]]) -> str:
+    stops = ','.join(f'rgb{colour}' for colour in colours)
+    return (f'<div style="height:.8em;border-radius:.2em;background:linear-gradient(90deg,{stops})'
+            '"></div>')
+
+
+def _ends(left: str, right: str) -> str:
+    return (f'<div style="display:flex;justify-content:space-between"><span>{left}</span>'
+            f'<span>{right}</span></div>')

@@ -25,7 +25,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import counted
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.studio.planned import Planned
-from rrr_traj_planner.nodes.studio.ros_client import request_of
+from rrr_traj_planner.nodes.studio.requests import request_of
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner_interfaces.action import MoveThrough

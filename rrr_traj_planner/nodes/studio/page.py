@@ -20,13 +20,18 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from io import StringIO
 from logging import CRITICAL, getLogger
+from pathlib import Path
+from threading import Lock
 
 import numpy as np
-from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.link_positions import Point
+from rrr_traj_planner.core.kinematics.reach import reach
+from rrr_traj_planner.nodes.output.arm_shape import arm_shape
+from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.studio.arms import STARTING
+from rrr_traj_planner.nodes.studio.comparison import Comparison
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.figures import status_html
 from rrr_traj_planner.nodes.studio.panel.controls import Post
@@ -56,8 +61,10 @@ class Page:
     ----------
     server : viser.ViserServer
         What brings it to the browser.
-    model : RobotModel
-        The arm.
+    config : PlannerConfig
+        The planner's.
+    folder : Path
+        Of the arm's URDF.
     planner_ids : sequence of str
         To choose from.
     wanted : Wanted
@@ -65,19 +72,23 @@ class Page:
 
     """
 
-    def __init__(self, server: viser.ViserServer, model: RobotModel, planner_ids: Sequence[str],
-                 wanted: Wanted) -> None:
-        self._server, self._is_connected = server, False
+    def __init__(self, server: viser.ViserServer, config: PlannerConfig, folder: Path,
+                 planner_ids: Sequence[str], wanted: Wanted) -> None:
+        self._server, self._config, self._is_connected = server, config, False
         server.gui.reset()
         server.scene.reset()
         server.gui.configure_theme(show_share_button=False, show_logo=False,
                                    control_width='large')
         server.gui.main_panel.dock_right()  # a panel that floats hides the scene
+        model, shape = config.model, arm_shape(config, folder)
         size = model.chain.size
         self._panel = Panel(server.gui, planner_ids, wanted, model)
+        self._panel.view.note(shape.notes)
         self._hands = _Hands()
-        self._scene = Scene(server.scene, size, self._hands)
-        self._ghost: tuple[Point, ...] = ()
+        self._scene = Scene(server.scene, size, self._hands, shape)
+        self._plan: tuple[Planned | None, bool] = None, False
+        self._reach = Lock()
+        self._ghost: list[float] | None = None
         centre = np.vstack((wanted.points, np.zeros(3))).mean(axis=0)
         for camera in (server.initial_camera, *(
                 client.camera for client in server.get_clients().values())):
@@ -102,6 +113,7 @@ class Page:
         self._is_connected = True
         self._hands.connect(studio.editor, post_if_connected)
         self._panel.connect(studio, post_if_connected)
+        self._panel.view.connect(lambda: post_if_connected(self._draw_plan), self._show_reach)
 
     def disconnect(self) -> None:
         """Have handles and controls do nothing any more."""
@@ -119,21 +131,29 @@ class Page:
 
     def show_plan(self, plan: Planned | None, is_current: bool, text: str) -> None:
         """Show a plan's path and figures."""
+        self._plan = plan, is_current
         with self._server.atomic():
-            self._scene.show_plan(plan, is_current)
+            self._draw_plan()
             self._panel.show_plan(plan, text)
+            self._panel.view.explain(plan)
 
-    def show_arm(self, places: tuple[Point, ...], driven: list[Point]) -> None:
-        """Show the arm, and where its tip has been."""
+    def show_arm(self, joints: list[float], driven: list[Point]) -> None:
+        """Show the arm at joint positions, and where its tip has been."""
         with self._server.atomic():
-            self._scene.show_arm(places, driven)
+            self._scene.show_arm(joints, driven)
 
-    def show_ghost(self, places: tuple[Point, ...]) -> None:
-        """Show the arm at another moment; hide it where there are no places."""
-        if places != self._ghost:
-            self._ghost = places
+    def show_ghost(self, joints: list[float] | None, time: float | None) -> None:
+        """Show the arm as the plan has it at a time, or hide it."""
+        self._panel.show_time(time)
+        if joints != self._ghost:
+            self._ghost = joints
             with self._server.atomic():
-                self._scene.show_ghost(places)
+                self._scene.show_ghost(joints)
+
+    def show_comparison(self, comparison: Comparison) -> None:
+        """Show the plans of all planners so far."""
+        with self._server.atomic():
+            self._panel.show_comparison(comparison)
 
     def show_status(self, text: str, share: float) -> None:
         """Show a text about the motion, and the share of it that is done."""
@@ -142,6 +162,18 @@ class Page:
     def show_tracking(self, times: Array, errors: Array) -> None:
         """Show the joints' tracking errors [rad], shape (n, 3), over time [s]."""
         self._panel.show_tracking(times, errors)
+
+    def _draw_plan(self) -> None:
+        self._scene.show_plan(*self._plan, self._panel.view.meaning)
+
+    def _show_reach(self, shows: bool) -> None:
+        """Show or hide the reach, which is computed when it is shown first."""
+        with self._reach:
+            if shows and self._scene.reach is None:
+                self._scene.add_reach(reach(self._config.model, self._config.limits))
+            if self._scene.reach is not None:
+                self._scene.reach.visible = shows
+
 
 class _Hands:
     """Hands over to the editor what the user does in the scene, in the studio's thread."""

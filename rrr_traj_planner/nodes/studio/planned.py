@@ -16,7 +16,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -25,11 +27,17 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.dynamics.motor_torque import motor_torque, rest_speed_of
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
+from rrr_traj_planner.core.trajectory.residual_vibration import residual_vibration
+from rrr_traj_planner.core.trajectory.sampling import NANOSECOND
+from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 from rrr_traj_planner.nodes.output.wireframe import picked
 from rrr_traj_planner.nodes.runs.messages import trajectory_points
 from rrr_traj_planner.nodes.studio.session import Refusal
+from rrr_traj_planner.report.excitation import IN_TEXT
 
 MOST_POINTS = 600  # of the path, that are drawn
+LIMITED = ('velocity', 'acceleration', 'jerk', 'torque')
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +68,12 @@ class Planned:
     peaks : tuple of (str, ndarray, ndarray)
         For velocity, acceleration, jerk and torque: name with unit, peaks and limits of the
         joints.
+    vibration : callable
+        Returns the residual vibration at the frequencies `IN_TEXT`, the largest of the joints
+        [rad/s^2]; computed when it is asked for first.
     curves : dict of str to ndarray, shape (n, 3)
-        By quantity: values over `times` as shares of the limits, -1 to 1; 0 where there is none.
+        For `LIMITED`, and 'position in its range': values over `times` as shares of the limits, -1
+        to 1; 0 where there is none.
 
     """
 
@@ -75,7 +87,13 @@ class Planned:
     joints: Array
     via_joints: Array
     peaks: tuple[tuple[str, Array, Array], ...]
+    vibration: Callable[[], tuple[float, ...]] = tuple
     curves: dict[str, Array] = field(default_factory=dict)
+
+    @property
+    def shares(self) -> Array:
+        """Return the largest share of any joint's limits, for each of `times` and of `LIMITED`."""
+        return np.stack([np.abs(self.curves[name]).max(axis=1) for name in LIMITED], axis=-1)
 
     def joints_at(self, time: float) -> list[float]:
         """
@@ -121,6 +139,9 @@ def planned(response: Any, planner_id: str, model: RobotModel, limits: JointLimi
         return Refusal(response.message, response.failed_via_point)
     points = trajectory_points(response.trajectory)
     at = [int(np.abs(points.times - t).argmin()) for t in response.via_times]
+    jerk = np.zeros_like(points.accelerations)  # means from each point to the next
+    jerk[:-1] = np.diff(points.accelerations, axis=0) / np.diff(points.times)[:, None]
+    jerk[-1:] = jerk[-2:-1]
     drawn = picked(len(points.times), MOST_POINTS, np.array(at))
     path = forward_kinematics(model, points.positions[drawn])
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
@@ -133,13 +154,21 @@ def planned(response: Any, planner_id: str, model: RobotModel, limits: JointLimi
              limits.max_acceleration),
             ('jerk [rad/s³]', np.array(response.peak_jerk), limits.max_jerk),
             ('torque [N m]', np.array(response.peak_effort), limits.max_effort)),
+        cache(lambda: _vibration(points, response.via_times[-1])),
         _curves(model, limits, *(values[drawn] for values in (
-            points.positions, points.velocities, points.accelerations))))
+            points.positions, points.velocities, points.accelerations, jerk))))
 
 
-def _curves(model: RobotModel, limits: JointLimits, q: Array, qd: Array, qdd: Array
+def _vibration(points: TrajectoryPoints, end: float) -> tuple[float, ...]:
+    """Return the residual vibration after the last motion, before a rest at the last point."""
+    spline = spline_through(points)
+    knots = spline.knots[spline.knots <= end + NANOSECOND]
+    return tuple(residual_vibration(spline.at, knots, IN_TEXT).max(axis=1).tolist())
+
+
+def _curves(model: RobotModel, limits: JointLimits, q: Array, qd: Array, qdd: Array, qddd: Array
             ) -> dict[str, Array]:
-    """Return positions within their ranges, velocities, accelerations and torques, as shares."""
+    """Return positions within their ranges, and the rest of `LIMITED`, as shares."""
     bounded = np.isfinite(limits.min_position) & np.isfinite(limits.max_position)
     low, high = (np.where(bounded, end, 0.0) for end in (
         limits.min_position, limits.max_position))
@@ -147,4 +176,5 @@ def _curves(model: RobotModel, limits: JointLimits, q: Array, qd: Array, qdd: Ar
     return {'position in its range': (q - 0.5 * (low + high)) / half,
             'velocity': qd / limits.max_velocity,
             'acceleration': qdd / limits.max_acceleration,
+            'jerk': qddd / limits.max_jerk,
             'torque': motor_torque(model, q, qd, qdd, rest_speed_of(qd)) / limits.max_effort}

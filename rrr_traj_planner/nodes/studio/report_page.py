@@ -22,7 +22,7 @@ from tempfile import TemporaryDirectory
 
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.planner_node.planning_request import planning_request
-from rrr_traj_planner.nodes.studio.ros_client import request_of
+from rrr_traj_planner.nodes.studio.requests import request_of
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner.report.attempts import attempts, Task
 from rrr_traj_planner.report.plan_report import write_plan_report

@@ -25,53 +25,24 @@ from control_msgs.msg import JointTrajectoryControllerState
 import numpy as np
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.action import ActionClient
-from rclpy.action.client import ClientGoalHandle
 from rclpy.client import Client as ServiceClient
 from rclpy.parameter import Parameter
 from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.nodes.motion.options import ACTION, controller_of, Options
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.runs.messages import plan_request
 from rrr_traj_planner.nodes.runs.planner_config import PLANNER_NODE, planner_values, values_of
 from rrr_traj_planner.nodes.runs.spun_node import SpunNode
+from rrr_traj_planner.nodes.studio.requests import request_of
+from rrr_traj_planner.nodes.studio.sent_goal import SentGoal
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner_interfaces.action import MoveThrough
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
-from trajectory_msgs.msg import JointTrajectoryPoint
 
 ARM_NODE = 'simulated_arm'
 MASS, KNOWN = 'payload.mass', 'payload.known_to_controller'
-
-
-class SentGoal:
-    """A goal of the motion server's, which can be ended before its time."""
-
-    def __init__(self) -> None:
-        self._handle: ClientGoalHandle | None = None
-        self._is_canceled = False
-
-    def cancel(self) -> None:
-        """Have the arm stopped, at the latest when the goal is accepted."""
-        self._is_canceled = True
-        if self._handle is not None:
-            self._handle.cancel_goal_async()
-
-    def accepted(self, handle: ClientGoalHandle) -> None:
-        """
-        Take the server's handle.
-
-        Parameters
-        ----------
-        handle : ClientGoalHandle
-            Of the accepted goal.
-
-        """
-        self._handle = handle
-        if self._is_canceled:
-            handle.cancel_goal_async()
 
 
 class StudioClient(SpunNode):
@@ -318,31 +289,3 @@ class StudioClient(SpunNode):
     @staticmethod
     def _call(client: ServiceClient, request: Any, answered: Callable[[Any], None]) -> None:
         client.call_async(request).add_done_callback(lambda future: answered(future.result()))
-
-
-def request_of(wanted: Wanted) -> PlanTrajectory.Request:
-    """
-    Return the request for a motion.
-
-    Parameters
-    ----------
-    wanted : Wanted
-        The motion.
-
-    Returns
-    -------
-    PlanTrajectory.Request
-        From rest at the first via point.
-
-    """
-    request = plan_request(wanted.task, ())
-    if wanted.joints is not None and wanted.joints_known:
-        request.joint_via_points = [
-            JointTrajectoryPoint(positions=q) for q in wanted.joints.tolist()]
-        request.via_points.poses = []
-    else:
-        request.elbow, request.shoulder = wanted.elbow, wanted.shoulder
-    request.max_deviation = float(wanted.max_deviation)
-    request.max_velocity_scaling_factor = float(wanted.velocity_scaling)
-    request.max_acceleration_scaling_factor = float(wanted.acceleration_scaling)
-    return request

@@ -12,34 +12,37 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The page's scene: the arm, the via points with their handles, planned and driven path."""
+"""The page's scene: arm and reach, the via points with their handles, planned and driven path."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from textwrap import fill
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.link_positions import Point
-from rrr_traj_planner.nodes.output.wireframe import rod
-from rrr_traj_planner.nodes.studio.figures import speed_colours
+from rrr_traj_planner.core.kinematics.reach import Surface
+from rrr_traj_planner.nodes.output.arm_shape import ArmShape
+from rrr_traj_planner.nodes.studio.arm_drawing import ArmDrawing, Look
+from rrr_traj_planner.nodes.studio.figures import path_colours
 from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.session import Refusal
 import viser
 
-ARM, GHOST, DRIVEN = (70, 90, 120), (150, 170, 200), (0, 150, 130)
+ARM, GHOST = Look((70, 90, 120)), Look((150, 170, 200), has_own=False, opacity=0.4)
 VIA, CHOSEN, AT_FAULT = (245, 140, 30), (250, 205, 60), (200, 30, 30)
-GHOST_OPACITY = 0.4
+DRIVEN, REACH = (0, 150, 130), (90, 150, 220)
+REACH_OPACITY = 0.15
 
 # Sizes, as fractions of the arm's.
-THICK, BALL, HANDLE, CELL = 0.018, 0.018, 0.16, 0.1
+BALL, HANDLE, CELL = 0.018, 0.16, 0.1
 CHOSEN_SCALE = 1.5  # of a ball
 PLAN_LINE, DRIVEN_LINE = 6.0, 2.0  # pixels
 COLUMNS = 28  # characters of a refusal's line beside its via point
 
-Colour = tuple[int, int, int]
 
 
 class Hands(Protocol):
@@ -67,14 +70,17 @@ class Scene:
         The arm's [m].
     hands : Hands
         Gets what the user does with via points.
+    shape : ArmShape
+        What is drawn of the arm.
 
     """
 
-    def __init__(self, scene: viser.SceneApi, size: float, hands: Hands) -> None:
+    def __init__(self, scene: viser.SceneApi, size: float, hands: Hands, shape: ArmShape) -> None:
         self._scene, self._size, self._hands = scene, size, hands
         self._points: list[_Handle] = []
-        self._arm = _Rods(scene, '/arm', THICK * size, ARM)
-        self._ghost = _Rods(scene, '/ghost', THICK * size, GHOST, GHOST_OPACITY)
+        self._arm = ArmDrawing(scene, '/arm', shape, ARM)
+        self._ghost = ArmDrawing(scene, '/ghost', shape, GHOST)
+        self._reach: viser.MeshHandle | None = None
         scene.add_grid('/grid', width=4.0 * size, height=4.0 * size, cell_size=CELL * size,
                        section_size=10.0 * CELL * size)
         scene.add_frame('/base', axes_length=CELL * size, axes_radius=0.05 * CELL * size)
@@ -115,7 +121,7 @@ class Scene:
         for index, handle in enumerate(self._points):
             handle.choose(index == chosen)
 
-    def show_plan(self, plan: Planned | None, is_current: bool) -> None:
+    def show_plan(self, plan: Planned | None, is_current: bool, meaning: str) -> None:
         """
         Show the planned path.
 
@@ -125,37 +131,58 @@ class Scene:
             None: there is nothing to show yet.
         is_current : bool
             Whether it is coloured; else it is grey.
+        meaning : str
+            Of the colours, as in `path_colours`.
 
         """
         if plan is not None:
-            self._draw('/plan', plan.path, speed_colours(plan.speed, is_current), PLAN_LINE)
+            self._draw('/plan', plan.path, path_colours(plan, meaning, is_current), PLAN_LINE)
 
-    def show_arm(self, places: tuple[Point, ...], driven: list[Point]) -> None:
+    def show_arm(self, joints: Sequence[float], driven: list[Point]) -> None:
         """
         Show the arm, and where its tip has been.
 
         Parameters
         ----------
-        places : tuple of points
-            Base, joints and tip [m].
+        joints : sequence of 3 floats
+            Joint positions [rad].
         driven : list of points
             The driven path [m].
 
         """
-        self._arm.show(places)
+        self._arm.show(joints)
         self._draw('/driven', np.array(driven).reshape(-1, 3), DRIVEN, DRIVEN_LINE)
 
-    def show_ghost(self, places: tuple[Point, ...]) -> None:
+    def show_ghost(self, joints: Sequence[float] | None) -> None:
         """
         Show the arm at another moment, shining through.
 
         Parameters
         ----------
-        places : tuple of points
-            Base, joints and tip [m]; empty: it is hidden.
+        joints : sequence of 3 floats, optional
+            Joint positions [rad]; None: it is hidden.
 
         """
-        self._ghost.show(places)
+        self._ghost.show(joints)
+
+    def add_reach(self, surface: Surface) -> None:
+        """
+        Draw the space that the tip reaches, shining through.
+
+        Parameters
+        ----------
+        surface : Surface
+            Around it.
+
+        """
+        self._reach = self._scene.add_mesh_simple(
+            '/reach', surface.vertices, surface.faces, color=REACH, opacity=REACH_OPACITY,
+            side='double', cast_shadow=False, receive_shadow=False)
+
+    @property
+    def reach(self) -> viser.MeshHandle | None:
+        """Return what is drawn by `add_reach`."""
+        return self._reach
 
     def _draw(self, name: str, path: Array, colours: Any, width: float) -> None:
         """Draw a path in place of the one of the same name, which may be a single point."""
@@ -163,37 +190,15 @@ class Scene:
         if not len(ends):
             ends, colours = np.zeros((1, 2, 3)), (0, 0, 0)  # a line without length: not to be seen
         self._scene.add_line_segments(
-            name, ends.astype(np.float32), np.asarray(colours, dtype=np.uint8),
+            name, ends.astype(np.float32), _linear(np.asarray(colours)),
             thickness=width, thickness_units='screen')
 
 
-class _Rods:
-    """An arm, drawn as rods with balls at their ends."""
-
-    def __init__(self, scene: viser.SceneApi, name: str, radius: float, colour: Colour,
-                 opacity: float | None = None) -> None:
-        self._scene, self._name, self._radius = scene, name, radius
-        self._colour, self._opacity = colour, opacity
-        self._links: list[tuple[Any, Any]] = []
-
-    def show(self, places: tuple[Point, ...]) -> None:
-        """Show the arm between base, joints and tip; hide it where there are none."""
-        rods = [rod(a, b) for a, b in zip(places, places[1:])]
-        while len(self._links) < len(rods):
-            self._add(len(self._links), rods[len(self._links)].length)
-        for link in self._links:
-            for part in link:
-                part.visible = bool(places)
-        for (bar, ball), shape, end in zip(self._links, rods, places[1:]):
-            x, y, z, w = shape.quaternion
-            bar.position, bar.wxyz, ball.position = shape.centre, (w, x, y, z), end
-
-    def _add(self, index: int, length: float) -> None:
-        name, radius, look = f'{self._name}/{index}', self._radius, {'opacity': self._opacity}
-        self._links.append((
-            self._scene.add_cylinder(
-                f'{name}/rod', radius, max(length, radius), self._colour, **look),
-            self._scene.add_icosphere(f'{name}/end', 1.4 * radius, self._colour, **look)))
+def _linear(colours: Array) -> NDArray[np.uint8]:
+    """Return colours as viser's lines have them: proportional to light (IEC 61966-2-1)."""
+    share = colours / 255.0
+    light = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return (255.0 * light).round().astype(np.uint8)
 
 
 class _Handle:

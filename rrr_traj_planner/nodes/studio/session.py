@@ -83,6 +83,26 @@ class Session(Generic[Plan]):
         """Return whether the plan is of what is wanted now."""
         return self.plan is not None and self._planned is self.wanted
 
+    @property
+    def is_waiting(self) -> bool:
+        """Return whether an answer is waited for."""
+        return self._in_flight is not None
+
+    def take(self, wanted: Wanted, plan: Plan) -> None:
+        """
+        Want something whose plan is known.
+
+        Parameters
+        ----------
+        wanted : Wanted
+            What is wanted.
+        plan : Plan
+            Its plan.
+
+        """
+        self.wanted = self._planned = wanted
+        self.plan, self.refusal = plan, None
+
     def change(self, wanted: Wanted) -> None:
         """
         Want something else, and have it planned: at once, or after the request in flight.

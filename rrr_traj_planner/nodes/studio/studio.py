@@ -26,6 +26,7 @@ from rrr_traj_planner.nodes.output.wireframe import Trail
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.studio.arms import Tasks
 from rrr_traj_planner.nodes.studio.asking import Asking
+from rrr_traj_planner.nodes.studio.comparison import Comparison
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.execution.commands import Commands
 from rrr_traj_planner.nodes.studio.figures import plan_html, status_html
@@ -34,6 +35,7 @@ from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
 from rrr_traj_planner.nodes.studio.session import Refusal, Session
 from rrr_traj_planner.nodes.studio.wanted import Wanted
+from rrr_traj_planner.planners.registry import planner_ids
 
 TRAIL_STEP = 1.0 / 200  # distance of the driven path's points, as a fraction of the arm's size
 TRAIL_POINTS = 1000     # of the driven path
@@ -52,11 +54,14 @@ class Page(Protocol):
     def show_plan(self, plan: Planned | None, is_current: bool, text: str) -> None:
         """Show a plan's path and figures."""
 
-    def show_arm(self, places: tuple[Point, ...], driven: list[Point]) -> None:
-        """Show the arm, and where its tip has been."""
+    def show_arm(self, joints: list[float], driven: list[Point]) -> None:
+        """Show the arm at joint positions, and where its tip has been."""
 
-    def show_ghost(self, places: tuple[Point, ...]) -> None:
-        """Show the arm at another moment; hide it where there are no places."""
+    def show_ghost(self, joints: list[float] | None, time: float | None) -> None:
+        """Show the arm as the plan has it at a time, or hide it."""
+
+    def show_comparison(self, comparison: Comparison) -> None:
+        """Show the plans of all planners so far."""
 
     def show_status(self, text: str, share: float) -> None:
         """Show a text about the motion, and the share of it that is done."""
@@ -103,11 +108,14 @@ class Studio:
         self.editor, self._is_shown = Editor(wanted, config.model, self._changed), False
         self.tasks = Tasks(self.editor, config, arm, self._show_soon, not client.controller)
         self._trail = Trail(TRAIL_STEP * config.model.chain.size, TRAIL_POINTS)
-        self._places: tuple[Point, ...] = ()  # of the arm
-        self._shown: tuple[Point, ...] = ()
+        self._joints: list[float] = []  # of the arm [rad]
+        self._shown: list[float] = []
         self._ghost = Ghost()
-        self.session: Session[Planned] = Session(wanted, self._asking.ask)
+        self.session: Session[Planned] = Session(wanted, self._ask)
         self.commands = Commands(client, config.model, self.session, page, self._trail)
+        self.comparison = Comparison(
+            planner_ids(), self._asking.plan, lambda: not self.session.is_waiting,
+            page.show_comparison)
 
     def start(self, error: str = '') -> None:
         """
@@ -128,10 +136,13 @@ class Studio:
 
     def tick(self) -> None:
         """Show where the arm is, if it has moved."""
-        if self._places != self._shown:
-            self._shown = self._places
-            self._page.show_arm(self._places, list(self._trail.places))
-        self._page.show_ghost(self._ghost_places())
+        if self._joints != self._shown:
+            self._shown = self._joints
+            self._page.show_arm(self._joints, list(self._trail.places))
+        plan = self.session.plan
+        time = None if plan is None else self._ghost.time(monotonic(), plan.duration)
+        self._page.show_ghost(
+            None if plan is None or time is None else plan.joints_at(time), time)
         if not self._is_shown:
             self._is_shown = True
             self._page.show_wanted(self.editor)
@@ -166,6 +177,24 @@ class Studio:
             self._show_soon()
         else:
             self.editor.keep_joints(plan.via_joints if keeps and plan is not None else None)
+
+    def take(self, planner_id: str) -> None:
+        """
+        Want a plan of the comparison, if it is of the via points as they are.
+
+        Parameters
+        ----------
+        planner_id : str
+            Its planner.
+
+        """
+        plan = self.comparison.plan_of(planner_id)
+        if plan is not None:
+            before, wanted = self.session.wanted, self.editor.wanted.with_planner(planner_id)
+            self.session.take(wanted, plan)
+            self.commands.changed(before, wanted)
+            self.editor.change(wanted)
+            self._show_plan()
 
     def play(self, plays: bool) -> None:
         """
@@ -215,16 +244,8 @@ class Studio:
         return report_name(wanted), report_page(wanted, self._asking.config)
 
     def _moved(self) -> None:
-        self._places = link_positions(
-            self._model, self._client.joints(self._model.joint_names).tolist())
-        self._trail.add(self._places[-1])
-
-    def _ghost_places(self) -> tuple[Point, ...]:
-        plan = self.session.plan
-        time = None if plan is None else self._ghost.time(monotonic(), plan.duration)
-        if plan is None or time is None:
-            return ()
-        return link_positions(self._model, plan.joints_at(time))
+        self._joints = self._client.joints(self._model.joint_names).tolist()
+        self._trail.add(link_positions(self._model, self._joints)[-1])
 
     def _show_soon(self) -> None:
         self._is_shown = False
@@ -237,8 +258,16 @@ class Studio:
             self.commands.changed(before, wanted)
         self._page.show_points(wanted.points, self.session.refusal)
 
+    def _ask(self, wanted: Wanted) -> None:
+        self.comparison.changed(wanted)
+        self._asking.ask(wanted)
+
     def _planned(self, answer: Planned | Refusal) -> None:
         self.session.answered(answer)
+        self._show_plan()
+        self.comparison.go_on()
+
+    def _show_plan(self) -> None:
         session = self.session
         self._page.show_points(session.wanted.points, session.refusal)
         self._page.show_plan(session.plan, session.refusal is None, plan_html(

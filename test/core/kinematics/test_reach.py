@@ -19,10 +19,12 @@ from __future__ import annotations
 from collections import Counter
 from math import inf, pi
 
+from helpers.places import CONFIG
 from helpers.thesis_arm import ThesisArm
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.arm.urdf_arm import read_urdf
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.reach import reach
 
@@ -72,6 +74,17 @@ def test_all_tips_are_within_and_the_surface_is_near_some(low, high):
     assert (tips < surface.vertices.max(axis=0) + room).all()
     for vertex in surface.vertices[::400]:
         assert np.linalg.norm(tips - vertex, axis=1).min() < room
+
+
+@pytest.mark.parametrize('file', sorted((CONFIG / 'arms').glob('*.urdf')), ids=lambda f: f.stem)
+def test_other_arms_are_within_their_size(file):
+    arm = read_urdf(file)
+    surface = reach(arm.model(), arm.joint_limits())
+    distance = np.linalg.norm(surface.vertices - arm.chain.point[0], axis=1)
+    tips = forward_kinematics(arm.model(), np.random.default_rng(3).uniform(
+        np.maximum(arm.min_position, -pi), np.minimum(arm.max_position, pi), (5000, 3)))
+    largest = np.linalg.norm(tips - arm.chain.point[0], axis=1).max()
+    assert distance.max() == pytest.approx(largest, rel=0.06)
 
 
 def test_surface_is_closed_but_for_the_axis():

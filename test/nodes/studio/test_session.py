@@ -66,6 +66,24 @@ def test_of_changes_meanwhile_only_the_newest_is_asked_for(session, asked):
     assert session.plan == 'last plan' and session.is_current
 
 
+def test_a_known_plan_is_taken_without_being_asked_for(session, asked):
+    drag(session, 1.3)
+    session.answered('plan')
+    other = session.wanted.with_planner('gauss')
+    session.take(other, 'other plan')
+    assert len(asked) == 1 and session.plan == 'other plan' and session.is_current
+    assert session.wanted is other and not session.is_waiting
+
+
+def test_a_known_plan_is_asked_for_where_an_older_answer_comes(session, asked):
+    drag(session, 1.3)
+    assert session.is_waiting
+    other = session.wanted.with_planner('gauss')
+    session.take(other, 'other plan')
+    session.answered('plan')
+    assert asked[-1] is other and not session.is_current
+
+
 def test_a_change_after_the_answer_is_asked_for_at_once(session, asked):
     drag(session, 1.3)
     session.answered('plan')

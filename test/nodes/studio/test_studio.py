@@ -31,6 +31,7 @@ from rrr_traj_planner.nodes.studio.execution.execution import GOES_ON, TAKEN_OVE
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import wanted_of
+from rrr_traj_planner.planners.registry import planner_ids
 
 FAR_AWAY = (9.0, 9.0, 9.0)
 DRAGS = 30
@@ -111,10 +112,13 @@ def test_loaded_points_are_planned_and_a_wrong_file_changes_nothing(ros, page, s
 def test_curves_are_shares_of_the_limits(page, studio):
     plan = page.plan
     peaks = {name.split(' [')[0]: peaks / limits for name, peaks, limits in plan.peaks}
-    for name in ('velocity', 'acceleration', 'torque'):
+    for name in ('velocity', 'acceleration', 'jerk', 'torque'):
         assert plan.curves[name].shape == (len(plan.times), 3)
         share = np.abs(plan.curves[name]).max(axis=0)
-        np.testing.assert_allclose(share, peaks[name], atol=0.01)  # the peaks are exact
+        # the peaks are exact; of jerk, the curve has means over a sample period
+        np.testing.assert_allclose(share, peaks[name], atol=0.05 if name == 'jerk' else 0.01)
+    np.testing.assert_allclose(plan.shares.max(axis=0), [
+        max(peaks[name]) for name in ('velocity', 'acceleration', 'jerk', 'torque')], atol=0.05)
     # joint 1 has the range 0 to pi/2, and turns to where the points are
     x, y, _ = TABLE_6_1[0]
     ends = plan.curves['position in its range'][[0, -1], 0]
@@ -130,6 +134,23 @@ def test_ghost_is_the_arm_where_the_plan_has_it(ros, page, studio):
             np.subtract(p.ghost[-1], place)) < 1e-9)
     ros.run(lambda: studio.play(True))
     page.wait(lambda p: p.ghost and np.linalg.norm(np.subtract(p.ghost[-1], TABLE_6_1[2])) > 0.1)
+
+
+def test_planners_stand_side_by_side_and_one_is_taken(ros, client, page, studio):
+    asked = client.asked
+    ros.run(lambda: studio.comparison.start(studio.session.wanted))
+    page.wait(lambda p: len(p.rows) == len(planner_ids()) and not p.waits_for)
+    assert client.asked == asked + len(planner_ids())
+    durations = [row.answer.duration for row in page.rows]
+    assert durations == sorted(durations)
+    own = next(row.answer for row in page.rows if row.planner_id == 'cycloid')
+    assert own.duration == studio.session.plan.duration
+    assert len(own.vibration()) == 3 and min(own.vibration()) > 0.0
+    best = page.rows[0]
+    ros.run(lambda: studio.take(best.planner_id))
+    assert studio.session.plan is best.answer is page.plan and studio.session.is_current
+    assert client.asked == asked + len(planner_ids())
+    assert studio.session.wanted.task.planner_id == best.planner_id
 
 
 def test_refused_point_is_at_fault_and_the_last_plan_stays(ros, page, studio):
@@ -208,7 +229,7 @@ def test_point_that_is_dragged_in_motion_is_gone_to(ros, client, page, studio):
     driven = np.array(page.driven)
     turned = np.linalg.norm(driven - TABLE_6_1[1], axis=1).argmin()
     away = np.linalg.norm(driven[:turned] - TABLE_6_1[0], axis=1)
-    assert (np.diff(away) > 0.0).all()  # it did not go back
+    assert (np.maximum.accumulate(away) - away).max() < 0.2  # it did not go back
     assert page.errors.shape == (len(page.times), 3) and np.abs(page.errors).max() < 1e-3
 
 

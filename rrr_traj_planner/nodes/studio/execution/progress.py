@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 import re
 from time import monotonic
 
-from rrr_traj_planner.nodes.studio.ros_client import SentGoal
+from rrr_traj_planner.nodes.studio.sent_goal import SentGoal
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner_interfaces.action import MoveThrough
 

@@ -21,12 +21,14 @@ from collections.abc import Sequence
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.panel.arm import ArmFolder
+from rrr_traj_planner.nodes.studio.panel.comparison import ComparisonFolder
 from rrr_traj_planner.nodes.studio.panel.controls import Post
 from rrr_traj_planner.nodes.studio.panel.files import FilesFolder
 from rrr_traj_planner.nodes.studio.panel.motion import MotionFolder
 from rrr_traj_planner.nodes.studio.panel.plan import PlanFolder
 from rrr_traj_planner.nodes.studio.panel.points import PointsFolder
 from rrr_traj_planner.nodes.studio.panel.report import ReportButton
+from rrr_traj_planner.nodes.studio.panel.view import ViewFolder
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
@@ -56,9 +58,12 @@ class Panel:
         self._motion = MotionFolder(gui, planner_ids, wanted, model)
         self._arm = ArmFolder(gui, model.joint_names)
         self._plan = PlanFolder(gui, model.joint_names)
+        self._comparison = ComparisonFolder(gui)
+        self.view = ViewFolder(gui)
         self._report = ReportButton(gui)
         self.show_status, self.show_tracking = self._arm.show_status, self._arm.show_tracking
-        self.show_plan = self._plan.show
+        self.show_comparison = self._comparison.show
+        self.show_plan, self.show_time = self._plan.show, self._plan.show_time
 
     def connect(self, studio: Studio, post: Post) -> None:
         """
@@ -73,7 +78,7 @@ class Panel:
 
         """
         for folder in (self._files, self._points, self._motion, self._arm, self._plan,
-                       self._report):
+                       self._comparison, self._report):
             folder.connect(studio, post)
 
     def show_wanted(self, editor: Editor) -> None:

@@ -17,12 +17,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from html import escape
+from importlib.resources import files
 
 from rrr_traj_planner.nodes.studio.chart import Chart
 from rrr_traj_planner.nodes.studio.panel.controls import given, Post
 from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.studio import Studio
 import viser
+
+STEP = 0.001         # of the moment
+SCRIPT = 'moment.js'  # knows the title of the chart and the label of the slider
+
+# The legend tells of the joints alone; the chart can be clicked.
+STYLE = """<style>
+.uplot:has(> .u-title) .u-legend .u-series:nth-child(n+5) { display: none; }
+.uplot:has(> .u-title) .u-over { cursor: ew-resize; touch-action: none; }
+</style>"""
 
 
 class PlanFolder:
@@ -39,12 +50,15 @@ class PlanFolder:
     """
 
     def __init__(self, gui: viser.GuiApi, joint_names: Sequence[str]) -> None:
+        self._plan: Planned | None = None
         with gui.add_folder('Plan'):
             self._figures = gui.add_html('')
             self._chart = Chart(gui, joint_names)
             self._play = gui.add_checkbox('play', False, hint='the arm does the plan as a ghost')
-            self._moment = gui.add_slider('moment', 0.0, 1.0, 0.001, 0.0,
-                                          hint='of the motion, as a fraction of its duration')
+            self._moment = gui.add_slider(
+                'moment', 0.0, 1.0, STEP, 0.0,
+                hint='of the motion, as a fraction of its duration; or click in the chart')
+            gui.add_html(_script())
 
     def connect(self, studio: Studio, post: Post) -> None:
         """
@@ -77,6 +91,32 @@ class PlanFolder:
             HTML.
 
         """
-        self._figures.content = text
+        self._figures.content, self._plan = text, plan
         if plan is not None:
             self._chart.show(plan)
+
+    def show_time(self, time: float | None) -> None:
+        """
+        Show the moment at which the ghost is; called again and again.
+
+        Parameters
+        ----------
+        time : float, optional
+            Of the plan [s]; None: there is no ghost.
+
+        """
+        self._chart.show_time(time)
+        if time is not None and self._plan is not None and self._play.value:
+            share = time / self._plan.duration if self._plan.duration > 0.0 else 0.0
+            self._moment.value = round(share / STEP) * STEP
+
+
+def _script() -> str:
+    """
+    Return what brings clicks in the chart to the slider.
+
+    viser tells of no clicks in a chart, and takes no script; the handler of an image that cannot
+    be loaded is one.
+    """
+    code = files(__package__).joinpath(SCRIPT).read_text(encoding='utf-8')
+    return f'{STYLE}<img hidden alt="" src="data:," onerror="{escape(code)}">'
