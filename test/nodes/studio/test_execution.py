@@ -117,6 +117,14 @@ def test_point_that_is_passed_or_about_to_be_is_left_alone(arm):
     np.testing.assert_array_equal(arm.sent[1].places(), arm.wanted.points[3:])
 
 
+def test_last_point_is_gone_to_as_long_as_the_arm_moves(arm):
+    arm.sent[0].feedback(COUNT - 2, 0.1)
+    arm.drag(COUNT - 2, 1.2)
+    assert len(arm.sent) == 1
+    arm.drag(COUNT - 1, 1.2)
+    np.testing.assert_array_equal(arm.sent[1].places(), arm.wanted.points[-1:])
+
+
 def test_one_goal_is_on_its_way_and_of_the_others_the_newest_waits(arm):
     for height in (1.2, 1.21, 1.22):
         arm.drag(3, height)

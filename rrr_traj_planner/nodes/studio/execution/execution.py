@@ -158,7 +158,8 @@ class Execution:
         running, wanted = self._running, self._wanted
         if running is None or wanted is None or self._sent is not None or not self._dragged:
             return
-        first = running.first_after(LEADS * self._client.replanning_lead)
+        first = min(running.first_after(LEADS * self._client.replanning_lead),
+                    len(wanted.points) - 1)  # the last one is where the arm is to be in the end
         if max(self._dragged) >= first:
             self._send(rest_goal(wanted, first), wanted, first)
 
