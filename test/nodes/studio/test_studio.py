@@ -190,7 +190,7 @@ def test_second_run_goes_to_the_first_point_and_one_in_motion_takes_over(ros, pa
     page.wait(lambda p: any('tracking error' in text for text, _ in p.statuses))
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) > 0.05)
     ros.run(run_again)
-    assert TAKEN_OVER in page.statuses[-1][0]
+    assert any(TAKEN_OVER in text for text, _ in page.statuses)
     page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[2])) < REACHED)
     ros.run(run_again)
