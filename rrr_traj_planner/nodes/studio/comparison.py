@@ -80,6 +80,12 @@ class Comparison:
         """Return the planner whose answer is next; empty: all have answered."""
         return self._waiting[0] if self._waiting else ''
 
+    @property
+    def planned(self) -> tuple[str, ...]:
+        """Return whose plans of the via points as they are there are, if there are any."""
+        return tuple(row.planner_id for row in self.rows
+                     if self.is_current and isinstance(row.answer, Planned))
+
     def start(self, wanted: Wanted) -> None:
         """
         Begin, and forget the rows.

@@ -39,7 +39,7 @@ def report_page(wanted: Wanted, config: PlannerConfig, planner_ids: Sequence[str
     config : PlannerConfig
         The planner's.
     planner_ids : sequence of str
-        Planners to be compared; empty: the one that is wanted.
+        Planners to be shown beside the one that is wanted.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def report_page(wanted: Wanted, config: PlannerConfig, planner_ids: Sequence[str
         If matplotlib is missing.
 
     """
-    ids = planner_ids or [wanted.task.planner_id]
+    ids = list(dict.fromkeys((wanted.task.planner_id, *planner_ids)))
     task = Task(wanted.task.name, config.model, config.limits_for(*ids),
                 planning_request(request_of(wanted), config))
     with TemporaryDirectory() as folder:

@@ -44,7 +44,6 @@ PLAN_LINE, DRIVEN_LINE = 6.0, 2.0  # pixels
 COLUMNS = 28  # characters of a refusal's line beside its via point
 
 
-
 class Hands(Protocol):
     """What the user does with via points in the scene; any thread may call it."""
 

@@ -240,8 +240,8 @@ class Studio:
 
         """
         from rrr_traj_planner.nodes.studio.report_page import report_name, report_page
-        wanted = self.session.wanted
-        return report_name(wanted), report_page(wanted, self._asking.config)
+        wanted, compared = self.session.wanted, self.comparison.planned
+        return report_name(wanted), report_page(wanted, self._asking.config, compared)
 
     def _moved(self) -> None:
         self._joints = self._client.joints(self._model.joint_names).tolist()

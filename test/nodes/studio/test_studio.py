@@ -151,6 +151,8 @@ def test_planners_stand_side_by_side_and_one_is_taken(ros, client, page, studio)
     assert studio.session.plan is best.answer is page.plan and studio.session.is_current
     assert client.asked == asked + len(planner_ids())
     assert studio.session.wanted.task.planner_id == best.planner_id
+    ros.run(studio.editor.undo)
+    assert studio.session.wanted.task.planner_id == 'cycloid'
 
 
 def test_refused_point_is_at_fault_and_the_last_plan_stays(ros, page, studio):
