@@ -29,13 +29,15 @@ from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
 from rrr_traj_planner.planners.solver.limits import Limits
+from rrr_traj_planner.planners.solver.segment_steps import take_own_steps
 from rrr_traj_planner.planners.solver.splines import Variables
 from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
 # Chosen values, without unit.
 SCHEDULE = Schedule(rounds=20, tolerance=1e-3, patience=4, growth=2.0)
-EXCEEDED = 30.0  # slacks by which a centre may exceed tighter limits: more take many steps
+EXCEEDED = 30.0  # slacks by which a centre may exceed tighter limits: more take many steps;
+EXCEEDED_BY_SEGMENTS = 300.0  # more where only the segments that do so take them
 PARTS_OF_MARGINS = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)  # tried in turn where the whole is infeasible
 
 
@@ -139,7 +141,9 @@ class _Rounds:
         centres = self._outcomes[-1][0].centres
         if np.array_equal(self._margins.stays, before.stays):
             self._centres = self._centres + centres
-            self._start = _near(centres, former.problem, self._constraints.problem)
+            by_segments = take_own_steps(former.problem, problem.durations)
+            self._start = _near(centres, former.problem, self._constraints.problem,
+                                EXCEEDED_BY_SEGMENTS if by_segments else EXCEEDED)
             self._wider = former.problem.limits
         else:  # the solution is not near the former one
             self._centres = []
@@ -163,11 +167,11 @@ class _Rounds:
 
 
 def _near(centres: list[CentralPathPoint], former: TimingProblem,
-          tighter: TimingProblem) -> CentralPathPoint | None:
-    """Return the last centre that exceeds tighter limits by little, over its former slacks."""
+          tighter: TimingProblem, most: float) -> CentralPathPoint | None:
+    """Return the last centre that exceeds tighter limits by at most so many former slacks."""
     for centre in reversed(centres):
         slacks, before = (problem.slacks(centre.motion) for problem in (tighter, former))
-        if (slacks >= -EXCEEDED * before).all():
+        if (slacks >= -most * before).all():
             return centre
     return centres[0] if centres else None
 

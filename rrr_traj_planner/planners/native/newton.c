@@ -125,52 +125,46 @@ static int condense_decoupled(const Problem *p, const Scratch *s, int k, double 
     return 0;
 }
 
-/* Condense every segment to the states at its ends and its duration. */
-static int condense_segments(const Problem *p, const Scratch *s, const double *Q, const double *r,
-                             const double *r_T)
+/* Condense segment k to the states at its ends and its duration. Returns 1 where that fails. */
+static int condense(const Problem *p, const Scratch *s, int k, const double *Q, const double *r,
+                    const double *r_T)
 {
-    const double *T = variables_at(p, p->variables).T;
+    const double T = variables_at(p, p->variables).T[k];
     const int B = 2 * ORDERS * p->J, W = B + 1;
     const size_t states = points_of(p) * 4 * p->J;
-    for (int k = 0; k < p->N; ++k) {
-        double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
-        double *rows = s->rows + k * rows_size(p);
-        const double *z = p->states + k * states, *Qk = Q + k * hessian_size(p);
-        const int singular = is_decoupled(p)
-            ? condense_decoupled(p, s, k, T[k], z, Qk, r + k * states, S, right, rows)
-            : three_condense(p, k, T[k], z, Qk, r + k * states, S, right, (three_Rows *)rows);
-        if (singular)
-            return 1;
-        S[B * W + B] += p->hessian_T[k];
-        right[B] += r_T[k] + p->weights[k];
-    }
-    return 0;
+    double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
+    double *rows = s->rows + k * rows_size(p);
+    const double *z = p->states + k * states, *Qk = Q + k * hessian_size(p);
+    const int singular = is_decoupled(p)
+        ? condense_decoupled(p, s, k, T, z, Qk, r + k * states, S, right, rows)
+        : three_condense(p, k, T, z, Qk, r + k * states, S, right, (three_Rows *)rows);
+    S[B * W + B] += p->hessian_T[k];
+    right[B] += r_T[k] + p->weights[k];
+    return singular;
 }
 
-/* Eliminate the free durations; receives the derivatives by the factor common to the others. */
-static void eliminate_durations(const Problem *p, const Scratch *s, double *common_hessian,
-                                double *common_gradient)
+/* Eliminate a duration that is free; adds derivatives by the factor common to the others. */
+static void eliminate_duration(const Problem *p, const Scratch *s, int k, double *common_hessian,
+                               double *common_gradient)
 {
     const int B = 2 * ORDERS * p->J, W = B + 1;
-    *common_hessian = *common_gradient = 0.0;
-    for (int k = 0; k < p->N; ++k) {
-        double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
-        *common_hessian += p->proportions[k] * p->proportions[k] * S[B * W + B];
-        *common_gradient += p->proportions[k] * right[B];
-        if (!p->free[k] || S[B * W + B] == 0.0)
-            continue;
-        for (int i = 0; i < B; ++i) {
-            const double factor = S[i * W + B] / S[B * W + B];
-            for (int c = 0; c < B; ++c)
-                S[i * W + c] -= factor * S[B * W + c];
-            right[i] -= factor * right[B];
-        }
+    double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
+    *common_hessian += p->proportions[k] * p->proportions[k] * S[B * W + B];
+    *common_gradient += p->proportions[k] * right[B];
+    if (!p->free[k] || S[B * W + B] == 0.0)
+        return;
+    for (int i = 0; i < B; ++i) {
+        const double factor = S[i * W + B] / S[B * W + B];
+        for (int c = 0; c < B; ++c)
+            S[i * W + c] -= factor * S[B * W + c];
+        right[i] -= factor * right[B];
     }
 }
 
-/* The step of a segment's duration, from those of its border v0, a0, j0, v1, a1, j1. */
+/* The step of a segment's duration, from those of its border v0, a0, j0, v1, a1, j1, and the part
+ * that is taken of the step with these fixed. */
 static double duration_step(const Problem *p, const Scratch *s, int k, const double *border,
-                            double common)
+                            double common, double part)
 {
     const int B = 2 * ORDERS * p->J, W = B + 1;
     const double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
@@ -178,7 +172,7 @@ static double duration_step(const Problem *p, const Scratch *s, int k, const dou
         return p->proportions[k] * common;
     if (S[B * W + B] == 0.0)
         return 0.0;
-    double sum = right[B];
+    double sum = part * right[B];
     for (int i = 0; i < B; ++i)
         sum += S[B * W + i] * border[i];
     return -sum / S[B * W + B];
@@ -186,8 +180,8 @@ static double duration_step(const Problem *p, const Scratch *s, int k, const dou
 
 /* Back substitution in a segment whose coordinates are coupled through its duration only. */
 static void expand_decoupled(const Problem *p, const Scratch *s, int k, double T, const double *z,
-                             const double *border, double dT, const double *rows, double *inner,
-                             double *dz)
+                             const double *border, double dT, double part, const double *rows,
+                             double *inner, double *dz)
 {
     const int J = p->J, Z = 4 * J, n = p->n, P = 2 * n + 1;
     for (int j = 0; j < J; ++j) {
@@ -197,8 +191,8 @@ static void expand_decoupled(const Problem *p, const Scratch *s, int k, double T
         for (int i = 0; i < P; ++i)
             for (int a = 0; a < 4; ++a)
                 s->z[4 * i + a] = z[i * Z + a * J + j];
-        one_expand(p, k, T, s->z, own, dT, (const one_Rows *)(rows + j * one_rows_size(n)), s->inner,
-                   s->dz);
+        one_expand(p, k, T, s->z, own, dT, part, (const one_Rows *)(rows + j * one_rows_size(n)),
+                   s->inner, s->dz);
         for (int i = 0; i < n - 1; ++i)
             inner[i * J + j] = s->inner[i];
         for (int i = 0; i < P; ++i)
@@ -207,30 +201,40 @@ static void expand_decoupled(const Problem *p, const Scratch *s, int k, double T
     }
 }
 
-/* The steps of all durations, inner jerks and states, from those of the via points;
- * returns the predicted decrease. */
-static double expand_segments(const Problem *p, const Scratch *s, const double *r,
-                              const double *r_T, double common, Variables step, double *dz)
+/* The steps of a segment's duration, inner jerks and states, from those of the via points and the
+ * part that is taken of the step with these fixed; returns the predicted decrease. */
+static double expand(const Problem *p, const Scratch *s, int k, const double *r,
+                     const double *r_T, double common, double part, Variables step, double *dz)
 {
-    const double *T = variables_at(p, p->variables).T;
+    const double T = variables_at(p, p->variables).T[k];
     const int J = p->J;
     const size_t states = points_of(p) * 4 * J;
-    double decrease = 0.0;
-    for (int k = 0; k < p->N; ++k) {
-        const double *border = s->via_step + (size_t)k * ORDERS * J;  /* of both ends in a row */
-        const double *z = p->states + k * states, *rows = s->rows + k * rows_size(p);
-        const double *gradient = r + k * states;
-        double *to = dz + k * states, *inner = step.inner + (size_t)k * (p->n - 1) * J;
-        const double dT = step.T[k] = duration_step(p, s, k, border, common);
-        if (is_decoupled(p))
-            expand_decoupled(p, s, k, T[k], z, border, dT, rows, inner, to);
-        else
-            three_expand(p, k, T[k], z, border, dT, (const three_Rows *)rows, inner, to);
-        for (size_t i = 0; i < states; ++i)
-            decrease -= gradient[i] * to[i];
-        decrease -= (r_T[k] + p->weights[k]) * dT;
-    }
+    const double *border = s->via_step + (size_t)k * ORDERS * J;  /* of both ends in a row */
+    const double *z = p->states + k * states, *rows = s->rows + k * rows_size(p);
+    const double *gradient = r + k * states;
+    double *to = dz + k * states, *inner = step.inner + (size_t)k * (p->n - 1) * J;
+    const double dT = step.T[k] = duration_step(p, s, k, border, common, part);
+    double decrease = -(r_T[k] + p->weights[k]) * dT;
+    if (is_decoupled(p))
+        expand_decoupled(p, s, k, T, z, border, dT, part, rows, inner, to);
+    else
+        three_expand(p, k, T, z, border, dT, part, (const three_Rows *)rows, inner, to);
+    for (size_t i = 0; i < states; ++i)
+        decrease -= gradient[i] * to[i];
     return decrease;
+}
+
+/* Copy the steps at via points begin to end. */
+static void put_via_steps(const Problem *p, const Scratch *s, Range at, Variables step)
+{
+    const int J = p->J;
+    for (int k = at.begin; k <= at.end; ++k)
+        for (int j = 0; j < J; ++j) {
+            const double *own = s->via_step + (size_t)k * ORDERS * J + j;
+            step.v[k * J + j] = own[0];
+            step.a[k * J + j] = own[J];
+            step.j[k * J + j] = own[2 * J];
+        }
 }
 
 int newton_step(const Problem *p, const double *Q, const double *r, const double *r_T,
@@ -238,19 +242,48 @@ int newton_step(const Problem *p, const double *Q, const double *r, const double
 {
     const Variables step = variables_at(p, direction);
     const Scratch s = scratch_of(p);
-    double common_hessian, common_gradient;
-    if (condense_segments(p, &s, Q, r, r_T))
-        return 1;
-    eliminate_durations(p, &s, &common_hessian, &common_gradient);
-    const double common = solve_via_points(p, s.S, s.right, common_hessian, common_gradient,
-                                           s.via_step, s.band);
-    *predicted_decrease = expand_segments(p, &s, r, r_T, common, step, dz);
-    for (int k = 0; k <= p->N; ++k)
-        for (int j = 0; j < p->J; ++j) {
-            const double *own = s.via_step + (size_t)k * ORDERS * p->J + j;
-            step.v[k * p->J + j] = own[0];
-            step.a[k * p->J + j] = own[p->J];
-            step.j[k * p->J + j] = own[2 * p->J];
-        }
+    const Range all = {0, p->N};
+    double common_hessian = 0.0, common_gradient = 0.0, decrease = 0.0;
+    for (int k = 0; k < p->N; ++k) {
+        if (condense(p, &s, k, Q, r, r_T))
+            return 1;
+        eliminate_duration(p, &s, k, &common_hessian, &common_gradient);
+    }
+    const double common = solve_via_points(p, all, s.S, s.right, NULL, common_hessian,
+                                           common_gradient, s.via_step, s.band);
+    for (int k = 0; k < p->N; ++k)
+        decrease += expand(p, &s, k, r, r_T, common, 1.0, step, dz);
+    put_via_steps(p, &s, all, step);
+    *predicted_decrease = decrease;
     return 0;
+}
+
+int condense_segment(const Problem *p, int k)
+{
+    const Scratch s = scratch_of(p);
+    double hessian = 0.0, gradient = 0.0;
+    if (condense(p, &s, k, p->hessian, p->gradient, p->gradient_T))
+        return 1;
+    eliminate_duration(p, &s, k, &hessian, &gradient);
+    return 0;
+}
+
+void rest_ends(const Problem *p, Range at)
+{
+    const Scratch s = scratch_of(p);
+    const size_t half = ORDERS * p->J;
+    memset(s.via_step + at.begin * half, 0, half * sizeof(double));
+    memset(s.via_step + at.end * half, 0, half * sizeof(double));
+}
+
+void damped_step(const Problem *p, Range at, const double *damping, double *direction,
+                 double *decrease)
+{
+    const Variables step = variables_at(p, direction);
+    const Scratch s = scratch_of(p);
+    solve_via_points(p, at, s.S, s.right, damping, 0.0, 0.0, s.via_step, s.band);
+    for (int k = at.begin; k < at.end; ++k)
+        decrease[k] = expand(p, &s, k, p->gradient, p->gradient_T, 0.0, 1.0 / damping[k], step,
+                             p->step_states);
+    put_via_steps(p, &s, at, step);
 }

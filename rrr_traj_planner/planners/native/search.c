@@ -19,20 +19,25 @@
 #include <math.h>
 #include <string.h>
 
+double segment_cost(const Problem *p, Variables m, int k)
+{
+    const size_t size = (size_t)(p->n + 1) * p->J;
+    const double *weight = p->jerk_weights ? p->jerk_weights + k * size : NULL;
+    double sum = p->weights[k] * m.T[k];
+    for (int i = 0; i <= p->n && weight; ++i)
+        for (int j = 0; j < p->J; ++j, ++weight) {
+            const double jerk = jerks_at(p, m, k, i)[j];
+            sum += *weight * jerk * jerk;
+        }
+    return sum;
+}
+
 /* The objective: the weighted sum of durations and of squared jerks. */
 EXPORTED double timing_cost(const Problem *p, double *variables)
 {
-    const Variables m = variables_at(p, variables);
-    const double *weight = p->jerk_weights;
     double sum = 0.0;
-    for (int k = 0; k < p->N; ++k) {
-        sum += p->weights[k] * m.T[k];
-        for (int i = 0; i <= p->n && weight; ++i)
-            for (int j = 0; j < p->J; ++j, ++weight) {
-                const double jerk = jerks_at(p, m, k, i)[j];
-                sum += *weight * jerk * jerk;
-            }
-    }
+    for (int k = 0; k < p->N; ++k)
+        sum += segment_cost(p, variables_at(p, variables), k);
     return sum;
 }
 

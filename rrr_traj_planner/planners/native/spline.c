@@ -70,6 +70,12 @@ void motion_states(const Problem *p, Variables m, double *z)
     motion_samples(p->J, p->N, p->n, p->parts, p->points, m, (Samples){2, 1}, z);
 }
 
+void segment_states(const Problem *p, Variables m, int k, double *z)
+{
+    motion_samples(p->J, 1, p->n, p->parts + (size_t)k * p->n, p->points + (size_t)k * p->J,
+                   segment_of(p, m, k), (Samples){2, 1}, z);
+}
+
 void meet_points(int J, int N, int n, const double *parts, const double *points,
                  const double *shapes, Variables m)
 {
@@ -111,34 +117,55 @@ static void step_via(const Problem *p, int k, int o, const double *from, const d
     }
 }
 
+void step_segment(const Problem *p, Variables m, Variables step, double size, int k,
+                  Variables moved)
+{
+    const double rate = step.T[k] / m.T[k], slower = 1.0 + size * rate;
+    const size_t inner = (size_t)(p->n - 1) * p->J;
+    for (size_t i = k * inner; i < (k + 1) * inner; ++i)
+        moved.inner[i] = (m.inner[i] + size * (step.inner[i] + 3.0 * rate * m.inner[i]))
+            / (slower * slower * slower);
+}
+
+void step_via_point(const Problem *p, Variables m, Variables step, double size,
+                    const double *damping, int k, Variables moved)
+{
+    /* time scale at a via point: mean of both segments', the shorter one's counting more */
+    const int before = k > 0 ? k - 1 : 0, after = k < p->N ? k : p->N - 1;
+    double one = m.T[before] * m.T[before] * m.T[before];
+    double other = m.T[after] * m.T[after] * m.T[after];
+    if (damping) {
+        one *= damping[after];
+        other *= damping[before];
+    }
+    const double rate = (step.T[before] / m.T[before] * other
+                         + step.T[after] / m.T[after] * one) / (one + other);
+    step_via(p, k, 1, m.v, step.v, size, rate, moved.v);
+    step_via(p, k, 2, m.a, step.a, size, rate, moved.a);
+    step_via(p, k, 3, m.j, step.j, size, rate, moved.j);
+}
+
+void meet_segment(const Problem *p, Variables m, int k)
+{
+    meet_points(p->J, 1, p->n, p->parts + (size_t)k * p->n, p->points + (size_t)k * p->J,
+                p->restore + (size_t)k * (p->n - 1) * ORDERS, segment_of(p, m, k));
+}
+
 /* Take a step of the variables in normalised time: velocities times T, accelerations times T^2 and
  * jerks times T^3 change linearly with its size. Returns 0 where a duration would not be positive.
  */
 int step_motion(const Problem *p, Variables m, Variables step, double size, Variables moved)
 {
-    const int J = p->J, n = p->n, N = p->N;
+    const int N = p->N;
     for (int k = 0; k < N; ++k) {
         moved.T[k] = m.T[k] + size * step.T[k];
         if (!(moved.T[k] > 0.0))
             return 0;
     }
-    for (int k = 0; k < N; ++k) {
-        const double rate = step.T[k] / m.T[k], slower = 1.0 + size * rate;
-        for (size_t i = (size_t)k * (n - 1) * J; i < (size_t)(k + 1) * (n - 1) * J; ++i)
-            moved.inner[i] = (m.inner[i] + size * (step.inner[i] + 3.0 * rate * m.inner[i]))
-                / (slower * slower * slower);
-    }
-    for (int k = 0; k <= N; ++k) {
-        /* time scale at a via point: mean of both segments', the shorter one's counting more */
-        const int before = k > 0 ? k - 1 : 0, after = k < N ? k : N - 1;
-        const double one = m.T[before] * m.T[before] * m.T[before];
-        const double other = m.T[after] * m.T[after] * m.T[after];
-        const double rate = (step.T[before] / m.T[before] * other
-                             + step.T[after] / m.T[after] * one) / (one + other);
-        step_via(p, k, 1, m.v, step.v, size, rate, moved.v);
-        step_via(p, k, 2, m.a, step.a, size, rate, moved.a);
-        step_via(p, k, 3, m.j, step.j, size, rate, moved.j);
-    }
-    meet_points(J, N, n, p->parts, p->points, p->restore, moved);
+    for (int k = 0; k < N; ++k)
+        step_segment(p, m, step, size, k, moved);
+    for (int k = 0; k <= N; ++k)
+        step_via_point(p, m, step, size, NULL, k, moved);
+    meet_points(p->J, N, p->n, p->parts, p->points, p->restore, moved);
     return 1;
 }

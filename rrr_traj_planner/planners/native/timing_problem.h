@@ -31,6 +31,11 @@
 
 enum { MOST_JOINTS = 3, MOST_GENERAL = 12 };
 
+/* Multiplicity of a least duration's logarithm: one for each joint. Only motions of three joints
+ * have least durations (joint_timing/constraints.py); those along a path, of one coordinate, have
+ * none. */
+enum { DURATION_WEIGHT = 3 };
+
 /* Constraints of a segment are bounds on states, then general ones, each two-sided: slacks,
  * multipliers and shifts are (N, bounds + general, 2), upper and lower, then (N, 2) for least
  * durations. */
@@ -88,6 +93,9 @@ typedef struct {
     double suggested_size;  /* after a trial that violates a constraint, for the next one */
 } Step;
 
+/* A range of segments. */
+typedef struct { int begin, end; } Range;
+
 static inline size_t points_of(const Problem *p) { return 2 * (size_t)p->n + 1; }
 
 static inline int bounds_alone(const Problem *p) { return !p->arm && !p->table; }
@@ -138,7 +146,35 @@ int step_motion(const Problem *p, Variables m, Variables step, double size, Vari
 void path_at(const Problem *p, int segment, int point, const double *z, double *x,
              double *gradient, const double *weights, double *second);
 
-/* constraints.c */
+/* The same of segment k alone: unknowns that begin with its own; its states; its step, after those
+ * of the via points at its ends, of which one is taken by step_via_point. With damping (N), if not
+ * NULL, time at a via point is scaled rather as in the segment that is damped more. */
+static inline Variables segment_of(const Problem *p, Variables m, int k)
+{
+    const size_t via = (size_t)k * p->J;
+    return (Variables){m.inner + via * (p->n - 1), m.v + via, m.a + via, m.j + via, m.T + k};
+}
+
+void segment_states(const Problem *p, Variables m, int k, double *z);
+void step_segment(const Problem *p, Variables m, Variables step, double size, int k,
+                  Variables moved);
+void step_via_point(const Problem *p, Variables m, Variables step, double size,
+                    const double *damping, int k, Variables moved);
+void meet_segment(const Problem *p, Variables m, int k);
+
+/* search.c: a segment's part of the objective. */
+double segment_cost(const Problem *p, Variables m, int k);
+
+/* linearise.c: the bounds and general constraints of segment k, linearised. */
+void linearise_segment(const Problem *p, int k, double barrier);
+
+/* constraints.c; those of a segment alone are (bounds + general, 2), with its own states. */
+void segment_slacks(const Problem *p, int k, const double *z, double part, double *x,
+                    double *slack);
+void segment_rates(const Problem *p, int k, const double *dz, double part, double *rate);
+void general_constraints(const Problem *p, int k, int i, const double *z, double *x,
+                         double *gradient, const double *weights, double *second);
+double log_sum(const double *slack, size_t size);
 void slacks_at(const Problem *p, const double *T, const double *z, double part, double *x,
                double *slack);
 void slack_rates(const Problem *p, const double *dT, const double *dz, double *rate);
@@ -147,11 +183,13 @@ void weighted_gradient(const Problem *p, const double *weights, double *gradient
 double timing_log_sum(const Problem *p, const double *slack);
 
 /* via_points.c: from the condensed segments S (N, 6 J + 1, 6 J + 1) and right-hand sides r, the
- * steps of velocities, accelerations and jerks at the via points, (N + 1, 3 J), and, returned, that
- * of the factor common to the durations of fixed proportions. */
-double solve_via_points(const Problem *p, const double *S, const double *r,
-                        double common_hessian, double common_gradient, double *via_step,
-                        double *band);
+ * steps of velocities, accelerations and jerks at the via points, (N + 1, 3 J), of a range, and,
+ * returned, that of the factor common to the durations of fixed proportions. Within the motion, the
+ * steps at the range's ends are given. Each segment's S is multiplied by its damping (N), if not
+ * NULL. */
+double solve_via_points(const Problem *p, Range range, const double *S, const double *r,
+                        const double *damping, double common_hessian, double common_gradient,
+                        double *via_step, double *band);
 
 /* newton.c: the Newton step and the changes of the states along it, (N, P, Z); the predicted
  * decrease is minus the product of gradient and step. Returns 1 where the system is singular, else
@@ -159,5 +197,14 @@ double solve_via_points(const Problem *p, const double *S, const double *r,
 int newton_step(const Problem *p, const double *hessian, const double *gradient,
                 const double *gradient_T, double *direction, double *dz,
                 double *predicted_decrease);
+
+/* newton.c: Newton steps of a range of segments, for free durations: each segment condensed, which
+ * returns 1 where that fails; the steps at the range's ends set to zero; and the step, damped, with
+ * the changes of the states in step_states and each segment's predicted decrease, (N). The Hessian
+ * of each segment is multiplied by its damping (N), at least 1. */
+int condense_segment(const Problem *p, int k);
+void rest_ends(const Problem *p, Range at);
+void damped_step(const Problem *p, Range at, const double *damping, double *direction,
+                 double *decrease);
 
 #endif

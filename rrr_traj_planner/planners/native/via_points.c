@@ -27,28 +27,39 @@ static const double FIXED_PIVOT = 1e60;
  * Waechter & Biegler 2006, 3.1); chosen: from a slight change to twice the diagonal. */
 static const double REGULARISATION[] = {0.0, 1e-9, 1e-6, 1e-3, 1.0};
 
-/* The banded system of the via points, with two right-hand sides: the gradient, and the coupling to
- * the common factor. */
-static void assemble_via_points(const Problem *p, const double *S, const double *r, double *band,
+/* The banded system of the via points of a range, with two right-hand sides: the gradient, and the
+ * coupling to the common factor. Steps at the range's ends are given, unless the motion ends there.
+ */
+static void assemble_via_points(const Problem *p, Range range, const double *S, const double *r,
+                                const double *damping, const double *via_step, double *band,
                                 double *right)
 {
-    const int N = p->N, half = ORDERS * p->J, B = 2 * half, W = B + 1, w = 2 * half;
-    const size_t m = (size_t)(N + 1) * half;
+    const int half = ORDERS * p->J, B = 2 * half, W = B + 1, w = 2 * half;
+    const size_t m = (size_t)(range.end - range.begin + 1) * half;
     memset(band, 0, m * w * sizeof(double));
     memset(right, 0, 2 * m * sizeof(double));
-    for (int k = 0; k < N; ++k) {
+    for (int k = range.begin; k < range.end; ++k) {
         const double *own = S + (size_t)k * W * W, *own_r = r + (size_t)k * W;
+        const double *given = via_step + (size_t)k * half;
+        const double factor = damping ? damping[k] : 1.0;
+        const int from = k == range.begin && k > 0 ? 0 : half;
+        const int until = k == range.end - 1 && k < p->N - 1 ? B : half;
         for (int i = 0; i < B; ++i) {
-            const size_t at = (size_t)k * half + i;
+            const size_t at = (size_t)(k - range.begin) * half + i;
             for (int c = i; c < B; ++c)
-                band[at * w + c - i] += own[c * W + i];
+                band[at * w + c - i] += factor * own[c * W + i];
             right[2 * at] += own_r[i];
+            for (int c = from; c < until; ++c)
+                right[2 * at] += factor * own[i * W + c] * given[c];
             right[2 * at + 1] += p->proportions[k] * own[i * W + B];
         }
     }
-    for (size_t at = 0; at < m; ++at)
-        if (p->fixed[at])
+    for (size_t at = 0; at < m; ++at) {
+        const int k = range.begin + (int)(at / half);
+        const int given = (k == range.begin && k > 0) || (k == range.end && k < p->N);
+        if (given || p->fixed[(size_t)range.begin * half + at])
             band[at * w] = FIXED_PIVOT;
+    }
 }
 
 /* Solve a system of m unknowns, band and right-hand sides in a row, regularised as far as
@@ -71,15 +82,13 @@ static void solve_regularised(const double *band, double *solved, int m, int w)
             right[2 * c + s] /= fabs(band[(size_t)c * w]);
 }
 
-/* Solve for the steps of velocities, accelerations and jerks at the via points (N + 1, 3 J); returns
- * the step of the factor common to the durations of fixed proportions. */
-double solve_via_points(const Problem *p, const double *S, const double *r,
-                        double common_hessian, double common_gradient, double *via_step,
-                        double *band)
+double solve_via_points(const Problem *p, Range range, const double *S, const double *r,
+                        const double *damping, double common_hessian, double common_gradient,
+                        double *via_step, double *band)
 {
-    const int half = ORDERS * p->J, m = (p->N + 1) * half, w = 2 * half;
+    const int half = ORDERS * p->J, m = (range.end - range.begin + 1) * half, w = 2 * half;
     double *right = band + (size_t)m * w, *solved = right + 2 * m;
-    assemble_via_points(p, S, r, band, right);
+    assemble_via_points(p, range, S, r, damping, via_step, band, right);
     solve_regularised(band, solved, m, w);
     const double *x = solved + (size_t)m * w;
     double by_r = 0.0, by_common = 0.0, common = 0.0;
@@ -89,7 +98,8 @@ double solve_via_points(const Problem *p, const double *S, const double *r,
     }
     if (common_hessian != 0.0)
         common = -(common_gradient - by_r) / (common_hessian - by_common);
-    for (int c = 0; c < m; ++c)
-        via_step[c] = -(x[2 * c] + x[2 * c + 1] * common);
+    const int first = range.begin > 0 ? half : 0, end = range.end < p->N ? m - half : m;
+    for (int c = first; c < end; ++c)
+        via_step[(size_t)range.begin * half + c] = -(x[2 * c] + x[2 * c + 1] * common);
     return common;
 }

@@ -43,6 +43,7 @@ from rrr_traj_planner.planners.solver.line_search import (
     predicted_decrease_of,
     TO_BOUNDARY,
 )
+from rrr_traj_planner.planners.solver.segment_steps import SegmentSteps, take_own_steps
 from rrr_traj_planner.planners.solver.splines import Variables
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
@@ -112,7 +113,7 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
 
     """
     problem.begin(start.motion, durations)
-    run = _Run(problem, start.barrier, wider)
+    run = _Run(problem, start.barrier, wider, take_own_steps(problem, durations))
     for _ in range(most_iterations):
         if should_stop():
             break
@@ -125,8 +126,8 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
 class _Run:
     """The iterates of one problem, and the best motion so far."""
 
-    def __init__(self, problem: TimingProblem, barrier: float | None,
-                 wider: Limits | None) -> None:
+    def __init__(self, problem: TimingProblem, barrier: float | None, wider: Limits | None,
+                 by_segments: bool) -> None:
         self._problem, self._address = problem, problem.address
         self._count = KERNELS.timing_constraint_count(problem.address)
         self._cost = self._best_cost = KERNELS.timing_cost(
@@ -143,10 +144,33 @@ class _Run:
         self._log = math.nan            # of the iterate's slacks, summed; not known yet
         self._predicted_decrease = math.inf  # of the merit function, by the last step
         self._moved = True
+        self._segments = SegmentSteps(
+            problem, DUAL_CORRIDOR, SMALL_SHIFT) if by_segments else None
         self.ended = False
 
     def iterate(self) -> None:
-        """Take one Newton step, as far as the line search allows; `ended` if there is none."""
+        """Take one Newton step, as far as slacks and merit allow; `ended` if there is none."""
+        if self._segments is None or not self._step_segments(self._segments):
+            self._step_whole()
+
+    def _step_segments(self, segments: SegmentSteps) -> bool:
+        """Take a step that each segment shortens for itself; return whether there is one."""
+        problem, shifted = self._problem, self._problem.shifted
+        if math.isnan(self._log):
+            self._log = segments.log_sum()
+        if not segments.take(problem.steps[-1], self._barrier):
+            segments.activate_all()
+            self._log = math.nan
+            return False
+        found = segments.structure
+        self._cost, self._log, self._moved = found.cost, found.total_log, True
+        self._predicted_decrease = found.predicted_decrease
+        self._keep_if_best(shifted)
+        if not shifted:
+            self._note_merit(found.damped_decrease)
+        return True
+
+    def _step_whole(self) -> None:
         problem, address = self._problem, self._address
         KERNELS.timing_linearise(address, self._barrier)
         reducing_shifts = problem.shifted
@@ -165,15 +189,22 @@ class _Run:
         if self._moved:
             self._cost = step.structure.cost
             self._log = math.nan if reducing_shifts else step.structure.log
-            if not problem.shifted and (reducing_shifts or self._cost < self._best_cost):
-                self._best, self._best_cost = problem.arrays['variables'].copy(), self._cost
+            self._keep_if_best(reducing_shifts)
         self._predicted_decrease = step.structure.predicted_decrease
         if reducing_shifts:
             self.ended = not self._moved
             return
+        self._note_merit(size * self._predicted_decrease)
+
+    def _keep_if_best(self, shifted_before: bool) -> None:
+        if not self._problem.shifted and (shifted_before or self._cost < self._best_cost):
+            self._best, self._best_cost = self._problem.arrays['variables'].copy(), self._cost
+
+    def _note_merit(self, decrease: float) -> None:
+        """Note the merit after a step that decreases it, to first order."""
         self._merits.append(self._merit())
         # predicted decrease at this barrier, plus the duality gap of its centre
-        self._gap = min(self._gap, self._predicted_decrease * (1.0 - 0.5 * size)
+        self._gap = min(self._gap, self._predicted_decrease - 0.5 * decrease
                         + self._count * self._barrier)
 
     def converged(self, least_barrier: float, relative_gap: float) -> bool:
@@ -190,6 +221,8 @@ class _Run:
         if self._barrier <= least_barrier or complementarity < relative_gap * self._cost:
             return True
         self._barrier, self._merits = self._barrier * BARRIER_REDUCTION, []
+        if self._segments is not None:
+            self._segments.activate_all()
         return False
 
     def outcome(self) -> Outcome:

@@ -1,0 +1,177 @@
+// Copyright 2026 rrr_traj_planner developers
+//
+// Licensed under the Apache License, Version 2.0 (the "License");
+// you may not use this file except in compliance with the License.
+// You may obtain a copy of the License at
+//
+//     http://www.apache.org/licenses/LICENSE-2.0
+//
+// Unless required by applicable law or agreed to in writing, software
+// distributed under the License is distributed on an "AS IS" BASIS,
+// WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+// See the License for the specific language governing permissions and
+// limitations under the License.
+
+/* The steps of segment_steps.h: Newton's, shortened where it has to be, and accepted. */
+#include "segment_steps.h"
+
+#include <math.h>
+
+/* Segments on either side of one that changes, whose steps then change too;
+ * and beside one that is not centred, which take a step with it. Chosen. */
+enum { HALO = 2, BESIDE = 1 };
+
+/* For solver/segment_steps.py, which compares them. */
+EXPORTED const int64_t size_of_segment_rules = sizeof(Rules), size_of_segments = sizeof(Segments);
+
+double decrement_of(const Problem *p, int k, const double *rate)
+{
+    double sum = 0.0;
+    for (size_t i = k * count_of(p); i < (k + 1) * count_of(p); ++i)
+        sum += p->dual[i] * p->inverse[i] * rate[i] * rate[i];
+    return sum;
+}
+
+/* Linearise and condense the active segments, and compute their Newton step, with its slacks'
+ * derivatives. Returns 1 where that fails. */
+static int newton(const Problem *p, Step *s, Segments *l, double barrier)
+{
+    l->predicted_decrease = 0.0;
+    FOR_SEGMENTS(k, p, l->active) {
+        linearise_segment(p, k, barrier);
+        l->damping[k] = 1.0;
+        if (condense_segment(p, k))
+            return 1;
+    }
+    FOR_RANGES(at, p, l->active) {
+        rest_ends(p, at);
+        damped_step(p, at, l->damping, s->direction, l->decrease);
+    }
+    for (int k = 0; k < p->N; ++k) {
+        double *rate = s->rate + k * count_of(p);
+        if (l->active[k]) {
+            segment_rates(p, k, p->step_states + (size_t)k * points_of(p) * 4 * p->J, 1.0, rate);
+            l->decrement[k] = decrement_of(p, k, s->rate);
+        }
+        l->predicted_decrease += l->active[k] ? l->decrease[k] : l->decrement[k];
+    }
+    return !isfinite(l->predicted_decrease);
+}
+
+/* Compute the step again around changed segments. */
+static void step_again(const Problem *p, Step *s, Segments *l, double *rate)
+{
+    mark_around(p, l->changed, l->active, HALO, l->marked);
+    FOR_RANGES(at, p, l->marked)
+        damped_step(p, at, l->damping, s->direction, l->decrease);
+    FOR_SEGMENTS(k, p, l->marked) {
+        segment_rates(p, k, p->step_states + (size_t)k * points_of(p) * 4 * p->J,
+                      1.0 / l->damping[k], rate + k * count_of(p));
+        l->untried[k] = 1;
+    }
+}
+
+/* Accept a segment's slacks, and update its multipliers as timing_accept does those of all. */
+static void accept_segment(const Problem *p, const Rules *rules, const Step *s, int k,
+                           double barrier)
+{
+    double *change = p->trial_slack, worst = 0.0;
+    const size_t begin = k * count_of(p), end = begin + count_of(p);
+    for (size_t i = begin; i < end; ++i) {
+        change[i] = (barrier - p->dual[i] * s->rate[i]) * p->inverse[i] - p->dual[i];
+        if (-change[i] > worst * p->dual[i])
+            worst = -change[i] / p->dual[i];
+    }
+    const double size = worst > rules->to_boundary ? rules->to_boundary / worst : 1.0;
+    for (size_t i = begin; i < end; ++i) {
+        const double central = barrier / s->slack[i];
+        p->dual[i] = fmax(central / rules->corridor,
+                          fmin(central * rules->corridor, p->dual[i] + size * change[i]));
+        p->slack[i] = s->slack[i];
+    }
+}
+
+/* Reduce a segment's shifts by its part of the step; returns whether any is left. */
+static int reduce_shifts(const Problem *p, const Rules *rules, const Segments *l, int k)
+{
+    int left = 0;
+    for (size_t i = k * count_of(p); i < (k + 1) * count_of(p) && p->shifted; ++i) {
+        if (!(p->shift[i] > 0.0))
+            continue;
+        p->shift[i] *= 1.0 - 1.0 / l->damping[k];
+        if (p->shift[i] > rules->small_shift * p->slack[i]) {
+            left = 1;
+        } else {
+            p->slack[i] -= p->shift[i];
+            p->shift[i] = 0.0;
+        }
+    }
+    return left;
+}
+
+/* Accept the step, and choose the segments that take the next one: all, if none needs it. */
+static void accept(Problem *p, const Rules *rules, const Step *s, Segments *l, double barrier)
+{
+    int shifted = 0;
+    const double least = rules->centred * barrier * count_of(p);
+    memset(l->changed, 0, p->N);
+    FOR_SEGMENTS(k, p, l->active) {
+        accept_segment(p, rules, s, k, barrier);
+        const int left = reduce_shifts(p, rules, l, k);
+        l->log[k] = log_sum(p->slack + k * count_of(p), count_of(p));
+        l->changed[k] = left || l->decrement[k] > least;
+        shifted |= left;
+    }
+    p->shifted = shifted;
+    memcpy(p->variables, s->variables, variables_size(p) * sizeof(double));
+    mark_around(p, l->changed, NULL, BESIDE, l->active);
+    if (!any(p, l->active))
+        memset(l->active, 1, p->N);
+    l->total_log = 0.0;
+    l->cost = 0.0;
+    for (int k = 0; k < p->N; ++k) {
+        l->total_log += l->log[k];
+        l->cost += segment_cost(p, variables_at(p, p->variables), k);
+    }
+}
+
+/* The sums of the slacks' logarithms, of which that of all is returned. */
+EXPORTED double segments_log_sum(const Problem *p, Segments *l)
+{
+    l->total_log = 0.0;
+    for (int k = 0; k < p->N; ++k)
+        l->total_log += l->log[k] = log_sum(p->slack + k * count_of(p), count_of(p));
+    return l->total_log;
+}
+
+/* Shorten the step until it is acceptable; returns whether that succeeds. */
+static int shorten(const Problem *p, const Rules *rules, Step *s, Segments *l, double barrier,
+                   double *rate)
+{
+    memcpy(l->marked, l->active, p->N);
+    memcpy(l->untried, l->active, p->N);
+    for (int round = 0; round < rules->rounds; ++round) {
+        if (!fall_too_fast(p, rules, l, rate) && !are_too_short(p, s, l)
+            && !fall_too_far(p, rules, s, l, rate)
+            && !decreases_too_little(p, rules, s, l, barrier, rate))
+            return 1;
+        step_again(p, s, l, rate);
+    }
+    return 0;
+}
+
+/* Take a step. Returns 0 where none is acceptable. */
+EXPORTED int32_t segments_step(Problem *p, Step *s, Segments *l, const Rules *rules,
+                               double barrier)
+{
+    double *rate = p->trial_slack;  /* of the step that is taken; the multipliers' is Newton's */
+    if (newton(p, s, l, barrier))
+        return 0;
+    memcpy(s->variables, p->variables, variables_size(p) * sizeof(double));
+    FOR_SEGMENTS(k, p, l->active)
+        memcpy(rate + k * count_of(p), s->rate + k * count_of(p), count_of(p) * sizeof(double));
+    if (!shorten(p, rules, s, l, barrier, rate))
+        return 0;
+    accept(p, rules, s, l, barrier);
+    return 1;
+}
