@@ -90,7 +90,7 @@ def _remeshed(problem: JointProblem, outcome: Outcome) -> tuple[JointProblem, Va
     task, durations = problem.task, problem.durations
     mesh, motion = refined(problem.mesh, task.points, outcome.motion, task.limits.max_jerk,
                            task.least_jerk_rise)
-    found = _slower(problem, outcome.motion, mesh, motion) if durations.may_scale else None
+    found = slower_on(problem, outcome.motion, mesh, motion) if durations.may_scale else None
     if found is not None:
         return found
     remeshed = replace(problem, mesh=mesh)
@@ -102,12 +102,27 @@ def _remeshed(problem: JointProblem, outcome: Outcome) -> tuple[JointProblem, Va
     return None if first is None else (remeshed, first)
 
 
-def _slower(problem: JointProblem, before: Variables, mesh: Mesh,
-            motion: Variables) -> tuple[JointProblem, Variables] | None:
+def slower_on(problem: JointProblem, before: Variables, mesh: Mesh,
+              motion: Variables) -> tuple[JointProblem, Variables] | None:
     """
     Return the problem on another mesh, and a motion slowed until it is within the limits.
 
-    A few segments may keep their mesh, and with it the motion before.
+    Parameters
+    ----------
+    problem : JointProblem
+        With durations that may be scaled.
+    before : Variables
+        A motion within its limits.
+    mesh : Mesh
+        The other one, of which a few segments, KEPT, may keep theirs and the motion before.
+    motion : Variables
+        The same on that, which may exceed limits.
+
+    Returns
+    -------
+    tuple of JointProblem and Variables, or None
+        None where no slower motion is within the limits.
+
     """
     N = len(problem.durations.free)
     whole, margins = replace(problem, mesh=mesh), Margins.none(mesh, N)
@@ -116,6 +131,8 @@ def _slower(problem: JointProblem, before: Variables, mesh: Mesh,
         slower = time_scaled(motion, factor)
         if constraints.is_within(slower):
             return whole, slower
+        if KEPT * N < 1.0:
+            continue
         by_segment = constraints.problem.slacks(slower)[:-2 * N].reshape(N, -1)
         kept = by_segment.min(axis=1, initial=np.inf) <= 0.0
         if np.count_nonzero(kept) > KEPT * N:

@@ -1,0 +1,158 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""Steps that each segment of a long motion shortens for itself."""
+
+from helpers.solving import never, solve
+from helpers.spline_cases import all_free, FREE, random_motion, slow_start
+import numpy as np
+import pytest
+from rrr_traj_planner.planners.solver import segment_steps
+from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, minimise
+from rrr_traj_planner.planners.solver.library import KERNELS
+from rrr_traj_planner.planners.solver.segment_steps import SegmentSteps, take_own_steps
+
+LONG = 40  # segments
+SEEDS = range(3)
+CORRIDOR, SMALL = 1e6, 0.5
+CENTRE = 0.1   # a barrier parameter at which slacks are large
+BESIDE = 1.05 * CENTRE
+
+
+def long_motion(seed):
+    mesh, points, _ = random_motion(seed, n=10, segments=LONG)
+    return mesh, points
+
+
+def centred(seed, barrier):
+    """Return a problem and its motion near the central path."""
+    constraints, m = slow_start(FREE, *long_motion(seed))
+    return constraints.problem, minimise(
+        constraints.problem, CentralPathPoint(m, barrier), all_free(LONG), never,
+        least_barrier=barrier).centres[-1].motion
+
+
+def at_start(seed, barrier):
+    """Return a problem at its slow start, and the steps from there."""
+    constraints, m = slow_start(FREE, *long_motion(seed))
+    return begun(constraints.problem, m, barrier)
+
+
+def begun(problem, m, barrier):
+    """Return a problem at a motion, its multipliers those of the central path, and the steps."""
+    problem.begin(m, all_free(LONG))
+    addresses = problem.arrays.addresses
+    KERNELS.timing_slacks(problem.address, addresses['variables'], addresses['slack'])
+    KERNELS.timing_central_duals(problem.address, barrier)
+    return problem, SegmentSteps(problem, CORRIDOR, SMALL)
+
+
+def merit(problem, barrier):
+    slacks = problem.slacks(problem.motion(problem.arrays['variables'].copy()))
+    cost = KERNELS.timing_cost(problem.address, problem.arrays.addresses['variables'])
+    return cost - barrier * np.log(slacks[:-2 * LONG]).sum()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_the_motion_is_as_fast_as_with_steps_of_the_whole(seed, monkeypatch):
+    own = solve(FREE, *long_motion(seed))[3]
+    monkeypatch.setattr(segment_steps, 'FEWEST', 10 ** 6)
+    whole = solve(FREE, *long_motion(seed))[3]
+    assert own.converged
+    assert own.motion.T.sum() <= 1.002 * whole.motion.T.sum()
+    assert whole.motion.T.sum() >= own.motion.T.sum() - own.gap
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_every_iterate_is_strictly_feasible_and_through_the_via_points(seed):
+    mesh, points = long_motion(seed)
+    problem, _, seen, _ = solve(FREE, mesh, points)
+    assert take_own_steps(problem, all_free(LONG))
+    assert len(seen) > 5
+    for m in seen:
+        assert problem.is_within(m)
+        at = mesh.states(points, m)
+        assert at.q[:, mesh.n] == pytest.approx(points[1:], abs=1e-10)
+        assert at.qd[:, mesh.n] == pytest.approx(m.v[1:], abs=1e-9)
+        assert at.qdd[:, mesh.n] == pytest.approx(m.a[1:], abs=1e-8)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_the_merit_decreases_with_every_step(seed):
+    barrier = 1e-3
+    problem, steps = at_start(seed, barrier)
+    before = merit(problem, barrier)
+    for _ in range(8):
+        steps.log_sum()
+        assert steps.take(problem.steps[-1], barrier)
+        after = merit(problem, barrier)
+        assert after < before
+        assert steps.structure.cost - barrier * steps.structure.total_log == pytest.approx(after)
+        before = after
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_the_step_before_damping_is_newtons(seed):
+    problem, steps = at_start(seed, 1e-3)
+    KERNELS.timing_linearise(problem.address, 1e-3)
+    *_, newton, own = problem.steps
+    assert KERNELS.timing_newton(problem.address, 0, newton.address)
+    steps.log_sum()
+    assert steps.take(own, 1e-3)
+    rates = [problem.arrays[f'rate {k}'][:-2 * LONG] for k in (2, 3)]
+    assert rates[1] == pytest.approx(rates[0], rel=1e-6, abs=1e-9)
+    assert steps.structure.predicted_decrease == pytest.approx(
+        newton.structure.predicted_decrease, rel=1e-6)
+
+
+def test_segments_that_rest_do_not_move():
+    problem, steps = at_start(0, 1e-3)
+    before = problem.motion(problem.arrays['variables'].copy())
+    steps.log_sum()
+    steps.active[:] = 0
+    steps.active[10:14] = 1
+    assert steps.take(problem.steps[-1], 1e-3)
+    after = problem.motion(problem.arrays['variables'].copy())
+    moves = np.arange(LONG)[(after.inner != before.inner).any(axis=(1, 2))]
+    assert moves.tolist() == np.flatnonzero(after.T != before.T).tolist() == [10, 11, 12, 13]
+    assert np.flatnonzero((after.v != before.v).any(axis=1)).tolist() == [11, 12, 13]
+    assert problem.is_within(after)
+
+
+def test_what_needs_a_short_step_does_not_shorten_the_others():
+    problem, steps = begun(*centred(0, CENTRE), BESIDE)
+    per_segment = problem.arrays['dual'][:-2 * LONG].reshape(LONG, -1)
+    per_segment[20] *= 1e-3  # its slacks hardly resist the step
+    KERNELS.timing_linearise(problem.address, BESIDE)
+    *_, newton, own = problem.steps
+    assert KERNELS.timing_newton(problem.address, 0, newton.address)
+    assert newton.structure.max_relative_slack_decrease > 10.0
+    steps.log_sum()
+    before = problem.motion(problem.arrays['variables'].copy())
+    assert steps.take(own, BESIDE)
+    after = problem.motion(problem.arrays['variables'].copy())
+    part = (after.T - before.T) / problem.motion(problem.arrays['direction 2']).T
+    far = np.abs(np.arange(LONG) - 20) > 8
+    assert abs(part[20]) < 0.1
+    assert np.median(part[far]) == pytest.approx(1.0)
+
+
+def test_short_motions_torque_and_fixed_durations_take_whole_steps():
+    mesh, points = long_motion(0)
+    problem = slow_start(FREE, mesh, points)[0].problem
+    assert take_own_steps(problem, all_free(LONG))
+    fixed = all_free(LONG)._replace(free=np.arange(LONG) > 0)
+    assert not take_own_steps(problem, fixed)
+    mesh, points, _ = random_motion(0, n=10, segments=5)
+    assert not take_own_steps(slow_start(FREE, mesh, points)[0].problem, all_free(5))
