@@ -33,6 +33,9 @@ from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 
 LARGER = 1.2                # enlargement of a margin, over the excess; chosen
+# Enlargement of positions' margins besides [rad]: in long motions some segment's last 1e-6 rad
+# took round after round. Chosen.
+MORE = 1e-5
 MOST_MARGIN = 0.1           # part of a limit on velocity or acceleration; chosen
 
 
@@ -159,7 +162,7 @@ class Margins(NamedTuple):
         distance = np.full((2, 1, 1, 1), np.inf) if q is None else np.stack(
             (task.limits.max_position - q, q - task.limits.min_position))
         needed = self.positions.max(axis=2) + LARGER * beyond
-        target = np.where((beyond > 0.0)[:, :, np.newaxis], needed[:, :, np.newaxis],
+        target = np.where((beyond > 0.0)[:, :, np.newaxis], needed[:, :, np.newaxis] + MORE,
                           self.positions)
         positions = np.minimum(target, np.maximum(0.5 * distance, 0.0))
         ends = np.stack((task.points[:-1], task.points[1:]))
