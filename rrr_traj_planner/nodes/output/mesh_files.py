@@ -108,8 +108,8 @@ def meshes(name: str, scale: Sequence[float], folder: Path) -> list[Mesh]:
         If the file is missing, malformed, of an unknown format or without triangles.
 
     """
-    import trimesh  # comes with viser
     file = mesh_file(name, folder)
+    import trimesh  # comes with viser
     try:
         found = trimesh.load_scene(file, process=False).dump()
     except Exception as error:  # the loaders of many formats raise anything

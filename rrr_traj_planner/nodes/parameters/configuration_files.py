@@ -56,7 +56,8 @@ def found_file(name: str, folder: Path) -> Path:
             raise InvalidInputError(f"'{name}' is a folder, must be a file")
     ending = Path(name).suffix if Path(name).suffix in SHIPPED else SHIPPED[0]
     names = sorted(p.name for place in shipped for p in place.glob(f'*{ending}'))
-    near = get_close_matches(Path(name).name, names)
+    near = [f'{stem}{ending}' for stem in get_close_matches(
+        Path(name).stem, [Path(n).stem for n in names])]
     raise InvalidInputError(f"no file '{name}' in {folder}, nor among the package's" + (
         f'; {did_you_mean(*near)}' if near else f': {", ".join(names)}'))
 
