@@ -23,6 +23,7 @@ from rrr_traj_planner.core.arm.compiled_arm import _Arm
 from rrr_traj_planner.core.kernels import declared, load, same_size_as
 from rrr_traj_planner.core.kinematics.common_normal import CommonNormal
 from rrr_traj_planner.core.simulation.time_step import Load
+from rrr_traj_planner.planners.solver.segment_steps import _Rules, _Segments
 from rrr_traj_planner.planners.solver.timing_problem import _Problem, _Step
 from rrr_traj_planner.planners.solver.via_barrier import _ViaProblem
 from rrr_traj_planner.planners.transitions.local_steps import _LocalRules
@@ -30,7 +31,8 @@ from rrr_traj_planner.planners.transitions.local_steps import _LocalRules
 SOURCES = [path for layer in ('core', 'planners')
            for path in sorted((ROOT / 'rrr_traj_planner' / layer / 'native').glob('*.[ch]'))]
 REPEATED = {'arm': _Arm, 'common_normal': CommonNormal, 'load': Load, 'local_rules': _LocalRules,
-            'problem': _Problem, 'step': _Step, 'via_problem': _ViaProblem}
+            'problem': _Problem, 'segment_rules': _Rules, 'segments': _Segments, 'step': _Step,
+            'via_problem': _ViaProblem}
 C_TYPES = {'int32_t': 'c_int', 'double': 'c_double', 'Ramp': '_Ramp'}
 
 

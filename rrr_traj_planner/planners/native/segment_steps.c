@@ -22,7 +22,8 @@
 enum { HALO = 2, BESIDE = 1 };
 
 /* For solver/segment_steps.py, which compares them. */
-EXPORTED const int64_t size_of_segment_rules = sizeof(Rules), size_of_segments = sizeof(Segments);
+EXPORTED const int64_t size_of_segment_rules = sizeof(SegmentRules);
+EXPORTED const int64_t size_of_segments = sizeof(Segments);
 
 double decrement_of(const Problem *p, int k, const double *rate)
 {
@@ -72,7 +73,7 @@ static void step_again(const Problem *p, Step *s, Segments *l, double *rate)
 }
 
 /* Accept a segment's slacks, and update its multipliers as timing_accept does those of all. */
-static void accept_segment(const Problem *p, const Rules *rules, const Step *s, int k,
+static void accept_segment(const Problem *p, const SegmentRules *rules, const Step *s, int k,
                            double barrier)
 {
     double *change = p->trial_slack, worst = 0.0;
@@ -92,7 +93,7 @@ static void accept_segment(const Problem *p, const Rules *rules, const Step *s, 
 }
 
 /* Reduce a segment's shifts by its part of the step; returns whether any is left. */
-static int reduce_shifts(const Problem *p, const Rules *rules, const Segments *l, int k)
+static int reduce_shifts(const Problem *p, const SegmentRules *rules, const Segments *l, int k)
 {
     int left = 0;
     for (size_t i = k * count_of(p); i < (k + 1) * count_of(p) && p->shifted; ++i) {
@@ -110,7 +111,8 @@ static int reduce_shifts(const Problem *p, const Rules *rules, const Segments *l
 }
 
 /* Accept the step, and choose the segments that take the next one: all, if none needs it. */
-static void accept(Problem *p, const Rules *rules, const Step *s, Segments *l, double barrier)
+static void accept(Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
+                   double barrier)
 {
     int shifted = 0;
     const double least = rules->centred * barrier * count_of(p);
@@ -145,7 +147,8 @@ EXPORTED double segments_log_sum(const Problem *p, Segments *l)
 }
 
 /* Shorten the step until it is acceptable; returns whether that succeeds. */
-static int shorten(const Problem *p, const Rules *rules, Step *s, Segments *l, double barrier,
+static int shorten(const Problem *p, const SegmentRules *rules, Step *s, Segments *l,
+                   double barrier,
                    double *rate)
 {
     memcpy(l->marked, l->active, p->N);
@@ -161,7 +164,7 @@ static int shorten(const Problem *p, const Rules *rules, Step *s, Segments *l, d
 }
 
 /* Take a step. Returns 0 where none is acceptable. */
-EXPORTED int32_t segments_step(Problem *p, Step *s, Segments *l, const Rules *rules,
+EXPORTED int32_t segments_step(Problem *p, Step *s, Segments *l, const SegmentRules *rules,
                                double barrier)
 {
     double *rate = p->trial_slack;  /* of the step that is taken; the multipliers' is Newton's */

@@ -35,7 +35,7 @@ typedef struct {
     double centred;             /* decrement squared up to which a segment rests, over its count */
     double corridor, small_shift;
     int32_t rounds;             /* of damping, at most */
-} Rules;
+} SegmentRules;
 
 /* The segments' arrays, (N) each, and what a step has brought. */
 typedef struct {
@@ -69,7 +69,8 @@ static inline Range next_range(const Problem *p, const uint8_t *in, int from)
 #define FOR_SEGMENTS(k, p, in) for (int k = 0; k < (p)->N; ++k) if (in[k])
 
 /* Mark what is in an array, and halo segments on either side of it that are active. */
-static inline void mark_around(const Problem *p, const uint8_t *in, const uint8_t *active, int halo,
+static inline void mark_around(const Problem *p, const uint8_t *in, const uint8_t *active,
+                               int halo,
                         uint8_t *marked)
 {
     memset(marked, 0, p->N);
@@ -94,11 +95,11 @@ double decrement_of(const Problem *p, int k, const double *rate);
 /* segment_trials.c: whether a step is not acceptable, by the derivatives of the marked segments'
  * slacks; by the durations, and by the slacks, of the segments that have not been tried; by the
  * merit. Where it is not, segments are damped, and marked as changed. */
-int fall_too_fast(const Problem *p, const Rules *rules, Segments *l, const double *rate);
+int fall_too_fast(const Problem *p, const SegmentRules *rules, Segments *l, const double *rate);
 int are_too_short(const Problem *p, const Step *s, Segments *l);
-int fall_too_far(const Problem *p, const Rules *rules, const Step *s, Segments *l,
+int fall_too_far(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
                  const double *rate);
-int decreases_too_little(const Problem *p, const Rules *rules, const Step *s, Segments *l,
+int decreases_too_little(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
                          double barrier, const double *rate);
 
 #endif

@@ -36,7 +36,7 @@ static double fastest_fall(const Problem *p, int k, const double *rate)
 
 /* Find the marked segments whose slacks fall too fast, to first order, and damp them; returns
  * whether there are any. */
-int fall_too_fast(const Problem *p, const Rules *rules, Segments *l, const double *rate)
+int fall_too_fast(const Problem *p, const SegmentRules *rules, Segments *l, const double *rate)
 {
     memset(l->changed, 0, p->N);
     FOR_SEGMENTS(k, p, l->marked) {
@@ -52,7 +52,8 @@ int fall_too_fast(const Problem *p, const Rules *rules, Segments *l, const doubl
 
 /* The part of a segment's step at which the parabola of every slack, through its value, its
  * derivative and its value after the step, retains the target: 1 if none retains too little. */
-static double retaining_part(const Problem *p, const Rules *rules, int k, const double *rate,
+static double retaining_part(const Problem *p, const SegmentRules *rules, int k,
+                             const double *rate,
                              const double *moved)
 {
     double least = INFINITY;
@@ -87,7 +88,8 @@ int are_too_short(const Problem *p, const Step *s, Segments *l)
 }
 
 /* Move a segment, its ends moved already; returns the part of the step that it retains. */
-static double move_segment(const Problem *p, const Rules *rules, const Step *s, const Segments *l,
+static double move_segment(const Problem *p, const SegmentRules *rules, const Step *s,
+                           const Segments *l,
                            int k, const double *rate)
 {
     const Variables moved = variables_at(p, s->variables);
@@ -102,7 +104,7 @@ static double move_segment(const Problem *p, const Rules *rules, const Step *s, 
 
 /* Move the untried segments and those beside; damp those whose slacks fall too far, and return
  * whether there are any. Via points at the ends of active ranges do not move. */
-int fall_too_far(const Problem *p, const Rules *rules, const Step *s, Segments *l,
+int fall_too_far(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
                         const double *rate)
 {
     const Variables m = variables_at(p, p->variables), step = variables_at(p, s->direction),
@@ -128,7 +130,7 @@ int fall_too_far(const Problem *p, const Rules *rules, const Step *s, Segments *
 
 /* Whether the merit decreases too little; then damp the segments where it rises over what the step
  * predicts, all if there are none. */
-int decreases_too_little(const Problem *p, const Rules *rules, const Step *s, Segments *l,
+int decreases_too_little(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
                          double barrier, const double *rate)
 {
     const Variables m = variables_at(p, p->variables), moved = variables_at(p, s->variables);

@@ -36,7 +36,7 @@ def test_arm_of_which_positions_alone_are_known_is_moved(ros, tmp_path, form):
             f'{x:.6f}' for x in GOAL) + '\n')
         code, output, errors = moved('taught.csv', '--controller', '/arm_controller', cwd=tmp_path)
     finally:
-        controller.destroy()
+        ros.run(controller.destroy)
     assert (code, errors) == (0, '')
     assert [row[0] for row in via_rows(output)] == [0, 1]
     assert max(row[2] for row in via_rows(output)) < 1.0
@@ -54,5 +54,5 @@ def test_controller_with_another_clock_gets_nothing(ros, tmp_path):
             process.read_until("waiting for the arm's time (its states are stamped by another")
             assert seconds_to_end(process, signal.SIGINT) < 2.0
     finally:
-        controller.destroy()
+        ros.run(controller.destroy)
     assert controller.q.tolist() == START.tolist()

@@ -68,7 +68,7 @@ def test_arm_of_another_controller_is_moved_after_a_question(ros, by_joint_state
         page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[2])) < 1e-6)
         assert 'goes there first' in studio.commands.question().text
     finally:
-        controller.destroy()
+        ros.run(controller.destroy)
     assert client.replanning_lead == LEAD
 
 

@@ -35,6 +35,7 @@ from rrr_traj_planner.planners.registry import planner_ids
 
 FAR_AWAY = (9.0, 9.0, 9.0)
 DRAGS = 30
+PASSED = 0.05    # m, of the driven path: a busy machine leaves out some of the states
 REACHED = 1e-3   # m, of the tip: what computed torque leaves of the reference
 
 
@@ -178,7 +179,7 @@ def test_run_moves_the_arm_along_the_plan(ros, page, studio):
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[2])) < REACHED)
     driven = np.array(page.driven)
     for place in TABLE_6_1:
-        assert np.linalg.norm(driven - place, axis=1).min() < 0.01  # between two states
+        assert np.linalg.norm(driven - place, axis=1).min() < PASSED
     ros.run(studio.commands.reset)
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[0])) < REACHED)
 
@@ -227,7 +228,7 @@ def test_point_that_is_dragged_in_motion_is_gone_to(ros, client, page, studio):
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], elsewhere)) < REACHED)
     assert 2 <= len(goals) <= 1 + 5
     assert [len(goal.via_points.poses) for goal in goals[1:]] == [2] * (len(goals) - 1)
-    assert distance(page, TABLE_6_1[1]) < 0.01  # between two states
+    assert distance(page, TABLE_6_1[1]) < PASSED
     driven = np.array(page.driven)
     turned = np.linalg.norm(driven - TABLE_6_1[1], axis=1).argmin()
     away = np.linalg.norm(driven[:turned] - TABLE_6_1[0], axis=1)
