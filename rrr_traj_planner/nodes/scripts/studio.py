@@ -51,7 +51,7 @@ NO_VISER = (
 
 NODES = ('planner', 'simulated_arm', 'motion_server')
 NODES_WITHOUT_ARM = ('planner', 'motion_server')
-PORT = 8080
+PORT, HIGHEST_PORT = 8080, 65535
 FRAME_PERIOD = 0.04  # s between two pictures of the arm
 
 
@@ -84,12 +84,19 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--host', default='127.0.0.1', metavar='ADDRESS',
                         help='address to listen at (default: %(default)s, this machine only); '
                              'everyone who can reach it can move the arm')
-    parser.add_argument('--port', type=int, default=PORT, metavar='N',
+    parser.add_argument('--port', type=_port, default=PORT, metavar='N',
                         help='port (default: %(default)s); the next free one if it is in use')
     parser.add_argument('--controller', default='', metavar='NAME',
                         help='move a real arm, by this controller, such as /arm_controller; no '
                              'arm is simulated (default: the simulated arm)')
     add_limits_option(parser)
+
+
+def _port(text: str) -> int:
+    """Return a port of the command line."""
+    if not text.isdecimal() or int(text) > HIGHEST_PORT:
+        raise argparse.ArgumentTypeError(f'{text!r}, must be 0 to {HIGHEST_PORT}')
+    return int(text)
 
 
 def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:

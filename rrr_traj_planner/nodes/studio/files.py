@@ -104,4 +104,5 @@ def loaded(name: str, content: bytes) -> tuple[Task, bool]:
             return task, file.suffix.lower() != '.csv' and bool(
                 document(content.decode('utf-8-sig')).get('arm'))
         except InvalidInputError as error:
-            raise InvalidInputError(str(error).replace(f'{folder}/', '')) from None
+            text = str(error).replace(f'{folder}/', '').replace(f' in {folder}', '')
+            raise InvalidInputError(text) from None

@@ -80,7 +80,7 @@ def goal_of(wanted: Wanted, plan: Planned, model: RobotModel, q: Array, moves: b
     Returns
     -------
     MoveThrough.Goal
-        Without the first via point if the arm rests there.
+        Without the first via point if the arm is there, and is not to stay there for a time.
 
     """
     goal = rest_goal(wanted, 0)
@@ -94,7 +94,8 @@ def goal_of(wanted: Wanted, plan: Planned, model: RobotModel, q: Array, moves: b
     durations = wanted.task.segment_durations.tolist()
     if durations:
         goal.segment_durations = [_way_there(wanted, plan, q, moves), *durations]
-    if not moves and np.abs(q - plan.via_joints[0]).max() <= AT_START:
+    rests = len(goal.dwell) > 0 and goal.dwell[0] > 0.0  # at the first via point
+    if not moves and not rests and np.abs(q - plan.via_joints[0]).max() <= AT_START:
         for name in ('joint_via_points', 'stop_at', 'dwell', 'segment_durations'):
             setattr(goal, name, getattr(goal, name)[1:])
         goal.via_points.poses = goal.via_points.poses[1:]
@@ -165,9 +166,13 @@ def question(controller: str, wanted: Wanted, plan: Planned, goal: MoveThrough.G
         Plain text.
 
     """
-    way = '' if len(goal.stop_at) < len(wanted.points) else (
-        ' It is not at via point 0, and goes there first.')
+    points = counted(len(wanted.points), 'via point')
+    if goal.planner_id:
+        way = '' if len(goal.stop_at) < len(wanted.points) else (
+            ' It is not at via point 0, and goes there first.')
+        how = f'by {plan.planner_id} in {plan.duration:.2f} s.{way}'
+    else:
+        how = 'from the motion in progress, planned anew by time_optimal.'
     return Question(
-        f'{controller} moves the arm through {counted(len(wanted.points), "via point")}, by '
-        f'{plan.planner_id} in {plan.duration:.2f} s.{way} Via points that are dragged while it '
+        f'{controller} moves the arm through {points}, {how} Via points that are dragged while it '
         'moves change its motion.', wanted)

@@ -21,6 +21,7 @@ from contextlib import contextmanager, redirect_stdout
 from io import StringIO
 from logging import CRITICAL, getLogger
 from pathlib import Path
+from socket import AI_PASSIVE, getaddrinfo, SOCK_STREAM, socket
 from threading import Lock
 
 import numpy as np
@@ -92,7 +93,8 @@ class Page:
         centre = np.vstack((wanted.points, np.zeros(3))).mean(axis=0)
         for camera in (server.initial_camera, *(
                 client.camera for client in server.get_clients().values())):
-            camera.look_at, camera.position = tuple(centre), tuple(centre + size * VIEW)
+            camera.position = tuple(centre + size * VIEW)  # which takes look_at along
+            camera.look_at = tuple(centre)
 
     def connect(self, studio: Studio, post: Post) -> None:
         """
@@ -249,6 +251,7 @@ def serving(host: str, port: int) -> Iterator[viser.ViserServer]:
         If it cannot listen there.
 
     """
+    _check_address(host, port)
     getLogger('websockets').setLevel(CRITICAL)  # a request that is no page's is no news
     try:
         with redirect_stdout(StringIO()):  # a box around the address, which the script prints
@@ -260,3 +263,14 @@ def serving(host: str, port: int) -> Iterator[viser.ViserServer]:
     finally:
         with redirect_stdout(StringIO()):
             server.stop()
+
+
+def _check_address(host: str, port: int) -> None:
+    """Refuse an address that is not this machine's, at which viser would wait for ever."""
+    try:
+        family, kind, protocol, _, address = getaddrinfo(
+            host, 0, type=SOCK_STREAM, flags=AI_PASSIVE)[0]
+        with socket(family, kind, protocol) as probe:
+            probe.bind(address)
+    except OSError as error:
+        raise StartError(f'cannot serve at {host}, port {port}: {error}') from None

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from rrr_traj_planner.nodes.runs.messages import plan_request
 from rrr_traj_planner.nodes.studio.wanted import Wanted
+from rrr_traj_planner.planners.registry import planner
 from rrr_traj_planner_interfaces.srv import PlanTrajectory
 from trajectory_msgs.msg import JointTrajectoryPoint
 
@@ -44,7 +45,8 @@ def request_of(wanted: Wanted) -> PlanTrajectory.Request:
         request.via_points.poses = []
     else:
         request.elbow, request.shoulder = wanted.elbow, wanted.shoulder
-    request.max_deviation = float(wanted.max_deviation)
+    if planner(wanted.task.planner_id).plan_path is not None:
+        request.max_deviation = float(wanted.max_deviation)
     request.max_velocity_scaling_factor = float(wanted.velocity_scaling)
     request.max_acceleration_scaling_factor = float(wanted.acceleration_scaling)
     return request

@@ -143,6 +143,7 @@ class Studio:
         time = None if plan is None else self._ghost.time(monotonic(), plan.duration)
         self._page.show_ghost(
             None if plan is None or time is None else plan.joints_at(time), time)
+        self.commands.check()
         if not self._is_shown:
             self._is_shown = True
             self._page.show_wanted(self.editor)

@@ -40,10 +40,19 @@ def joints_of(goal):
 
 
 def test_arm_at_the_first_point_goes_on_from_there_in_the_plan_s_postures():
-    goal = goal_of(WANTED, PLAN, MODEL, JOINTS[0] + 0.001, moves=False)
+    dwell = [0.0, *DWELL[1:]]
+    wanted = replace(WANTED, task=replace(WANTED.task, dwell=np.array(dwell)))
+    goal = goal_of(wanted, PLAN, MODEL, JOINTS[0] + 0.001, moves=False)
     np.testing.assert_array_equal(joints_of(goal), JOINTS[1:])
     assert (list(goal.stop_at), list(goal.dwell)) == (STOPS[1:], DWELL[1:])
     assert (goal.planner_id, len(goal.via_points.poses)) == ('time_optimal', 0)
+
+
+def test_rest_at_the_first_point_is_kept():
+    wanted = replace(WANTED, task=replace(WANTED.task, dwell=np.array([0.5, *DWELL[1:]])))
+    goal = goal_of(wanted, PLAN, MODEL, JOINTS[0] + 0.001, moves=False)
+    np.testing.assert_array_equal(joints_of(goal), JOINTS)
+    assert (list(goal.stop_at), list(goal.dwell)) == ([True, *STOPS[1:]], [0.5, *DWELL[1:]])
 
 
 def test_arm_that_is_elsewhere_stops_at_the_first_point():
@@ -96,7 +105,9 @@ def test_time_of_the_way_is_the_planner_s_choice_where_it_can_choose(planner_id,
 def test_posture_is_asked_for_only_where_joint_positions_do_not_say_it():
     wanted = replace(WANTED, elbow='up', shoulder='front', max_deviation=0.02)
     goal = goal_of(wanted, PLAN, MODEL, JOINTS[0], moves=False)
-    assert (goal.elbow, goal.shoulder, goal.max_deviation) == ('', '', 0.02)
+    assert (goal.elbow, goal.shoulder, goal.max_deviation) == ('', '', 0.0)
+    along = goal_of(wanted.with_planner('line_arc'), PLAN, MODEL, JOINTS[0], moves=False)
+    assert along.max_deviation == 0.02
     missing = replace(PLAN, via_joints=JOINTS + 0.01)
     goal = goal_of(wanted, missing, MODEL, JOINTS[0] + 0.1, moves=False)
     assert (goal.elbow, goal.shoulder) == ('up', 'front')

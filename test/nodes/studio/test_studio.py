@@ -242,7 +242,7 @@ def test_refused_drag_in_motion_is_told_and_the_motion_goes_on(ros, page, studio
     ros.run(lambda: studio.move_point(2, FAR_AWAY))
     page.wait(lambda p: GOES_ON in p.statuses[-1][0])
     assert 'via point 2: (9, 9, 9) m' in page.statuses[-1][0]
-    page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
+    page.wait(lambda p: 'at the last via point of the motion before' in p.statuses[-1][0])
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], TABLE_6_1[2])) < REACHED)
     assert page.refusal.via_point == 2
 

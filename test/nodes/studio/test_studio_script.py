@@ -99,3 +99,14 @@ def test_node_that_cannot_start_ends_the_studio(tmp_path):
     assert code == 1
     assert re.search('studio: (planner|simulated_arm) ended with exit code 1\n$', errors)
     assert 'Traceback' not in errors
+
+
+@pytest.mark.parametrize(('arguments', 'text'), [
+    (['--port', '70000'], "'70000', must be 0 to 65535"), (['--port', '-1'], 'must be 0 to 65535'),
+    (['--host', 'nowhere.invalid'], 'cannot serve at nowhere.invalid, port 8080: '),
+    (['--host', '192.0.2.1'], 'cannot serve at 192.0.2.1, port 8080: ')])  # kept for documents
+def test_address_that_cannot_be_served_at_is_refused(arguments, text):
+    pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
+    with Script(script('studio'), *arguments) as studio:
+        code, _, errors = studio.ended()
+    assert code in (1, 2) and text in errors and 'Traceback' not in errors

@@ -60,7 +60,7 @@ class Commands:
         self._client, self._model, self._session = client, model, session
         self._display, self._trail = display, trail
         self._execution = Execution(client, model.joint_names, display)
-        self.changed = self._execution.changed
+        self.changed, self.check = self._execution.changed, self._execution.check
 
     @property
     def is_real(self) -> bool:

@@ -37,6 +37,9 @@ TRIES = 2  # of the same again, after one that came too late
 TAKEN_OVER = 'the arm moves: time_optimal takes over'
 STOPPED = 'stopped'
 GOES_ON = 'the motion in progress goes on'
+SILENCE = 2.0  # s without feedback, after which the page says so
+SILENT = ('no news of the motion for {:.0f} s: has the controller or the motion server ended? The '
+          'arm may move')
 DETACHED = 'these are other via points than those of the motion: Run takes over'
 
 
@@ -130,6 +133,12 @@ class Execution:
             self._dragged.update(moved)
             self._tries = 0
             self._replan()
+
+    def check(self) -> None:
+        """Say so where nothing is heard of the motion in progress; called again and again."""
+        if self._running is not None and self._running.silence > SILENCE:
+            self._display.show_status(status_html(
+                SILENT.format(self._running.silence), is_error=True), 0.0)
 
     def stop(self) -> bool:
         """
@@ -232,8 +241,12 @@ class Execution:
             return
         error = f', tracking error at most {self._tracking.largest:.1e} rad' if (
             self._tracking) else ''
-        self._display.show_status(
-            status_html(f'reached the last via point{error}'), 1.0)
+        text = status_html(f'reached the last via point{error}')
+        if self._refusal:
+            text = status_html(
+                f'{self._refusal}; the arm is at the last via point of the motion before',
+                is_error=True)
+        self._display.show_status(text, 1.0)
 
 
 def moved_points(before: Wanted, after: Wanted) -> list[int] | None:

@@ -72,6 +72,11 @@ class Progress:
         self._following = self.first + feedback.next_via_point
         self._times_left = list(feedback.via_times_left)
 
+    @property
+    def silence(self) -> float:
+        """Return how long ago the last feedback came [s]."""
+        return monotonic() - self._heard
+
     def first_after(self, time: float) -> int:
         """
         Return the first via point that is reached later.

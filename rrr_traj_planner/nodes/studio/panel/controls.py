@@ -16,11 +16,14 @@
 
 from __future__ import annotations
 
+from asyncio import get_running_loop, TimerHandle
 from collections.abc import Callable
 from typing import Any
 
 # Calls a function in the thread in which the studio is to be called.
 Post = Callable[[Callable[[], None]], Any]
+
+PAUSE = 0.7  # s without another key, after which a number is what the user has typed
 
 
 def given(handle: Any, post: Post, act: Callable[[Any], None]) -> None:
@@ -43,6 +46,33 @@ def given(handle: Any, post: Post, act: Callable[[Any], None]) -> None:
             post(lambda: act(value))
 
     (handle.on_update if hasattr(handle, 'on_update') else handle.on_click)(changed)
+
+
+def typed(handle: Any, post: Post, act: Callable[[Any], None]) -> None:
+    """
+    Have a number do something once the user has typed it: viser tells of every key.
+
+    Parameters
+    ----------
+    handle : viser's handle of a control
+        What has a value.
+    post : callable
+        Calls a function in the studio's thread.
+    act : callable
+        Gets the value that the user has given; not what the page itself has set.
+
+    """
+    waiting: list[TimerHandle] = []
+
+    async def changed(event: Any) -> None:
+        value = handle.value
+        if event.client_id is not None:
+            while waiting:
+                waiting.pop().cancel()
+            waiting.append(get_running_loop().call_later(
+                PAUSE, lambda: post(lambda: act(value))))
+
+    handle.on_update(changed)
 
 
 def enable(handle: Any, is_enabled: bool) -> None:

@@ -24,7 +24,7 @@ from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
 from rrr_traj_planner.core.kinematics.postures import ELBOWS, SHOULDERS
 from rrr_traj_planner.nodes.studio.editor import Editor
-from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post
+from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, typed
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner.planners.registry import planner
@@ -95,7 +95,8 @@ class MotionFolder:
 
         def scale(_: float) -> None:
             editor.change(editor.wanted.with_scalings(
-                *(float(slider.value) for slider in self._scalings)), 'scalings')
+                *(min(max(float(slider.value), LEAST_SCALING), 1.0)
+                  for slider in self._scalings)), 'scalings')
 
         def pose(_: str) -> None:
             elbow, shoulder = ('' if handle.value == FREE else handle.value
@@ -108,14 +109,14 @@ class MotionFolder:
 
         given(self._planner, post, lambda name: editor.change(editor.wanted.with_planner(name)))
         for slider in self._scalings:
-            given(slider, post, scale)
+            typed(slider, post, scale)
         for handle in self._posture:
             given(handle, post, pose)
         given(self._joints, post, studio.keep_joints)
-        given(self._deviation, post, lambda value: editor.change(
+        typed(self._deviation, post, lambda value: editor.change(
             replace(editor.wanted, max_deviation=float(value)), 'max deviation'))
-        for handle in (self._mass, self._known):
-            given(handle, post, load)
+        typed(self._mass, post, load)
+        given(self._known, post, load)
 
     def show_wanted(self, editor: Editor) -> None:
         """

@@ -26,7 +26,7 @@ from rrr_traj_planner.nodes.studio.edits import (
     with_dwell,
     with_stop,
 )
-from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, when
+from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, typed, when
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
@@ -96,12 +96,12 @@ class PointsFolder:
             editor.move(editor.chosen, (x, y, z))
 
         given(self._list, post, lambda label: editor.choose(int(label.partition(':')[0])))
-        given(self._position, post, place)
+        typed(self._position, post, place)
         given(self._stop, post, lambda stop: editor.change(
             with_stop(editor.wanted, editor.chosen, bool(stop))))
-        given(self._dwell, post, lambda dwell: editor.change(
+        typed(self._dwell, post, lambda dwell: editor.change(
             with_dwell(editor.wanted, editor.chosen, float(dwell)), f'dwell {editor.chosen}'))
-        given(self._duration, post, lambda time: editor.change(
+        typed(self._duration, post, lambda time: editor.change(
             with_duration(editor.wanted, editor.chosen, float(time)), f'time {editor.chosen}'))
         for group in (self._number, self._order, self._steps):
             given(group, post, lambda name: actions[name]())
