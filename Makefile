@@ -2,7 +2,6 @@
 
 SHELL := /bin/bash
 in_env := source scripts/env.bash &&
-with_viser := $(in_env) python -m pip install --quiet --no-deps -r requirements/studio.txt
 
 # Tests of nodes wait more than they compute: three or four processes. A process
 # that has nothing left takes half of what another one has left.
@@ -22,7 +21,7 @@ demo: setup  ## plan a motion through via points and run it on the simulated arm
 	@$(in_env) demo $(ARGS)
 
 studio: setup  ## a page in the browser to plan with the mouse and run the plan; options in ARGS
-	@$(with_viser)
+	@$(in_env) python -m pip install --quiet --no-deps -r requirements/studio.txt
 	@$(in_env) studio $(ARGS)
 
 # Their rules are those of flake8, which `lint` has just run; `colcon test` runs them.
@@ -30,7 +29,6 @@ CHECKED_BY_LINT := $(addprefix --deselect test/test_ament_linters.py::test_,\
 	code_is_as_ament_flake8_wants_it docstrings_are_as_ament_pep257_wants_them)
 
 test: lint  ## linters and every test; options for pytest in ARGS
-	@$(with_viser)
 	@$(in_env) python -m pytest -n $(WORKERS) --dist worksteal $(CHECKED_BY_LINT) $(ARGS)
 
 lint: setup  ## ruff, flake8 with ament_flake8's rules, mypy on the core and the planners
