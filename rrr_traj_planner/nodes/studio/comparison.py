@@ -187,10 +187,9 @@ def comparison_html(comparison: Comparison) -> str:
     if comparison.rows:
         parts.append(f'<table style="font-size:78%">{_head()}'
                      f'{"".join(map(_row, comparison.rows))}</table>')
-        notes = {row.answer.note: row.planner_id for row in comparison.rows
-                 if isinstance(row.answer, Planned) and row.answer.note}
-        parts += [f'<p style="font-size:80%">* {escape(name)}: {escape(note)}</p>'
-                  for note, name in notes.items()]
+        parts += [f'<p style="font-size:80%">* {escape(row.planner_id)}: '
+                  f'{escape(row.answer.note)}</p>' for row in comparison.rows
+                  if isinstance(row.answer, Planned) and row.answer.note]
     if waits:
         parts.append(f'<p>planning: {escape(waits)}</p>')
     return f'<div style="{grey}padding:0 .75em;font-size:90%">{"".join(parts)}</div>'

@@ -148,3 +148,13 @@ def test_joint_without_limits_has_no_share(asked, wanted):
     free = answer('slow', 3.0)
     asked.answer(replace(free, peaks=(('jerk', free.peaks[0][1], np.full(3, np.inf)),)))
     assert '>-<' in comparison_html(asked.comparison)
+
+
+def test_planners_with_the_same_remark_both_have_it():
+    asked = Asked()
+    asked.comparison.start(wanted_of(
+        read_task('table_6_1.yaml'), RobotModel(), 'base_link', 'cycloid'))
+    for value in (answer('slow', 3.0, 'slowed'), REFUSED, answer('fast', 1.5, 'slowed')):
+        asked.answer(value)
+    html = comparison_html(asked.comparison)
+    assert '* slow: slowed' in html and '* fast: slowed' in html

@@ -227,7 +227,8 @@ def test_point_that_is_dragged_in_motion_is_gone_to(ros, client, page, studio):
     page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
     page.wait(lambda p: np.linalg.norm(np.subtract(p.places[-1], elsewhere)) < REACHED)
     assert 2 <= len(goals) <= 1 + 5
-    assert [len(goal.via_points.poses) for goal in goals[1:]] == [2] * (len(goals) - 1)
+    left = [len(goal.via_points.poses) for goal in goals[1:]]  # 1: via point 1 is too near by then
+    assert set(left) <= {1, 2} and left == sorted(left, reverse=True)
     assert distance(page, TABLE_6_1[1]) < PASSED
     driven = np.array(page.driven)
     turned = np.linalg.norm(driven - TABLE_6_1[1], axis=1).argmin()
