@@ -113,8 +113,6 @@ def seeds_for(planner_id):
     if planner_id == 'cycloid_approach_a':
         # It passes via points at cruise velocity, so it cannot turn back at the end of a range.
         return [s for s in SEEDS if KINDS[s % len(KINDS)] != 'at a limit']
-    if planner_id == 'poly_434':  # which takes longest
-        return SEEDS[:len(SEEDS) // 2]
     return TIME_OPTIMAL_SEEDS if planner_id == 'time_optimal' else SEEDS
 
 

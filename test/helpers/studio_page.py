@@ -12,14 +12,18 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""A page of the studio for tests: keeps what it is to show."""
+"""A page of the studio for tests, which keeps what it is to show, and its studio."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from threading import Condition
 
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.link_positions import link_positions
+from rrr_traj_planner.nodes.point_files.reading import read_task
+from rrr_traj_planner.nodes.studio.studio import Studio
+from rrr_traj_planner.nodes.studio.wanted import wanted_of
 
 ARM = RobotModel()
 DEADLINE = 20.0  # s
@@ -66,3 +70,14 @@ class Page:
         with self._shown:
             assert self._shown.wait_for(lambda: ready(self), DEADLINE), (
                 self.figures, self.statuses[-3:])
+
+
+def studio_of(ros, client, page):
+    """Return the studio of a client, for table 6.1, with its first plan."""
+    config = client.connect(lambda: None)
+    wanted = wanted_of(read_task('table_6_1.yaml'), config.model, config.base_frame, 'cycloid')
+    studio = Studio(client, config, replace(wanted, payload=client.payload), page)
+    ros.run(studio.start)
+    page.wait(lambda *_: studio.session.is_current)
+    ros.run(lambda: client.create_timer(0.02, studio.tick))
+    return studio

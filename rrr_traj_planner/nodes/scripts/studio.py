@@ -31,9 +31,9 @@ from rrr_traj_planner.nodes.process.entry import (
 )
 
 if TYPE_CHECKING:
-    from rrr_traj_planner.nodes.studio.arms import Start
     from rrr_traj_planner.nodes.studio.ros_client import StudioClient
     from rrr_traj_planner.nodes.studio.studio import Studio
+    from rrr_traj_planner.nodes.studio.tasks import Start
 
 DESCRIPTION = """\
 Show a page in the browser, on which via points are dragged with the mouse, and the motion through
@@ -103,8 +103,8 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     _check_viser()
     from rrr_traj_planner.nodes.point_files.reading import read_task
     from rrr_traj_planner.nodes.runs.spun_node import pause
-    from rrr_traj_planner.nodes.studio.arms import another_start, first_start, started_again
     from rrr_traj_planner.nodes.studio.page import serving, show_wait
+    from rrr_traj_planner.nodes.studio.tasks import another_start, first_start, started_again
 
     ros_arguments = [*own_arguments, *limits_arguments(options.joint_limits)]
     start, before = first_start(read_task(options.task), ros_arguments), None

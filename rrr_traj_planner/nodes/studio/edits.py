@@ -25,65 +25,6 @@ from rrr_traj_planner.nodes.studio.wanted import Wanted
 FEWEST_POINTS = 2  # a motion begins at the first via point
 
 
-def stops_of(wanted: Wanted) -> BoolArray:
-    """
-    Return whether the arm stops at each via point.
-
-    Parameters
-    ----------
-    wanted : Wanted
-        What is planned.
-
-    Returns
-    -------
-    ndarray of bool, shape (n,)
-        True at the last.
-
-    """
-    stops = np.zeros(len(wanted.points), dtype=bool)
-    if len(wanted.task.stop_at):
-        stops[:] = wanted.task.stop_at
-    stops[-1] = True
-    return stops
-
-
-def dwell_of(wanted: Wanted) -> Array:
-    """
-    Return the rest at each via point.
-
-    Parameters
-    ----------
-    wanted : Wanted
-        What is planned.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        0 where there is none [s].
-
-    """
-    return np.array(wanted.task.dwell) if len(wanted.task.dwell) else np.zeros(len(wanted.points))
-
-
-def durations_of(wanted: Wanted) -> Array:
-    """
-    Return the prescribed time of each segment.
-
-    Parameters
-    ----------
-    wanted : Wanted
-        What is planned.
-
-    Returns
-    -------
-    ndarray, shape (n - 1,)
-        NaN where the planner chooses it [s].
-
-    """
-    durations = wanted.task.segment_durations
-    return np.array(durations) if len(durations) else np.full(len(wanted.points) - 1, np.nan)
-
-
 def inserted(wanted: Wanted, index: int) -> Wanted:
     """
     Return the same with a via point more.
@@ -104,7 +45,7 @@ def inserted(wanted: Wanted, index: int) -> Wanted:
     """
     points, count = wanted.points, len(wanted.points)
     is_last, new = index == count - 1, index + 1
-    stops, dwell, durations = stops_of(wanted), dwell_of(wanted), durations_of(wanted)
+    stops, dwell, durations = wanted.stops, wanted.rests, wanted.durations
     stops[-1] = not is_last
     if is_last:
         durations = np.append(durations, durations[-1])
@@ -138,12 +79,12 @@ def removed(wanted: Wanted, index: int) -> Wanted:
     count = len(wanted.points)
     if count <= FEWEST_POINTS:
         return wanted
-    durations = durations_of(wanted)
+    durations = wanted.durations
     if 0 < index < count - 1:
         durations[index] += durations[index - 1]
     joints = wanted.joints
     return _with(wanted, *(np.delete(rows, index, 0) for rows in (
-        wanted.points, stops_of(wanted), dwell_of(wanted))),
+        wanted.points, wanted.stops, wanted.rests)),
         np.delete(durations, max(index - 1, 0)),
         None if joints is None else np.delete(joints, index, 0))
 
@@ -169,10 +110,10 @@ def exchanged(wanted: Wanted, index: int, other: int) -> Wanted:
     if not (0 <= index < len(order) and 0 <= other < len(order)):
         return wanted
     order[[index, other]] = other, index
-    stops, joints = stops_of(wanted), wanted.joints
+    stops, joints = wanted.stops, wanted.joints
     stops[-1] = order[-1] == len(order) - 1  # no longer the end
-    return _with(wanted, wanted.points[order], stops[order], dwell_of(wanted)[order],
-                 durations_of(wanted), None if joints is None else joints[order])
+    return _with(wanted, wanted.points[order], stops[order], wanted.rests[order],
+                 wanted.durations, None if joints is None else joints[order])
 
 
 def with_stop(wanted: Wanted, index: int, stop: bool) -> Wanted:
@@ -194,11 +135,11 @@ def with_stop(wanted: Wanted, index: int, stop: bool) -> Wanted:
         The arm stops at the last in any case.
 
     """
-    stops, dwell = stops_of(wanted), dwell_of(wanted)
+    stops, dwell = wanted.stops, wanted.rests
     stops[index] = stop
     if not stop:
         dwell[index] = 0.0
-    return _with(wanted, wanted.points, stops, dwell, durations_of(wanted), wanted.joints)
+    return _with(wanted, wanted.points, stops, dwell, wanted.durations, wanted.joints)
 
 
 def with_dwell(wanted: Wanted, index: int, dwell: float) -> Wanted:
@@ -217,12 +158,14 @@ def with_dwell(wanted: Wanted, index: int, dwell: float) -> Wanted:
     Returns
     -------
     Wanted
-        The same otherwise.
+        The same otherwise, and where there is no such via point.
 
     """
-    rests = dwell_of(wanted)
+    if index >= len(wanted.points):
+        return wanted
+    rests = wanted.rests
     rests[index] = dwell
-    return _with(wanted, wanted.points, stops_of(wanted), rests, durations_of(wanted),
+    return _with(wanted, wanted.points, wanted.stops, rests, wanted.durations,
                  wanted.joints)
 
 
@@ -242,14 +185,14 @@ def with_duration(wanted: Wanted, index: int, duration: float) -> Wanted:
     Returns
     -------
     Wanted
-        The same otherwise.
+        The same otherwise, and where there is no such via point.
 
     """
-    if not index:
+    if not 0 < index < len(wanted.points):
         return wanted
-    durations = durations_of(wanted)
+    durations = wanted.durations
     durations[index - 1] = duration if duration > 0.0 else np.nan
-    return _with(wanted, wanted.points, stops_of(wanted), dwell_of(wanted), durations,
+    return _with(wanted, wanted.points, wanted.stops, wanted.rests, durations,
                  wanted.joints)
 
 

@@ -136,12 +136,13 @@ def rest_goal(wanted: Wanted, first: int) -> MoveThrough.Goal:
         Without planner: the motion server knows which one takes over in motion.
 
     """
-    request, count = request_of(wanted), len(wanted.points)
+    request = request_of(wanted)
     goal = MoveThrough.Goal(**{name: getattr(request, name) for name in FIELDS})
     goal.via_points.poses = goal.via_points.poses[first:]
     goal.joint_via_points = goal.joint_via_points[first:]
-    stops = list(request.stop_at) or [False] * (count - 1) + [True]
-    goal.stop_at, goal.dwell = [True, *stops[1:]][first:], goal.dwell[first:]
+    stops = wanted.stops
+    stops[0] = True
+    goal.stop_at, goal.dwell = stops[first:].tolist(), goal.dwell[first:]
     return goal
 
 

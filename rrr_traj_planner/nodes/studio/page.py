@@ -31,7 +31,6 @@ from rrr_traj_planner.core.kinematics.reach import reach
 from rrr_traj_planner.nodes.output.arm_shape import arm_shape
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.process.entry import StartError
-from rrr_traj_planner.nodes.studio.arms import STARTING
 from rrr_traj_planner.nodes.studio.comparison import Comparison
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.figures import status_html
@@ -41,6 +40,7 @@ from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.scene import Scene
 from rrr_traj_planner.nodes.studio.session import Refusal
 from rrr_traj_planner.nodes.studio.studio import Studio
+from rrr_traj_planner.nodes.studio.tasks import STARTING
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
 
@@ -85,8 +85,8 @@ class Page:
         size = model.chain.size
         self._panel = Panel(server.gui, planner_ids, wanted, model)
         self._panel.view.note(shape.notes)
-        self._hands = _Hands()
-        self._scene = Scene(server.scene, size, self._hands, shape)
+        self._events = _PointEvents()
+        self._scene = Scene(server.scene, size, self._events, shape)
         self._plan: tuple[Planned | None, bool] = None, False
         self._reach = Lock()
         self._ghost: list[float] | None = None
@@ -113,7 +113,7 @@ class Page:
                 post(act)
 
         self._is_connected = True
-        self._hands.connect(studio.editor, post_if_connected)
+        self._events.connect(studio.editor, post_if_connected)
         self._panel.connect(studio, post_if_connected)
         self._panel.view.connect(lambda: post_if_connected(self._draw_plan), self._show_reach)
 
@@ -177,8 +177,8 @@ class Page:
                 self._scene.reach.visible = shows
 
 
-class _Hands:
-    """Hands over to the editor what the user does in the scene, in the studio's thread."""
+class _PointEvents:
+    """PointEvents over to the editor what the user does in the scene, in the studio's thread."""
 
     def __init__(self) -> None:
         self._editor: Editor | None = None

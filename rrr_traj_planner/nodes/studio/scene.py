@@ -44,7 +44,7 @@ PLAN_LINE, DRIVEN_LINE = 6.0, 2.0  # pixels
 COLUMNS = 28  # characters of a refusal's line beside its via point
 
 
-class Hands(Protocol):
+class PointEvents(Protocol):
     """What the user does with via points in the scene; any thread may call it."""
 
     def choose(self, index: int) -> None:
@@ -67,15 +67,16 @@ class Scene:
         Where to draw.
     size : float
         The arm's [m].
-    hands : Hands
+    events : PointEvents
         Gets what the user does with via points.
     shape : ArmShape
         What is drawn of the arm.
 
     """
 
-    def __init__(self, scene: viser.SceneApi, size: float, hands: Hands, shape: ArmShape) -> None:
-        self._scene, self._size, self._hands = scene, size, hands
+    def __init__(self, scene: viser.SceneApi, size: float, events: PointEvents,
+                 shape: ArmShape) -> None:
+        self._scene, self._size, self._events = scene, size, events
         self._points: list[_Handle] = []
         self._arm = ArmDrawing(scene, '/arm', shape, ARM)
         self._ghost = ArmDrawing(scene, '/ghost', shape, GHOST)
@@ -101,7 +102,7 @@ class Scene:
         while len(self._points) < len(points):
             index = len(self._points)
             self._points.append(
-                _Handle(self._scene, index, points[index], self._size, self._hands))
+                _Handle(self._scene, index, points[index], self._size, self._events))
         for index, handle in enumerate(self._points):
             handle.put(points[index])
             handle.mark(refusal.text if refusal is not None and refusal.via_point == index
@@ -204,7 +205,7 @@ class _Handle:
     """A via point: a ball with its number, to be chosen by a click, and arrows to drag it by."""
 
     def __init__(self, scene: viser.SceneApi, index: int, position: Array, size: float,
-                 hands: Hands) -> None:
+                 events: PointEvents) -> None:
         name = f'/via_point_{index}'
         self._index, self._text = index, ''
         self._is_held = self._is_chosen = False
@@ -219,13 +220,13 @@ class _Handle:
             x, y, z = self._controls.position.tolist()
             if event.phase == 'start':
                 self._is_held = True
-                hands.drag(index, True)
-            hands.move(index, (x, y, z))
+                events.drag(index, True)
+            events.move(index, (x, y, z))
             if event.phase == 'end':
-                hands.drag(index, False, self._release)
+                events.drag(index, False, self._release)
 
         async def clicked(_: Any) -> None:
-            hands.choose(index)
+            events.choose(index)
 
         self._controls.on_update(dragged)
         self._ball.on_click(clicked)

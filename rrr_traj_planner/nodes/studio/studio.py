@@ -24,16 +24,16 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.link_positions import link_positions, Point
 from rrr_traj_planner.nodes.output.wireframe import Trail
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.studio.arms import Tasks
-from rrr_traj_planner.nodes.studio.asking import Asking
 from rrr_traj_planner.nodes.studio.comparison import Comparison
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.execution.commands import Commands
 from rrr_traj_planner.nodes.studio.figures import plan_html, status_html
 from rrr_traj_planner.nodes.studio.ghost import Ghost
 from rrr_traj_planner.nodes.studio.planned import Planned
+from rrr_traj_planner.nodes.studio.planning import Planning
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
 from rrr_traj_planner.nodes.studio.session import Refusal, Session
+from rrr_traj_planner.nodes.studio.tasks import Tasks
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner.planners.registry import planner_ids
 
@@ -103,7 +103,7 @@ class Studio:
     def __init__(self, client: StudioClient, config: PlannerConfig, wanted: Wanted,
                  page: Page, arm: Path | None = None) -> None:
         self._client, self._page = client, page
-        self._asking = Asking(client, config, self._planned)
+        self._planning = Planning(client, config, self._planned)
         self._model = config.model  # how it moves; its payload may be another one
         self.editor, self._is_shown = Editor(wanted, config.model, self._changed), False
         self.tasks = Tasks(self.editor, config, arm, self._show_soon, not client.controller)
@@ -114,7 +114,7 @@ class Studio:
         self.session: Session[Planned] = Session(wanted, self._ask)
         self.commands = Commands(client, config.model, self.session, page, self._trail)
         self.comparison = Comparison(
-            planner_ids(), self._asking.plan, lambda: not self.session.is_waiting,
+            planner_ids(), self._planning.plan, lambda: not self.session.is_waiting,
             page.show_comparison)
 
     def start(self, error: str = '') -> None:
@@ -242,7 +242,7 @@ class Studio:
         """
         from rrr_traj_planner.nodes.studio.report_page import report_name, report_page
         wanted, compared = self.session.wanted, self.comparison.planned
-        return report_name(wanted), report_page(wanted, self._asking.config, compared)
+        return report_name(wanted), report_page(wanted, self._planning.config, compared)
 
     def _moved(self) -> None:
         self._joints = self._client.joints(self._model.joint_names).tolist()
@@ -261,7 +261,7 @@ class Studio:
 
     def _ask(self, wanted: Wanted) -> None:
         self.comparison.changed(wanted)
-        self._asking.ask(wanted)
+        self._planning.ask(wanted)
 
     def _planned(self, answer: Planned | Refusal) -> None:
         self.session.answered(answer)

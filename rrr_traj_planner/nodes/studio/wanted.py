@@ -21,7 +21,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.payload import Payload
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import UnreachableError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import nearest_solution
@@ -65,6 +65,26 @@ class Wanted:
     def points(self) -> Array:
         """Return the via points, shape (n, 3) [m]."""
         return self.task.via_points
+
+    @property
+    def stops(self) -> BoolArray:
+        """Return whether the arm stops at each via point, shape (n,): at the last it does."""
+        stops = np.zeros(len(self.points), dtype=bool)
+        if len(self.task.stop_at):
+            stops[:] = self.task.stop_at
+        stops[-1] = True
+        return stops
+
+    @property
+    def rests(self) -> Array:
+        """Return how long the arm rests at each via point, shape (n,) [s]."""
+        return np.array(self.task.dwell) if len(self.task.dwell) else np.zeros(len(self.points))
+
+    @property
+    def durations(self) -> Array:
+        """Return the prescribed time of each segment, shape (n - 1,) [s]; NaN: none is."""
+        durations = self.task.segment_durations
+        return np.array(durations) if len(durations) else np.full(len(self.points) - 1, np.nan)
 
     @property
     def joints_known(self) -> bool:

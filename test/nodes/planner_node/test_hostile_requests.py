@@ -50,7 +50,7 @@ THROUGH_ROS = 40
 STOPPED = ('time_optimal', 'line_arc', 'line_polynomial')
 
 
-@settings(max_examples=120, derandomize=True, database=None, deadline=None,
+@settings(max_examples=200, derandomize=True, database=None, deadline=None,
           phases=[Phase.generate, Phase.shrink], suppress_health_check=list(HealthCheck))
 @given(hostile_requests())
 def test_any_request_is_refused_with_a_reason_or_planned_within_limits(request):

@@ -24,12 +24,9 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.nodes.point_files.reading import read_task
 from rrr_traj_planner.nodes.studio.edits import (
-    durations_of,
-    dwell_of,
     exchanged,
     inserted,
     removed,
-    stops_of,
     with_duration,
     with_dwell,
     with_stop,
@@ -53,6 +50,12 @@ PICK = wanted('pick_and_place.yaml')  # stops at 1, 4 and 5, rests at 1 and 4 fo
 JOINTS = np.array([[0.5, 0.9, 0.2], [0.7, 1.1, 0.3], [0.4, 1.0, 0.1]])
 
 
+def test_what_is_typed_for_a_point_that_is_gone_changes_nothing():
+    last = len(PICK.points)
+    assert with_dwell(PICK, last, 1.0) is PICK
+    assert with_duration(PICK, last, 1.0) is PICK
+
+
 def test_point_is_inserted_halfway_to_the_next():
     first = wanted()
     a, b, c = first.points
@@ -70,24 +73,24 @@ def test_removed_point_leaves_the_others_and_two_at_least():
 
 
 def test_stops_and_rests_go_with_their_points():
-    assert stops_of(PICK).tolist() == [False, True, False, False, True, True]
+    assert PICK.stops.tolist() == [False, True, False, False, True, True]
     more = inserted(PICK, 1)
-    assert stops_of(more).tolist() == [False, True, False, False, False, True, True]
-    assert dwell_of(more).tolist() == [0.0, 0.5, 0.0, 0.0, 0.0, 0.5, 0.0]
+    assert more.stops.tolist() == [False, True, False, False, False, True, True]
+    assert more.rests.tolist() == [0.0, 0.5, 0.0, 0.0, 0.0, 0.5, 0.0]
     fewer = removed(PICK, 1)
-    assert stops_of(fewer).tolist() == [False, False, False, True, True]
-    assert dwell_of(fewer).tolist() == [0.0, 0.0, 0.0, 0.5, 0.0]
+    assert fewer.stops.tolist() == [False, False, False, True, True]
+    assert fewer.rests.tolist() == [0.0, 0.0, 0.0, 0.5, 0.0]
     other = exchanged(PICK, 1, 2)
-    assert stops_of(other).tolist() == [False, False, True, False, True, True]
-    assert dwell_of(other).tolist() == [0.0, 0.0, 0.5, 0.0, 0.5, 0.0]
+    assert other.stops.tolist() == [False, False, True, False, True, True]
+    assert other.rests.tolist() == [0.0, 0.0, 0.5, 0.0, 0.5, 0.0]
 
 
 def test_arm_stops_at_a_former_end_only_if_it_rests_there():
     at_end = with_dwell(PICK, 5, 0.7)
     for last, stop in ((PICK, False), (at_end, True)):
-        assert stops_of(inserted(last, 5)).tolist()[4:] == [True, stop, True]
-        assert stops_of(exchanged(last, 5, 3)).tolist()[3:] == [stop, True, True]
-    assert stops_of(removed(PICK, 5)).tolist() == [False, True, False, False, True]
+        assert inserted(last, 5).stops.tolist()[4:] == [True, stop, True]
+        assert exchanged(last, 5, 3).stops.tolist()[3:] == [stop, True, True]
+    assert removed(PICK, 5).stops.tolist() == [False, True, False, False, True]
 
 
 def test_points_are_exchanged_only_where_both_are_there():
@@ -104,8 +107,8 @@ def test_rest_asks_for_a_stop_and_no_stop_for_no_rest():
         [False, True, True], [0.0, 0.4, 0.0])
     none = with_stop(rests, 1, False)
     assert (none.task.stop_at.tolist(), none.task.dwell.tolist()) == ([], [])
-    assert stops_of(with_stop(wanted(), 1, True)).tolist() == [False, True, True]
-    assert stops_of(with_stop(wanted(), 2, False)).tolist() == [False, False, True]
+    assert with_stop(wanted(), 1, True).stops.tolist() == [False, True, True]
+    assert with_stop(wanted(), 2, False).stops.tolist() == [False, False, True]
 
 
 @pytest.mark.parametrize(('change', 'times'), [
@@ -119,7 +122,7 @@ def test_rest_asks_for_a_stop_and_no_stop_for_no_rest():
     (lambda w: with_duration(w, 0, 5.0), [4.0, 3.0]),
 ])
 def test_times_of_segments_follow(change, times):
-    assert durations_of(change(timed(4.0, 3.0))).tolist() == times
+    assert change(timed(4.0, 3.0)).durations.tolist() == times
 
 
 def test_time_is_the_planner_s_choice_where_it_is_not_prescribed():

@@ -23,15 +23,14 @@ from helpers.arm_in_ros import Arm
 from helpers.move_client import start_motion_server
 from helpers.plan_requests import TABLE_6_1
 from helpers.planner_in_ros import parameter_value, plan, start_planner
+from helpers.studio_page import studio_of
 import numpy as np
 import pytest
 from rcl_interfaces.srv import GetParameters
 from rrr_traj_planner.core.arm.payload import Payload
-from rrr_traj_planner.nodes.point_files.reading import read_task
 from rrr_traj_planner.nodes.studio.edits import with_duration, with_dwell
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
-from rrr_traj_planner.nodes.studio.studio import NO_PLAN_TO_KEEP, Studio
-from rrr_traj_planner.nodes.studio.wanted import wanted_of
+from rrr_traj_planner.nodes.studio.studio import NO_PLAN_TO_KEEP
 
 DEADLINE = 20.0      # s
 MASS = 2.0           # kg, at the tip
@@ -77,13 +76,7 @@ def studio(ros, page):
     start_motion_server(ros)
     Arm(ros)
     client = ros.add(StudioClient(context=ros.context))
-    config = client.connect(lambda: None)
-    wanted = replace(wanted_of(read_task('table_6_1.yaml'), config.model, config.base_frame,
-                               'cycloid'), payload=client.payload)
-    studio = Studio(client, config, wanted, page)
-    ros.run(studio.start)
-    page.wait(lambda: studio.session.is_current)
-    return studio
+    return studio_of(ros, client, page)
 
 
 def changed(ros, page, studio, change):

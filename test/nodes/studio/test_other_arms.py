@@ -21,41 +21,32 @@ from helpers.move_client import start_motion_server
 from helpers.other_controller import OtherController
 from helpers.plan_requests import TABLE_6_1
 from helpers.planner_in_ros import start_planner
-from helpers.studio_page import Page
+from helpers.studio_page import Page, studio_of
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
-from rrr_traj_planner.nodes.point_files.reading import read_task
 from rrr_traj_planner.nodes.studio.execution.commands import CHANGED, NO_MOTION
 from rrr_traj_planner.nodes.studio.execution.execution import STOPPED
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
-from rrr_traj_planner.nodes.studio.studio import Studio
-from rrr_traj_planner.nodes.studio.wanted import wanted_of
 
 LEAD = 0.3  # s
 
 
-def studio_of(ros, page, controller):
-    """Return client and studio for the arm of a controller, with the first plan."""
+def studio_for(ros, page, controller):
+    """Return client and studio for the arm of a controller."""
     start_planner(ros)
     start_motion_server(ros, controller_name=controller, replanning_lead=LEAD)
     client = ros.add(StudioClient(controller, context=ros.context))
-    config = client.connect(lambda: None)
-    wanted = wanted_of(read_task('table_6_1.yaml'), config.model, config.base_frame, 'cycloid')
-    studio = Studio(client, config, wanted, page)
-    ros.run(studio.start)
-    page.wait(lambda p: p.is_current)
-    ros.run(lambda: client.create_timer(0.02, studio.tick))
-    return client, studio
+    return client, studio_of(ros, client, page)
 
 
 @pytest.mark.parametrize('by_joint_states', [True, False])
 def test_arm_of_another_controller_is_moved_after_a_question(ros, by_joint_states):
     controller, page = OtherController(ros, '/arm_controller', by_joint_states), Page()
     try:
-        client, studio = studio_of(ros, page, '/arm_controller')
+        client, studio = studio_for(ros, page, '/arm_controller')
         question = studio.commands.question()
         assert question.text.startswith('/arm_controller moves the arm through 3 via points')
         assert 'cycloid' in question.text and 'goes there first' not in question.text
@@ -74,7 +65,7 @@ def test_arm_of_another_controller_is_moved_after_a_question(ros, by_joint_state
 
 def test_answer_to_an_old_question_moves_nothing_and_hold_stops(ros):
     arm, page = Arm(ros), Page()
-    _, studio = studio_of(ros, page, '/simulated_arm')
+    _, studio = studio_for(ros, page, '/simulated_arm')
     old = studio.commands.question()
     ros.run(lambda: studio.move_point(1, (0.5, 0.5, 1.3)))
     page.wait(lambda p: studio.session.is_current)
@@ -94,7 +85,7 @@ def test_answer_to_an_old_question_moves_nothing_and_hold_stops(ros):
 def test_without_a_plan_nothing_is_asked(ros):
     Arm(ros)
     page = Page()
-    _, studio = studio_of(ros, page, '/simulated_arm')
+    _, studio = studio_for(ros, page, '/simulated_arm')
     ros.run(lambda: studio.move_point(1, (9.0, 9.0, 9.0)))
     page.wait(lambda p: p.refusal is not None)
     assert studio.commands.question() is None

@@ -92,8 +92,7 @@ class Progress:
             Index in `wanted`; the number of via points if there is none.
 
         """
-        since = monotonic() - self._heard
-        return self._following + sum(t - since <= time for t in self._times_left)
+        return self._following + sum(t - self.silence <= time for t in self._times_left)
 
     def text_of(self, result: MoveThrough.Result) -> str:
         """

@@ -61,17 +61,7 @@ class ArmFolder:
                 legend={'show': True}, visible=False)
 
     def connect(self, studio: Studio, post: Post) -> None:
-        """
-        Have the controls do something.
-
-        Parameters
-        ----------
-        studio : Studio
-            What they act on.
-        post : callable
-            Calls a function in the studio's thread.
-
-        """
+        """Have the controls do something."""
         commands = studio.commands
         when(self._hold, post, commands.hold)
         if commands.is_real:

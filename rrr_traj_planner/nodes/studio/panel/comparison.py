@@ -42,17 +42,7 @@ class ComparisonFolder:
             self._take = gui.add_button_group('take', (' ',), visible=False)
 
     def connect(self, studio: Studio, post: Post) -> None:
-        """
-        Have the controls do something.
-
-        Parameters
-        ----------
-        studio : Studio
-            What they act on.
-        post : callable
-            Calls a function in the studio's thread.
-
-        """
+        """Have the controls do something."""
         when(self._compare, post, lambda: studio.comparison.start(studio.session.wanted))
         when(self._take, post, lambda: studio.take(self._take.value))
 

@@ -18,15 +18,35 @@ from __future__ import annotations
 
 from asyncio import get_running_loop, TimerHandle
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
+
+from rrr_traj_planner.nodes.studio.studio import Studio
 
 # Calls a function in the thread in which the studio is to be called.
 Post = Callable[[Callable[[], None]], Any]
 
-PAUSE = 0.7  # s without another key, after which a number is what the user has typed
+TYPED = 0.7  # s without another key, after which a number is what the user has typed
 
 
-def given(handle: Any, post: Post, act: Callable[[Any], None]) -> None:
+class Folder(Protocol):
+    """A part of the panel."""
+
+    def connect(self, studio: Studio, post: Post) -> None:
+        """
+        Have the controls do something.
+
+        Parameters
+        ----------
+        studio : Studio
+            What they act on.
+        post : callable
+            Calls a function in the studio's thread.
+
+        """
+
+
+def given(handle: Any, post: Post, act: Callable[..., None], pause: float = 0.0,
+          about: Callable[[], Any] | None = None) -> None:
     """
     Have a control's value do something.
 
@@ -38,41 +58,32 @@ def given(handle: Any, post: Post, act: Callable[[Any], None]) -> None:
         Calls a function in the studio's thread.
     act : callable
         Gets the value that the user has given; not what the page itself has set.
+    pause : float
+        Time without another value, after which this one is taken [s]: viser tells of every key.
+    about : callable, optional
+        Returns what the value is of, when the user gives it; `act` gets that too.
 
     """
+    waiting: list[tuple[TimerHandle, tuple[Any, ...]]] = []  # one at most
+
+    def take(values: tuple[Any, ...]) -> None:
+        waiting.clear()
+        post(lambda: act(*values))
+
     async def changed(event: Any) -> None:  # not in a pool of threads, where the order is lost
-        value = handle.value
-        if event.client_id is not None:
-            post(lambda: act(value))
+        if event.client_id is None:
+            return
+        values = (handle.value,) if about is None else (handle.value, about())
+        for timer, before in list(waiting):
+            timer.cancel()
+            if before[1:] != values[1:]:
+                take(before)
+        if pause:
+            waiting[:] = [(get_running_loop().call_later(pause, take, values), values)]
+        else:
+            take(values)
 
     (handle.on_update if hasattr(handle, 'on_update') else handle.on_click)(changed)
-
-
-def typed(handle: Any, post: Post, act: Callable[[Any], None]) -> None:
-    """
-    Have a number do something once the user has typed it: viser tells of every key.
-
-    Parameters
-    ----------
-    handle : viser's handle of a control
-        What has a value.
-    post : callable
-        Calls a function in the studio's thread.
-    act : callable
-        Gets the value that the user has given; not what the page itself has set.
-
-    """
-    waiting: list[TimerHandle] = []
-
-    async def changed(event: Any) -> None:
-        value = handle.value
-        if event.client_id is not None:
-            while waiting:
-                waiting.pop().cancel()
-            waiting.append(get_running_loop().call_later(
-                PAUSE, lambda: post(lambda: act(value))))
-
-    handle.on_update(changed)
 
 
 def enable(handle: Any, is_enabled: bool) -> None:

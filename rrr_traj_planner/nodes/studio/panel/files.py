@@ -19,12 +19,12 @@ from __future__ import annotations
 from typing import Any
 
 from rrr_traj_planner.nodes.point_files.shipped import shipped_tasks
-from rrr_traj_planner.nodes.studio.arms import Tasks
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.figures import status_html
 from rrr_traj_planner.nodes.studio.files import saved
 from rrr_traj_planner.nodes.studio.panel.controls import given, Post
 from rrr_traj_planner.nodes.studio.studio import Studio
+from rrr_traj_planner.nodes.studio.tasks import Tasks
 import viser
 
 NONE = 'choose'
@@ -52,17 +52,7 @@ class FilesFolder:
             self._save = gui.add_button('Save', hint='via points, stops, rests, times and planner')
 
     def connect(self, studio: Studio, post: Post) -> None:
-        """
-        Have the controls do something.
-
-        Parameters
-        ----------
-        studio : Studio
-            What they act on.
-        post : callable
-            Calls a function in the studio's thread.
-
-        """
+        """Have the controls do something."""
         def open_shipped(name: str) -> None:
             if name != NONE:
                 self._shipped.value = NONE

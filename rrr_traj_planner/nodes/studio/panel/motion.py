@@ -24,7 +24,7 @@ from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
 from rrr_traj_planner.core.kinematics.postures import ELBOWS, SHOULDERS
 from rrr_traj_planner.nodes.studio.editor import Editor
-from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, typed
+from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, TYPED
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner.planners.registry import planner
@@ -80,17 +80,7 @@ class MotionFolder:
                     'in its model; else it is disturbed by it')
 
     def connect(self, studio: Studio, post: Post) -> None:
-        """
-        Have the controls do something.
-
-        Parameters
-        ----------
-        studio : Studio
-            What they act on.
-        post : callable
-            Calls a function in the studio's thread.
-
-        """
+        """Have the controls do something."""
         editor = studio.editor
 
         def scale(_: float) -> None:
@@ -109,13 +99,13 @@ class MotionFolder:
 
         given(self._planner, post, lambda name: editor.change(editor.wanted.with_planner(name)))
         for slider in self._scalings:
-            typed(slider, post, scale)
+            given(slider, post, scale, TYPED)
         for handle in self._posture:
             given(handle, post, pose)
         given(self._joints, post, studio.keep_joints)
-        typed(self._deviation, post, lambda value: editor.change(
-            replace(editor.wanted, max_deviation=float(value)), 'max deviation'))
-        typed(self._mass, post, load)
+        given(self._deviation, post, lambda value: editor.change(
+            replace(editor.wanted, max_deviation=float(value)), 'max deviation'), TYPED)
+        given(self._mass, post, load, TYPED)
         given(self._known, post, load)
 
     def show_wanted(self, editor: Editor) -> None:

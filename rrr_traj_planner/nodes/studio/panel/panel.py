@@ -22,7 +22,7 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.panel.arm import ArmFolder
 from rrr_traj_planner.nodes.studio.panel.comparison import ComparisonFolder
-from rrr_traj_planner.nodes.studio.panel.controls import Post
+from rrr_traj_planner.nodes.studio.panel.controls import Folder, Post
 from rrr_traj_planner.nodes.studio.panel.files import FilesFolder
 from rrr_traj_planner.nodes.studio.panel.motion import MotionFolder
 from rrr_traj_planner.nodes.studio.panel.plan import PlanFolder
@@ -66,19 +66,11 @@ class Panel:
         self.show_plan, self.show_time = self._plan.show, self._plan.show_time
 
     def connect(self, studio: Studio, post: Post) -> None:
-        """
-        Have the controls do something.
-
-        Parameters
-        ----------
-        studio : Studio
-            What they act on.
-        post : callable
-            Calls a function in the studio's thread.
-
-        """
-        for folder in (self._files, self._points, self._motion, self._arm, self._plan,
-                       self._comparison, self._report):
+        """Have the controls do something."""
+        folders: tuple[Folder, ...] = (
+            self._files, self._points, self._motion, self._arm, self._plan, self._comparison,
+            self._report)
+        for folder in folders:
             folder.connect(studio, post)
 
     def show_wanted(self, editor: Editor) -> None:

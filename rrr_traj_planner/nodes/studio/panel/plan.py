@@ -61,17 +61,7 @@ class PlanFolder:
             gui.add_html(_script())
 
     def connect(self, studio: Studio, post: Post) -> None:
-        """
-        Have the controls do something.
-
-        Parameters
-        ----------
-        studio : Studio
-            What they act on.
-        post : callable
-            Calls a function in the studio's thread.
-
-        """
+        """Have the controls do something."""
         def go_to(share: float) -> None:
             self._play.value = False
             studio.go_to(float(share))

@@ -18,15 +18,8 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.nodes.studio.editor import Editor
-from rrr_traj_planner.nodes.studio.edits import (
-    durations_of,
-    dwell_of,
-    stops_of,
-    with_duration,
-    with_dwell,
-    with_stop,
-)
-from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, typed, when
+from rrr_traj_planner.nodes.studio.edits import with_duration, with_dwell, with_stop
+from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, TYPED, when
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
@@ -75,34 +68,31 @@ class PointsFolder:
             REDO: gui.add_command('Redo', hotkey='Z', modifier='cmd/ctrl+shift')}
 
     def connect(self, studio: Studio, post: Post) -> None:
-        """
-        Have the controls do something.
-
-        Parameters
-        ----------
-        studio : Studio
-            What they act on.
-        post : callable
-            Calls a function in the studio's thread.
-
-        """
+        """Have the controls do something."""
         editor = studio.editor
         actions = {INSERT: editor.insert, REMOVE: editor.remove, UNDO: editor.undo,
                    REDO: editor.redo, EARLIER: lambda: editor.shift(-1),
                    LATER: lambda: editor.shift(1)}
 
-        def place(position: tuple[float, float, float]) -> None:
+        def chosen() -> int:
+            return editor.chosen
+
+        def place(position: tuple[float, float, float], index: int) -> None:
             x, y, z = map(float, position)
-            editor.move(editor.chosen, (x, y, z))
+            editor.move(index, (x, y, z))
+
+        def rest(time: float, index: int) -> None:
+            editor.change(with_dwell(editor.wanted, index, float(time)), f'dwell {index}')
+
+        def prescribe(time: float, index: int) -> None:
+            editor.change(with_duration(editor.wanted, index, float(time)), f'time {index}')
 
         given(self._list, post, lambda label: editor.choose(int(label.partition(':')[0])))
-        typed(self._position, post, place)
+        given(self._position, post, place, TYPED, chosen)
         given(self._stop, post, lambda stop: editor.change(
             with_stop(editor.wanted, editor.chosen, bool(stop))))
-        typed(self._dwell, post, lambda dwell: editor.change(
-            with_dwell(editor.wanted, editor.chosen, float(dwell)), f'dwell {editor.chosen}'))
-        typed(self._duration, post, lambda time: editor.change(
-            with_duration(editor.wanted, editor.chosen, float(time)), f'time {editor.chosen}'))
+        given(self._dwell, post, rest, TYPED, chosen)
+        given(self._duration, post, prescribe, TYPED, chosen)
         for group in (self._number, self._order, self._steps):
             given(group, post, lambda name: actions[name]())
         for name, command in self._commands.items():
@@ -124,10 +114,10 @@ class PointsFolder:
             self._list.options = options
         self._list.value = options[chosen]
         self._position.value = tuple(wanted.points[chosen].tolist())
-        self._stop.value = bool(stops_of(wanted)[chosen]) or chosen == 0
+        self._stop.value = bool(wanted.stops[chosen]) or chosen == 0
         enable(self._stop, 0 < chosen < last)
-        self._dwell.value = float(dwell_of(wanted)[chosen])
-        duration = durations_of(wanted)[chosen - 1] if chosen else np.nan
+        self._dwell.value = float(wanted.rests[chosen])
+        duration = wanted.durations[chosen - 1] if chosen else np.nan
         self._duration.value = float(np.nan_to_num(duration))
         enable(self._duration, chosen > 0)
         for name, can in ((UNDO, editor.can_undo), (REDO, editor.can_redo)):
@@ -149,7 +139,7 @@ def labels(wanted: Wanted) -> tuple[str, ...]:
         Number, position [m], stop and rest.
 
     """
-    stops, dwell = stops_of(wanted), dwell_of(wanted)
+    stops, dwell = wanted.stops, wanted.rests
     found = []
     for index, point in enumerate(wanted.points.tolist()):
         text = f'{index}: ' + ', '.join(f'{x:.3g}' for x in point)

@@ -42,17 +42,7 @@ class ReportButton:
             LABEL, hint='a page to save: profiles, torque, path, animation, residual vibration')
 
     def connect(self, studio: Studio, _: Post) -> None:
-        """
-        Have the button do something.
-
-        Parameters
-        ----------
-        studio : Studio
-            What is reported.
-        _ : callable
-            Not needed: the report is made in a thread of viser's.
-
-        """
+        """Have the button do something."""
         self._button.on_click(lambda event: self._make(studio, event.client))
 
     def _make(self, studio: Studio, client: Any) -> None:

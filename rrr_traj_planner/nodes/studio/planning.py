@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Asks the planner for what is wanted, with the payload that is wanted."""
+"""What has the planner plan what is wanted, with the payload that is wanted."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from rrr_traj_planner.nodes.studio.session import Refusal
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 
 
-class Asking:
+class Planning:
     """
-    Asks for one plan after another.
+    Has one motion planned after another.
 
     Parameters
     ----------

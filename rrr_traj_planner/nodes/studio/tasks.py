@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Opens tasks: for the arm that is shown, or for another one, with which the nodes are started."""
+"""Tasks that are opened: for the arm that is shown, or for another one, for which nodes start."""
 
 from __future__ import annotations
 

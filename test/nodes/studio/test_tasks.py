@@ -26,13 +26,13 @@ from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.nodes.parameters.planner_config import planner_config
 from rrr_traj_planner.nodes.point_files.reading import read_task
 from rrr_traj_planner.nodes.point_files.shipped import shipped_task
-from rrr_traj_planner.nodes.studio.arms import (
+from rrr_traj_planner.nodes.studio.editor import Editor
+from rrr_traj_planner.nodes.studio.tasks import (
     another_start,
     first_start,
     started_again,
     Tasks,
 )
-from rrr_traj_planner.nodes.studio.editor import Editor
 
 THESIS_ARM = CONFIG / 'thesis_arm.yaml'
 POINTS = 'via_points: [[0.9, 0.3, 1.2], [0.9, 0.3, 1.0]]\n'
