@@ -114,8 +114,8 @@ def change_points(form):
     """Choose via point 1, type its x, insert one after it, and undo all."""
     form.reads('table_6_1, thesis_arm')
     form.choose('0: 1.02, 0.59, 0.97', '1: 0.46, 0.55, 1.44')
-    form.write('0.46', '0.500001')
-    form.has('1: 0.5, 0.55, 1.44', '0.500001')
+    form.write('0.46, 0.55, 1.44', '0.500001, 0.55, 1.44')
+    form.has('1: 0.5, 0.55, 1.44', '0.500001, 0.55, 1.44')
     form.press('insert after')
     form.has('2: 0.475, 0.465, 1.44')
     form.press('move later')

@@ -16,7 +16,13 @@
 
 from __future__ import annotations
 
+from math import isfinite, nan
+import re
+
 import numpy as np
+from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import InvalidInputError
+from rrr_traj_planner.core.kinematics.link_positions import Point
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.edits import with_duration, with_dwell, with_stop
 from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, TYPED, when
@@ -26,7 +32,8 @@ import viser
 
 EARLIER, LATER = 'move earlier', 'move later'
 INSERT, REMOVE = 'insert after', 'remove'
-METRE_DIGITS, SECOND_DIGITS = 6, 3  # that can be typed; by default, those of the steps
+METRE_DIGITS, SECOND_DIGITS = 6, 3  # that can be typed
+SEPARATORS = re.compile('[,;]')     # of coordinates
 UNDO, REDO = 'undo', 'redo'
 
 
@@ -46,16 +53,14 @@ class PointsFolder:
     def __init__(self, gui: viser.GuiApi, wanted: Wanted) -> None:
         with gui.add_folder('Via points'):
             self._list = gui.add_dropdown('chosen', labels(wanted))
-            self._position = gui.add_vector3(
-                'position [m]', tuple(wanted.points[0].tolist()), step=0.001,
-                hint='x, y, z in the base frame')
+            self._position = gui.add_text(
+                'x, y, z [m]', position_text(wanted.points[0]), hint='in the base frame')
             self._stop = gui.add_checkbox('stop', False, hint='whether the arm stops there')
             self._dwell = gui.add_number(
                 'dwell [s]', 0.0, min=0.0, step=0.1, hint='rest at this via point')
             self._duration = gui.add_number(
                 'time [s]', 0.0, min=0.0, step=0.1,
                 hint='from the via point before to this one; 0: as fast as the limits allow')
-            self._position.precision = METRE_DIGITS
             self._dwell.precision = self._duration.precision = SECOND_DIGITS
             self._number = gui.add_button_group(
                 'points', (INSERT, REMOVE), hint='a via point after the chosen one; remove it')
@@ -77,9 +82,12 @@ class PointsFolder:
         def chosen() -> int:
             return editor.chosen
 
-        def place(position: tuple[float, float, float], index: int) -> None:
-            x, y, z = map(float, position)
-            editor.move(index, (x, y, z))
+        def place(text: str, index: int) -> None:
+            try:
+                editor.move(index, position_in(text))
+                studio.tasks.say('')
+            except InvalidInputError as error:
+                studio.tasks.say(f'via point {index}: {error}', is_error=True)
 
         def rest(time: float, index: int) -> None:
             editor.change(with_dwell(editor.wanted, index, float(time)), f'dwell {index}')
@@ -113,7 +121,7 @@ class PointsFolder:
         if options != self._list.options:
             self._list.options = options
         self._list.value = options[chosen]
-        self._position.value = tuple(wanted.points[chosen].tolist())
+        self._position.value = position_text(wanted.points[chosen])
         self._stop.value = bool(wanted.stops[chosen]) or chosen == 0
         enable(self._stop, 0 < chosen < last)
         self._dwell.value = float(wanted.rests[chosen])
@@ -122,6 +130,53 @@ class PointsFolder:
         enable(self._duration, chosen > 0)
         for name, can in ((UNDO, editor.can_undo), (REDO, editor.can_redo)):
             enable(self._commands[name], can)
+
+
+def position_text(point: Array) -> str:
+    """
+    Return a position as it is typed.
+
+    Parameters
+    ----------
+    point : ndarray, shape (3,)
+        [m].
+
+    Returns
+    -------
+    str
+        To the micrometre.
+
+    """
+    return ', '.join(str(round(x, METRE_DIGITS)) for x in point.tolist())
+
+
+def position_in(text: str) -> Point:
+    """
+    Return a position that is typed.
+
+    Parameters
+    ----------
+    text : str
+        Three numbers, with commas, semicolons or spaces between them.
+
+    Returns
+    -------
+    tuple of 3 floats
+        [m].
+
+    Raises
+    ------
+    InvalidInputError
+        If it is something else.
+
+    """
+    try:
+        x, y, z = map(float, SEPARATORS.sub(' ', text).split())
+    except ValueError:
+        x = y = z = nan
+    if not isfinite(x + y + z):
+        raise InvalidInputError(f'position is {text!r}, must be three numbers, x, y, z in m')
+    return x, y, z
 
 
 def labels(wanted: Wanted) -> tuple[str, ...]:
