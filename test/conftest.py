@@ -14,6 +14,7 @@
 
 """What every test needs before the package and ROS are imported."""
 
+import gc
 import os
 from pathlib import Path
 import signal
@@ -44,6 +45,7 @@ NOT_BUILT = (
 
 def pytest_configure(config):
     """Claim a ROS domain; end where what is to be tested is not there."""
+    gc.disable()  # until the tests are collected: all of that stays, and takes twice as long else
     try:
         from rrr_traj_planner.nodes.process.node_claim import claim
         from rrr_traj_planner.planners.registry import planner_ids
@@ -56,6 +58,12 @@ def pytest_configure(config):
     domains = (1 + (os.getpid() + i) % 101 for i in range(101))
     os.environ['ROS_DOMAIN_ID'], config.claim = next(
         (str(domain), held) for domain in domains if (held := claim(domain, ' tests')))
+
+
+def pytest_collection_finish():
+    """Collect garbage from here on, of what the tests make."""
+    gc.freeze()
+    gc.enable()
 
 
 def pytest_report_header():

@@ -15,21 +15,20 @@
 """Everything public is documented: what it is, and each of its parameters."""
 
 import ast
+from functools import cache
 
-from helpers.package import MODULES, modules_of
+from helpers.package import MODULES, modules_of, tree_of
 
 
+@cache
 def classes_by_name():
     """Return every class of the package with the names of its bases."""
     found = {}
-    for tree in MODULES.values():
-        for node in ast.walk(tree):
+    for module in MODULES:
+        for node in ast.walk(tree_of(module)):
             if isinstance(node, ast.ClassDef):
                 found[node.name] = node
     return found
-
-
-CLASSES = classes_by_name()
 
 
 def is_public(name):
@@ -38,7 +37,7 @@ def is_public(name):
 
 def public_definitions(module):
     """Return public functions and classes with their dotted names, methods with their class."""
-    for node in MODULES[module].body:
+    for node in tree_of(module).body:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and is_public(node.name):
             yield node.name, node, None
         if isinstance(node, ast.ClassDef) and is_public(node.name):
@@ -59,7 +58,7 @@ def parameters_of(function, owner):
 def is_documented_by_a_base(method, owner):
     """Return whether a base class of the package describes the method's parameters already."""
     for base in owner.bases:
-        base = CLASSES.get(getattr(base, 'id', getattr(base, 'attr', '')))
+        base = classes_by_name().get(getattr(base, 'id', getattr(base, 'attr', '')))
         if base is None:
             continue
         same = [m for m in base.body
@@ -84,7 +83,7 @@ def is_function(node):
 
 
 def test_every_module_says_what_it_is():
-    assert [module for module in MODULES if not ast.get_docstring(MODULES[module])] == []
+    assert [module for module in MODULES if not ast.get_docstring(tree_of(module))] == []
 
 
 def test_every_public_function_class_and_method_is_documented():

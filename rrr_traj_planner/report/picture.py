@@ -88,6 +88,7 @@ class Picture:
             figure = Figure(figsize=(WIDTH, self.height))
             self.draw(figure)
             figure.savefig(folder / f'{self.name}.png', dpi=PNG_RESOLUTION)
+            figure.set_layout_engine('none')  # laid out once is enough for both
             text = StringIO()
             figure.savefig(text, format='svg', transparent=True, metadata={'Date': None})
         if self.data:

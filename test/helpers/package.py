@@ -21,8 +21,7 @@ from helpers.places import ROOT
 
 PACKAGE = 'rrr_traj_planner'
 FILES = sorted((ROOT / PACKAGE).rglob('*.py'))
-MODULES = {'.'.join(path.relative_to(ROOT).with_suffix('').parts): ast.parse(path.read_text())
-           for path in FILES}
+MODULES = {'.'.join(path.relative_to(ROOT).with_suffix('').parts): path for path in FILES}
 
 # A layer may import itself and the layers after it.
 LAYERS = ('nodes', 'report', 'planners', 'core')
@@ -35,10 +34,16 @@ def layer_of(module):
 
 
 @cache
+def tree_of(module):
+    """Return a module's syntax tree."""
+    return ast.parse(MODULES[module].read_text())
+
+
+@cache
 def imports_of(module):
     """Return the full names of everything that a module imports, anywhere in it."""
     names = set()
-    for node in ast.walk(MODULES[module]):
+    for node in ast.walk(tree_of(module)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

@@ -60,17 +60,19 @@ COLOURS = """[getComputedStyle(document.body).backgroundColor,
     return s.includes('svg') ? c.fill : c.color; })]"""
 
 
-@pytest.fixture(params=[(*PHONE, False), (*PHONE, True), (*DESKTOP, False), (*DESKTOP, True)],
-                ids=['phone light', 'phone dark', 'desktop light', 'desktop dark'])
-def view(request):
-    """Return width, height and whether dark is liked."""
-    return request.param
-
-
-@pytest.fixture(params=['thesis_page', 'plan_page'])
+@pytest.fixture(scope='module', params=['thesis_page', 'plan_page'])
 def page(request):
     """Return each page."""
     return request.getfixturevalue(request.param)
+
+
+@pytest.fixture(
+    scope='module', params=[(*PHONE, False), (*PHONE, True), (*DESKTOP, False), (*DESKTOP, True)],
+    ids=['phone light', 'phone dark', 'desktop light', 'desktop dark'])
+def view(request, window, page):
+    """Show each page in each size and theme; return width, height and whether dark is liked."""
+    window.show(page, *request.param)
+    return request.param
 
 
 def luminance(colour):
@@ -86,14 +88,12 @@ def contrast(one, other):
 
 
 def test_page_is_shown_without_error_request_or_scrolling_sideways(window, page, view):
-    window.show(page, *view)
     assert window.complaints() == []
     assert [u for u in window.requests() if not u.startswith('data:')] == [page.as_uri()]
     assert window.value('document.documentElement.scrollWidth') <= view[0]
 
 
 def test_every_figure_has_a_size_and_fits(window, page, view):
-    window.show(page, *view)
     sizes = window.value(SIZES)
     assert {name for name, *_ in sizes} >= set(
         FIGURES if page.parent.name.startswith('thesis') else PLAN_FIGURES)
@@ -101,21 +101,20 @@ def test_every_figure_has_a_size_and_fits(window, page, view):
         assert (width >= 290 and height >= 150 and right <= view[0]), name
 
 
-def test_text_of_figures_is_legible_and_not_cut(window, page, view):
-    window.show(page, *view)
+@pytest.mark.usefixtures('view')
+def test_text_of_figures_is_legible_and_not_cut(window):
     texts = window.value(TEXTS)
     assert len(texts) > 300
     assert [t for t in texts if t[1] < LEAST_TEXT] == []
     assert [t for t in texts if t[2] > 0.5] == []
 
 
-def test_no_texts_of_a_figure_overlap(window, page, view):
-    window.show(page, *view)
+@pytest.mark.usefixtures('view')
+def test_no_texts_of_a_figure_overlap(window):
     assert window.value(OVERLAPS) == []
 
 
-def test_text_has_contrast_in_both_themes(window, page, view):
-    window.show(page, *view)
+def test_text_has_contrast_in_both_themes(window, view):
     ground, *texts = window.value(COLOURS)
     assert (luminance(ground) < 0.1) == view[2]
     assert min(contrast(ground, text) for text in texts) >= LEAST_CONTRAST

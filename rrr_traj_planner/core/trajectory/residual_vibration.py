@@ -91,10 +91,10 @@ def residual_vibration(motion: Motion, knots: ArrayLike, frequencies: ArrayLike,
     w, damped = 2.0 * pi * frequencies, sqrt(1.0 - z * z)
     rate = (1j * damped - z) * w
     t, weights = _quadrature(_felt(knots, w, z), 1.0 / (STEPS_OF_A_PERIOD * frequencies.max()))
-    weighted = weights[:, np.newaxis] * motion(t)[2]
+    weighted = (weights[:, np.newaxis] * motion(t)[2]).astype(complex)
     left = knots[-1] - t
     # One mode at a time: memory is that of the motion, however many modes.
-    c = np.array([(np.exp(one * left)[:, np.newaxis] * weighted).sum(axis=0) for one in rate])
+    c = np.array([np.exp(one * left) @ weighted for one in rate])
     largest = _largest_imaginary(c, rate[:, np.newaxis])
     return np.asarray(w[:, np.newaxis] / damped * largest)
 
