@@ -24,7 +24,7 @@ from helpers.arm_in_ros import NAMES, START
 import numpy as np
 from rclpy.duration import Duration
 from rrr_traj_planner.nodes.output.message_times import nanoseconds
-from rrr_traj_planner.nodes.process.goal_server import GoalServer, SUCCEEDED
+from rrr_traj_planner.nodes.process.goal_server import ABORTED, GoalServer, SUCCEEDED
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectoryPoint
 
@@ -58,6 +58,9 @@ class OtherController:
         self._server.destroy()
 
     def _begin(self, handle, _):
+        """Take over from the goal in progress, if there is one; no feedback is given of either."""
+        if self._goal is not None:
+            self._server.end(self._goal, ABORTED, FollowJointTrajectory.Result())
         self._goal = handle
 
     def _cancel(self, _):

@@ -25,11 +25,16 @@ from control_msgs.action import FollowJointTrajectory
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.task import Future
-from rrr_traj_planner.nodes.motion.controller_goal import end_of_goal, progress_of
+from rrr_traj_planner.nodes.motion.controller_goal import (
+    end_of_goal,
+    progress_by_clock,
+    progress_of,
+)
 from rrr_traj_planner.nodes.motion.motion import CANCELED, EndCode, Motion, MotionEnd
 from rrr_traj_planner.nodes.motion.options import ACTION
 
-ANSWER_TIME = 5.0  # s for the controller to accept or reject a goal
+ANSWER_TIME = 5.0    # s for the controller to accept or reject a goal
+FEEDBACK_TIME = 0.5  # s for the first feedback; then it is taken that there will be none
 
 REPLACED = MotionEnd(EndCode.PREEMPTED, 'replaced by a newer goal')
 SILENT = 'the controller (action {}) does not answer any more'
@@ -67,6 +72,8 @@ class Controller:
         self._sent: Motion | None = None  # whose goal is neither accepted nor rejected yet
         self._sent_at = 0.0               # s, of `monotonic`
         self._early: Future | None = None  # result of the goal in progress while one is sent
+        self._accepted_at = 0.0            # s, of `monotonic`, the motion in progress
+        self._gives_feedback = False       # as far as is known
 
     @property
     def is_sending(self) -> bool:
@@ -120,6 +127,21 @@ class Controller:
                 motion.finish(MotionEnd(
                     EndCode.COMMUNICATION_FAILURE, SILENT.format(self.action)))
 
+    def estimate(self, now: int) -> None:
+        """
+        Tell where the motion in progress is by the clock, if the controller never tells.
+
+        Parameters
+        ----------
+        now : int
+            [ns].
+
+        """
+        motion = self.running
+        if motion is not None and not self._gives_feedback and (
+                monotonic() > self._accepted_at + FEEDBACK_TIME):
+            motion.watch.progress(progress_by_clock(motion, now))
+
     def close(self) -> None:
         """Release the client, which would keep the node alive."""
         self._client.destroy()
@@ -133,7 +155,7 @@ class Controller:
         elif goal.accepted:
             self._sent = self._early = None
             replaced, self.running = self.running, motion
-            motion.goal = goal
+            motion.goal, self._accepted_at = goal, monotonic()
             if replaced is not None:
                 replaced.finish(REPLACED)
             goal.get_result_async().add_done_callback(partial(self._ended, motion))
@@ -168,5 +190,6 @@ class Controller:
 
     def _progress(self, motion: Motion, message: Any) -> None:
         """Tell where the motion in progress is."""
+        self._gives_feedback = True
         if motion is self.running:
             motion.watch.progress(progress_of(message.feedback, motion))

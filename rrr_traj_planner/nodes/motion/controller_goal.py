@@ -86,12 +86,34 @@ def progress_of(feedback: FollowJointTrajectory.Feedback, motion: Motion) -> Pro
         Before its plan begins, at time 0.
 
     """
+    return _progress(motion, nanoseconds(feedback.header.stamp), list(feedback.joint_names),
+                     list(feedback.error.positions))
+
+
+def progress_by_clock(motion: Motion, now: int) -> Progress:
+    """
+    Return where a motion is if the controller keeps its time.
+
+    Parameters
+    ----------
+    motion : Motion
+        In progress.
+    now : int
+        [ns].
+
+    Returns
+    -------
+    Progress
+        Without joints and tracking errors, which are not known.
+
+    """
+    return _progress(motion, now, [], [])
+
+
+def _progress(motion: Motion, stamp: int, joint_names: list[str], errors: list[float]) -> Progress:
     duration, via_times = duration_of(motion.response.trajectory), motion.response.via_times
-    stamp = nanoseconds(feedback.header.stamp)
     time = elapsed(motion.begins, duration, stamp)
     wait = max(motion.begins - stamp, 0) / SECOND if stamp else 0.0  # on the motion before
     following = min(bisect_right(via_times, time), len(via_times) - 1)
-    return Progress(
-        time, duration / SECOND, following, list(feedback.joint_names),
-        list(feedback.error.positions),
-        [max(t - time, 0.0) + wait for t in via_times[following:]])
+    return Progress(time, duration / SECOND, following, joint_names, errors,
+                    [max(t - time, 0.0) + wait for t in via_times[following:]])

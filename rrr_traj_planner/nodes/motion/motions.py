@@ -44,6 +44,7 @@ IN_MOTION = 'time_optimal'  # the planner that plans from any state
 RETRY_PERIOD = 0.05  # s between two attempts to join a motion
 RETRY_TIME = 5.0     # s since the motion was asked for, after which there is none
 CHECK_PERIOD = 0.5   # s between two checks whether planner and controller are still there
+TELL_PERIOD = 0.1    # s between two estimates of where the motion is, without feedback
 
 # A trajectory has its start time: a controller by another clock would wait for years, or be late.
 CLOCKS_DIFFER = 5.0  # s by which states may be late where simulated time lags behind
@@ -79,7 +80,8 @@ class Motions:
         self._current: Motion | None = None  # before it is sent
         self._waiting: Motion | None = None  # the newest that is to be planned afterwards
         self._asked_at: float | None = None  # the planner, whose answer is to come
-        self._check_timer = node.create_timer(CHECK_PERIOD, self._check, clock=self._steady)
+        self._timers = [node.create_timer(period, call, clock=self._steady) for period, call in (
+            (CHECK_PERIOD, self._check), (TELL_PERIOD, self._tell))]
 
     def missing(self, sends: bool = True) -> list[str]:
         """
@@ -151,7 +153,8 @@ class Motions:
 
     def close(self) -> None:
         """Release the action's client, which would keep the node alive."""
-        self._check_timer.cancel()
+        for timer in self._timers:
+            timer.cancel()
         self._controller.close()
 
     def _begin(self, motion: Motion) -> None:
@@ -265,6 +268,11 @@ class Motions:
                     EndCode.COMMUNICATION_FAILURE, f'the planner (service {self._service}) has '
                     + ('gone' if gone else f'not answered for {timeout:g} s')))
         self._controller.check()
+
+    def _tell(self) -> None:
+        """Tell where the motion is if the controller does not, while the arm's state comes."""
+        if self.states.latest() is not None:
+            self._controller.estimate(self._now())
 
     def _later(self, call: Callable[[], None]) -> None:
         """Call a function a little later."""

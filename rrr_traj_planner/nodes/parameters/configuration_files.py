@@ -25,17 +25,17 @@ SOURCE_FOLDER = Path(__file__).resolve().parents[3] / 'config'  # of the source 
 SHIPPED = ('.yaml', '.urdf')  # kinds of the package's own files
 
 
-def found_file(name: str, folder: Path) -> Path:
+def found_file(name: str, *folders: Path) -> Path:
     """
     Return the path of a file: given, or one of the package's.
 
     Parameters
     ----------
     name : str
-        A path, absolute or relative to the folder, or the name of a file in the package's config/
-        or config/arms/.
-    folder : Path
-        The folder that relative paths refer to.
+        A path, absolute or relative to one of the folders, or the name of a file in the package's
+        config/ or config/arms/.
+    *folders : Path
+        The folders that relative paths refer to, the first one first.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def found_file(name: str, folder: Path) -> Path:
 
     """
     shipped = (shipped_folder(), shipped_folder() / 'arms')
-    for path in (folder / name, *(place / name for place in shipped)):
+    for path in (place / name for place in (*folders, *shipped)):
         if path.is_file():
             return path.resolve()
         if path.is_dir():
@@ -58,7 +58,8 @@ def found_file(name: str, folder: Path) -> Path:
     names = sorted(p.name for place in shipped for p in place.glob(f'*{ending}'))
     near = [f'{stem}{ending}' for stem in get_close_matches(
         Path(name).stem, [Path(n).stem for n in names])]
-    raise InvalidInputError(f"no file '{name}' in {folder}, nor among the package's" + (
+    places = ' and '.join(dict.fromkeys(map(str, folders)))
+    raise InvalidInputError(f"no file '{name}' in {places}, nor among the package's" + (
         f'; {did_you_mean(*near)}' if near else f': {", ".join(names)}'))
 
 

@@ -61,12 +61,44 @@ def read_task(file: str, *, started: bool = False) -> Task:
     path = found_file(file, Path.cwd())
     try:
         text = path.read_text(encoding='utf-8-sig')
+    except (OSError, UnicodeDecodeError) as error:
+        raise _in_file(path, error) from None
+    return task_in(text, path, path.parent, started=started)
+
+
+def task_in(text: str, path: Path, *folders: Path, started: bool = False) -> Task:
+    """
+    Return what the text of a via-point file says.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    path : Path
+        The file's; the suffix tells the format.
+    *folders : Path
+        Where the arm's parameter file is looked for.
+    started : bool
+        See `read_task`.
+
+    Returns
+    -------
+    Task
+        The content, checked.
+
+    Raises
+    ------
+    InvalidInputError
+        See `read_task`.
+
+    """
+    try:
         content = table(text) if path.suffix.lower() == '.csv' else document(text)
-        arm = found_file(content.pop('arm', '') or ARM, path.parent)
+        arm = found_file(content.pop('arm', '') or ARM, *folders)
         number = len(content.get('joint_positions') or content['via_points'])
         task = Task(path.stem, content.pop('via_points', np.zeros((0, 3))), arm, **content)
         _check_counts(task, number, started)
-    except (OSError, UnicodeDecodeError, InvalidInputError) as error:
+    except InvalidInputError as error:
         raise _in_file(path, error) from None
     if task.joint_positions is None:
         return task

@@ -18,12 +18,11 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.configuration_files import found_file
 from rrr_traj_planner.nodes.point_files.document import document
-from rrr_traj_planner.nodes.point_files.reading import read_task
+from rrr_traj_planner.nodes.point_files.reading import task_in
 from rrr_traj_planner.nodes.point_files.task import Task
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 
@@ -72,7 +71,7 @@ def _listed(values: list[bool] | list[float]) -> str:
     return '[' + ', '.join('.nan' if v != v else json.dumps(v) for v in values) + ']'
 
 
-def loaded(name: str, content: bytes) -> tuple[Task, bool]:
+def loaded(name: str, content: bytes, *folders: Path) -> tuple[Task, bool]:
     """
     Return what a file says.
 
@@ -82,6 +81,8 @@ def loaded(name: str, content: bytes) -> tuple[Task, bool]:
         Its name; the suffix tells its format.
     content : bytes
         Its content.
+    *folders : Path
+        Where the arm's parameter file is looked for: a browser does not tell the file's own.
 
     Returns
     -------
@@ -96,13 +97,10 @@ def loaded(name: str, content: bytes) -> tuple[Task, bool]:
         If it is malformed; the message names the file.
 
     """
-    with TemporaryDirectory() as folder:
-        file = Path(folder, Path(name).name)
-        file.write_bytes(content)
-        try:
-            task = read_task(str(file))
-            return task, file.suffix.lower() != '.csv' and bool(
-                document(content.decode('utf-8-sig')).get('arm'))
-        except InvalidInputError as error:
-            text = str(error).replace(f'{folder}/', '').replace(f' in {folder}', '')
-            raise InvalidInputError(text) from None
+    file = Path(Path(name).name)
+    try:
+        text = content.decode('utf-8-sig')
+    except UnicodeDecodeError as error:
+        raise InvalidInputError(f'{file}: {error}') from None
+    task = task_in(text, file, *folders)
+    return task, file.suffix.lower() != '.csv' and bool(document(text).get('arm'))

@@ -47,8 +47,32 @@ import viser
 VIEW = np.array((0.7, -1.1, 0.5))  # from where it is looked at the arm, times the arm's size
 
 
-class _Server(viser.ViserServer):
-    """A server that does not offer the page to the internet: viser's own does at a click."""
+class Server(viser.ViserServer):
+    """
+    A server that does not offer the page to the internet: viser's own does at a click.
+
+    Attributes
+    ----------
+    is_dark : bool
+        Whether the page is dark.
+
+    """
+
+    is_dark = False
+
+    def darken(self, is_dark: bool) -> None:
+        """
+        Show every page dark, or light.
+
+        Parameters
+        ----------
+        is_dark : bool
+            Whether dark.
+
+        """
+        self.is_dark = is_dark
+        self.gui.configure_theme(show_share_button=False, show_logo=False, control_width='large',
+                                 dark_mode=is_dark)
 
     def request_share_url(self, verbose: bool = True) -> None:
         """Refuse."""
@@ -60,7 +84,7 @@ class Page:
 
     Parameters
     ----------
-    server : viser.ViserServer
+    server : Server
         What brings it to the browser.
     config : PlannerConfig
         The planner's.
@@ -73,17 +97,16 @@ class Page:
 
     """
 
-    def __init__(self, server: viser.ViserServer, config: PlannerConfig, folder: Path,
+    def __init__(self, server: Server, config: PlannerConfig, folder: Path,
                  planner_ids: Sequence[str], wanted: Wanted) -> None:
         self._server, self._config, self._is_connected = server, config, False
         server.gui.reset()
         server.scene.reset()
-        server.gui.configure_theme(show_share_button=False, show_logo=False,
-                                   control_width='large')
+        server.darken(server.is_dark)
         server.gui.main_panel.dock_right()  # a panel that floats hides the scene
         model, shape = config.model, arm_shape(config, folder)
         size = model.chain.size
-        self._panel = Panel(server.gui, planner_ids, wanted, model)
+        self._panel = Panel(server.gui, planner_ids, wanted, model, server.is_dark)
         self._panel.view.note(shape.notes)
         self._events = _PointEvents()
         self._scene = Scene(server.scene, size, self._events, shape)
@@ -115,7 +138,8 @@ class Page:
         self._is_connected = True
         self._events.connect(studio.editor, post_if_connected)
         self._panel.connect(studio, post_if_connected)
-        self._panel.view.connect(lambda: post_if_connected(self._draw_plan), self._show_reach)
+        self._panel.view.connect(lambda: post_if_connected(self._draw_plan), self._show_reach,
+                                 self._server.darken)
 
     def disconnect(self) -> None:
         """Have handles and controls do nothing any more."""
@@ -210,13 +234,13 @@ class _PointEvents:
             self._post(lambda: act(editor))
 
 
-def show_wait(server: viser.ViserServer, name: str) -> None:
+def show_wait(server: Server, name: str) -> None:
     """
     Show nothing but that nodes are started.
 
     Parameters
     ----------
-    server : viser.ViserServer
+    server : Server
         What brings it to the browser.
     name : str
         Of the task.
@@ -229,7 +253,7 @@ def show_wait(server: viser.ViserServer, name: str) -> None:
 
 
 @contextmanager
-def serving(host: str, port: int) -> Iterator[viser.ViserServer]:
+def serving(host: str, port: int) -> Iterator[Server]:
     """
     Serve pages until the end of the context.
 
@@ -242,7 +266,7 @@ def serving(host: str, port: int) -> Iterator[viser.ViserServer]:
 
     Yields
     ------
-    viser.ViserServer
+    Server
         The server.
 
     Raises
@@ -255,7 +279,7 @@ def serving(host: str, port: int) -> Iterator[viser.ViserServer]:
     getLogger('websockets').setLevel(CRITICAL)  # a request that is no page's is no news
     try:
         with redirect_stdout(StringIO()):  # a box around the address, which the script prints
-            server = _Server(host, port, label='studio', verbose=False)
+            server = Server(host, port, label='studio', verbose=False)
     except (OSError, RuntimeError, AssertionError) as error:
         raise StartError(f'cannot serve at {host}, port {port}: {error}') from None
     try:

@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache
+import re
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,9 @@ from rrr_traj_planner.nodes.studio.session import Refusal
 from rrr_traj_planner.report.excitation import IN_TEXT
 
 MOST_POINTS = 600  # of the path, that are drawn
+# Fields of the request: their names in the panel, and the via point of their first value.
+NAMES = {'segment_durations': ('time', 1), 'dwell': ('dwell', 0), 'stop_at': ('stop', 0)}
+FIELD = re.compile(rf'\b(?P<field>{"|".join(NAMES)})\[(?P<index>\d+)\](?P<nan> is nan\b)?')
 LIMITED = ('velocity', 'acceleration', 'jerk', 'torque')
 
 
@@ -136,7 +140,7 @@ def planned(response: Any, planner_id: str, model: RobotModel, limits: JointLimi
 
     """
     if response.error_code != response.SUCCESS:
-        return Refusal(response.message, response.failed_via_point)
+        return Refusal(in_words_of_the_page(response.message), response.failed_via_point)
     points = trajectory_points(response.trajectory)
     at = [int(np.abs(points.times - t).argmin()) for t in response.via_times]
     jerk = np.zeros_like(points.accelerations)  # means from each point to the next
@@ -157,6 +161,29 @@ def planned(response: Any, planner_id: str, model: RobotModel, limits: JointLimi
         cache(lambda: _vibration(points, response.via_times[-1])),
         _curves(model, limits, *(values[drawn] for values in (
             points.positions, points.velocities, points.accelerations, jerk))))
+
+
+def in_words_of_the_page(message: str) -> str:
+    """
+    Return a refusal with the panel's names in place of the service's fields.
+
+    Parameters
+    ----------
+    message : str
+        Of the service, such as 'segment_durations[0] is nan: planner cycloid takes ...'.
+
+    Returns
+    -------
+    str
+        Such as 'time of via point 1 is not given: planner cycloid takes ...'.
+
+    """
+    def named(found: re.Match[str]) -> str:
+        name, shift = NAMES[found['field']]
+        value = ' is not given' if found['nan'] else ''
+        return f'{name} of via point {int(found["index"]) + shift}{value}'
+
+    return FIELD.sub(named, message)
 
 
 def _vibration(points: TrajectoryPoints, end: float) -> tuple[float, ...]:

@@ -12,12 +12,13 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""What has the planner plan what is wanted, with the payload that is wanted."""
+"""What has the planner plan what is wanted, and the arm carry what is planned with."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
 from rrr_traj_planner.nodes.studio.planned import Planned, planned
@@ -36,8 +37,6 @@ class Planning:
         Connected.
     config : PlannerConfig
         The planner's.
-    answered : callable
-        Gets each answer.
 
     Attributes
     ----------
@@ -46,44 +45,15 @@ class Planning:
 
     """
 
-    def __init__(self, client: StudioClient, config: PlannerConfig,
-                 answered: Callable[[Planned | Refusal], None]) -> None:
-        self._client, self._answered = client, answered
-        self._payload = client.payload
+    def __init__(self, client: StudioClient, config: PlannerConfig) -> None:
+        self._client = client
+        self._mass = client.payload.mass  # that the planner has been told of [kg]
+        self._carried = client.payload    # by the arm
         self.config = config
-
-    def ask(self, wanted: Wanted) -> None:
-        """
-        Have a motion planned, after the payload has been set where it is another one.
-
-        Parameters
-        ----------
-        wanted : Wanted
-            The motion.
-
-        """
-        if wanted.payload == self._payload:
-            self.plan(wanted, self._answered)
-            return
-        try:
-            config = PlannerConfig.from_values({
-                **self._client.parameters, 'payload.mass': wanted.payload.mass})
-        except InvalidInputError as error:
-            self._answered(Refusal(str(error)))
-            return
-
-        def set_(refused: str) -> None:
-            if refused:
-                self._answered(Refusal(refused))
-                return
-            self.config, self._payload = config, wanted.payload
-            self.plan(wanted, self._answered)
-
-        self._client.set_payload(wanted.payload, set_)
 
     def plan(self, wanted: Wanted, answered: Callable[[Planned | Refusal], None]) -> None:
         """
-        Have a motion planned with the payload of the last one.
+        Have a motion planned, after the planner has been told of its payload.
 
         Parameters
         ----------
@@ -93,6 +63,46 @@ class Planning:
             Gets the answer.
 
         """
-        planner_id, config = wanted.task.planner_id, self.config
-        self._client.plan(wanted, lambda response: answered(planned(
-            response, planner_id, config.model, config.limits_for(planner_id))))
+        mass, planner_id = wanted.payload.mass, wanted.task.planner_id
+        if mass == self._mass:
+            config = self.config
+            self._client.plan(wanted, lambda response: answered(planned(
+                response, planner_id, config.model, config.limits_for(planner_id))))
+            return
+        try:
+            config = PlannerConfig.from_values({
+                **self._client.parameters, 'payload.mass': mass})
+        except InvalidInputError as error:
+            answered(Refusal(str(error)))
+            return
+
+        def set_(refused: str) -> None:
+            if refused:
+                answered(Refusal(refused))
+                return
+            self.config, self._mass = config, mass
+            self.plan(wanted, answered)
+
+        self._client.tell_planner(wanted.payload, set_)
+
+    def load(self, payload: Payload, refused: Callable[[str], None]) -> None:
+        """
+        Have the simulated arm carry a payload, unless it does.
+
+        Parameters
+        ----------
+        payload : Payload
+            One with which there is a plan: under another, the arm might fall.
+        refused : callable
+            Gets why the arm refuses it, if it does.
+
+        """
+        before, self._carried = self._carried, payload
+
+        def set_(reason: str) -> None:
+            if reason:
+                self._carried = before
+                refused(reason)
+
+        if payload != before:
+            self._client.load_arm(payload, set_)

@@ -193,9 +193,9 @@ class StudioClient(SpunNode):
         """
         self._call(self._plan, request_of(wanted), answered)
 
-    def set_payload(self, payload: Payload, answered: Callable[[str], None]) -> None:
+    def tell_planner(self, payload: Payload, answered: Callable[[str], None]) -> None:
         """
-        Have planner and arm know of another payload.
+        Have the planner plan with another payload.
 
         Parameters
         ----------
@@ -205,22 +205,30 @@ class StudioClient(SpunNode):
             Gets why it is refused; empty: it is not.
 
         """
-        own = [Parameter(MASS, value=float(payload.mass))]
-        wanted = {PLANNER_NODE: own, ARM_NODE: [
-            *own, Parameter(KNOWN, value=payload.known_to_controller)]}
-        left = [name for name, client in self._settings.items() if client.service_is_ready()]
+        self._set(PLANNER_NODE, {MASS: payload.mass}, answered)
 
-        def set_next(response: SetParametersAtomically.Response | None) -> None:
-            if response is not None and not response.result.successful:
-                answered(response.result.reason)
-            elif not left:
-                answered('')
-            else:
-                name = left.pop()
-                self._call(self._settings[name], SetParametersAtomically.Request(
-                    parameters=[p.to_parameter_msg() for p in wanted[name]]), set_next)
+    def load_arm(self, payload: Payload, answered: Callable[[str], None]) -> None:
+        """
+        Have the simulated arm carry another payload; a real one carries what it carries.
 
-        set_next(None)
+        Parameters
+        ----------
+        payload : Payload
+            The payload.
+        answered : callable
+            Gets why it is refused; empty: it is not.
+
+        """
+        if self.controller:
+            answered('')
+        else:
+            self._set(ARM_NODE, {MASS: payload.mass, KNOWN: payload.known_to_controller}, answered)
+
+    def _set(self, node: str, values: dict[str, Any], answered: Callable[[str], None]) -> None:
+        request = SetParametersAtomically.Request(parameters=[
+            Parameter(name, value=value).to_parameter_msg() for name, value in values.items()])
+        self._call(self._settings[node], request, lambda response: answered(
+            '' if response.result.successful else response.result.reason or 'refused'))
 
     def trigger(self, name: str, answered: Callable[[Trigger.Response], None]) -> None:
         """

@@ -103,7 +103,7 @@ class Studio:
     def __init__(self, client: StudioClient, config: PlannerConfig, wanted: Wanted,
                  page: Page, arm: Path | None = None) -> None:
         self._client, self._page = client, page
-        self._planning = Planning(client, config, self._planned)
+        self._planning = Planning(client, config)
         self._model = config.model  # how it moves; its payload may be another one
         self.editor, self._is_shown = Editor(wanted, config.model, self._changed), False
         self.tasks = Tasks(self.editor, config, arm, self._show_soon, not client.controller)
@@ -174,7 +174,7 @@ class Studio:
         """
         plan = self.session.plan if self.session.is_current else None
         if keeps and plan is None:
-            self._page.show_status(status_html(NO_PLAN_TO_KEEP, is_error=True), 0.0)
+            self._show_error(NO_PLAN_TO_KEEP)
             self._show_soon()
         else:
             self.editor.keep_joints(plan.via_joints if keeps and plan is not None else None)
@@ -248,12 +248,17 @@ class Studio:
         self._joints = self._client.joints(self._model.joint_names).tolist()
         self._trail.add(link_positions(self._model, self._joints)[-1])
 
+    def _show_error(self, text: str) -> None:
+        self._page.show_status(status_html(text, is_error=True), 0.0)
+
     def _show_soon(self) -> None:
         self._is_shown = False
 
     def _changed(self) -> None:
         self._show_soon()
         before, wanted = self.session.wanted, self.editor.wanted
+        if wanted is not before:
+            self.tasks.say('')  # what was said was about the state before
         if wanted is not before or self.session.is_new:
             self.session.change(wanted)
             self.commands.changed(before, wanted)
@@ -261,7 +266,7 @@ class Studio:
 
     def _ask(self, wanted: Wanted) -> None:
         self.comparison.changed(wanted)
-        self._planning.ask(wanted)
+        self._planning.plan(wanted, self._planned)
 
     def _planned(self, answer: Planned | Refusal) -> None:
         self.session.answered(answer)
@@ -270,6 +275,8 @@ class Studio:
 
     def _show_plan(self) -> None:
         session = self.session
+        if session.is_current:
+            self._planning.load(session.wanted.payload, self._show_error)
         self._page.show_points(session.wanted.points, session.refusal)
         self._page.show_plan(session.plan, session.refusal is None, plan_html(
             session.plan, session.refusal, self._model.joint_names))

@@ -224,7 +224,8 @@ class Tasks:
         """
         Open a via-point file: for the arm that it names, if it names one.
 
-        An arm that was described on the command line is kept.
+        The arm's file is looked for beside that of the arm that is shown, and where the studio was
+        started. An arm that was described on the command line is kept.
 
         Parameters
         ----------
@@ -235,7 +236,8 @@ class Tasks:
 
         """
         def read() -> tuple[Task, bool]:
-            task, names_arm = loaded(name, content)
+            shown = () if self.arm is None else (self.arm.parent,)
+            task, names_arm = loaded(name, content, *shown, Path.cwd())
             return task, names_arm and self.arm is not None
 
         self._open(read)

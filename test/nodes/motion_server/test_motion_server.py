@@ -22,6 +22,7 @@ from helpers.arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECON
 from helpers.examples import example
 from helpers.motion_in_ros import assert_steady, random_places, RATE, SteppedClock
 from helpers.move_client import move_goal, MoveClient, start_motion_server
+from helpers.other_controller import OtherController
 from helpers.places import DOCS
 from helpers.plan_requests import TABLE_6_1
 from helpers.planner_in_ros import start_planner
@@ -43,6 +44,7 @@ SUCCEEDED, CANCELED, ABORTED = 4, 5, 6  # action_msgs/GoalStatus
 Result = MoveThrough.Result
 REACHED = 1e-5   # m, of the tip: what computed torque leaves of the reference
 DELAY = 0.1      # s, from sending a motion to its begin
+LATE = 1.5       # s, of the first and last estimate of the time left, on a busy machine
 TAKEOVERS = 12
 FAR = TABLE_6_1[1]
 MODEL = RobotModel()
@@ -95,6 +97,25 @@ def test_goal_moves_the_arm_from_where_it_is_through_every_point(ros, arm):
         np.testing.assert_allclose(f.via_times_left, left, atol=DELAY)
     assert all(f.joint_names == NAMES and np.abs(f.tracking_error).max() < 1e-3
                for f in feedback)
+
+
+def test_without_a_controller_s_feedback_the_clock_tells_how_far_the_motion_is(ros):
+    start_planner(ros)
+    start_motion_server(ros, controller_name='/arm_controller')
+    controller, client, feedback = OtherController(ros, '/arm_controller'), MoveClient(ros), []
+    try:
+        _, result = client.result(client.send(move_goal(*TABLE_6_1[1:]), feedback))
+    finally:
+        ros.run(controller.destroy)
+    assert result.error_code == Result.SUCCESS
+    left, duration = [f.time_left for f in feedback], result.via_times[-1]
+    assert len(left) > 5 and left == sorted(left, reverse=True)
+    assert left[0] == pytest.approx(duration, abs=LATE) and left[-1] < LATE
+    for f in feedback:
+        to_come = [t for t in result.via_times if t > duration - f.time_left] or [duration]
+        np.testing.assert_allclose(
+            f.via_times_left, np.array(to_come) - duration + f.time_left, atol=DELAY)
+        assert (f.joint_names, len(f.tracking_error)) == ([], 0)
 
 
 def test_new_goals_take_over_in_motion_without_a_step(ros):

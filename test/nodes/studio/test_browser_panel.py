@@ -105,6 +105,8 @@ def test_panel_changes_what_is_planned_and_opens_tasks_with_other_arms(tmp_path)
         form = Form(opened, address)
         change_points(form)
         change_options(form)
+        say_why_nothing_changes(form)
+        darken(form)
         saved = tmp_path / 'table_6_1.yaml'
         save(form, saved)
         open_tasks(form, saved)
@@ -138,6 +140,26 @@ def change_options(form):
     form.press('undo')
     form.reads('cycloid: ')
     form.browser.until('!document.body.innerText.includes("refused")')
+
+
+def say_why_nothing_changes(form):
+    """Remove via points until two are left, and bring the others back."""
+    form.press('remove')
+    form.browser.until(f'!{FIELDS}.includes("2: 0.45, 0.38, 1.45")')
+    form.press('remove')
+    form.reads('a motion needs two via points')
+    form.press('undo')
+    form.browser.until('!document.body.innerText.includes("a motion needs two via points")')
+    form.reads('planned in')
+
+
+def darken(form):
+    """Make the page dark, and light again."""
+    scheme = 'document.documentElement.getAttribute("data-mantine-color-scheme")'
+    for before, after in (('light', 'dark'), ('dark', 'light')):
+        form.browser.until(f'{scheme} === "{before}"')
+        form.press('dark page', 'label')
+        form.browser.until(f'{scheme} === "{after}"')
 
 
 def save(form, file):

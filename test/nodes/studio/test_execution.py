@@ -26,6 +26,7 @@ from rrr_traj_planner.nodes.studio.execution.execution import (
     Execution,
     GOES_ON,
     STOPPED,
+    STOPPING,
     TRIES,
 )
 from rrr_traj_planner.nodes.studio.execution.tracking import MOST_POINTS, PERIOD, Tracking
@@ -195,13 +196,27 @@ def test_other_planner_and_scalings_hold_from_the_next_drag_on(arm):
 
 def test_stop_ends_the_motion_and_what_is_to_take_over(arm):
     arm.drag(3, 1.2)
-    assert arm.execution.stop()
+    assert arm.execution.stop(is_told=True)
+    assert STOPPING in arm.text
+    arm.sent[0].feedback(1, *(0.9 + k for k in range(COUNT - 2)))
+    assert STOPPING in arm.text
     assert [sent.is_canceled for sent in arm.sent] == [True, True]
     for sent in arm.sent:
         sent.end(Result.PREEMPTED, 'canceled')
     assert STOPPED in arm.text and not arm.execution.is_moving
     arm.drag(3, 1.21)
-    assert len(arm.sent) == 2 and not arm.execution.stop()
+    assert len(arm.sent) == 2 and not arm.execution.stop(is_told=True)
+
+
+def test_end_of_which_somebody_else_tells_is_not_told(arm):
+    assert arm.execution.stop(is_told=False)
+    before = arm.text
+    arm.sent[0].feedback(1, *(0.9 + k for k in range(COUNT - 2)))
+    arm.sent[0].end(Result.CONTROL_FAILED, 'held')
+    assert arm.text == before and not arm.execution.is_moving
+    arm.execution.start(rest_goal(WANTED, 1), WANTED, takes_over=False)
+    arm.sent[1].end(Result.CONTROL_FAILED, 'no controller')
+    assert 'no controller' in arm.text
 
 
 def test_second_click_sends_nothing():

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from threading import Condition
+from time import monotonic
 
 from helpers.arm_in_ros import Arm
 from helpers.move_client import start_motion_server
@@ -33,8 +34,10 @@ from rrr_traj_planner.nodes.studio.ros_client import StudioClient
 from rrr_traj_planner.nodes.studio.studio import NO_PLAN_TO_KEEP
 
 DEADLINE = 20.0      # s
+SOON = 5.0           # s, after which the arm has been told
 MASS = 2.0           # kg, at the tip
 TOO_HEAVY = 2.0e4    # kg, above the parameter's range
+NOT_HELD = 40.0      # kg, that joint 2 cannot hold at arm's length
 FAR_AWAY = (9.0, 9.0, 9.0)
 BOTH_ELBOWS = ((0.6, 0.6, 1.4), (0.4, 0.7, 1.3), (0.45, 0.38, 1.45))  # m
 DIGITS = 1e-9        # s, of a duration in whole nanoseconds
@@ -93,11 +96,15 @@ def elsewhere(wanted):
     return wanted
 
 
-def mass_of_the_arm(ros):
-    names = ['payload.mass', 'payload.known_to_controller']
-    mass, known = ros.call(GetParameters, 'simulated_arm/get_parameters',
-                           GetParameters.Request(names=names)).values
-    return mass.double_value, known.bool_value
+def carries(ros, *payload):
+    """Return whether the arm comes to carry a payload: mass [kg], whether it is known."""
+    names, deadline = ['payload.mass', 'payload.known_to_controller'], monotonic() + SOON
+    while monotonic() < deadline:
+        mass, known = ros.call(GetParameters, 'simulated_arm/get_parameters',
+                               GetParameters.Request(names=names)).values
+        if (mass.double_value, known.bool_value) == payload:
+            return True
+    return False
 
 
 def test_posture_deviation_rest_and_times_are_the_planner_s(ros, page, studio):
@@ -117,6 +124,12 @@ def test_posture_deviation_rest_and_times_are_the_planner_s(ros, page, studio):
     near = changed(ros, page, studio, line)
     response = plan(ros, TABLE_6_1, planner_id='line_arc', max_deviation=0.01)
     assert near.duration == pytest.approx(response.via_times[-1], abs=DIGITS)
+    ros.run(lambda: studio.editor.change(with_duration(
+        studio.editor.wanted.with_planner('cycloid'), 1, 4.0)))
+    page.wait(lambda: page.refusal is not None)
+    assert page.refusal.text == (
+        'time of via point 2 is not given: planner cycloid takes every duration or none')
+    ros.run(studio.editor.undo)
     rests = changed(ros, page, studio, lambda w: with_dwell(w.with_planner('cycloid'), 1, 0.75))
     assert rests.duration > first + 0.75
     timed = changed(ros, page, studio, lambda w: with_duration(
@@ -149,15 +162,43 @@ def test_payload_is_planned_with_and_carried(ros, page, studio):
     x, y, _ = TABLE_6_1[2]
     assert holding(loaded) - without == pytest.approx(MASS * 9.81 * np.hypot(x, y), rel=1e-6)
     assert parameter_value(ros, 'payload.mass').double_value == MASS
-    assert mass_of_the_arm(ros) == (MASS, True)
+    assert carries(ros, MASS, True)
     ros.run(lambda: studio.editor.change(
         replace(studio.editor.wanted, payload=Payload(TOO_HEAVY, True))))
     page.wait(lambda: page.refusal is not None)
     assert 'payload.mass' in page.refusal.text
     ros.run(studio.editor.undo)
     page.wait(lambda: studio.session.is_current)
-    assert mass_of_the_arm(ros) == (MASS, True)
+    assert carries(ros, MASS, True)
     ros.run(studio.editor.undo)
     page.wait(lambda: studio.session.is_current)
-    assert mass_of_the_arm(ros) == (0.0, False)
+    assert carries(ros, 0.0, False)
     assert holding(studio.session.plan) == pytest.approx(without)
+
+
+def test_payload_without_a_plan_is_compared_with_and_never_carried(ros, page, studio):
+    ros.run(lambda: studio.editor.change(
+        replace(studio.editor.wanted, payload=Payload(NOT_HELD, True))))
+    page.wait(lambda: page.refusal is not None)
+    assert 'torque' in page.refusal.text or 'N m' in page.refusal.text
+    ros.run(lambda: studio.comparison.start(studio.session.wanted))
+    page.wait(lambda: not studio.comparison.waits_for)
+    assert studio.comparison.rows and not studio.comparison.planned
+    assert parameter_value(ros, 'payload.mass').double_value == NOT_HELD
+    assert carries(ros, 0.0, False)
+    ros.run(studio.editor.undo)
+    page.wait(lambda: studio.session.is_current)
+    assert parameter_value(ros, 'payload.mass').double_value == 0.0
+
+
+def test_payload_of_a_plan_that_is_taken_from_the_comparison_is_carried(ros, page, studio):
+    """Until there is a plan, the arm carries what it did."""
+    ros.run(lambda: studio.editor.change(replace(
+        studio.editor.wanted, payload=Payload(MASS, False), max_deviation=1e-9).with_planner(
+            'line_arc')))
+    page.wait(lambda: page.refusal is not None)
+    assert carries(ros, 0.0, False)
+    ros.run(lambda: studio.comparison.start(studio.session.wanted))
+    page.wait(lambda: 'cycloid' in studio.comparison.planned)
+    ros.run(lambda: studio.take('cycloid'))
+    assert carries(ros, MASS, False)

@@ -67,7 +67,8 @@ def test_answer_to_an_old_question_moves_nothing_and_hold_stops(ros):
     arm, page = Arm(ros), Page()
     _, studio = studio_for(ros, page, '/simulated_arm')
     old = studio.commands.question()
-    ros.run(lambda: studio.move_point(1, (0.5, 0.5, 1.3)))
+    ros.run(lambda: studio.editor.change(  # slow: it is stopped in time on any machine
+        studio.editor.wanted.moved(1, (0.5, 0.5, 1.3)).with_scalings(0.2, 0.2)))
     page.wait(lambda p: studio.session.is_current)
     ros.run(lambda: studio.commands.run(old.wanted))
     assert CHANGED in page.statuses[-1][0]
@@ -75,7 +76,7 @@ def test_answer_to_an_old_question_moves_nothing_and_hold_stops(ros):
     assert NO_MOTION in page.statuses[-1][0]
     question = studio.commands.question()
     ros.run(lambda: studio.commands.run(question.wanted))
-    arm.actual.wait_for_next(moving)
+    page.wait(lambda p: ' s left' in p.statuses[-1][0])
     ros.run(studio.commands.hold)
     page.wait(lambda p: STOPPED in p.statuses[-1][0])
     arm.actual.wait_for_next(lambda m: not moving(m))
@@ -89,6 +90,24 @@ def test_without_a_plan_nothing_is_asked(ros):
     ros.run(lambda: studio.move_point(1, (9.0, 9.0, 9.0)))
     page.wait(lambda p: p.refusal is not None)
     assert studio.commands.question() is None
+
+
+def test_point_is_dragged_in_the_motion_of_a_controller_that_gives_no_feedback(ros):
+    controller, page, place = OtherController(ros, '/arm_controller'), Page(), (0.5, 0.5, 1.3)
+    try:
+        _, studio = studio_for(ros, page, '/arm_controller')
+        ros.run(lambda: studio.editor.change(studio.editor.wanted.with_scalings(0.3, 0.3)))
+        page.wait(lambda p: studio.session.is_current)
+        question = studio.commands.question()
+        ros.run(lambda: studio.commands.run(question.wanted))
+        page.wait(lambda p: ' s left' in p.statuses[-1][0])
+        assert 'tracking' not in page.statuses[-1][0]  # of which nobody tells
+        ros.run(lambda: studio.move_point(2, place))
+        page.wait(lambda p: 'reached the last via point' in p.statuses[-1][0])
+        np.testing.assert_allclose(
+            forward_kinematics(RobotModel(), controller.q), place, atol=1e-6)
+    finally:
+        ros.run(controller.destroy)
 
 
 def test_wrong_name_of_a_controller_is_refused(ros):

@@ -83,6 +83,26 @@ def test_file_that_names_another_arm_waits_for_its_nodes(tasks):
     assert tasks.next.arm == CONFIG / 'thesis_arm_joint_2_250.yaml'
 
 
+@pytest.mark.parametrize('beside_the_arm', [True, False])
+def test_file_s_own_arm_is_found_beside_the_one_shown_and_where_the_studio_was_started(
+        tmp_path, monkeypatch, beside_the_arm):
+    places = tmp_path / 'arms', tmp_path / 'here'
+    for place in places:
+        place.mkdir()
+    shown = places[0] / 'shown.yaml'
+    own = places[0 if beside_the_arm else 1] / 'own arm.yaml'
+    for file in (shown, own):
+        file.write_bytes(THESIS_ARM.read_bytes())
+    monkeypatch.chdir(places[1])
+    tasks = of_arm(shown)
+    tasks.load('own.yaml', f'arm: own arm.yaml\n{POINTS}'.encode())
+    assert not tasks.is_error and tasks.next.arm == own
+    tasks = of_arm(shown)
+    tasks.load('own.yaml', f'arm: no arm.yaml\n{POINTS}'.encode())
+    assert tasks.message.startswith(
+        f"own.yaml: no file 'no arm.yaml' in {places[0]} and {places[1]}, nor among the package's")
+
+
 def test_arm_of_the_command_line_is_kept_where_a_file_names_another():
     tasks = of_arm(None)
     tasks.load('own.yaml', f'arm: thesis_arm_joint_2_250.yaml\n{POINTS}'.encode())

@@ -61,6 +61,7 @@ class Commands:
         self._display, self._trail = display, trail
         self._execution = Execution(client, model.joint_names, display)
         self.changed, self.check = self._execution.changed, self._execution.check
+        self._last = ''  # of Run, Hold and Reset: what the others answer later is no news
 
     @property
     def is_real(self) -> bool:
@@ -92,7 +93,7 @@ class Commands:
             What the user was asked about, and has said yes to.
 
         """
-        plan, wanted = self._session.plan, self._session.wanted
+        plan, wanted, self._last = self._session.plan, self._session.wanted, 'run'
         if plan is None or not self._session.is_current:
             self._show_error(NO_PLAN)
         elif self.is_real and asked is not wanted:
@@ -104,7 +105,7 @@ class Commands:
 
     def hold(self) -> None:
         """Stop the arm; the simulated one also where somebody else moves it."""
-        found = self._execution.stop()
+        found = self._execution.stop(is_told=self.is_real)
         if not self.is_real:
             self._trigger('hold')
         elif not found:
@@ -112,7 +113,7 @@ class Commands:
 
     def reset(self) -> None:
         """Put the simulated arm back to where it was at first."""
-        self._execution.stop()
+        self._execution.stop(is_told=False)
         self._trigger('reset')
 
     @property
@@ -129,9 +130,11 @@ class Commands:
         def answered(response: Any) -> None:
             if name == 'reset':
                 self._trail.clear()
-            self._display.show_status(
-                status_html(response.message or name, not response.success), 0.0)
+            if name == self._last:
+                self._display.show_status(
+                    status_html(response.message or name, not response.success), 0.0)
 
+        self._last = name
         self._client.trigger(name, answered)
 
     def _show_error(self, text: str) -> None:

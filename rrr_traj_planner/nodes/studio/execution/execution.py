@@ -34,6 +34,7 @@ from rrr_traj_planner_interfaces.action import MoveThrough
 LEADS = 2.0
 TRIES = 2  # of the same again, after one that came too late
 
+STOPPING = 'stopping'
 TAKEN_OVER = 'the arm moves: time_optimal takes over'
 STOPPED = 'stopped'
 GOES_ON = 'the motion in progress goes on'
@@ -82,7 +83,8 @@ class Execution:
         self._done = 0.0                    # of the goals before the one in progress [s]
         self._tracking = Tracking()
         self._refusal = ''
-        self._stops = False                 # whether the user has asked for the end
+        self._stops = False                 # whether the user has asked for the end,
+        self._tells_end = True              # and whether it is told here
 
     @property
     def is_moving(self) -> bool:
@@ -107,7 +109,7 @@ class Execution:
             return  # asked for twice
         if not takes_over:
             self._running, self._tracking, self._done = None, Tracking(), 0.0
-        self._wanted, self._refusal, self._stops = wanted, '', False
+        self._wanted, self._refusal, self._stops, self._tells_end = wanted, '', False, True
         count = len(goal.via_points.poses) + len(goal.joint_via_points)
         self._display.show_status(status_html(TAKEN_OVER if takes_over else 'planning'), 0.0)
         self._send(goal, wanted, len(wanted.points) - count)
@@ -140,9 +142,14 @@ class Execution:
             self._display.show_status(status_html(
                 SILENT.format(self._running.silence), is_error=True), 0.0)
 
-    def stop(self) -> bool:
+    def stop(self, is_told: bool) -> bool:
         """
         End the motion before its time, and what is to take over from it.
+
+        Parameters
+        ----------
+        is_told : bool
+            Whether the page is to say that it has ended; else somebody else does.
 
         Returns
         -------
@@ -150,10 +157,12 @@ class Execution:
             Whether there was one.
 
         """
-        self._wanted, self._stops = None, True
+        self._wanted, self._stops, self._tells_end = None, True, is_told
         found = [sent for sent in (self._sent, self._running) if sent is not None]
         for sent in found:
             sent.sent.cancel()
+        if found and is_told:
+            self._display.show_status(status_html(STOPPING), 0.0)
         return bool(found)
 
     def _send(self, goal: MoveThrough.Goal, wanted: Wanted, first: int) -> None:
@@ -180,7 +189,8 @@ class Execution:
             return
         sent.take(feedback)
         errors = dict(zip(feedback.joint_names, feedback.tracking_error))
-        if self._tracking.add(monotonic(), [errors.get(name, 0.0) for name in self._names]):
+        if errors and self._tracking.add(
+                monotonic(), [errors.get(name, 0.0) for name in self._names]):
             self._display.show_tracking(*self._tracking.curves())
         self._show(sent)
         self._replan()
@@ -192,9 +202,11 @@ class Execution:
             self._running = None
 
     def _show(self, sent: Progress) -> None:
-        text = status_html(
-            f'{sent.left:.2f} s left, tracking error {self._tracking.last:.1e} rad, at most '
-            f'{self._tracking.largest:.1e} rad')
+        if self._stops:
+            return
+        error = f', tracking error {self._tracking.last:.1e} rad, at most ' \
+            f'{self._tracking.largest:.1e} rad' if self._tracking else ''
+        text = status_html(f'{sent.left:.2f} s left{error}')
         if self._refusal:
             text += status_html(f'{self._refusal}; {GOES_ON}', is_error=True)
         elif self._wanted is None:
@@ -233,6 +245,8 @@ class Execution:
         self._replan()
 
     def _show_end(self, sent: Progress, result: MoveThrough.Result) -> None:
+        if not self._tells_end:
+            return
         if result.error_code == result.PREEMPTED and self._stops:
             self._display.show_status(status_html(STOPPED), 0.0)
             return

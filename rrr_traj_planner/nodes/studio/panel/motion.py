@@ -25,6 +25,7 @@ from rrr_traj_planner.core.kinematics.branch_factors import has_named_postures
 from rrr_traj_planner.core.kinematics.postures import ELBOWS, SHOULDERS
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, TYPED
+from rrr_traj_planner.nodes.studio.panel.typed import Number
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner.planners.registry import planner
@@ -32,7 +33,6 @@ import viser
 
 LEAST_SCALING = 0.05
 FREE = 'free'
-METRE_DIGITS, GRAM_DIGITS = 6, 3  # that can be typed; by default, those of the steps
 
 
 class MotionFolder:
@@ -69,12 +69,10 @@ class MotionFolder:
                 self._joints = gui.add_checkbox(
                     'keep joints', False, hint='plan through the joint positions of the plan '
                     'shown, in place of positions of the tip: no other posture is chosen')
-                self._deviation = gui.add_number(
-                    'deviation [m]', 0.0, min=0.0, step=0.001, hint='at most, of the path of '
-                    "line_arc and line_polynomial from straight lines; 0: the planner's parameter")
-                self._mass = gui.add_number('payload [kg]', 0.0, min=0.0, step=0.1,
-                                            hint='at the tip, for planner and arm')
-                self._deviation.precision, self._mass.precision = METRE_DIGITS, GRAM_DIGITS
+                self._deviation = Number(
+                    gui, 'deviation [m]', 'at most, of the path of line_arc and line_polynomial '
+                    "from straight lines; empty: the planner's parameter")
+                self._mass = Number(gui, 'payload [kg]', 'at the tip, for planner and arm')
                 self._known = gui.add_checkbox(
                     'payload known', False, hint="whether the arm's controller has the payload "
                     'in its model; else it is disturbed by it')
@@ -93,9 +91,19 @@ class MotionFolder:
                                for handle in self._posture)
             editor.change(replace(editor.wanted, elbow=elbow, shoulder=shoulder))
 
-        def load(_: float) -> None:
+        def say(error: str) -> None:
+            studio.tasks.say(error, is_error=True)
+
+        def deviate(most: float) -> None:
+            editor.change(replace(editor.wanted, max_deviation=most), 'max deviation')
+
+        def load(mass: float) -> None:
             editor.change(replace(editor.wanted, payload=Payload(
-                max(float(self._mass.value), 0.0), bool(self._known.value))), 'payload')
+                mass, editor.wanted.payload.known_to_controller)), 'payload')
+
+        def know(known: bool) -> None:
+            editor.change(replace(editor.wanted, payload=Payload(
+                editor.wanted.payload.mass, known)), 'payload')
 
         given(self._planner, post, lambda name: editor.change(editor.wanted.with_planner(name)))
         for slider in self._scalings:
@@ -103,10 +111,9 @@ class MotionFolder:
         for handle in self._posture:
             given(handle, post, pose)
         given(self._joints, post, studio.keep_joints)
-        given(self._deviation, post, lambda value: editor.change(
-            replace(editor.wanted, max_deviation=float(value)), 'max deviation'), TYPED)
-        given(self._mass, post, load, TYPED)
-        given(self._known, post, load)
+        self._deviation.connect(post, deviate, say)
+        self._mass.connect(post, load, say)
+        given(self._known, post, know)
 
     def show_wanted(self, editor: Editor) -> None:
         """
@@ -127,7 +134,7 @@ class MotionFolder:
             handle.value = value or FREE
             enable(handle, wanted.joints is None)
         self._joints.value = wanted.joints is not None
-        self._deviation.value = wanted.max_deviation
-        enable(self._deviation, planner(wanted.task.planner_id).plan_path is not None)
-        self._mass.value = wanted.payload.mass
+        self._deviation.show(
+            wanted.max_deviation, planner(wanted.task.planner_id).plan_path is not None)
+        self._mass.show(wanted.payload.mass)
         self._known.value = wanted.payload.known_to_controller

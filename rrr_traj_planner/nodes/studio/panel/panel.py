@@ -48,18 +48,20 @@ class Panel:
         What is chosen at the beginning.
     model : RobotModel
         The arm.
+    is_dark : bool
+        Whether the page is dark.
 
     """
 
     def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted,
-                 model: RobotModel) -> None:
+                 model: RobotModel, is_dark: bool) -> None:
         self._files = FilesFolder(gui)
         self._points = PointsFolder(gui, wanted)
         self._motion = MotionFolder(gui, planner_ids, wanted, model)
         self._arm = ArmFolder(gui, model.joint_names)
         self._plan = PlanFolder(gui, model.joint_names)
         self._comparison = ComparisonFolder(gui)
-        self.view = ViewFolder(gui)
+        self.view = ViewFolder(gui, is_dark)
         self._report = ReportButton(gui)
         self.show_status, self.show_tracking = self._arm.show_status, self._arm.show_tracking
         self.show_comparison = self._comparison.show

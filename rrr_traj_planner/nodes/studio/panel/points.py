@@ -16,25 +16,23 @@
 
 from __future__ import annotations
 
-from math import isfinite, nan
-import re
-
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.errors import InvalidInputError
-from rrr_traj_planner.core.kinematics.link_positions import Point
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.edits import with_duration, with_dwell, with_stop
 from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, TYPED, when
+from rrr_traj_planner.nodes.studio.panel.typed import Number, position_in, position_text
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
 
 EARLIER, LATER = 'move earlier', 'move later'
 INSERT, REMOVE = 'insert after', 'remove'
-METRE_DIGITS, SECOND_DIGITS = 6, 3  # that can be typed
-SEPARATORS = re.compile('[,;]')     # of coordinates
 UNDO, REDO = 'undo', 'redo'
+NOTHING = {  # said where a button changes nothing
+    REMOVE: 'a motion needs two via points', EARLIER: 'the first via point has none before it',
+    LATER: 'the last via point has none after it', UNDO: 'nothing to undo',
+    REDO: 'nothing to do again'}
 
 
 class PointsFolder:
@@ -56,12 +54,10 @@ class PointsFolder:
             self._position = gui.add_text(
                 'x, y, z [m]', position_text(wanted.points[0]), hint='in the base frame')
             self._stop = gui.add_checkbox('stop', False, hint='whether the arm stops there')
-            self._dwell = gui.add_number(
-                'dwell [s]', 0.0, min=0.0, step=0.1, hint='rest at this via point')
-            self._duration = gui.add_number(
-                'time [s]', 0.0, min=0.0, step=0.1,
-                hint='from the via point before to this one; 0: as fast as the limits allow')
-            self._dwell.precision = self._duration.precision = SECOND_DIGITS
+            self._dwell = Number(gui, 'dwell [s]', 'rest at this via point; empty: none')
+            self._duration = Number(
+                gui, 'time [s]', 'from the via point before to this one; empty: as fast as the '
+                'limits allow')
             self._number = gui.add_button_group(
                 'points', (INSERT, REMOVE), hint='a via point after the chosen one; remove it')
             self._order = gui.add_button_group(
@@ -82,27 +78,38 @@ class PointsFolder:
         def chosen() -> int:
             return editor.chosen
 
+        def say(error: str) -> None:
+            studio.tasks.say(error, is_error=True)
+
         def place(text: str, index: int) -> None:
             try:
-                editor.move(index, position_in(text))
-                studio.tasks.say('')
+                position = position_in(text)
             except InvalidInputError as error:
-                studio.tasks.say(f'via point {index}: {error}', is_error=True)
+                say(f'via point {index}: {error}')
+            else:
+                say('')
+                editor.move(index, position)
 
         def rest(time: float, index: int) -> None:
-            editor.change(with_dwell(editor.wanted, index, float(time)), f'dwell {index}')
+            editor.change(with_dwell(editor.wanted, index, time), f'dwell {index}')
 
         def prescribe(time: float, index: int) -> None:
-            editor.change(with_duration(editor.wanted, index, float(time)), f'time {index}')
+            editor.change(with_duration(editor.wanted, index, time), f'time {index}')
+
+        def press(name: str) -> None:
+            before = editor.wanted
+            actions[name]()
+            if editor.wanted is before:
+                studio.tasks.say(NOTHING[name])
 
         given(self._list, post, lambda label: editor.choose(int(label.partition(':')[0])))
         given(self._position, post, place, TYPED, chosen)
         given(self._stop, post, lambda stop: editor.change(
             with_stop(editor.wanted, editor.chosen, bool(stop))))
-        given(self._dwell, post, rest, TYPED, chosen)
-        given(self._duration, post, prescribe, TYPED, chosen)
+        self._dwell.connect(post, rest, say, chosen)
+        self._duration.connect(post, prescribe, say, chosen)
         for group in (self._number, self._order, self._steps):
-            given(group, post, lambda name: actions[name]())
+            given(group, post, press)
         for name, command in self._commands.items():
             when(command, post, actions[name])
 
@@ -124,59 +131,11 @@ class PointsFolder:
         self._position.value = position_text(wanted.points[chosen])
         self._stop.value = bool(wanted.stops[chosen]) or chosen == 0
         enable(self._stop, 0 < chosen < last)
-        self._dwell.value = float(wanted.rests[chosen])
+        self._dwell.show(float(wanted.rests[chosen]))
         duration = wanted.durations[chosen - 1] if chosen else np.nan
-        self._duration.value = float(np.nan_to_num(duration))
-        enable(self._duration, chosen > 0)
+        self._duration.show(float(np.nan_to_num(duration)), chosen > 0)
         for name, can in ((UNDO, editor.can_undo), (REDO, editor.can_redo)):
             enable(self._commands[name], can)
-
-
-def position_text(point: Array) -> str:
-    """
-    Return a position as it is typed.
-
-    Parameters
-    ----------
-    point : ndarray, shape (3,)
-        [m].
-
-    Returns
-    -------
-    str
-        To the micrometre.
-
-    """
-    return ', '.join(str(round(x, METRE_DIGITS)) for x in point.tolist())
-
-
-def position_in(text: str) -> Point:
-    """
-    Return a position that is typed.
-
-    Parameters
-    ----------
-    text : str
-        Three numbers, with commas, semicolons or spaces between them.
-
-    Returns
-    -------
-    tuple of 3 floats
-        [m].
-
-    Raises
-    ------
-    InvalidInputError
-        If it is something else.
-
-    """
-    try:
-        x, y, z = map(float, SEPARATORS.sub(' ', text).split())
-    except ValueError:
-        x = y = z = nan
-    if not isfinite(x + y + z):
-        raise InvalidInputError(f'position is {text!r}, must be three numbers, x, y, z in m')
-    return x, y, z
 
 
 def labels(wanted: Wanted) -> tuple[str, ...]:

@@ -31,16 +31,19 @@ class ViewFolder:
     ----------
     gui : viser.GuiApi
         Where to put it.
+    is_dark : bool
+        Whether the page is dark at the beginning.
 
     """
 
-    def __init__(self, gui: viser.GuiApi) -> None:
+    def __init__(self, gui: viser.GuiApi, is_dark: bool) -> None:
         self._plan: Planned | None = None
         with gui.add_folder('View'):
             self._meaning = gui.add_dropdown('path shows', (SPEED, TIGHTEST))
             self._legend = gui.add_html('')
             self._reach = gui.add_checkbox(
                 'reach', False, hint='where the tip gets to within the ranges of the joints')
+            self._dark = gui.add_checkbox('dark page', is_dark)
             self._notes = gui.add_html('', visible=False)
 
     @property
@@ -48,7 +51,8 @@ class ViewFolder:
         """Return what the path's colours mean."""
         return self._meaning.value
 
-    def connect(self, colour: Callable[[], None], reach: Callable[[bool], None]) -> None:
+    def connect(self, colour: Callable[[], None], reach: Callable[[bool], None],
+                darken: Callable[[bool], None]) -> None:
         """
         Have the controls do something.
 
@@ -58,10 +62,13 @@ class ViewFolder:
             Called when the colours mean something else.
         reach : callable
             Gets whether the reach is shown; called in a thread of its own.
+        darken : callable
+            Gets whether the page is to be dark; called in a thread of its own.
 
         """
         self._meaning.on_update(lambda _: (self._explain(), colour()))
         self._reach.on_update(lambda _: reach(bool(self._reach.value)))
+        self._dark.on_update(lambda _: darken(bool(self._dark.value)))
 
     def explain(self, plan: Planned | None) -> None:
         """
