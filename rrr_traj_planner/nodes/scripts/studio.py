@@ -103,8 +103,9 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     _check_viser()
     from rrr_traj_planner.nodes.point_files.reading import read_task
     from rrr_traj_planner.nodes.runs.spun_node import pause
-    from rrr_traj_planner.nodes.studio.page import serving, show_wait
+    from rrr_traj_planner.nodes.studio.page import show_wait
     from rrr_traj_planner.nodes.studio.tasks import another_start, first_start, started_again
+    from rrr_traj_planner.nodes.studio.web.server import serving
 
     ros_arguments = [*own_arguments, *limits_arguments(options.joint_limits)]
     start, before = first_start(read_task(options.task), ros_arguments), None

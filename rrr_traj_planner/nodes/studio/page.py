@@ -12,16 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The page: scene and panel, and the server that brings them to the browser."""
+"""The page: scene and panel."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, redirect_stdout
-from io import StringIO
-from logging import CRITICAL, getLogger
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from socket import AI_PASSIVE, getaddrinfo, SOCK_STREAM, socket
 from threading import Lock
 
 import numpy as np
@@ -30,7 +26,6 @@ from rrr_traj_planner.core.kinematics.link_positions import Point
 from rrr_traj_planner.core.kinematics.reach import reach
 from rrr_traj_planner.nodes.output.arm_shape import arm_shape
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.process.entry import StartError
 from rrr_traj_planner.nodes.studio.comparison import Comparison
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.figures import status_html
@@ -42,40 +37,9 @@ from rrr_traj_planner.nodes.studio.session import Refusal
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.tasks import STARTING
 from rrr_traj_planner.nodes.studio.wanted import Wanted
-import viser
+from rrr_traj_planner.nodes.studio.web.server import Server
 
 VIEW = np.array((0.7, -1.1, 0.5))  # from where it is looked at the arm, times the arm's size
-
-
-class Server(viser.ViserServer):
-    """
-    A server that does not offer the page to the internet: viser's own does at a click.
-
-    Attributes
-    ----------
-    is_dark : bool
-        Whether the page is dark.
-
-    """
-
-    is_dark = False
-
-    def darken(self, is_dark: bool) -> None:
-        """
-        Show every page dark, or light.
-
-        Parameters
-        ----------
-        is_dark : bool
-            Whether dark.
-
-        """
-        self.is_dark = is_dark
-        self.gui.configure_theme(show_share_button=False, show_logo=False, control_width='large',
-                                 dark_mode=is_dark)
-
-    def request_share_url(self, verbose: bool = True) -> None:
-        """Refuse."""
 
 
 class Page:
@@ -250,51 +214,3 @@ def show_wait(server: Server, name: str) -> None:
         server.scene.reset()
         server.gui.reset()
         server.gui.add_html(status_html(STARTING.format(name)))
-
-
-@contextmanager
-def serving(host: str, port: int) -> Iterator[Server]:
-    """
-    Serve pages until the end of the context.
-
-    Parameters
-    ----------
-    host : str
-        Address to listen at.
-    port : int
-        Port; the next free one where it is in use.
-
-    Yields
-    ------
-    Server
-        The server.
-
-    Raises
-    ------
-    StartError
-        If it cannot listen there.
-
-    """
-    _check_address(host, port)
-    getLogger('websockets').setLevel(CRITICAL)  # a request that is no page's is no news
-    try:
-        with redirect_stdout(StringIO()):  # a box around the address, which the script prints
-            server = Server(host, port, label='studio', verbose=False)
-    except (OSError, RuntimeError, AssertionError) as error:
-        raise StartError(f'cannot serve at {host}, port {port}: {error}') from None
-    try:
-        yield server
-    finally:
-        with redirect_stdout(StringIO()):
-            server.stop()
-
-
-def _check_address(host: str, port: int) -> None:
-    """Refuse an address that is not this machine's, at which viser would wait for ever."""
-    try:
-        family, kind, protocol, _, address = getaddrinfo(
-            host, 0, type=SOCK_STREAM, flags=AI_PASSIVE)[0]
-        with socket(family, kind, protocol) as probe:
-            probe.bind(address)
-    except OSError as error:
-        raise StartError(f'cannot serve at {host}, port {port}: {error}') from None

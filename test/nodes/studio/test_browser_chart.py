@@ -25,7 +25,7 @@ import pytest
 from rrr_traj_planner.nodes.studio.planned import LIMITED, Planned
 
 pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
-serving = import_module('rrr_traj_planner.nodes.studio.page').serving
+serving = import_module('rrr_traj_planner.nodes.studio.web.server').serving
 PlanFolder = import_module('rrr_traj_planner.nodes.studio.panel.plan').PlanFolder
 
 COUNT = 50
