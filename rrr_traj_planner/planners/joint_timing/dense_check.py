@@ -23,16 +23,12 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
-from rrr_traj_planner.core.dynamics.motor_torque import (
-    direction_of,
-    rest_speed_of,
-    smooth_motor_torque,
-)
+from rrr_traj_planner.core.arrays import Array, BoolArray
+from rrr_traj_planner.core.dynamics.motor_torque import rest_speed_of, smooth_motor_torque
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.time_scaling import squared_scaling, torque_parts
 from rrr_traj_planner.planners.effort_limits import effort_less_friction
-from rrr_traj_planner.planners.solver.excess import excess_near_points, rise_between_samples
+from rrr_traj_planner.planners.solver.excess import excess_near_points, range_excess
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
@@ -96,6 +92,26 @@ class JointCheck:
         parts = torque_parts(self._task.model, self.q, self.qd, self.qdd)
         return float(max(factor, np.sqrt(squared_scaling(self._effort, parts).max())))
 
+    def exceeding(self, tolerance: float) -> BoolArray:
+        """
+        Return which segments exceed limits other than torque's.
+
+        Parameters
+        ----------
+        tolerance : float
+            Part by which all times may have to be scaled to keep them.
+
+        Returns
+        -------
+        ndarray of bool, shape (N,)
+            True also where a joint leaves its range.
+
+        """
+        limits = self._task.limits
+        beyond = (np.abs(self.qd) > (1.0 + tolerance) * limits.max_velocity) | (
+            np.abs(self.qdd) > (1.0 + tolerance) ** 2 * limits.max_acceleration)
+        return np.asarray(beyond.any(axis=(1, 2)) | self.beyond_range.any(axis=(0, 2)))
+
     @cached_property
     def beyond_range(self) -> Array:
         """
@@ -103,14 +119,9 @@ class JointCheck:
 
         Shape (2, N, 3), upper and lower end [rad]; 0 within.
         """
-        limits, q = self._task.limits, self.q
-        # At rest at a sample, a joint does not reverse beside it.
-        way = direction_of(self.qd, rest_speed_of(self.qd))
-        turns, rise = way[:, :-1] * way[:, 1:] < 0.0, rise_between_samples(q)
-        rise = np.where(turns, np.maximum(rise[:, :-1], rise[:, 1:]), 0.0)
-        most, least = (f(q[:, :-1], q[:, 1:]) for f in (np.maximum, np.minimum))
-        beyond = np.stack(((most + rise - limits.max_position).max(axis=1),
-                           (limits.min_position - least + rise).max(axis=1)))
+        limits = self._task.limits
+        beyond = range_excess(self.q, self.qd, limits.min_position, limits.max_position,
+                              rest_speed_of(self.qd))
         return np.where(beyond > JOINT_ROUNDING, beyond, 0.0)
 
     def excess(self) -> tuple[Array, Array, Array]:

@@ -71,6 +71,11 @@ class Margins(NamedTuple):
         return cls(np.stack((zero, zero)), zero, zero, zero, zero,
                    np.zeros((segments - 1, 3, 3), bool))
 
+    def copy(self) -> Margins:
+        """Return the same margins in memory of their own."""
+        return Margins(self.positions.copy(), self.velocities.copy(), self.accelerations.copy(),
+                       self.efforts.copy(), self.gravity_margins.copy(), self.stays.copy())
+
     def part(self, part: float) -> Margins:
         """
         Return the margins scaled down.

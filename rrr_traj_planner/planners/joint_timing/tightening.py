@@ -25,6 +25,7 @@ from __future__ import annotations
 import numpy as np
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
+from rrr_traj_planner.planners.joint_timing.local_repairs import LocalRepairs
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
@@ -114,6 +115,10 @@ class _Rounds:
 
     def accept(self, outcome: Outcome, tolerance: float) -> bool:
         task, durations = self._problem.task, self._problem.durations
+        if self._may_mend(outcome):
+            self.best = self._mended(outcome)
+            if self.best is not None:
+                return True
         self._check = check = JointCheck(task, self._problem.mesh, outcome.motion)
         within = check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any()
         if within or not durations.may_scale:  # the check is a little stricter than `fitting`
@@ -127,13 +132,29 @@ class _Rounds:
             self.best = self.best_that_fits()
         return self.best is not None
 
-    def tighten(self) -> bool:
-        problem, before = self._problem, self._margins
+    def _by_segments(self) -> bool:
+        return take_own_steps(self._constraints.problem, self._problem.durations)
+
+    def _may_mend(self, outcome: Outcome) -> bool:
+        return self._by_segments() and self._problem.durations.may_scale and bool(outcome.centres)
+
+    def _mended(self, outcome: Outcome) -> Solved | None:
+        """Return an outcome mended where it exceeds limits; None where that fails."""
+        self._find_slow_motion()
+        repairs = LocalRepairs(self._problem, self._margins, self._slow, outcome)
+        return self._problem.fitting(outcome, repairs.motion) if repairs.mend() else None
+
+    def _find_slow_motion(self) -> None:
+        problem = self._problem
         if not problem.durations.from_rest:
             self._slow = None  # there is none
         elif self._slow is None and self._slow_motion is not None:
             self._slow = self._slow_motion(problem.task, problem.constraints(
                 Margins.none(problem.mesh, len(problem.durations.free))))
+
+    def tighten(self) -> bool:
+        problem, before = self._problem, self._margins
+        self._find_slow_motion()
         assert self._check is not None
         former = self._constraints
         self._margins = before.widened(problem.task, problem.mesh, self._slow, self._check)
@@ -141,9 +162,8 @@ class _Rounds:
         centres = self._outcomes[-1][0].centres
         if np.array_equal(self._margins.stays, before.stays):
             self._centres = self._centres + centres
-            by_segments = take_own_steps(former.problem, problem.durations)
             self._start = _near(centres, former.problem, self._constraints.problem,
-                                EXCEEDED_BY_SEGMENTS if by_segments else EXCEEDED)
+                                EXCEEDED_BY_SEGMENTS if self._by_segments() else EXCEEDED)
             self._wider = former.problem.limits
         else:  # the solution is not near the former one
             self._centres = []

@@ -78,3 +78,37 @@ EXPORTED void excess_near_points(int32_t N, int32_t n, int32_t checks, int32_t r
             }
         }
 }
+
+static int direction(double velocity, double rest)
+{
+    return velocity > rest ? 1 : velocity < -rest ? -1 : 0;
+}
+
+/* How far positions q (N, width, K) leave the range from low to high (K) in each segment: beyond
+ * (2, N, K), upper and lower end; not above 0 within. Where the velocity qd, at rest up to the
+ * speed rest, has another sign at the next sample, they rise between. */
+EXPORTED void range_excess(int32_t N, int32_t width, int32_t K, const double *q, const double *qd,
+                           const double *low, const double *high, double rest, double *beyond,
+                           double *scratch)
+{
+    const size_t size = (size_t)width * K;
+    for (int k = 0; k < N; ++k, q += size, qd += size)
+        for (int e = 0; e < K; ++e) {
+            double most = -INFINITY, least = INFINITY;
+            rises(q + e, K, width, scratch, 1);
+            for (int w = 0; w < width; ++w) {
+                const double x = q[(size_t)w * K + e];
+                most = x > most ? x : most, least = x < least ? x : least;
+            }
+            for (int w = 0; w + 1 < width; ++w) {
+                const size_t at = (size_t)w * K + e, next = at + K;
+                if (direction(qd[at], rest) * direction(qd[next], rest) >= 0)
+                    continue;
+                const double rise = fmax(scratch[w], scratch[w + 1]);
+                most = fmax(most, fmax(q[at], q[next]) + rise);
+                least = fmin(least, fmin(q[at], q[next]) - rise);
+            }
+            beyond[(size_t)k * K + e] = most - high[e];
+            beyond[((size_t)N + k) * K + e] = low[e] - least;
+        }
+}

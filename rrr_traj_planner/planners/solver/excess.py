@@ -75,3 +75,29 @@ def excess_near_points(x: Array, limit: Array, checks: int, reach: int) -> Array
     KERNELS.excess_near_points(N, n, checks, reach, K, x.ctypes.data, limit.ctypes.data,
                                LIMIT_ROUNDING, excess.ctypes.data, scratch.ctypes.data)
     return excess
+
+
+def range_excess(q: Array, qd: Array, least: Array, most: Array, rest_speed: float) -> Array:
+    """
+    Return how far sampled positions leave their ranges in each segment, between samples too.
+
+    Parameters
+    ----------
+    q, qd : ndarray, shape (N, W, K)
+        Positions and velocities at samples, at least 3, of each of N segments.
+    least, most : ndarray, shape (K,)
+        Ends of the ranges; infinite where there is none.
+    rest_speed : float
+        Speed up to which a joint is at rest: at rest at a sample, it does not reverse beside it.
+
+    Returns
+    -------
+    ndarray, shape (2, N, K)
+        Beyond the upper and the lower end; not above 0 within.
+
+    """
+    q, qd, least, most = map(contiguous, (q, qd, least, most))
+    beyond, scratch = np.empty((2, len(q), q.shape[2])), np.empty(q.shape[1])
+    KERNELS.range_excess(*q.shape, *(f.ctypes.data for f in (q, qd, least, most)), rest_speed,
+                         beyond.ctypes.data, scratch.ctypes.data)
+    return beyond

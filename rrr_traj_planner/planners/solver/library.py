@@ -36,6 +36,7 @@ KERNELS = declared({
     'via_damp': (None, [c_void_p, c_double, c_double]),
     'excess_near_points': (None, [*[c_int32] * 5, c_void_p, c_void_p, c_double, *[c_void_p] * 2]),
     'path_quantities': (None, [c_void_p, c_int32, c_int32, *[c_void_p] * 3]),
+    'range_excess': (None, [*[c_int32] * 3, *[c_void_p] * 4, c_double, *[c_void_p] * 2]),
     'rise_between_samples': (None, [*[c_int32] * 3, c_void_p, c_void_p]),
     'spline_meet_points': (None, [*[c_int32] * 3, *[c_void_p] * 4]),
     'spline_sample': (None, [*[c_int32] * 3, *[c_void_p] * 3, *[c_int32] * 2, c_void_p]),

@@ -16,7 +16,11 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.solver.excess import excess_near_points, rise_between_samples
+from rrr_traj_planner.planners.solver.excess import (
+    excess_near_points,
+    range_excess,
+    rise_between_samples,
+)
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 SEEDS = range(6)
@@ -60,3 +64,34 @@ def test_excess_is_the_largest_within_reach_of_each_point(seed, checks, reach):
                 over = [p - limit[e] * (1.0 - LIMIT_ROUNDING)
                         for p in near[:, e] if p > limit[e]]
                 assert found[k, row, e] == pytest.approx(max(over, default=0.0))
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_ranges_are_left_by_the_peaks_of_parabolas_between_samples(seed):
+    # x = top -+ bend (t - peak)^2: its extreme is top, and it ends far on the other side
+    rng = np.random.default_rng(seed)
+    t, peak, way = np.arange(9.0), rng.uniform(0.1, 7.9, (4, 3)), rng.choice((-1.0, 1.0), (4, 3))
+    bend, top = rng.uniform(0.1, 3.0, (2, 4, 3))
+    from_peak = t[:, np.newaxis] - peak[:, np.newaxis]
+    x = top[:, np.newaxis] - way[:, np.newaxis] * bend[:, np.newaxis] * from_peak ** 2
+    v = -2.0 * way[:, np.newaxis] * bend[:, np.newaxis] * from_peak
+    least, most = np.array([-0.2, -np.inf, 0.1]), np.array([0.4, 0.3, np.inf])
+    upper, lower = range_excess(x, v, least, most, 0.0)
+    highest = np.where(way > 0.0, top, x.max(axis=1))
+    lowest = np.where(way > 0.0, x.min(axis=1), top)
+    for found, true in ((upper, highest - most), (lower, least - lowest)):
+        limited = np.isfinite(true)
+        assert np.array_equal(np.isfinite(found), limited)
+        assert (found >= true - 1e-12)[limited].all()
+        # a sample beside the peak is up to bend / 4 below it, and rises by bend / 4
+        assert (found <= true + 0.25 * bend + 1e-12)[limited].all()
+
+
+def test_a_joint_at_rest_at_a_sample_does_not_reverse_beside_it():
+    x = np.array([0.0, 0.0, 1.0, 4.0, 4.0])[np.newaxis, :, np.newaxis]
+    v = np.array([-1e-9, 1e-9, 2.0, 1.0, -1e-9])[np.newaxis, :, np.newaxis]
+    upper, lower = range_excess(x, v, np.zeros(1), np.full(1, 4.0), 1e-8)
+    assert (upper.item(), lower.item()) == (0.0, 0.0)
+    upper, lower = range_excess(x, v, np.zeros(1), np.full(1, 4.0), 0.0)
+    assert upper.item() > 0.0
+    assert lower.item() > 0.0
