@@ -21,6 +21,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { VECTOR = 4 };  /* doubles that a processor adds at once; loops are over multiples of it */
+
 #define J 1
 #define FRONT(name) one_##name
 #include "riccati.inc"
