@@ -86,10 +86,13 @@ class JointCheck:
         """
         limits, tau = self._task.limits, self.tau
         factor = limits.time_scale(np.abs(self.qd), np.abs(self.qdd), self._peak_jerk)
-        if tau is None or (np.abs(tau) <= self._effort * (1.0 + LIMIT_ROUNDING)).all():
+        if tau is None:
+            return factor
+        over = (np.abs(tau) > self._effort * (1.0 + LIMIT_ROUNDING)).any(axis=2)
+        if not over.any():
             return factor
         # Without Coulomb friction, which is off the limits already.
-        parts = torque_parts(self._task.model, self.q, self.qd, self.qdd)
+        parts = torque_parts(self._task.model, self.q[over], self.qd[over], self.qdd[over])
         return float(max(factor, np.sqrt(squared_scaling(self._effort, parts).max())))
 
     def exceeding(self, tolerance: float) -> BoolArray:

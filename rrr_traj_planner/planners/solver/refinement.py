@@ -24,6 +24,8 @@ from __future__ import annotations
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kernels import contiguous
+from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 
 # Of the monitor: its value where jerk is constant, over its mean where jerk goes from zero to its
@@ -70,9 +72,7 @@ def refined(mesh: Mesh, points: Array, m: Variables, max_jerk: Array,
     monitor = change.max(axis=2) / (mesh.parts * n) + BASE
     beside = np.concatenate((monitor[:, :1], monitor, monitor[:, -1:]), axis=1)
     monitor = np.sum([f * beside[:, i:i + n] for i, f in enumerate(SMOOTHING)], axis=0)
-    parts = np.array([_equal_shares(own_monitor, own_parts, least_rise / T) for
-                      own_monitor, own_parts, T in zip(monitor, mesh.parts, m.T)])
-    found = Mesh(parts)
+    found = Mesh(_equal_shares(monitor, mesh.parts, least_rise / m.T))
     return found, moved(mesh, found, points, m)
 
 
@@ -97,10 +97,12 @@ def moved(mesh: Mesh, to: Mesh, points: Array, m: Variables) -> Variables:
         Nearly the same; it may exceed limits slightly.
 
     """
-    jerk = mesh.states(points, m).jerk[:, :mesh.n + 1]
-    inner = np.array([[np.interp(new, at, f) for f in own_jerk.T] for new, at, own_jerk in zip(
-        to.starts[:, 1:-1], mesh.starts, jerk)])
-    return to.restored(points, m._replace(inner=np.swapaxes(inner, 1, 2)))
+    jerk = contiguous(mesh.states(points, m).jerk[:, :mesh.n + 1])
+    N, J = len(m.T), jerk.shape[2]
+    inner = np.empty((N, to.n - 1, J))
+    KERNELS.jerks_on_mesh(J, N, mesh.n, mesh.parts.ctypes.data, jerk.ctypes.data, to.n,
+                          to.parts.ctypes.data, inner.ctypes.data)
+    return to.restored(points, m._replace(inner=inner))
 
 
 def halved(mesh: Mesh) -> Mesh:
@@ -121,15 +123,10 @@ def halved(mesh: Mesh) -> Mesh:
     return Mesh(np.repeat(0.5 * mesh.parts, 2, axis=1))
 
 
-def _equal_shares(monitor: Array, parts: Array, least: float) -> Array:
-    """Return parts with equal shares of the monitor's integral, none shorter than the least."""
-    n = len(parts)
-    least = min(least, MOST_UNIFORM / n)
-    share = np.concatenate(([0.0], np.cumsum(monitor * parts)))
-    starts = np.concatenate(([0.0], np.cumsum(parts)))
-    found = np.diff(np.interp(np.linspace(0.0, share[-1], n + 1), share, starts))
-    while (short := found < least).any():
-        found = np.where(short, least, found)
-        longer = found > least
-        found[longer] *= (1.0 - least * np.count_nonzero(~longer)) / found[longer].sum()
-    return np.asarray(found / found.sum())
+def _equal_shares(monitor: Array, parts: Array, least: Array) -> Array:
+    """Return parts with equal shares of the monitors' integrals, none shorter than the least."""
+    N, n = parts.shape
+    monitor, least = contiguous(monitor), np.minimum(least, MOST_UNIFORM / n)
+    found = np.empty((N, n))
+    KERNELS.refined_parts(N, n, *(f.ctypes.data for f in (monitor, parts, least, found)))
+    return found
