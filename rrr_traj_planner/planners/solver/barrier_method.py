@@ -36,6 +36,7 @@ from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 # steps: half and twice of each (TOLERATED_RISE: 0.6 and 1) change at most one of 28 random plans,
 # by 0.4 %.
 RELATIVE_GAP = 2e-7        # of the objective, at which the method ends
+ROUGH_GAP = 1e-5           # at which it may turn out that a solution is of no use
 CENTRED = 0.5              # Newton decrement squared at which the weight is raised,
 POLISHED = 1e-7            # and at the end: the answer then varies smoothly with the task
 BARRIER_REDUCTION = 0.12   # of 1 / weight, from one centre to the next
@@ -78,7 +79,9 @@ def minimise(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> Solution:
     return along_central_path(barrier, centre)
 
 
-def along_central_path(barrier: ViaBarrier, centre: Callable[[float, float], bool]) -> Solution:
+def along_central_path(barrier: ViaBarrier, centre: Callable[[float, float], bool],
+                       reduction: float = BARRIER_REDUCTION,
+                       is_futile: Callable[[Solution], bool] | None = None) -> Solution:
     """
     Return the minimiser of the objective, by centring with larger and larger weights.
 
@@ -89,6 +92,10 @@ def along_central_path(barrier: ViaBarrier, centre: Callable[[float, float], boo
     centre : callable
         Minimises weight * objective + barrier up to a Newton decrement squared, given the weight
         and the decrement; returns whether it was cancelled.
+    reduction : float
+        Of 1 / weight, from one centre to the next.
+    is_futile : callable, optional
+        Called once, with the first solution within ROUGH_GAP; True ends the method with that.
 
     Returns
     -------
@@ -100,7 +107,12 @@ def along_central_path(barrier: ViaBarrier, centre: Callable[[float, float], boo
     weight = count / found.objective
     stopped = centre(weight, CENTRED)
     while not stopped and count / weight >= RELATIVE_GAP * found.objective:
-        weight /= BARRIER_REDUCTION
+        if is_futile is not None and count / weight < ROUGH_GAP * found.objective:
+            rough = Solution(barrier.velocities, barrier.durations, count / weight)
+            if is_futile(rough):
+                return rough
+            is_futile = None
+        weight /= reduction
         stopped = centre(weight, CENTRED)
     if not stopped:
         centre(weight, POLISHED)

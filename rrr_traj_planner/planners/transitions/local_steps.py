@@ -47,9 +47,13 @@ from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 LEFT_OUT = 0.1
 MOST_STEPS = 50  # before the weight is raised; chosen, twice as many as of whole steps
 
+# Of 1 / weight, from one centre to the next; chosen: with that of `barrier_method`, twice as much,
+# planning takes a tenth longer.
+REDUCTION = 0.5 * BARRIER_REDUCTION
+
 # Damping of a first step after the weight is raised: the tangent of the central path by 1 / weight
 # is as much shorter than Newton's step as the barrier's weight has become less.
-TANGENT = 1.0 / BARRIER_REDUCTION - 1.0
+TANGENT = 1.0 / REDUCTION - 1.0
 
 KERNELS = declared({'via_local_step': (c_double, [c_void_p, c_double, *[c_void_p] * 4])})
 
@@ -63,7 +67,8 @@ class _LocalRules(ctypes.Structure):  # as in native/via_local.c
 RULES = _LocalRules(SUFFICIENT_DECREASE, TOLERATED_RISE, MORE_DAMPING, LESS_DAMPING, LEFT_OUT)
 
 
-def minimise_locally(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> Solution:
+def minimise_locally(barrier: ViaBarrier, should_stop: Callable[[], bool],
+                     is_futile: Callable[[Solution], bool] | None = None) -> Solution:
     """
     Return the minimiser of the total duration of a barrier problem, as `barrier_method.minimise`.
 
@@ -73,6 +78,8 @@ def minimise_locally(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> So
         The problem, durations free, at a strictly feasible point.
     should_stop : callable
         Cancellation callback, called before every step; True ends the method with the iterate.
+    is_futile : callable, optional
+        See `along_central_path`.
 
     Returns
     -------
@@ -85,7 +92,7 @@ def minimise_locally(barrier: ViaBarrier, should_stop: Callable[[], bool]) -> So
     def centre(weight: float, decrement: float) -> bool:
         return steps.centre(weight, decrement, should_stop)
 
-    return along_central_path(barrier, centre)
+    return along_central_path(barrier, centre, REDUCTION, is_futile)
 
 
 class LocalSteps:

@@ -26,6 +26,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.planners.solver.barrier_method import Solution
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import DURATION_MARGIN, TORQUE_TOLERANCE
@@ -108,12 +109,21 @@ def quickest_motion(problem: TransitionProblem) -> tuple[TimedMotion | None, Boo
     via = problem.via
     stops = via.rest_to_rest_times()
     v, T, gap = np.zeros_like(via.highest), stops, 0.0
+    slower = 1.0 + DURATION_MARGIN
+    futile: list[BoolArray] = []
+
+    def is_futile(rough: Solution) -> bool:
+        futile.append(_overshoot(problem, *_parts(
+            problem, rough.velocities / slower, rough.durations * slower)))
+        return bool(futile[0].any())
+
     if not rests_everywhere(via):
-        found = least_time(via, should_stop=problem.task.should_stop)
+        found = least_time(via, None, problem.task.should_stop, is_futile)
+        if futile and futile[0].any():
+            return None, futile[0]
         gap = found.gap - float(max(found.durations.sum() - stops.sum(), 0.0))
         if found.durations.sum() <= stops.sum():  # it was not stopped early
             v, T = found.velocities, found.durations
-    slower = 1.0 + DURATION_MARGIN
     motion, overshoot = _motion_of(problem, v / slower, T * slower, T * slower)
     if motion is not None:
         motion.trajectory.note = unconverged_note(gap, motion.trajectory.duration)
@@ -199,16 +209,24 @@ def motion_slowed_for_torque(task: JointTask, motion: TimedMotion) -> TimedMotio
 def _motion_of(problem: TransitionProblem, v: Array, T: Array,
                durations: Array) -> tuple[TimedMotion | None, BoolArray]:
     """Return the motion of given velocities and durations; none where it overshoots a range."""
-    (task, via), rest = problem, np.zeros((1, 3))
-    v0, v1 = np.concatenate((rest, v)), np.concatenate((v, rest))
-    parts = segment_motion.low_acceleration_parts(via.segment_limits, segment_motion.Segments(
-        v0, v1, T[:, np.newaxis], via.displacements))
+    task, via = problem
+    v0, v1, parts = _parts(problem, v, T)
     overshoot = _overshoot(problem, v0, v1, parts)
     if overshoot.any():
         return None, overshoot
     trajectory = segment_motion.trajectory(
         task.points, v0, v1, T[:, np.newaxis], parts, via.function)
     return TimedMotion(trajectory, durations), overshoot
+
+
+def _parts(problem: TransitionProblem, v: Array,
+           T: Array) -> tuple[Array, Array, segment_motion.Parts]:
+    """Return velocities at the segments' starts and ends, and the parts of the motion between."""
+    rest = np.zeros((1, 3))
+    v0, v1 = np.concatenate((rest, v)), np.concatenate((v, rest))
+    return v0, v1, segment_motion.low_acceleration_parts(
+        problem.via.segment_limits, segment_motion.Segments(
+            v0, v1, T[:, np.newaxis], problem.via.displacements))
 
 
 def _overshoot(problem: TransitionProblem, v0: Array, v1: Array,

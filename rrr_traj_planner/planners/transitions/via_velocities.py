@@ -43,7 +43,8 @@ FEW = 100
 
 
 def least_time(problem: ViaProblem, least_T: Array | None = None,
-               should_stop: Callable[[], bool] = never) -> Solution:
+               should_stop: Callable[[], bool] = never,
+               is_futile: Callable[[Solution], bool] | None = None) -> Solution:
     """
     Return the via velocities and durations of least total time.
 
@@ -55,6 +56,8 @@ def least_time(problem: ViaProblem, least_T: Array | None = None,
         Durations [s] that no segment may fall below.
     should_stop : callable
         Cancellation callback, called before every step; True ends the method with its iterate.
+    is_futile : callable, optional
+        Of long motions, called with a nearly converged solution; True ends the method with that.
 
     Returns
     -------
@@ -68,7 +71,9 @@ def least_time(problem: ViaProblem, least_T: Array | None = None,
     if least_T is not None:
         T = np.maximum(T, least_T)
     barrier = ViaBarrier(problem, np.zeros((n - 1, 3)), START_MARGIN * T, least_T)
-    return (minimise if n <= FEW else minimise_locally)(barrier, should_stop)
+    if n <= FEW:
+        return minimise(barrier, should_stop)
+    return minimise_locally(barrier, should_stop, is_futile)
 
 
 def least_time_scale(problem: ViaProblem, durations: Array) -> tuple[float, Solution]:

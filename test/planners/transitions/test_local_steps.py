@@ -16,7 +16,7 @@
 
 import numpy as np
 import pytest
-from rrr_traj_planner.planners.solver.barrier_method import minimise, RELATIVE_GAP
+from rrr_traj_planner.planners.solver.barrier_method import minimise, RELATIVE_GAP, ROUGH_GAP
 from rrr_traj_planner.planners.solver.via_barrier import ViaBarrier
 from rrr_traj_planner.planners.transitions import via_velocities
 from rrr_traj_planner.planners.transitions.local_steps import LocalSteps, minimise_locally
@@ -131,7 +131,7 @@ def test_segments_that_are_centred_take_no_further_steps():
 def test_long_motions_are_planned_by_local_steps_and_short_ones_are_not(monkeypatch):
     asked = []
     for name in ('minimise', 'minimise_locally'):
-        monkeypatch.setattr(via_velocities, name, lambda barrier, _, name=name: asked.append(name))
+        monkeypatch.setattr(via_velocities, name, lambda *_, name=name: asked.append(name))
     for n in (via_velocities.FEW, via_velocities.FEW + 1):
         via_velocities.least_time(problem_of(0, n))
     assert asked == ['minimise', 'minimise_locally']
@@ -144,3 +144,23 @@ def test_planning_that_is_stopped_ends_with_a_feasible_iterate():
     assert found.gap > RELATIVE_GAP * found.durations.sum()
     there = ViaBarrier(problem, found.velocities, found.durations)
     assert np.isfinite(there.arrays['before']).all()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_a_solution_that_is_nearly_converged_may_turn_out_futile(seed):
+    problem, seen = problem_of(seed, 30, jerk=False), []
+
+    def never():
+        return False
+
+    def is_futile(rough):
+        seen.append((rough.durations.sum(), rough.gap))
+        return len(seen) == 1
+
+    ended = minimise_locally(at_start(problem), never, is_futile)
+    assert (ended.durations.sum(), ended.gap) == seen[0]
+    assert ended.gap < ROUGH_GAP * ended.durations.sum()
+    found = minimise_locally(at_start(problem), never, is_futile)
+    assert len(seen) == 2
+    assert found.gap < RELATIVE_GAP * found.durations.sum()
+    assert 0.0 < ended.durations.sum() - found.durations.sum() < 1.1 * ended.gap
