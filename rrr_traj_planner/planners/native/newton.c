@@ -23,8 +23,8 @@
 
 enum { VECTOR = 4 };  /* doubles that a processor adds at once; loops are over multiples of it */
 
-/* Functions that are compiled for processors with AVX2 too, of which one is chosen when the library
- * is loaded; they round alike. What they call is compiled with them. */
+/* Functions that are compiled for processors with AVX2 too, of which one is chosen when the
+ * library is loaded; they round alike. What they call is compiled with them. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
 #define BY_PROCESSOR __attribute__((target_clones("avx2", "default")))
 #else
