@@ -125,7 +125,7 @@ def ask(planner: str, shape: str, n: int, limit: float, clock) -> tuple[float, s
         request = plan_request(SHAPES[shape](n), planner_id=planner)
         started, cpu = clock(), process_time()
         with scheduler.Scheduler().job() as job:
-            response = _answer(request, config(limit), lambda: False, job).response
+            response = _answer(request, config(limit), None, lambda: False, job).response
         seconds, cpu = clock() - started, process_time() - cpu
         end = response.via_times[-1] if response.via_times else 0.0
         os.write(write, f'{seconds} {CODES[response.error_code]}, {cpu:.2f} s of processor, '
