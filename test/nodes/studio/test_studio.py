@@ -209,7 +209,14 @@ def distance(page, place):
     return np.linalg.norm(begins + along[:, np.newaxis] * lines - place, axis=1).min()
 
 
+def slow_down(ros, page, studio):
+    """Have a motion that lasts longer than a busy machine is late."""
+    ros.run(lambda: studio.editor.change(studio.editor.wanted.with_scalings(0.5, 0.5)))
+    page.wait(lambda *_: studio.session.is_current)
+
+
 def test_point_that_is_dragged_in_motion_is_gone_to(ros, client, page, studio):
+    slow_down(ros, page, studio)
     goals = keep_goals(client)
     elsewhere = (0.55, 0.3, 1.3)
     ros.run(studio.commands.run)
@@ -231,6 +238,7 @@ def test_point_that_is_dragged_in_motion_is_gone_to(ros, client, page, studio):
 
 
 def test_refused_drag_in_motion_is_told_and_the_motion_goes_on(ros, page, studio):
+    slow_down(ros, page, studio)
     ros.run(studio.commands.run)
     page.wait(lambda p: any('tracking error' in text for text, _ in p.statuses))
     ros.run(lambda: studio.move_point(2, FAR_AWAY))
