@@ -108,3 +108,15 @@ def test_run_without_a_plan_is_told_after_hold_too(arm):
     arm.commands.run()
     arm.answer('hold')
     assert NO_PLAN in arm.text
+
+
+def test_run_after_hold_is_sent_though_the_goal_before_has_no_answer_yet(arm):
+    arm.commands.hold()
+    arm.commands.run()
+    before = arm.text
+    assert len(arm.ends) == 2
+    arm.answer('hold')
+    arm.ends[0](MoveThrough.Result(error_code=MoveThrough.Result.PREEMPTED, message='canceled'))
+    assert arm.text == before
+    arm.end(MoveThrough.Result.SUCCESS)
+    assert 'reached' in arm.text

@@ -105,7 +105,8 @@ class Execution:
             Whether the arm moves.
 
         """
-        if self._running is None and self._sent is not None and self._sent.wanted is wanted:
+        if self._running is None and self._sent is not None and (
+                self._sent.wanted is wanted and not self._stops):
             return  # asked for twice
         if not takes_over:
             self._running, self._tracking, self._done = None, Tracking(), 0.0
