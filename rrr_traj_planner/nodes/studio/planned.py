@@ -38,9 +38,15 @@ from rrr_traj_planner.nodes.studio.session import Refusal
 from rrr_traj_planner.report.excitation import IN_TEXT
 
 MOST_POINTS = 600  # of the path, that are drawn
-# Fields of the request: their names in the panel, and the via point of their first value.
-NAMES = {'segment_durations': ('time', 1), 'dwell': ('dwell', 0), 'stop_at': ('stop', 0)}
+# Names in the panel: of a request's fields with several values, and of other fields.
+NAMES = {'segment_durations': 'time', 'dwell': 'dwell', 'stop_at': 'stop'}
+OTHERS = {'payload.mass': 'payload', 'max_deviation': 'deviation'}
 FIELD = re.compile(rf'\b(?P<field>{"|".join(NAMES)})\[(?P<index>\d+)\](?P<nan> is nan\b)?')
+# rclpy's words for a parameter out of its range, without a unit, and the package's.
+RANGE = (
+    re.compile(r'Parameter payload\.mass out of range Min: (\S+), Max: (\S+), value: (\S+)'),
+    r'payload is \3 kg, must be in [\1, \2] kg')
+OTHER = re.compile(rf'\b({"|".join(map(re.escape, OTHERS))}) is\b')
 LIMITED = ('velocity', 'acceleration', 'jerk', 'torque')
 
 
@@ -163,7 +169,7 @@ def planned(response: Any, planner_id: str, model: RobotModel, limits: JointLimi
             points.positions, points.velocities, points.accelerations, jerk))))
 
 
-def in_words_of_the_page(message: str) -> str:
+def in_words_of_the_page(message: str, first: int = 0, first_way: int = 1) -> str:
     """
     Return a refusal with the panel's names in place of the service's fields.
 
@@ -171,6 +177,9 @@ def in_words_of_the_page(message: str) -> str:
     ----------
     message : str
         Of the service, such as 'segment_durations[0] is nan: planner cycloid takes ...'.
+    first, first_way : int
+        Via point of the page's that is the first of the request, and to which its first segment
+        leads.
 
     Returns
     -------
@@ -179,11 +188,12 @@ def in_words_of_the_page(message: str) -> str:
 
     """
     def named(found: re.Match[str]) -> str:
-        name, shift = NAMES[found['field']]
+        shift = first_way if found['field'] == 'segment_durations' else first
         value = ' is not given' if found['nan'] else ''
-        return f'{name} of via point {int(found["index"]) + shift}{value}'
+        return f'{NAMES[found["field"]]} of via point {int(found["index"]) + shift}{value}'
 
-    return FIELD.sub(named, message)
+    message = RANGE[0].sub(RANGE[1], FIELD.sub(named, message))
+    return OTHER.sub(lambda found: f'{OTHERS[found[1]]} is', message)
 
 
 def _vibration(points: TrajectoryPoints, end: float) -> tuple[float, ...]:

@@ -21,7 +21,7 @@ from collections.abc import Callable
 from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.nodes.parameters.configuration import PlannerConfig
-from rrr_traj_planner.nodes.studio.planned import Planned, planned
+from rrr_traj_planner.nodes.studio.planned import in_words_of_the_page, Planned, planned
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
 from rrr_traj_planner.nodes.studio.session import Refusal
 from rrr_traj_planner.nodes.studio.wanted import Wanted
@@ -73,12 +73,12 @@ class Planning:
             config = PlannerConfig.from_values({
                 **self._client.parameters, 'payload.mass': mass})
         except InvalidInputError as error:
-            answered(Refusal(str(error)))
+            answered(Refusal(in_words_of_the_page(str(error))))
             return
 
         def set_(refused: str) -> None:
             if refused:
-                answered(Refusal(refused))
+                answered(Refusal(in_words_of_the_page(refused)))
                 return
             self.config, self._mass = config, mass
             self.plan(wanted, answered)

@@ -157,6 +157,16 @@ def test_refusal_has_the_page_s_number_and_the_motion_goes_on(arm):
     assert GOES_ON not in arm.text
 
 
+@pytest.mark.parametrize(('message', 'shown'), [
+    ('segment_durations[1] is 0.0 s, must be finite', 'time of via point 3 is 0.0 s, must be'),
+    ('dwell[1] is 1 s, but the arm does not stop at via point 1: ...',
+     'dwell of via point 3 is 1 s, but the arm does not stop at via point 3')])
+def test_refused_number_has_the_panel_s_name_and_number(arm, message, shown):
+    arm.drag(3, 1.2)
+    arm.sent[1].end(Result.INVALID_GOAL_CONSTRAINTS, message)
+    assert shown in arm.text
+
+
 def test_what_was_dragged_during_a_refusal_is_tried(arm):
     arm.drag(3, 9.0)
     arm.drag(3, 1.2)

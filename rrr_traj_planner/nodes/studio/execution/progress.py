@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 import re
 from time import monotonic
 
+from rrr_traj_planner.nodes.studio.planned import in_words_of_the_page
 from rrr_traj_planner.nodes.studio.sent_goal import SentGoal
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 from rrr_traj_planner_interfaces.action import MoveThrough
@@ -106,7 +107,8 @@ class Progress:
         Returns
         -------
         str
-            Its message, with the numbers that the via points have in `wanted`.
+            Its message, in the panel's words and with its numbers of via points.
 
         """
-        return VIA_POINT.sub(lambda found: str(int(found[0]) + self.first), result.message)
+        message = VIA_POINT.sub(lambda found: str(int(found[0]) + self.first), result.message)
+        return in_words_of_the_page(message, self.first, self.first)

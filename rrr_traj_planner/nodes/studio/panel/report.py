@@ -20,6 +20,7 @@ from typing import Any
 
 from rrr_traj_planner.core.errors import RrrPlannerError
 from rrr_traj_planner.nodes.studio.panel.controls import Post
+from rrr_traj_planner.nodes.studio.planned import in_words_of_the_page
 from rrr_traj_planner.nodes.studio.studio import Studio
 import viser
 
@@ -50,6 +51,7 @@ class ReportButton:
         try:
             client.send_file_download(*studio.report(), save_immediately=True)
         except (RrrPlannerError, ImportError) as error:
-            client.add_notification('No report', str(error), color='red')
+            client.add_notification(
+                'No report', in_words_of_the_page(str(error)), color='red')
         finally:
             self._button.label, self._button.disabled = LABEL, False
