@@ -37,6 +37,10 @@ VIA, CHOSEN, AT_FAULT = (245, 140, 30), (250, 205, 60), (200, 30, 30)
 DRIVEN, REACH = (0, 150, 130), (90, 150, 220)
 REACH_OPACITY = 0.15
 
+# Light from all sides, beside viser's two lamps, in place of the surroundings that viser has
+# reflected: these and shadows take two thirds of a picture's time where a processor draws it.
+SKY, GROUND, BRIGHTNESS = (255, 255, 255), (170, 175, 190), 2.3
+
 # Sizes, as fractions of the arm's.
 BALL, HANDLE, CELL = 0.018, 0.16, 0.1
 CHOSEN_SCALE = 1.5  # of a ball
@@ -81,6 +85,13 @@ class Scene:
         self._arm = ArmDrawing(scene, '/arm', shape, ARM)
         self._ghost = ArmDrawing(scene, '/ghost', shape, GHOST)
         self._reach: viser.MeshHandle | None = None
+        self._plan = _Path(scene, '/plan', PLAN_LINE)
+        self._driven = _Path(scene, '/driven', DRIVEN_LINE)
+        scene.configure_default_lights(cast_shadow=False)
+        scene.configure_environment_map(None)
+        scene.add_light_hemisphere(
+            '/light', sky_color=SKY, ground_color=GROUND, intensity=BRIGHTNESS,
+            position=(0.0, 0.0, 1.0))  # where the sky is
         scene.add_grid('/grid', width=4.0 * size, height=4.0 * size, cell_size=CELL * size,
                        section_size=10.0 * CELL * size)
         scene.add_frame('/base', axes_length=CELL * size, axes_radius=0.05 * CELL * size)
@@ -136,7 +147,7 @@ class Scene:
 
         """
         if plan is not None:
-            self._draw('/plan', plan.path, path_colours(plan, meaning, is_current), PLAN_LINE)
+            self._plan.show(plan.path, path_colours(plan, meaning, is_current))
 
     def show_arm(self, joints: Sequence[float], driven: list[Point]) -> None:
         """
@@ -151,7 +162,7 @@ class Scene:
 
         """
         self._arm.show(joints)
-        self._draw('/driven', np.array(driven).reshape(-1, 3), DRIVEN, DRIVEN_LINE)
+        self._driven.show(np.array(driven).reshape(-1, 3), DRIVEN)
 
     def show_ghost(self, joints: Sequence[float] | None) -> None:
         """
@@ -184,14 +195,22 @@ class Scene:
         """Return what is drawn by `add_reach`."""
         return self._reach
 
-    def _draw(self, name: str, path: Array, colours: Any, width: float) -> None:
-        """Draw a path in place of the one of the same name, which may be a single point."""
+
+class _Path:
+    """A path, drawn by one object that is changed: the browser need not make another one."""
+
+    def __init__(self, scene: viser.SceneApi, name: str, width: float) -> None:
+        self._lines = scene.add_line_segments(
+            name, np.zeros((1, 2, 3), np.float32), (0, 0, 0), thickness=width,
+            thickness_units='screen')
+
+    def show(self, path: Array, colours: Any) -> None:
+        """Draw it elsewhere, with a colour or those of its segments' ends."""
         ends = np.stack((path[:-1], path[1:]), axis=1)
         if not len(ends):
             ends, colours = np.zeros((1, 2, 3)), (0, 0, 0)  # a line without length: not to be seen
-        self._scene.add_line_segments(
-            name, ends.astype(np.float32), _linear(np.asarray(colours)),
-            thickness=width, thickness_units='screen')
+        self._lines.points = ends.astype(np.float32)
+        self._lines.colors = np.broadcast_to(_linear(np.asarray(colours)), ends.shape)
 
 
 def _linear(colours: Array) -> NDArray[np.uint8]:

@@ -1,0 +1,100 @@
+# Copyright 2026 rrr_traj_planner developers
+#
+# Licensed under the Apache License, Version 2.0 (the "License");
+# you may not use this file except in compliance with the License.
+# You may obtain a copy of the License at
+#
+#     http://www.apache.org/licenses/LICENSE-2.0
+#
+# Unless required by applicable law or agreed to in writing, software
+# distributed under the License is distributed on an "AS IS" BASIS,
+# WITHOUT WARRANTIES OR CONDITIONS OF ANY KIND, either express or implied.
+# See the License for the specific language governing permissions and
+# limitations under the License.
+
+"""The scene: what is added to it once, and what is changed there afterwards."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from rrr_traj_planner.nodes.output.arm_shape import ArmShape
+from rrr_traj_planner.nodes.studio.figures import SPEED
+from rrr_traj_planner.nodes.studio.planned import Planned
+
+pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
+scene = import_module('rrr_traj_planner.nodes.studio.scene')
+
+
+class Drawn:
+    """Keeps what is added, in the order in which it is, and how the scene is configured."""
+
+    def __init__(self):
+        self.added, self.configured = [], {}
+
+    def __getattr__(self, kind):
+        def add(name, *_, **how):
+            self.added.append(SimpleNamespace(name=name, **how))
+            return self.added[-1]
+
+        def configure(*given, **how):
+            self.configured[kind] = (*given, *how.items())
+
+        return add if kind.startswith('add_') else configure
+
+    def node(self, name):
+        """Return the only one of a name."""
+        node, = (node for node in self.added if node.name == name)
+        return node
+
+
+def plan_of(path):
+    path = np.array(path, dtype=float).reshape(-1, 3)
+    return Planned('cycloid', 1.0, 0.0, '', path, np.ones(len(path) - 1), np.arange(len(path)),
+                   path, path, ())
+
+
+@pytest.fixture
+def drawn():
+    return Drawn()
+
+
+@pytest.fixture
+def shown(drawn):
+    return scene.Scene(drawn, 2.0, None, ArmShape((), ()))
+
+
+def test_paths_are_changed_and_not_added_again(drawn, shown):
+    names = [node.name for node in drawn.added]
+    for path in ([[0, 0, 0], [1, 0, 0], [1, 2, 0]], [[3, 0, 0], [3, 4, 0]]):
+        shown.show_plan(plan_of(path), True, SPEED)
+        shown.show_arm([0.0] * 3, [tuple(place) for place in path])
+    assert [node.name for node in drawn.added] == names
+    for name in ('/plan', '/driven'):
+        assert drawn.node(name).points.tolist() == [[[3, 0, 0], [3, 4, 0]]]
+
+
+def test_every_end_of_a_path_has_a_colour(drawn, shown):
+    path = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 2.0, 0.0)]
+    shown.show_plan(plan_of(path), True, SPEED)
+    shown.show_arm([0.0] * 3, path)
+    for name in ('/plan', '/driven'):
+        assert drawn.node(name).colors.shape == drawn.node(name).points.shape == (2, 2, 3)
+
+
+@pytest.mark.parametrize('driven', [[], [(1.0, 2.0, 3.0)]])
+def test_a_path_of_less_than_two_points_is_not_to_be_seen(drawn, shown, driven):
+    shown.show_arm([0.0] * 3, [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)])
+    shown.show_arm([0.0] * 3, driven)
+    begin, end = drawn.node('/driven').points[0].tolist()
+    assert begin == end
+
+
+def test_nothing_is_reflected_and_no_shadows_are_drawn(drawn, shown):
+    assert drawn.configured == {
+        'configure_default_lights': (('cast_shadow', False),),
+        'configure_environment_map': (None,)}
+    assert drawn.node('/light').position[2] > 0.0
