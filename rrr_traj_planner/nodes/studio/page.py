@@ -126,6 +126,7 @@ class Page:
             self._draw_plan()
             self._panel.show_plan(plan, text)
             self._panel.view.explain(plan)
+        self._server.flush()  # at once: viser waits 1/60 s for more
 
     def show_arm(self, joints: list[float], driven: list[Point]) -> None:
         """Show the arm at joint positions, and where its tip has been."""
