@@ -35,6 +35,7 @@ import bench_paths  # noqa: E402
 import bench_planning_time  # noqa: E402
 import bench_processes  # noqa: E402
 import bench_service  # noqa: E402
+import bench_studio  # noqa: E402
 from measuring import Row, setting, table  # noqa: E402
 from ratio_plot import draw  # noqa: E402
 
@@ -57,6 +58,7 @@ def groups(tasks: int) -> dict[str, Callable[[], list[Row]]]:
         'messages': bench_messages.rows,
         'service': bench_service.rows,
         'processes': bench_processes.rows,
+        'studio': bench_studio.rows,
         'growth with the via points': bench_planning_time.growth}
 
 
