@@ -29,7 +29,9 @@ import pytest
 from rrr_traj_planner.nodes.point_files.reading import read_task
 
 WIDTH, HEIGHT = 640, 480  # pixels: a small scene, which is drawn by software
-FIELDS = 'Array.from(document.querySelectorAll("input")).map(e => e.value)'
+SEEN = 'input:not([type=hidden])'  # beside them, there are hidden ones with the values in force
+FIELDS = f'Array.from(document.querySelectorAll("{SEEN}")).map(e => e.value)'
+PLAN = 'document.body.innerText.match(/cycloid: [0-9.]+ s/)?.[0]'
 OPTIONS = 'Array.from(document.querySelectorAll("[role=option]")).map(e => e.innerText.trim())'
 ELEMENT = 'Array.from(document.querySelectorAll({kind})).find(e => {condition})'
 
@@ -84,7 +86,7 @@ class Form:
         self.browser.ask('DOM.setFileInputFiles', nodeId=node['nodeId'], files=[str(file)])
 
     def _field(self, value):
-        found = ELEMENT.format(kind='"input"', condition=f'e.value === {quoted(value)}')
+        found = ELEMENT.format(kind=quoted(SEEN), condition=f'e.value === {quoted(value)}')
         self.browser.until(f'{found} !== undefined')
         return found
 
@@ -105,6 +107,7 @@ def test_panel_changes_what_is_planned_and_opens_tasks_with_other_arms(tmp_path)
         form = Form(opened, address)
         change_points(form)
         change_options(form)
+        empty_number(form)
         say_why_nothing_changes(form)
         darken(form)
         saved = tmp_path / 'table_6_1.yaml'
@@ -140,6 +143,22 @@ def change_options(form):
     form.press('undo')
     form.reads('cycloid: ')
     form.browser.until('!document.body.innerText.includes("refused")')
+
+
+def empty_number(form):
+    """Type a scaling, and empty its field: on leaving it, the field has the number in force."""
+    before = form.browser.value(PLAN)
+    form.write('1', '0.5')
+    form.browser.until('document.activeElement.value === "0.5"')
+    form.browser.value('document.activeElement.select()')
+    form.browser.ask('Input.dispatchKeyEvent', type='keyDown', key='Delete', code='Delete',
+                     windowsVirtualKeyCode=46)
+    form.browser.until('document.activeElement.value === ""')
+    form.browser.value('document.activeElement.blur()')
+    form.has('0.5')
+    form.browser.until(f'{PLAN} && {PLAN} !== {quoted(before)}')
+    form.press('undo')
+    form.browser.until(f'{PLAN} === {quoted(before)}')
 
 
 def say_why_nothing_changes(form):

@@ -82,9 +82,10 @@ class MotionFolder:
         editor = studio.editor
 
         def scale(_: float) -> None:
-            editor.change(editor.wanted.with_scalings(
-                *(min(max(float(slider.value), LEAST_SCALING), 1.0)
-                  for slider in self._scalings)), 'scalings')
+            wanted, shares = editor.wanted, [float(slider.value) for slider in self._scalings]
+            if shares != [wanted.velocity_scaling, wanted.acceleration_scaling]:
+                editor.change(wanted.with_scalings(
+                    *(min(max(value, LEAST_SCALING), 1.0) for value in shares)), 'scalings')
 
         def pose(_: str) -> None:
             elbow, shoulder = ('' if handle.value == FREE else handle.value

@@ -27,7 +27,8 @@ from rrr_traj_planner.nodes.studio.studio import Studio
 import viser
 
 STEP = 0.001         # of the moment
-SCRIPT = 'moment.js'  # knows the title of the chart and the label of the slider
+SCRIPTS = ('moment.js',  # knows the title of the chart and the label of the slider
+           'numbers.js')
 
 # The legend tells of the joints alone; the chart can be clicked.
 STYLE = """<style>
@@ -58,7 +59,7 @@ class PlanFolder:
             self._moment = gui.add_slider(
                 'moment', 0.0, 1.0, STEP, 0.0,
                 hint='of the motion, as a fraction of its duration; or click in the chart')
-            gui.add_html(_script())
+            gui.add_html(_scripts())
 
     def connect(self, studio: Studio, post: Post) -> None:
         """Have the controls do something."""
@@ -101,12 +102,13 @@ class PlanFolder:
             self._moment.value = round(share / STEP) * STEP
 
 
-def _script() -> str:
+def _scripts() -> str:
     """
-    Return what brings clicks in the chart to the slider.
+    Return what brings clicks in the chart to the slider, and numbers back to fields.
 
-    viser tells of no clicks in a chart, and takes no script; the handler of an image that cannot
-    be loaded is one.
+    viser tells of neither, and takes no script; the handler of an image that cannot be loaded is
+    one.
     """
-    code = files(__package__).joinpath(SCRIPT).read_text(encoding='utf-8')
-    return f'{STYLE}<img hidden alt="" src="data:," onerror="{escape(code)}">'
+    codes = (files(__package__).joinpath(name).read_text(encoding='utf-8') for name in SCRIPTS)
+    return STYLE + ''.join(
+        f'<img hidden alt="" src="data:," onerror="{escape(code)}">' for code in codes)
