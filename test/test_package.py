@@ -31,15 +31,16 @@ PACKAGES = ('.', 'rrr_traj_planner_interfaces', *STAND_INS)
 XML = ElementTree.parse(ROOT / 'package.xml').getroot()
 
 # Keys that differ from the module's name; None where it may be missing: what needs it says so, and
-# its tests are skipped. mcap, mcap_ros2 and rosbags (`--record`), viser, trimesh and collada
-# (`studio`) are pip's alone.
+# its tests are skipped. mcap, mcap_ros2 and rosbags (`--record`), viser with its
+# websockets, trimesh and collada (`studio`) are pip's alone.
 KEYS = {
     'catkin_pkg': 'python3-catkin-pkg-modules', 'collada': None,
     'hypothesis': 'python3-hypothesis',
     'lxml': 'python3-lxml', 'matplotlib': 'python3-matplotlib', 'mcap': None, 'mcap_ros2': None,
     'mpl_toolkits': 'python3-matplotlib', 'numpy': 'python3-numpy', 'pytest': 'python3-pytest',
     'rosbags': None, 'scipy': 'python3-scipy', 'tf2_ros': 'tf2_ros_py', 'trimesh': None,
-    'urdf_parser_py': 'urdfdom_py', 'viser': None, 'yaml': 'python3-yaml'}
+    'urdf_parser_py': 'urdfdom_py', 'viser': None, 'websockets': None,
+    'yaml': 'python3-yaml'}
 
 
 def imported(folder):
