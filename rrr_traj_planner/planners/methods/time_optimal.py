@@ -32,11 +32,12 @@ from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.prescribed import prescribed
+from rrr_traj_planner.planners.joint_timing.problem import Solved
 from rrr_traj_planner.planners.joint_timing.start import cannot_be_held
 from rrr_traj_planner.planners.registration import register
 from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
-from rrr_traj_planner.planners.solver.splines import uniform_mesh
+from rrr_traj_planner.planners.solver.splines import Mesh, uniform_mesh
 from rrr_traj_planner.planners.tasks import JointTask
 
 # Numbers of intervals, chosen.
@@ -45,6 +46,7 @@ INTERVALS_ALONE = 40  # in a motion's only segment, with both acceleration and d
 ALONE_BY_TORQUE = 60  # and where torque alone limits them
 MOST_INTERVALS = 40   # in a segment where the jerk limit allows short changes of acceleration
 SHAPED = 0.1          # acceleration reversal / segment, by duration: INTERVALS suffice above it
+BRISK = (10.0, 30.0, 100.0)  # sample periods, of a motion that torque alone would do in fewer
 MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps are about a tenth of it
 
 
@@ -82,9 +84,29 @@ def plan(task: JointTask) -> Trajectory:
     mesh = uniform_mesh(len(task.points) - 1, _intervals(task))
     found = fastest(task, mesh) if task.durations is None else prescribed(
         task, mesh, task.durations)
+    for samples in BRISK:
+        if found is None and task.durations is None:
+            found = _slower(task, mesh, samples)
     if found is None:
         raise cannot_be_held(task, mesh)
     return found.trajectory.noted(unconverged_note(found.gap, found.cost))
+
+
+def _slower(task: JointTask, mesh: Mesh, samples: float) -> Solved | None:
+    """
+    Return the fastest motion whose longest segment takes a number of sample periods, or None.
+
+    Effort limits out of all proportion to the arm, as those of placeholders in a URDF, would allow
+    motions within a sample period or two, which no sampled motion represents. None also where
+    they do not.
+    """
+    way = float(np.abs(np.diff(task.points, axis=0)).max())
+    most = 4.0 * way / (samples * task.sample_period) ** 2
+    limits = task.limits
+    if not (acceleration_scale(task.model, limits, task.points) > most).any():
+        return None
+    limits = replace(limits, max_acceleration=np.minimum(limits.max_acceleration, most))
+    return fastest(replace(task, limits=limits), mesh)
 
 
 def _intervals(task: JointTask) -> int:

@@ -25,10 +25,12 @@ from rrr_traj_planner.nodes.studio.execution.execution import (
     DETACHED,
     Execution,
     GOES_ON,
+    SILENCE,
     STOPPED,
     STOPPING,
     TRIES,
 )
+from rrr_traj_planner.nodes.studio.execution.progress import Progress
 from rrr_traj_planner.nodes.studio.execution.tracking import MOST_POINTS, PERIOD, Tracking
 from rrr_traj_planner.nodes.studio.goals import rest_goal
 from rrr_traj_planner.nodes.studio.wanted import wanted_of
@@ -216,6 +218,14 @@ def test_stop_ends_the_motion_and_what_is_to_take_over(arm):
     assert STOPPED in arm.text and not arm.execution.is_moving
     arm.drag(3, 1.21)
     assert len(arm.sent) == 2 and not arm.execution.stop(is_told=True)
+
+
+def test_stop_that_perhaps_nobody_has_heard_is_not_told_as_done(arm, monkeypatch):
+    arm.sent[0].feedback(1, *(0.9 + k for k in range(COUNT - 2)))
+    monkeypatch.setattr(Progress, 'silence', SILENCE + 1.0)
+    assert arm.execution.stop(is_told=True)
+    arm.sent[0].end(Result.PREEMPTED, 'canceled')
+    assert STOPPED not in arm.text and 'no news of the motion for 3 s' in arm.text
 
 
 def test_end_of_which_somebody_else_tells_is_not_told(arm):

@@ -92,7 +92,8 @@ def test_number_is_taken_and_a_wrong_one_is_told_of_until_it_is_right(monkeypatc
 def test_number_is_shown_as_it_is_typed():
     handle = Text()
     number = typed.Number(SimpleNamespace(add_text=lambda *_, **__: handle), 'a [s]', '')
-    for value, text in ((0.0, ''), (0.1, '0.1'), (1 / 3, '0.333333'), (12.0, '12')):
+    for value, text in ((0.0, ''), (0.1, '0.1'), (1 / 3, '0.333333333'), (12.0, '12'),
+                        (1e-9, '1e-09')):
         number.show(value)
         assert handle.value == text
         number.show(value, is_enabled=False)

@@ -84,7 +84,8 @@ class Execution:
         self._tracking = Tracking()
         self._refusal = ''
         self._stops = False                 # whether the user has asked for the end,
-        self._tells_end = True              # and whether it is told here
+        self._tells_end = True              # and whether it is told here;
+        self._silence = 0.0                 # s without news by then: perhaps nobody has heard it
 
     @property
     def is_moving(self) -> bool:
@@ -159,6 +160,8 @@ class Execution:
 
         """
         self._wanted, self._stops, self._tells_end = None, True, is_told
+        silence = 0.0 if self._running is None else self._running.silence
+        self._silence = silence if silence > SILENCE else 0.0
         found = [sent for sent in (self._sent, self._running) if sent is not None]
         for sent in found:
             sent.sent.cancel()
@@ -249,7 +252,9 @@ class Execution:
         if not self._tells_end:
             return
         if result.error_code == result.PREEMPTED and self._stops:
-            self._display.show_status(status_html(STOPPED), 0.0)
+            self._display.show_status(status_html(
+                SILENT.format(self._silence) if self._silence else STOPPED,
+                is_error=self._silence > 0.0), 0.0)
             return
         if result.error_code != result.SUCCESS:
             self._display.show_status(status_html(sent.text_of(result), is_error=True), 0.0)

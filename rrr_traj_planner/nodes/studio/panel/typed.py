@@ -89,7 +89,7 @@ class Number:
             Whether it can be changed.
 
         """
-        self._handle.value = f'{round(number, DIGITS):.12g}' if number else ''
+        self._handle.value = f'{number:.9g}' if number else ''
         enable(self._handle, is_enabled)
 
 

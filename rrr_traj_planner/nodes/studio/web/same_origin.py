@@ -16,8 +16,10 @@
 Connections from the page alone: no other website in the user's browser may move the arm.
 
 A browser lets any website open a WebSocket to any server, and tells the server which one it is in
-the header Origin (RFC 6455, section 10.2). viser does not look at it, and has no hook to do so;
-the server that it makes is made by a function of websockets, which is wrapped here meanwhile.
+the header Origin (RFC 6455, section 10.2). It must be the one that the browser has asked, in the
+header Host; and this must not be a name of the internet's, which its owner may point to this
+machine (DNS rebinding). viser looks at neither, and has no hook to do so; the server that it makes
+is made by a function of websockets, which is wrapped here meanwhile.
 """
 
 from __future__ import annotations
@@ -25,6 +27,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from http import HTTPStatus
+from ipaddress import ip_address
+from socket import getfqdn, gethostname
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -33,33 +37,56 @@ import websockets.asyncio.server as websockets
 REFUSAL = 'a page of another origin may not connect\n'
 
 
-def is_of_another_origin(headers: Any) -> bool:
+def may_connect(headers: Any, host: str) -> bool:
     """
-    Return whether a request comes from another website's page.
+    Return whether a request comes from the page, or from no browser.
 
     Parameters
     ----------
-    headers : mapping
+    headers : websockets.Headers
         Of the request.
+    host : str
+        Address at which is listened.
 
     Returns
     -------
     bool
-        False also for programs that are no browsers, which have no origin.
+        True only for requests to an IP address, to this machine's names or to the host.
 
     """
-    origin = headers.get('Origin')
-    return origin is not None and urlsplit(origin).netloc != headers.get('Host')
+    hosts, origin = headers.get_all('Host'), headers.get('Origin')
+    if len(hosts) != 1:
+        return False
+    return _is_this_machine(urlsplit(f'//{hosts[0]}').hostname or '', host) and (
+        origin is None or urlsplit(origin).netloc == hosts[0])
+
+
+def _is_this_machine(name: str, host: str) -> bool:
+    if name in {'localhost', host, gethostname().lower(), getfqdn().lower()}:
+        return True
+    try:
+        ip_address(name)
+    except ValueError:
+        return False
+    return True
 
 
 @contextmanager
-def same_origin_only() -> Iterator[None]:
-    """Have servers that are started meanwhile refuse pages of other origins, for good."""
+def same_origin_only(host: str) -> Iterator[None]:
+    """
+    Have servers that are started meanwhile refuse pages of other origins, for good.
+
+    Parameters
+    ----------
+    host : str
+        Address at which they listen.
+
+    """
     serve = websockets.serve
 
     def checked(*args: Any, process_request: Callable[..., Any], **kwargs: Any) -> Any:
         def process(connection: Any, request: Any) -> Any:
-            if is_of_another_origin(request.headers):
+            if not may_connect(request.headers, host):
                 return connection.respond(HTTPStatus.FORBIDDEN, REFUSAL)
             return process_request(connection, request)
 

@@ -84,7 +84,7 @@ def serving(host: str, port: int) -> Iterator[Server]:
     _check_address(host, port)
     getLogger('websockets').setLevel(CRITICAL)  # a request that is no page's is no news
     try:
-        with same_origin_only(), redirect_stdout(StringIO()):  # the script prints the address
+        with same_origin_only(host), redirect_stdout(StringIO()):  # the script prints the address
             server = Server(host, port, label='studio', verbose=False)
     except (OSError, RuntimeError, AssertionError) as error:
         raise StartError(f'cannot serve at {host}, port {port}: {error}') from None
