@@ -121,7 +121,9 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
                     start, before = started_again(before, start, str(error)), None
                     continue
                 if print_address:
-                    print(f'studio: http://{options.host}:{server.get_port()}  (Ctrl-C ends)',
+                    port = server.get_port()
+                    taken = f'port {options.port} is in use; ' * (options.port not in (0, port))
+                    print(f'studio: http://{options.host}:{port}  ({taken}Ctrl-C ends)',
                           flush=True)
                     print_address = False
                 while studio.tasks.next is None:

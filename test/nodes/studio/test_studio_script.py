@@ -76,6 +76,15 @@ def test_page_is_served_on_this_machine_and_ctrl_c_ends_all(tmp_path):
     assert 'Traceback' not in errors
 
 
+def test_port_in_use_is_told_and_another_one_taken(tmp_path):
+    pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
+    with socket.create_server(('127.0.0.1', 0)) as other:
+        port = other.getsockname()[1]
+        with Script(script('studio'), '--port', port, cwd=tmp_path) as studio:
+            line = studio.read_until('studio: http')[-1]
+    assert f':{port} ' not in line and f'(port {port} is in use; Ctrl-C ends)' in line
+
+
 def test_real_arm_that_is_not_there_is_waited_for_and_none_is_simulated(tmp_path):
     pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
     with Script(script('studio'), '--port', free_port(), '--controller', '/arm_controller',
