@@ -45,7 +45,7 @@ NOT_BUILT = (
 
 def pytest_configure(config):
     """Claim a ROS domain; end where what is to be tested is not there."""
-    gc.disable()  # until the tests are collected: all of that stays, and takes twice as long else
+    gc.disable()  # until all tests are collected: nothing of that is garbage, and it takes half
     try:
         from rrr_traj_planner.nodes.process.node_claim import claim
         from rrr_traj_planner.planners.registry import planner_ids

@@ -167,7 +167,7 @@ class Page:
 
 
 class _PointEvents:
-    """PointEvents over to the editor what the user does in the scene, in the studio's thread."""
+    """Tells the editor what the user does in the scene, in the studio's thread."""
 
     def __init__(self) -> None:
         self._editor: Editor | None = None

@@ -127,7 +127,7 @@ class Studio:
             What is said about the task at first, in red.
 
         """
-        self.tasks.say(error, is_error=True)
+        self.tasks.refuse(error)
         self._page.show_status(status_html('at rest'), 0.0)
         self._changed()
         self._client.moved = self._moved

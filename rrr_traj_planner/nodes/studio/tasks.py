@@ -220,6 +220,18 @@ class Tasks:
         self.message, self.is_error = message, is_error
         self._said()
 
+    def refuse(self, error: str) -> None:
+        """
+        Have the page say in red what is wrong with what the user has done.
+
+        Parameters
+        ----------
+        error : str
+            Empty: nothing any more.
+
+        """
+        self.say(error, is_error=True)
+
     def load(self, name: str, content: bytes) -> None:
         """
         Open a via-point file: for the arm that it names, if it names one.
@@ -269,7 +281,7 @@ class Tasks:
             before, config = self._editor.wanted, self._config
             found = wanted_of(task, config.model, config.base_frame, before.task.planner_id)
         except InvalidInputError as error:
-            self.say(str(error), is_error=True)
+            self.refuse(str(error))
             return
         self.say('')
         self._editor.chosen = 0

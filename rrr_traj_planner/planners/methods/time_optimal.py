@@ -46,7 +46,7 @@ INTERVALS_ALONE = 40  # in a motion's only segment, with both acceleration and d
 ALONE_BY_TORQUE = 60  # and where torque alone limits them
 MOST_INTERVALS = 40   # in a segment where the jerk limit allows short changes of acceleration
 SHAPED = 0.1          # acceleration reversal / segment, by duration: INTERVALS suffice above it
-BRISK = (10.0, 30.0, 100.0)  # sample periods, of a motion that torque alone would do in fewer
+SAMPLES = (10.0, 30.0, 100.0)  # of the longest segment, tried where torque would allow fewer
 MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps are about a tenth of it
 
 
@@ -84,29 +84,32 @@ def plan(task: JointTask) -> Trajectory:
     mesh = uniform_mesh(len(task.points) - 1, _intervals(task))
     found = fastest(task, mesh) if task.durations is None else prescribed(
         task, mesh, task.durations)
-    for samples in BRISK:
-        if found is None and task.durations is None:
-            found = _slower(task, mesh, samples)
+    if found is None and task.durations is None and task.start_rates is None:
+        found = _at_a_sampled_pace(task, mesh)
     if found is None:
         raise cannot_be_held(task, mesh)
     return found.trajectory.noted(unconverged_note(found.gap, found.cost))
 
 
-def _slower(task: JointTask, mesh: Mesh, samples: float) -> Solved | None:
+def _at_a_sampled_pace(task: JointTask, mesh: Mesh) -> Solved | None:
     """
-    Return the fastest motion whose longest segment takes a number of sample periods, or None.
+    Return the fastest motion whose longest segment takes at least some sample periods.
 
     Effort limits out of all proportion to the arm, as those of placeholders in a URDF, would allow
-    motions within a sample period or two, which no sampled motion represents. None also where
-    they do not.
+    motions within a sample period or two, which no sampled motion represents. None where they are
+    not so large, or no motion is found.
     """
     way = float(np.abs(np.diff(task.points, axis=0)).max())
-    most = 4.0 * way / (samples * task.sample_period) ** 2
-    limits = task.limits
-    if not (acceleration_scale(task.model, limits, task.points) > most).any():
-        return None
-    limits = replace(limits, max_acceleration=np.minimum(limits.max_acceleration, most))
-    return fastest(replace(task, limits=limits), mesh)
+    scale = acceleration_scale(task.model, task.limits, task.points)
+    for samples in SAMPLES:
+        most = 4.0 * way / (samples * task.sample_period) ** 2  # from rest to rest
+        if (scale <= most).all():
+            continue
+        found = fastest(replace(task, limits=replace(task.limits, max_acceleration=np.minimum(
+            task.limits.max_acceleration, most))), mesh)
+        if found is not None:
+            return found
+    return None
 
 
 def _intervals(task: JointTask) -> int:

@@ -79,7 +79,7 @@ class MotionFolder:
 
     def connect(self, studio: Studio, post: Post) -> None:
         """Have the controls do something."""
-        editor = studio.editor
+        editor, refuse = studio.editor, studio.tasks.refuse
 
         def scale(_: float) -> None:
             wanted, shares = editor.wanted, [float(slider.value) for slider in self._scalings]
@@ -91,9 +91,6 @@ class MotionFolder:
             elbow, shoulder = ('' if handle.value == FREE else handle.value
                                for handle in self._posture)
             editor.change(replace(editor.wanted, elbow=elbow, shoulder=shoulder))
-
-        def say(error: str) -> None:
-            studio.tasks.say(error, is_error=True)
 
         def deviate(most: float) -> None:
             editor.change(replace(editor.wanted, max_deviation=most), 'max deviation')
@@ -112,8 +109,8 @@ class MotionFolder:
         for handle in self._posture:
             given(handle, post, pose)
         given(self._joints, post, studio.keep_joints)
-        self._deviation.connect(post, deviate, say)
-        self._mass.connect(post, load, say)
+        self._deviation.connect(post, deviate, refuse)
+        self._mass.connect(post, load, refuse)
         given(self._known, post, know)
 
     def show_wanted(self, editor: Editor) -> None:

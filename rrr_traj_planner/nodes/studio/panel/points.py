@@ -70,7 +70,7 @@ class PointsFolder:
 
     def connect(self, studio: Studio, post: Post) -> None:
         """Have the controls do something."""
-        editor = studio.editor
+        editor, refuse = studio.editor, studio.tasks.refuse
         actions = {INSERT: editor.insert, REMOVE: editor.remove, UNDO: editor.undo,
                    REDO: editor.redo, EARLIER: lambda: editor.shift(-1),
                    LATER: lambda: editor.shift(1)}
@@ -78,16 +78,13 @@ class PointsFolder:
         def chosen() -> int:
             return editor.chosen
 
-        def say(error: str) -> None:
-            studio.tasks.say(error, is_error=True)
-
         def place(text: str, index: int) -> None:
             try:
                 position = position_in(text)
             except InvalidInputError as error:
-                say(f'via point {index}: {error}')
+                refuse(f'via point {index}: {error}')
             else:
-                say('')
+                refuse('')
                 editor.move(index, position)
 
         def rest(time: float, index: int) -> None:
@@ -106,8 +103,8 @@ class PointsFolder:
         given(self._position, post, place, TYPED, chosen)
         given(self._stop, post, lambda stop: editor.change(
             with_stop(editor.wanted, editor.chosen, bool(stop))))
-        self._dwell.connect(post, rest, say, chosen)
-        self._duration.connect(post, prescribe, say, chosen)
+        self._dwell.connect(post, rest, refuse, chosen)
+        self._duration.connect(post, prescribe, refuse, chosen)
         for group in (self._number, self._order, self._steps):
             given(group, post, press)
         for name, command in self._commands.items():

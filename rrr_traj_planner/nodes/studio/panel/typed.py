@@ -27,7 +27,7 @@ from rrr_traj_planner.core.kinematics.link_positions import Point
 from rrr_traj_planner.nodes.studio.panel.controls import enable, given, Post, TYPED
 import viser
 
-DIGITS = 6                       # of what is shown, after the point
+DIGITS = 6                       # of a coordinate, after the point
 SEPARATORS = re.compile('[,;]')  # of coordinates
 
 
@@ -49,7 +49,7 @@ class Number:
     def __init__(self, gui: viser.GuiApi, label: str, hint: str) -> None:
         self._label, self._handle = label, gui.add_text(label, '', hint=hint)
 
-    def connect(self, post: Post, act: Callable[..., None], say: Callable[[str], None],
+    def connect(self, post: Post, act: Callable[..., None], refuse: Callable[[str], None],
                 about: Callable[[], Any] | None = None) -> None:
         """
         Have it do something.
@@ -60,7 +60,7 @@ class Number:
             Calls a function in the studio's thread.
         act : callable
             Gets the number that the user has typed, and what it is of.
-        say : callable
+        refuse : callable
             Gets what is wrong with what the user has typed; empty: nothing.
         about : callable, optional
             See `given`.
@@ -70,9 +70,9 @@ class Number:
             try:
                 number = number_in(text, self._label)
             except InvalidInputError as error:
-                say(str(error))
+                refuse(str(error))
             else:
-                say('')
+                refuse('')
                 act(number, *of)
 
         given(self._handle, post, typed, TYPED, about)
