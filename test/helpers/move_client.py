@@ -50,14 +50,18 @@ class MoveClient:
         assert handle.accepted
         return handle
 
+    def result_to_come(self, handle):
+        """Return the future of the response with a goal's result."""
+        return self._run(handle.get_result_async)
+
     def result(self, handle):
         """Return status and result of a goal's end, which may be to come."""
-        response = waited_for(self._run(handle.get_result_async))
+        response = waited_for(self.result_to_come(handle))
         return response.status, response.result
 
     def result_while(self, handle, go_on):
         """Return the same, calling a function again and again until it is there."""
-        over, future = Event(), self._run(handle.get_result_async)
+        over, future = Event(), self.result_to_come(handle)
         future.add_done_callback(lambda _: over.set())
         while not over.is_set():
             go_on()

@@ -20,6 +20,7 @@ import signal
 
 from helpers.arm_in_ros import Arm, at, GOAL, moving, NAMES, rest_to_rest, SECOND, stamp, START
 from helpers.examples import example
+from helpers.goal_client import waited_for
 from helpers.motion_in_ros import assert_steady, random_places, RATE, SteppedClock
 from helpers.move_client import move_goal, MoveClient, start_motion_server
 from helpers.other_controller import OtherController
@@ -247,12 +248,13 @@ def test_signal_stops_the_arm_and_aborts_the_goal(ros, number):
     with Script(script('motion_server')) as server:
         client = MoveClient(ros)
         handle = client.send(move_goal(FAR, max_velocity_scaling_factor=0.1))
+        ended = client.result_to_come(handle)  # the server waits for those who ask late for 0.5 s
         arm.desired.wait_for(moving)
         server.process.send_signal(number)
-        status, result = client.result(handle)
+        response = waited_for(ended)
         assert server.is_over_in(2.0)
         code, _, errors = server.ended()
-    assert (status, result.error_code, result.message) == (
+    assert (response.status, response.result.error_code, response.result.message) == (
         ABORTED, Result.PREEMPTED, 'motion_server has ended')
     assert (code, 'Traceback' in errors) == (0, False)
     rest = arm.desired.wait_for_next(lambda m: not np.any(m.velocity))

@@ -32,9 +32,12 @@ def test_arm_of_which_positions_alone_are_known_is_moved(ros, tmp_path, form):
     controller = OtherController(
         ros, '/arm_controller', form != 'of the controller', form=form)
     try:
-        (tmp_path / 'taught.csv').write_text('joint_1,joint_2,joint_3\n0.6,1.0,0.2\n' + ','.join(
-            f'{x:.6f}' for x in GOAL) + '\n')
-        code, output, errors = moved('taught.csv', '--controller', '/arm_controller', cwd=tmp_path)
+        # slow: a position without time counts when it arrives, on a busy machine later
+        (tmp_path / 'taught.yaml').write_text(
+            f'joint_via_points: [[0.6, 1.0, 0.2], {[round(float(x), 6) for x in GOAL]}]\n'
+            'segment_durations: [2.5, 2.5]\n')
+        code, output, errors = moved(
+            'taught.yaml', '--controller', '/arm_controller', cwd=tmp_path)
     finally:
         ros.run(controller.destroy)
     assert (code, errors) == (0, '')
