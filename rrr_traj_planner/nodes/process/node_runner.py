@@ -117,7 +117,7 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
         executor.add_node(node)
         while not signal_arrived():
             executor.spin_once()
-        _finish(executor, node)
+        finish(executor, node)
     except ExternalShutdownException:
         pass
     finally:
@@ -125,12 +125,20 @@ def spin(load: Callable[[], Callable[[], Any]], ros_arguments: list[str]) -> int
     return 0
 
 
-def _finish(executor: Any, node: Any) -> None:
-    """Let a node end what it does for clients, and tell them."""
-    if node.finish():
-        return
+def finish(executor: Any, node: Any) -> None:
+    """
+    Let a node end what it does for clients, and let what it has sent arrive.
+
+    Parameters
+    ----------
+    executor : Executor
+        Spins the node.
+    node : ServiceNode
+        The node, which is destroyed next: DDS then drops what has not arrived.
+
+    """
     deadline = monotonic() + FINISH_TIMEOUT
-    while monotonic() < deadline and not node.finish():
+    while not node.finish() and monotonic() < deadline:
         executor.spin_once(DELIVERY_TIME)
     deadline = monotonic() + DELIVERY_TIME
     while monotonic() < deadline:

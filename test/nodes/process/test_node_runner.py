@@ -18,11 +18,13 @@ from __future__ import annotations
 
 import gc
 import signal
+from time import sleep
+from types import SimpleNamespace
 
 from helpers.arm_process import arm_process, ended
 from helpers.places import ROOT
 import pytest
-from rrr_traj_planner.nodes.process.node_runner import create_node
+from rrr_traj_planner.nodes.process.node_runner import create_node, DELIVERY_TIME, finish
 from sensor_msgs.msg import JointState
 
 
@@ -50,6 +52,20 @@ def test_what_is_loaded_when_a_node_is_created_is_exempt_from_garbage_collection
         assert not any(found is made for found in gc.get_objects())
     finally:
         gc.unfreeze()
+
+
+@pytest.mark.parametrize('answers', [[True], [False, False, True]])
+def test_what_a_node_has_sent_gets_time_to_arrive(answers):
+    to_come, after = list(answers), []
+
+    def spin_once(duration):
+        sleep(duration)
+        if not to_come:
+            after.append(duration)
+
+    finish(SimpleNamespace(spin_once=spin_once), SimpleNamespace(finish=lambda: to_come.pop(0)))
+    assert not to_come
+    assert sum(after) >= DELIVERY_TIME
 
 
 def test_file_that_is_missing_stops_the_node():
