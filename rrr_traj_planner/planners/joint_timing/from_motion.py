@@ -33,7 +33,6 @@ from rrr_traj_planner.core.stopping.task import from_state
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.quintic_spline import hermite, polynomial
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
-from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import (
     brought_within,
     FIRST_GAP,
@@ -92,11 +91,9 @@ def _without_torque(task: JointTask, mesh: Mesh,
     limits = replace(task.limits, max_effort=np.full(3, np.inf), max_acceleration=np.maximum(
         scale, 2.0 * np.abs(_rates(task).acceleration)))
     problem = JointProblem(replace(task, limits=limits), mesh, durations)
-    margins = Margins.none(mesh, len(durations.free))
-    constraints = problem.constraints(margins)
-    first = from_motion(durations)(problem.task, constraints)
+    first = from_motion(durations)(problem.task, problem.without_margins)
     return None if first is None else problem.minimised(
-        constraints, CentralPathPoint(first, None), FIRST_GAP).motion
+        problem.without_margins, CentralPathPoint(first, None), FIRST_GAP).motion
 
 
 def straight_on(task: JointTask, mesh: Mesh) -> Iterator[Variables]:
@@ -147,7 +144,7 @@ def _rest_to_rest(task: JointTask, mesh: Mesh) -> Variables:
         problem = JointProblem(
             replace(task, limits=replace(task.limits, max_effort=max_effort), start_rates=None),
             mesh, DurationConstraints.all_free(N, 3))
-        m = rest_to_rest(problem.task, problem.constraints(Margins.none(mesh, N)))
+        m = rest_to_rest(problem.task, problem.without_margins)
         if m is not None:
             break
     assert m is not None

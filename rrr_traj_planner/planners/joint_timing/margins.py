@@ -71,6 +71,12 @@ class Margins(NamedTuple):
         return cls(np.stack((zero, zero)), zero, zero, zero, zero,
                    np.zeros((segments - 1, 3, 3), bool))
 
+    @property
+    def tighten(self) -> bool:
+        """Whether any limit is tightened, or any joint is to stay at a via point."""
+        return any(margin.any() for margin in (self.positions, self.velocities,
+                                               self.accelerations, self.efforts, self.stays))
+
     def copy(self) -> Margins:
         """Return the same margins in memory of their own."""
         return Margins(self.positions.copy(), self.velocities.copy(), self.accelerations.copy(),

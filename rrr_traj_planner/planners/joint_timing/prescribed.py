@@ -24,7 +24,6 @@ from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
-from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.meshing import meshed
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest, with_durations
@@ -190,7 +189,7 @@ def _stopping(problem: PrescribedProblem) -> Solved | None:
     task, mesh, durations = problem
     segments = len(durations)
     stops = JointProblem(task, mesh, DurationConstraints.all_free(segments, 3))
-    motion = rest_to_rest(task, stops.constraints(Margins.none(mesh, segments)))
+    motion = rest_to_rest(task, stops.without_margins)
     if motion is None:
         return None
     T = np.where(problem.free, motion.T, durations)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +31,7 @@ from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.within_limits import fitted
 from rrr_traj_planner.planners.solver.interior_point import (
     CentralPathPoint,
+    CENTRED,
     minimise,
     MOST_ITERATIONS,
     Outcome,
@@ -98,6 +100,14 @@ class JointProblem(ReadOnlyArrays):
             As the solver takes them.
 
         """
+        return self._constraints(margins) if margins.tighten else self.without_margins
+
+    @cached_property
+    def without_margins(self) -> JointConstraints:
+        """The limits themselves, as the solver takes them."""
+        return self._constraints(Margins.none(self.mesh, len(self.durations.free)))
+
+    def _constraints(self, margins: Margins) -> JointConstraints:
         task = self.task
         return JointConstraints(
             task.model, task.limits, self.mesh, task.points, margins.positions,
@@ -105,7 +115,7 @@ class JointProblem(ReadOnlyArrays):
             self._workspace, margins.stays, not self.durations.from_rest)
 
     def minimised(self, constraints: JointConstraints, start: CentralPathPoint,
-                  relative_gap: float = RELATIVE_GAP,
+                  relative_gap: float = RELATIVE_GAP, centred: float = CENTRED,
                   wider: Limits | None = None) -> Outcome:
         """
         Return the fastest motion within constraints.
@@ -118,6 +128,8 @@ class JointProblem(ReadOnlyArrays):
             Strictly within the constraints, or within the wider limits.
         relative_gap : float
             The gap at which the method ends, as a part of the objective.
+        centred : float
+            See `interior_point.minimise`.
         wider : Limits, optional
             See `interior_point.minimise`.
 
@@ -128,7 +140,8 @@ class JointProblem(ReadOnlyArrays):
 
         """
         return minimise(constraints.problem, start, constraints.fixing(self.durations),
-                        self.task.should_stop, relative_gap=relative_gap, wider=wider,
+                        self.task.should_stop, relative_gap=relative_gap, centred=centred,
+                        wider=wider,
                         most_iterations=MOST_TO_RETURN if wider else MOST_ITERATIONS)
 
     def fitting(self, outcome: Outcome, motion: Variables) -> Solved | None:

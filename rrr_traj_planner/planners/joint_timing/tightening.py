@@ -78,7 +78,7 @@ class _Rounds:
         self._slow_motion = slow_motion
         durations = problem.durations
         self._margins = Margins.none(problem.mesh, len(durations.free))
-        self._constraints = problem.constraints(self._margins)
+        self._constraints = problem.without_margins
         self._wider: Limits | None = None  # which the start keeps, if not these
         self._start: CentralPathPoint | None = None
         self._slow: Variables | None = None
@@ -149,8 +149,7 @@ class _Rounds:
         if not problem.durations.from_rest:
             self._slow = None  # there is none
         elif self._slow is None and self._slow_motion is not None:
-            self._slow = self._slow_motion(problem.task, problem.constraints(
-                Margins.none(problem.mesh, len(problem.durations.free))))
+            self._slow = self._slow_motion(problem.task, problem.without_margins)
 
     def tighten(self) -> bool:
         problem, before = self._problem, self._margins

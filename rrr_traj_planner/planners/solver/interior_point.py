@@ -31,7 +31,8 @@ Linear Algebra and its Applications 152, 1991).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import chain
 import math
 from typing import NamedTuple
 
@@ -40,19 +41,19 @@ from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints, Limits
 from rrr_traj_planner.planners.solver.line_search import (
     best_step,
-    predicted_decrease_of,
+    newton_steps,
     TO_BOUNDARY,
 )
 from rrr_traj_planner.planners.solver.segment_steps import SegmentSteps, take_own_steps
 from rrr_traj_planner.planners.solver.splines import Variables
-from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
+from rrr_traj_planner.planners.solver.timing_problem import Step, TimingProblem
 
 # Chosen values, without unit. RELATIVE_GAP decides accuracy, the others the number of iterations:
 # half and twice of each (SMALL_SHIFT: 0.25 and 0.9; DUAL_CORRIDOR: 1e4 and 1e8) change durations
 # of 28 random tasks by less than 0.01 % in the mean, by 0.2 % at most.
 RELATIVE_GAP = 1e-3          # of the objective, at which the method ends
 BARRIER_REDUCTION = 0.1      # factor on the barrier parameter
-CENTRED = 0.1                # predicted decrease / (constraints * barrier) at which it is lowered
+CENTRED = 0.1                # by default
 PATIENCE = 6                 # iterations after which it is lowered too, where they have gained
 STALL = 3e-4                 # less than this part of the objective
 START = 0.3                  # first barrier * constraints / objective
@@ -81,7 +82,8 @@ class Outcome(NamedTuple):
 
 def minimise(problem: TimingProblem, start: CentralPathPoint, durations: DurationConstraints,
              should_stop: Callable[[], bool], least_barrier: float = 0.0,
-             relative_gap: float = RELATIVE_GAP, wider: Limits | None = None,
+             relative_gap: float = RELATIVE_GAP, centred: float = CENTRED,
+             wider: Limits | None = None,
              most_iterations: int = MOST_ITERATIONS) -> Outcome:
     """
     Return the motion whose weighted sum of durations, and of squared jerks, is least.
@@ -101,6 +103,9 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
         The method ends when it has converged for this barrier parameter,
     relative_gap : float
         or when the gap is this part of the objective.
+    centred : float
+        Predicted decrease of the merit, as a part of the gap, at which the barrier parameter is
+        lowered: how near to the central path.
     wider : Limits, optional
         Wider limits on the same quantities; None: the start is within those of the problem.
     most_iterations : int
@@ -118,7 +123,7 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
         if should_stop():
             break
         run.iterate()
-        if run.ended or run.converged(least_barrier, relative_gap):
+        if run.ended or run.converged(least_barrier, relative_gap, centred):
             break
     return run.outcome()
 
@@ -135,8 +140,9 @@ class _Run:
         self._best, self._gap = problem.arrays['variables'].copy(), math.inf
         self._centres: list[CentralPathPoint] = []
         self._barrier = barrier or START * self._cost / self._count
+        self._steps: Iterator[tuple[Step, Step]] | None = None  # from the iterate, if computed
         if wider is None:
-            self._barrier = _first_barrier(problem, self._barrier)
+            self._barrier, self._steps = _first_barrier(problem, self._barrier)
         else:
             problem.shift(wider)
             _central(problem, self._barrier)
@@ -156,6 +162,7 @@ class _Run:
     def _step_segments(self, segments: SegmentSteps) -> bool:
         """Take a step that each segment shortens for itself; return whether there is one."""
         problem, shifted = self._problem, self._problem.shifted
+        self._steps = None
         if math.isnan(self._log):
             self._log = segments.log_sum()
         if not segments.take(problem.steps[-1], self._barrier):
@@ -172,11 +179,15 @@ class _Run:
 
     def _step_whole(self) -> None:
         problem, address = self._problem, self._address
-        KERNELS.timing_linearise(address, self._barrier)
+        steps, self._steps = self._steps, None
+        if steps is None:
+            KERNELS.timing_linearise(address, self._barrier)
+            steps = newton_steps(problem)
         reducing_shifts = problem.shifted
         if math.isnan(self._log) and not reducing_shifts:
             self._log = KERNELS.timing_log_sum(address, problem.arrays.addresses['slack'])
-        found = best_step(problem, self._barrier, None if reducing_shifts else self._merit())
+        found = best_step(problem, steps, self._barrier,
+                          None if reducing_shifts else self._merit())
         if found is None:
             self.ended = True
             return
@@ -207,14 +218,14 @@ class _Run:
         self._gap = min(self._gap, self._predicted_decrease - 0.5 * decrease
                         + self._count * self._barrier)
 
-    def converged(self, least_barrier: float, relative_gap: float) -> bool:
+    def converged(self, least_barrier: float, relative_gap: float, centred: float) -> bool:
         """Lower the barrier parameter at a centre; return whether the method has converged."""
         if not self._merits:
             return False
         complementarity = self._count * self._barrier
         stalled = not self._moved or len(self._merits) > PATIENCE and (
             self._merits[-1 - PATIENCE] - self._merits[-1] < STALL * self._cost)
-        if not stalled and self._predicted_decrease >= CENTRED * complementarity:
+        if not stalled and self._predicted_decrease >= centred * complementarity:
             return False
         self._centres.append(CentralPathPoint(
             self._problem.motion(self._problem.arrays['variables'].copy()), self._barrier))
@@ -242,14 +253,22 @@ def _central(problem: TimingProblem, barrier: float) -> None:
     KERNELS.timing_central_duals(problem.address, barrier)
 
 
-def _first_barrier(problem: TimingProblem, barrier: float) -> float:
-    """Return a barrier parameter large enough to move a start that is close to a limit off it."""
+def _first_barrier(problem: TimingProblem,
+                   barrier: float) -> tuple[float, Iterator[tuple[Step, Step]] | None]:
+    """
+    Return a barrier parameter large enough to move a start that is close to a limit off it.
+
+    The second value are the Newton steps at that parameter; None: still to be computed.
+    """
     _central(problem, barrier)
     for _ in range(6):  # at most
         KERNELS.timing_linearise(problem.address, barrier)
-        decrease = predicted_decrease_of(problem)
-        if decrease is None or decrease < FAR_FROM_CENTRE * barrier:
-            break
+        steps = newton_steps(problem)
+        first = next(steps, None)
+        if first is None:
+            return barrier, None
+        if first[0].structure.predicted_decrease < FAR_FROM_CENTRE * barrier:
+            return barrier, chain([first], steps)
         barrier /= BARRIER_REDUCTION
         KERNELS.timing_central_duals(problem.address, barrier)
-    return barrier
+    return barrier, None

@@ -52,7 +52,7 @@ class LineSearchResult(NamedTuple):
     size: float
 
 
-def best_step(problem: TimingProblem, barrier: float,
+def best_step(problem: TimingProblem, steps: Iterator[tuple[Step, Step]], barrier: float,
               merit: float | None) -> LineSearchResult | None:
     """
     Return the first Newton step that is acceptable at more than SHORT size, else the longest.
@@ -61,6 +61,8 @@ def best_step(problem: TimingProblem, barrier: float,
     ----------
     problem : TimingProblem
         Linearised at the iterate.
+    steps : iterator
+        Its Newton steps, as of `newton_steps`.
     barrier : float
         The barrier parameter.
     merit : float or None
@@ -74,7 +76,7 @@ def best_step(problem: TimingProblem, barrier: float,
 
     """
     best: LineSearchResult | None = None
-    for step, corrected in _newton_steps(problem):
+    for step, corrected in steps:
         found = _search(problem, step, barrier, merit)
         if best is None or found.size > best.size:
             best = found
@@ -89,27 +91,21 @@ def best_step(problem: TimingProblem, barrier: float,
     return best
 
 
-def predicted_decrease_of(problem: TimingProblem) -> float | None:
+def newton_steps(problem: TimingProblem) -> Iterator[tuple[Step, Step]]:
     """
-    Return the decrease of the merit that the first Newton step predicts.
+    Yield the Newton steps, each computed when it is asked for.
 
     Parameters
     ----------
     problem : TimingProblem
         Linearised at the iterate.
 
-    Returns
-    -------
-    float or None
-        None where the Newton system is singular.
+    Yields
+    ------
+    tuple of Step and Step
+        A step, and memory for its correction; none where the Newton system is singular.
 
     """
-    steps = _newton_steps(problem)
-    return next((float(step.structure.predicted_decrease) for step, _ in steps), None)
-
-
-def _newton_steps(problem: TimingProblem) -> Iterator[tuple[Step, Step]]:
-    """Yield the Newton steps, each with memory for its correction."""
     exact, exact_corrected, plain, plain_corrected = problem.steps
     if not problem.limits.bounds_alone:
         solved = KERNELS.timing_newton(problem.address, 1, exact.address)
