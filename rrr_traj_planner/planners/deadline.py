@@ -12,7 +12,12 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""Deadline: after 80 % of the limit, stop improving; after the limit plus 0.2 s, abort."""
+"""
+Deadline: after 80 % of the limit, stop improving; after the limit plus 0.2 s, abort.
+
+Improving stops sooner where points and checks of the answer are expected to take longer than the
+other 20 %.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +28,8 @@ from time import perf_counter
 from rrr_traj_planner.core.cancellation import never, ShouldStop
 from rrr_traj_planner.core.errors import TimeLimitError
 
-IMPROVING = 0.8  # part of the limit after which a motion is not improved any more; chosen
+IMPROVING = 0.8  # part of the limit after which a motion is not improved any more,
+LEAST = 0.3      # and where its answer takes so long that more must be kept, at least; chosen
 GRACE = 0.2      # s after the limit until which points and checks of the answer may take; chosen
 
 
@@ -47,6 +53,7 @@ class Deadline:
                  is_over: ShouldStop = never) -> None:
         self._limit, self._clock, self._is_over = limit, clock, is_over
         self._begun = clock()
+        self._improving = IMPROVING
         self._window = (0.0, 1.0)  # of the time: in which this callback's part is done
 
     def __call__(self) -> bool:
@@ -62,7 +69,45 @@ class Deadline:
         elapsed = self._clock() - self._begun
         if elapsed > self._limit + GRACE or self._is_over():
             raise TimeLimitError(self._limit, elapsed)
-        return elapsed > IMPROVING * self._window[1] * self._limit
+        return elapsed > self._improving * self._window[1] * self._limit
+
+    def keeping(self, seconds: float) -> Deadline:
+        """
+        Return a callback that keeps time for the answer.
+
+        Parameters
+        ----------
+        seconds : float
+            That the answer's points and checks are expected to take [s].
+
+        Returns
+        -------
+        Deadline
+            It returns True so long before the limit, but not before LEAST of it.
+
+        """
+        found = copy(self)
+        found._improving = max(LEAST, min(IMPROVING, 1.0 - seconds / self._limit))
+        return found
+
+    def duration_of(self, work: Callable[[], object]) -> float:
+        """
+        Return how long something takes.
+
+        Parameters
+        ----------
+        work : callable
+            It is called once.
+
+        Returns
+        -------
+        float
+            By the deadline's clock [s].
+
+        """
+        begun = self._clock()
+        work()
+        return self._clock() - begun
 
     def window(self, begin: float, end: float) -> Deadline:
         """

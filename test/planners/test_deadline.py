@@ -25,9 +25,11 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
-from rrr_traj_planner.core.cancellation import step
+from rrr_traj_planner.core.cancellation import never, step
 from rrr_traj_planner.core.errors import InvalidInputError, TimeLimitError, TimingError
+from rrr_traj_planner.core.trajectory import controller_spline
 from rrr_traj_planner.planners import registration
+from rrr_traj_planner.planners.answers import answer_points, answer_time
 from rrr_traj_planner.planners.deadline import Deadline, GRACE, part_of
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner, planner_ids
@@ -100,6 +102,43 @@ def test_parts_of_a_part_are_shares_of_its_own_time():
                          (101.21, (False, True)), (101.61, (True, True))):
         clock.now = now
         assert (last(), half()) == answers
+
+
+@pytest.mark.parametrize(('kept', 'improving'), [(0.1, 1.6), (0.5, 1.5), (0.9, 1.1), (1.9, 0.6)])
+def test_more_time_is_kept_for_an_answer_that_takes_longer_than_a_fifth_of_it(kept, improving):
+    clock = Clock()
+    deadline = Deadline(2.0, clock).keeping(kept)
+    half = part_of(deadline, 0.5)
+    for now, answers in ((0.49 * improving, (False, False)), (0.51 * improving, (False, True)),
+                         (0.99 * improving, (False, True)), (1.01 * improving, (True, True))):
+        clock.now = 100.0 + now
+        assert (deadline(), half()) == answers
+
+
+@pytest.mark.parametrize('microseconds', [1.0, 6.0])  # in which a point is checked
+def test_planning_ends_so_early_that_the_points_of_a_long_motion_can_be_checked(
+        microseconds, monkeypatch):
+    clock, ended = CountingClock(), []
+    cycloid, checked = planner('cycloid').plan, controller_spline.checked_intervals
+
+    def slow(task):
+        while not task.should_stop():
+            pass
+        ended.append(clock.now)
+        return cycloid(task)
+
+    def timed(model, limits, spline, should_stop=never):
+        clock.now += 1e-6 * microseconds * len(spline.coefficients)
+        return checked(model, limits, spline, should_stop)
+
+    for module in (answer_time, answer_points):
+        monkeypatch.setattr(module, 'checked_intervals', timed)
+    monkeypatch.setitem(registration.REGISTERED, 'slow', registration.Registered(slow))
+    found = plan(RobotModel(), LIMITS, PlanningRequest(
+        circle(2), planner_id='slow', should_stop=Deadline(1.0, clock), dwell=[300.0, 200.0]))
+    assert len(found.points.times) > 50_000
+    checks = 1e-6 * microseconds * len(found.points.times)
+    assert ended[0] == pytest.approx(min(0.8, 1.0 - answer_time.WHOLE * checks), abs=0.1)
 
 
 def test_parts_of_a_motion_share_the_time_by_their_segments(monkeypatch):

@@ -22,6 +22,7 @@ velocity, acceleration and torque may exceed limits that the planned motion sati
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -47,6 +48,7 @@ RANGE_TOLERANCE = 8e-7   # rad
 # limit is below a Bernstein coefficient of position, velocity, acceleration or of the polynomial
 # through the coarse samples of torque. Chosen.
 COARSE_STEPS, FINE_STEPS = 4, 64
+BLOCK = 2000  # intervals that are checked at once: their samples stay in the cache; chosen
 
 
 class SplineExcess(NamedTuple):
@@ -74,7 +76,6 @@ class SplineExcess(NamedTuple):
 class CheckedIntervals(NamedTuple):
     """What the checks of the quintics found, for each of n - 1 intervals."""
 
-    speed: Array          # largest of the coarse samples' velocities [rad/s], (n - 1,)
     coarse_effort: Array  # largest torque of the coarse samples [N m], (n - 1, 3)
     torque_bound: Array   # of the polynomial through these [N m], (n - 1, 3)
     jerk: Array           # as in `SplineExcess`
@@ -167,7 +168,8 @@ def checked_intervals(model: RobotModel, limits: JointLimits, spline: QuinticSpl
         Of all intervals.
 
     """
-    found = _coarse_check(model, limits, spline, slice(None), should_stop)
+    blocks = [slice(i, i + BLOCK) for i in range(0, max(len(spline.coefficients), 1), BLOCK)]
+    found = _coarse_check(model, limits, spline, blocks, should_stop)
     return _checked_densely(model, limits, spline, found, should_stop)
 
 
@@ -194,39 +196,41 @@ def checked_where_divided(model: RobotModel, limits: JointLimits, spline: Quinti
         As of `checked_intervals`, from which it differs by rounding.
 
     """
-    copies = np.ones(len(before.speed), dtype=int)
-    copies[divided] = 2
+    copies = 1 + np.isin(np.arange(len(before.dense)), divided)
     found = CheckedIntervals._make(values.repeat(copies, axis=0) for values in before)
-    first = divided + np.arange(len(divided))
-    parts = np.stack((first, first + 1), axis=1).ravel()
-    fastest = float(before.speed.max())  # of the whole motion, by which a joint is at rest or not
-    for all_of_them, some in zip(found, _coarse_check(
-            model, limits, spline, parts, should_stop, fastest)):
+    parts = np.add.outer(divided + np.arange(len(divided)), (0, 1)).ravel()
+    coarse = _coarse_check(model, limits, spline, [parts], should_stop)
+    for all_of_them, some in zip(found, coarse):
         all_of_them[parts] = some
     return _checked_densely(model, limits, spline, found, should_stop)
 
 
 def _coarse_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
-                  index: IntArray | slice, should_stop: ShouldStop,
-                  fastest: float = 0.0) -> CheckedIntervals:
+                  blocks: Sequence[IntArray | slice], should_stop: ShouldStop) -> CheckedIntervals:
     """Return what samples and Bernstein coefficients tell of some intervals of a motion."""
+    rest_speed, found = rest_speed_of(spline.velocities), []
+    for index in blocks:
+        should_stop()
+        found.append(_coarse_check_of(model, limits, spline, index, rest_speed))
+    return CheckedIntervals._make(map(np.concatenate, zip(*found)))
+
+
+def _coarse_check_of(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
+                     index: IntArray | slice, rest_speed: float) -> CheckedIntervals:
+    """Return the same of a few intervals."""
     q, qd, qdd = spline.within(np.linspace(0.0, 1.0, COARSE_STEPS + 1), index)
-    should_stop()
-    speeds = np.abs(qd).max(axis=0).max(axis=1)
-    tau, push = _torque_and_push(
-        model, q, qd, qdd, rest_speed_of(np.append(speeds, fastest)))
-    should_stop()
-    forms = bernstein_forms(spline.coefficients[index], np.diff(spline.knots)[index])
+    tau, push = _torque_and_push(model, q, qd, qdd, rest_speed)
+    forms = bernstein_forms(spline.coefficients[index], spline.widths(index))
     doubtful = _exceeds(np.abs(forms[1]).max(axis=2), limits.max_velocity)
     doubtful |= _exceeds(np.abs(forms[2]).max(axis=2), limits.max_acceleration)
     doubtful |= (forms[0].max(axis=2) > limits.max_position + RANGE_TOLERANCE).any(axis=1)
     doubtful |= (forms[0].min(axis=2) < limits.min_position - RANGE_TOLERANCE).any(axis=1)
-    none = np.zeros(len(speeds))
+    none = np.zeros(len(doubtful))
     return CheckedIntervals(
-        speeds, np.abs(tau + push).max(axis=0),
+        np.abs(tau + push).max(axis=0),
         np.abs(through_samples(tau)).max(axis=0) + model.friction.coulomb,
-        spline.peak_jerks(index), doubtful, np.zeros(len(speeds), dtype=bool),
-        none + 1.0, none, none.copy(), np.zeros((len(speeds), 3)))
+        spline.peak_jerks(index), doubtful, none > 0.0, none + 1.0, none, none,
+        np.zeros((len(none), 3)))
 
 
 def _exceeds(most: Array, limit: Array) -> BoolArray:
@@ -240,7 +244,7 @@ def _checked_densely(model: RobotModel, limits: JointLimits, spline: QuinticSpli
     should_stop()
     index = np.flatnonzero(found.to_check_densely(limits) & ~found.dense)
     if len(index):
-        fine = _dense_check(model, limits, spline, index, rest_speed_of(found.speed))
+        fine = _dense_check(model, limits, spline, index, rest_speed_of(spline.velocities))
         for all_of_them, some in zip(
                 (found.time_scale, found.outside, found.place, found.dense_effort), fine):
             all_of_them[index] = some
@@ -264,7 +268,7 @@ def _dense_check(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
     peaks = np.concatenate((_between(ratios[:2]), effort[np.newaxis] / limits.max_effort))
     factors = np.where(ratios > 1.0 + SPLINE_TOLERANCE, factors, np.where(
         peaks > 1.0 + SPLINE_TOLERANCE, np.sqrt(peaks), 1.0)).max(axis=(0, 3))
-    q = _at_reversals(q, qd, qdd, np.diff(spline.knots)[index] / FINE_STEPS)
+    q = _at_reversals(q, qd, qdd, spline.widths(index) / FINE_STEPS)
     outside = np.maximum(limits.min_position - q, q - limits.max_position).max(axis=(0, 2))
     return (factors.max(axis=0), np.where(outside > RANGE_TOLERANCE, outside, 0.0),
             fractions[factors.argmax(axis=0)], effort.max(axis=0))

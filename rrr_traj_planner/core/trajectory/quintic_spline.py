@@ -88,9 +88,33 @@ class QuinticSpline:
 
         """
         c = np.moveaxis(self.coefficients, -1, 0)[:, segments]
-        widths = np.diff(self.knots)[segments]
-        x = np.asarray(fractions, dtype=float)[:, np.newaxis, np.newaxis] * widths[:, np.newaxis]
+        widths = self.widths(segments)[:, np.newaxis]
+        x = np.asarray(fractions, dtype=float)[:, np.newaxis, np.newaxis] * widths
         return polynomial(c, x, 0), polynomial(c, x, 1), polynomial(c, x, 2)
+
+    @property
+    def velocities(self) -> Array:
+        """Return velocities at the knots but the last, and means, (2, n - 1, 3) [rad/s]."""
+        q = np.concatenate((self.coefficients[..., 0], self.final[np.newaxis]))
+        mean = np.diff(q, axis=0) / self.widths()[:, np.newaxis]
+        return np.stack((self.coefficients[..., 1], mean))
+
+    def widths(self, segments: IntArray | slice = slice(None)) -> Array:
+        """
+        Return durations of segments.
+
+        Parameters
+        ----------
+        segments : ndarray or slice
+            Indices of k of the n - 1 segments.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+            [s].
+
+        """
+        return np.asarray(self.knots[1:][segments] - self.knots[:-1][segments])
 
     def peak_jerks(self, segments: IntArray | slice = slice(None)) -> Array:
         """
@@ -107,7 +131,7 @@ class QuinticSpline:
             [rad/s^3].
 
         """
-        widths = np.diff(self.knots)[segments, np.newaxis]
+        widths = self.widths(segments)[:, np.newaxis]
         c = np.moveaxis(self.coefficients[segments], -1, 0)
         with np.errstate(divide='ignore', invalid='ignore'):
             vertex = -0.2 * c[4] / c[5]  # jerk is a parabola in time

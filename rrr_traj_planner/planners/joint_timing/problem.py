@@ -22,7 +22,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.cancellation import ShouldStop
 from rrr_traj_planner.core.read_only import ReadOnlyArrays
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
@@ -43,6 +43,8 @@ from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Works
 from rrr_traj_planner.planners.tasks import JointTask
 
 # Chosen values.
+AT_END = 1e-6        # rad, distance of a via point from the end of a range, at which joints stop
+INWARDS = 0.1        # least acceleration away from it, of displacement / duration^2
 WIDER = (0.1, 1.0, 10.0, 100.0)  # parts by which limits are first exceeded, tried in turn
 FIRST_GAP = 0.3      # as a part of the objective, to which a motion is brought within them
 MOST_TO_RETURN = 40  # iterations from beyond the limits, which usually take two to five
@@ -112,7 +114,42 @@ class JointProblem(ReadOnlyArrays):
         return JointConstraints(
             task.model, task.limits, self.mesh, task.points, margins.positions,
             margins.velocities, margins.accelerations, margins.efforts, self.least_T,
-            self._workspace, margins.stays, not self.durations.from_rest)
+            self._workspace, margins.stays | self._stays, not self.durations.from_rest)
+
+    @property
+    def _stays(self) -> BoolArray:
+        """Return where via velocities must be zero, for the joint is at an end of its range."""
+        found = np.zeros((len(self.durations.free) - 1, 3, 3), bool)
+        found[:, 0] = self._at_ends.any(axis=0)
+        return found
+
+    @property
+    def _at_ends(self) -> BoolArray:
+        """Return which joints are at the upper or the lower end at a via point, (2, N - 1, 3)."""
+        limits, via = self.task.limits, self.task.points[1:-1]
+        return np.stack((limits.max_position - via, via - limits.min_position)) <= AT_END
+
+    def inwards(self, motion: Variables) -> Variables:
+        """
+        Return a motion whose joints accelerate away from ends of ranges at via points there.
+
+        Parameters
+        ----------
+        motion : Variables
+            In which they may leave their ranges slightly beside these via points.
+
+        Returns
+        -------
+        Variables
+            Nearly the same.
+
+        """
+        upper, lower = self._at_ends
+        pace = INWARDS * np.abs(np.diff(self.task.points, axis=0)) / motion.T[:, np.newaxis] ** 2
+        a = motion.a.copy()
+        inwards = np.maximum(np.abs(a[1:-1]), np.minimum(pace[:-1], pace[1:]))
+        a[1:-1] = np.where(upper, -inwards, np.where(lower, inwards, a[1:-1]))
+        return self.mesh.restored(self.task.points, motion._replace(a=a))
 
     def minimised(self, constraints: JointConstraints, start: CentralPathPoint,
                   relative_gap: float = RELATIVE_GAP, centred: float = CENTRED,

@@ -22,12 +22,16 @@ method: Hettich & Kortanek, SIAM Review 35, 1993).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
 from rrr_traj_planner.planners.joint_timing.local_repairs import LocalRepairs
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
+from rrr_traj_planner.planners.joint_timing.start import with_durations
+from rrr_traj_planner.planners.joint_timing.within_limits import beyond_range
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
 from rrr_traj_planner.planners.solver.limits import Limits
 from rrr_traj_planner.planners.solver.segment_steps import take_own_steps
@@ -39,6 +43,7 @@ from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 SCHEDULE = Schedule(rounds=20, tolerance=1e-3, patience=4, growth=2.0)
 EXCEEDED = 30.0  # slacks by which a centre may exceed tighter limits: more take many steps;
 EXCEEDED_BY_SEGMENTS = 300.0  # more where only the segments that do so take them
+PARTS_OF_SLOW = (0.0, 1e-3, 1e-2, 3e-2, 0.1, 0.3)  # tried in turn where a range is left slightly
 PARTS_OF_MARGINS = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)  # tried in turn where the whole is infeasible
 
 
@@ -115,6 +120,8 @@ class _Rounds:
 
     def accept(self, outcome: Outcome, tolerance: float) -> bool:
         task, durations = self._problem.task, self._problem.durations
+        if task.should_stop():
+            return True  # `best_that_fits` has the last word
         if self._may_mend(outcome):
             self.best = self._mended(outcome)
             if self.best is not None:
@@ -128,9 +135,7 @@ class _Rounds:
                     outcome.motion.T):
                 self.best = fits
                 return True
-        if task.should_stop():
-            self.best = self.best_that_fits()
-        return self.best is not None
+        return task.should_stop()
 
     def _by_segments(self) -> bool:
         return take_own_steps(self._constraints.problem, self._problem.durations)
@@ -142,7 +147,11 @@ class _Rounds:
         """Return an outcome mended where it exceeds limits; None where that fails."""
         self._find_slow_motion()
         repairs = LocalRepairs(self._problem, self._margins, self._slow, outcome)
-        return self._problem.fitting(outcome, repairs.motion) if repairs.mend() else None
+        if repairs.mend():
+            return self._problem.fitting(outcome, repairs.motion)
+        if self._problem.task.should_stop():  # with part of the repairs it is worth a try too
+            self._outcomes[-1][0].centres.append(CentralPathPoint(repairs.motion, None))
+        return None
 
     def _find_slow_motion(self) -> None:
         problem = self._problem
@@ -169,20 +178,41 @@ class _Rounds:
         return bool(self._centres) or not self._margins.is_same(before)
 
     def best_that_fits(self) -> Solved | None:
-        """Return the fastest of all outcomes, centres and starts, slowed as limits require."""
+        """
+        Return the fastest of all outcomes, centres and starts, slowed as limits require.
+
+        Where none keeps its joints in their ranges: one with a part of a slow motion.
+        """
         best: Solved | None = None
         durations = self._problem.durations
-        for outcome, start in sorted(
-                self._outcomes, key=lambda t: durations.cost(t[0].motion.T)):
-            for motion in (outcome.motion, *(c.motion for c in reversed(outcome.centres)), start):
-                cost = durations.cost(motion.T)
-                if best is not None and best.cost <= cost:
-                    break
-                self._problem.task.should_stop()
-                fits = self._problem.fitting(outcome, motion)
-                if fits is not None and (best is None or fits.cost < best.cost):
-                    best = fits
-        return best
+        motions = {durations.cost(m.T): (outcome, m) for outcome, start in self._outcomes
+                   for m in (start, *(c.motion for c in outcome.centres), outcome.motion)}
+        for cost in sorted(motions):
+            if best is not None and best.cost <= cost:
+                break
+            self._problem.task.should_stop()
+            fits = self._problem.fitting(*motions[cost])
+            if fits is not None and (best is None or fits.cost < best.cost):
+                best = fits
+        return best or (self._partly_slow(list(motions.values())) if motions else None)
+
+    def _partly_slow(self, motions: Sequence[tuple[Outcome, Variables]]) -> Solved | None:
+        """Return the motion that is least out of range, mixed with as much of a slow one."""
+        self._find_slow_motion()
+        if self._slow is None or self._slow_motion is None:
+            return None
+        task, mesh = self._problem.task, self._problem.mesh
+        outcome, motion = min(
+            ((outcome, self._problem.inwards(m)) for outcome, m in motions),
+            key=lambda m: beyond_range(task, mesh.trajectory(task.points, m[1])).max())
+        slow = with_durations(self._slow, motion.T).flat()
+        for part in PARTS_OF_SLOW:
+            task.should_stop()
+            mixed = motion.with_values((1.0 - part) * motion.flat() + part * slow)
+            fits = self._problem.fitting(outcome, mixed)
+            if fits is not None:
+                return fits
+        return self._problem.fitting(outcome, self._slow)
 
 
 def _near(centres: list[CentralPathPoint], former: TimingProblem,

@@ -28,6 +28,7 @@ from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.answers.answer_size import check_answer_size
+from rrr_traj_planner.planners.answers.answer_time import with_time_for_answer
 from rrr_traj_planner.planners.answers.checked_plan import checked_plan
 from rrr_traj_planner.planners.answers.missed_via_points import with_miss_note
 from rrr_traj_planner.planners.parts.joining import Part, whole_motion
@@ -118,6 +119,7 @@ def _passing(method: Registered, problem: PlanningProblem) -> ViaPointBehaviour:
 def _plan_through(method: Registered, problem: PlanningProblem, q: Array) -> Plan:
     """Return the plan through joint positions."""
     check_answer_size(problem.limits, problem.request, q)
+    problem = with_time_for_answer(problem, q, _passing(method, problem))
     request = problem.request
     # A planner that stops at every via point plans them at once.
     divided = [Span(0, request.segments)] if method.passing.via == 'stop' else spans(request)

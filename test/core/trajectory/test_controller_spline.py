@@ -22,6 +22,7 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.friction import Friction
 from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.trajectory import controller_spline
 from rrr_traj_planner.core.trajectory.controller_spline import (
     checked_intervals,
     checked_where_divided,
@@ -239,3 +240,16 @@ def test_checking_only_what_was_divided_finds_what_checking_everything_does(seed
         known = checked_where_divided(model, limits, spline, known, divided)
         for found, expected in zip(known.excess(limits), spline_excess(model, limits, spline)):
             assert found == pytest.approx(expected, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize('seed', range(6))
+def test_long_motions_are_checked_block_by_block_as_at_once(seed, monkeypatch):
+    rng = np.random.default_rng(seed)
+    model = replace(ARM, friction=Friction(viscous=[5.0] * 3, coulomb=[2.0] * 3))
+    limits = replace(WIDE, max_velocity=rng.uniform(0.3, 2.0, 3), max_effort=[60.0] * 3,
+                     max_position=FROM + rng.uniform(0.3, 0.8, 3))
+    spline = swinging(rng, np.cumsum(rng.uniform(0.05, 1.0, 30)))
+    whole = spline_excess(model, limits, spline)
+    monkeypatch.setattr(controller_spline, 'BLOCK', 7)
+    for found, expected in zip(spline_excess(model, limits, spline), whole):
+        assert found == pytest.approx(expected, rel=1e-12, abs=1e-12)

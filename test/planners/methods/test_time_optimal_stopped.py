@@ -16,7 +16,7 @@
 
 from itertools import count
 
-from helpers.planning_cases import ARM, LIMITS
+from helpers.planning_cases import ARM, LIMITS, NONE
 from helpers.time_optimal_cases import (
     A,
     B,
@@ -31,6 +31,7 @@ from helpers.time_optimal_cases import (
 )
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.planners.planning import plan
 
 
@@ -65,3 +66,24 @@ def test_prescribed_durations_are_kept_even_when_planning_is_stopped_early():
                      should_stop=stops_after(calls))
         assert m.violations() == []
         assert durations_of(m.plan) == pytest.approx([5.0, 6.0], abs=KEPT)
+
+
+def stopped(q, limits, calls):
+    """Return the measured plan whose planning is stopped after so many calls, and their number."""
+    counter = count()
+    return measured(limits, q, should_stop=lambda: next(counter) >= calls), next(counter)
+
+
+@pytest.mark.parametrize('inside', [0.0, 3e-3])  # rad, of via points from the ends of ranges
+def test_motions_beside_the_ends_of_ranges_are_not_the_slow_one_when_stopped(inside):
+    q = np.array([[1.0, 0.8, 1.0], [-1.0, 0.0, -0.7], [1.0, 1.0, 0.5], [-0.9, 0.9, -1.0]] * 3)
+    limits = JointLimits(min_position=[-1.0 - inside] * 3, max_position=[1.0 + inside] * 3,
+                         max_acceleration=[3.0] * 3, max_jerk=[60.0] * 3, max_effort=NONE)
+    best, calls = stopped(q, limits, 10 ** 6)
+    assert stopped(q, limits, 0)[0].trajectory.duration > 1.8 * best.trajectory.duration
+    durations = []
+    for k in range(20, calls, 12):
+        m, _ = stopped(q, limits, k)
+        assert m.violations() == []
+        durations.append(m.trajectory.duration)
+    assert max(durations) < 1.15 * best.trajectory.duration
