@@ -93,6 +93,7 @@ class JointConstraints:
         self._first_jerk = 0 if starts_moving else 1
         self._model, self._margins = model, margins
         self._velocity_margins, self._acceleration_margins = velocity_margins, acceleration_margins
+        self._effort_margins = effort_margins
 
     @cached_property
     def problem(self) -> TimingProblem:
@@ -105,6 +106,28 @@ class JointConstraints:
         arm = compiled(self._model) if self.with_torque else None
         return TimingProblem(self.mesh, self.points, Limits(
             lower, upper, bounded, -effort, effort, general, self.least_T, arm), self._workspace)
+
+    def of_first(self, segments: int) -> JointConstraints:
+        """
+        Return the constraints on the first segments.
+
+        Parameters
+        ----------
+        segments : int
+            Their number.
+
+        Returns
+        -------
+        JointConstraints
+            On a motion that ends there.
+
+        """
+        n, least_T, stays = segments, self.least_T, self._stays
+        return JointConstraints(
+            self._model, self.limits, Mesh(self.mesh.parts[:n]), self.points[:n + 1],
+            self._margins[:, :n], self._velocity_margins[:n], self._acceleration_margins[:n],
+            self._effort_margins[:n], None if least_T is None else least_T[:n], None,
+            None if stays is None else stays[:n - 1], self._first_jerk == 0)
 
     def is_within(self, motion: Variables) -> bool:
         """

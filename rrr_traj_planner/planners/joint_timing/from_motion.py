@@ -49,6 +49,7 @@ from rrr_traj_planner.planners.tasks import JointTask, StartRates
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 # Chosen values.
+HEAD = 8  # segments in which a longer motion comes to rest
 DURATIONS = 1.1 ** np.arange(-30.0, 8.0)  # of the first segment, over that from rest to rest
 WITHOUT_TORQUE = 0.5  # of the acceleration that torque allows
 DIRECT = 1e-3         # part of the way by which a direct motion may overshoot
@@ -73,6 +74,8 @@ def from_motion(durations: DurationConstraints) -> InitialMotion:
 
     """
     def found(task: JointTask, constraints: JointConstraints) -> Variables | None:
+        if len(task.points) - 1 > 2 * HEAD:
+            return _with_rest_to_rest(task, constraints, durations)
         motions = [brought_within(constraints, m, durations, task.should_stop)
                    for m in straight_on(task, constraints.mesh)]
         best = min(filter(None, motions), key=lambda m: durations.cost(m.T), default=None)
@@ -82,6 +85,22 @@ def from_motion(durations: DurationConstraints) -> InitialMotion:
         return without and brought_within(constraints, without, durations, task.should_stop)
 
     return found
+
+
+def _with_rest_to_rest(task: JointTask, constraints: JointConstraints,
+                       durations: DurationConstraints) -> Variables | None:
+    """Return a motion that rests after HEAD segments, and at all later via points."""
+    first = from_motion(durations._replace(
+        free=durations.free[:HEAD], proportions=durations.proportions[:HEAD],
+        weights=durations.weights[:HEAD], fixed=np.concatenate(
+            (durations.fixed[:HEAD], durations.fixed[-1:]))))(
+        replace(task, points=task.points[:HEAD + 1]), constraints.of_first(HEAD))
+    if first is None:
+        return None
+    m = _rest_to_rest(task, constraints.mesh)
+    return brought_within(constraints, Variables(*(np.concatenate((head, f[len(head):]))
+                                                   for head, f in zip(first, m))),
+                          durations, task.should_stop)
 
 
 def _without_torque(task: JointTask, mesh: Mesh,

@@ -74,6 +74,8 @@ def fastest(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> Solved
         found = _fastest(JointProblem(task, own, durations, least_T), from_motion(durations))
         if found is not None:
             return found
+        if task.should_stop():
+            break
     return after_a_stop(task, lambda from_rest: fastest(from_rest, mesh, least_T))
 
 
@@ -86,6 +88,8 @@ def _fastest(whole: JointProblem, start: InitialMotion) -> Solved | None:
         whole = replace(whole, mesh=without_torque.mesh)
         found = tightened(without_torque, first, start)
         task.should_stop()
+        if found is None and np.isinf(task.limits.max_effort).all():
+            return None
         if found is not None and torque_fits(task, found.trajectory):
             better = _refined(without_torque, found)
             return better if torque_fits(task, better.trajectory) else _refined(whole, found)

@@ -30,6 +30,7 @@ from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
 from rrr_traj_planner.planners.joint_timing.local_repairs import LocalRepairs
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
+from rrr_traj_planner.planners.joint_timing.slowed_after_start import slowed_after_start
 from rrr_traj_planner.planners.joint_timing.start import with_durations
 from rrr_traj_planner.planners.joint_timing.within_limits import beyond_range
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
@@ -43,6 +44,7 @@ from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 SCHEDULE = Schedule(rounds=20, tolerance=1e-3, patience=4, growth=2.0)
 EXCEEDED = 30.0  # slacks by which a centre may exceed tighter limits: more take many steps;
 EXCEEDED_BY_SEGMENTS = 300.0  # more where only the segments that do so take them
+FROM_MOTION = 0.2  # of the schedule's tolerance where motions are slowed after the start
 PARTS_OF_SLOW = (0.0, 1e-3, 1e-2, 3e-2, 0.1, 0.3)  # tried in turn where a range is left slightly
 PARTS_OF_MARGINS = (1.0, 0.9, 0.7, 0.4, 0.1, 0.03)  # tried in turn where the whole is infeasible
 
@@ -130,7 +132,10 @@ class _Rounds:
         within = check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any()
         if within or not durations.may_scale:  # the check is a little stricter than `fitting`
             task.should_stop()
-            fits = self._problem.fitting(outcome, outcome.motion)
+            # in short motions a further round is as fast as slowing after the start
+            fitting = self._fitting if self._by_segments() else self._problem.fitting
+            fits = fitting(outcome, outcome.motion)
+            tolerance *= 1.0 if durations.from_rest else FROM_MOTION
             if fits is not None and fits.cost <= (1.0 + tolerance) * durations.cost(
                     outcome.motion.T):
                 self.best = fits
@@ -191,10 +196,18 @@ class _Rounds:
             if best is not None and best.cost <= cost:
                 break
             self._problem.task.should_stop()
-            fits = self._problem.fitting(*motions[cost])
+            fits = self._fitting(*motions[cost])
             if fits is not None and (best is None or fits.cost < best.cost):
                 best = fits
         return best or (self._partly_slow(list(motions.values())) if motions else None)
+
+    def _fitting(self, outcome: Outcome, motion: Variables) -> Solved | None:
+        """Return a motion slowed until it keeps every limit, after the start if that moves."""
+        fits = self._problem.fitting(outcome, motion)
+        if fits is not None or self._problem.durations.from_rest:
+            return fits
+        slower = slowed_after_start(self._problem, motion)
+        return None if slower is None else self._problem.fitting(outcome, slower)
 
     def _partly_slow(self, motions: Sequence[tuple[Outcome, Variables]]) -> Solved | None:
         """Return the motion that is least out of range, mixed with as much of a slow one."""

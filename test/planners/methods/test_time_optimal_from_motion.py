@@ -15,6 +15,7 @@
 """`time_optimal` from states at which the arm moves."""
 
 from dataclasses import replace
+from itertools import count
 from unittest.mock import patch
 
 from helpers.measured_motions import Measured, planned_motions
@@ -90,6 +91,25 @@ def test_other_points_are_reached_from_a_motion_s_states(limits):
         assert ends == pytest.approx(np.array([B, A]), abs=SAME)
         assert np.array(state(found.trajectory, 0.0)) == pytest.approx(
             np.array(state(before, t)), abs=SAME)
+
+
+def test_long_motions_are_not_much_slower_when_planning_is_stopped():
+    rng = np.random.default_rng(107)
+    before = plan(ARM, FREE, through([A, B, C])).trajectory
+    q, *rates = state(before, 0.4 * before.duration)
+    points = np.repeat(rng.uniform([0.3, 1.0, -0.5], [1.3, 1.6, 0.5], (5, 3)), 8, axis=0)
+    points += rng.normal(0.0, 0.02, points.shape)
+    counter = count()
+    best = plan(ARM, FREE, moving(q, points, *rates, should_stop=lambda: next(counter) < 0))
+    calls = next(counter)
+    for k in np.linspace(0.5, 0.95, 6) * calls:
+        counter = count()
+        found = plan(ARM, FREE, moving(
+            q, points, *rates, should_stop=lambda c=counter, k=k: next(c) >= k))
+        assert found.trajectory.duration < 1.3 * best.trajectory.duration
+        assert (found.peaks.acceleration <= ALLOWED * FREE.max_acceleration).all()
+        assert np.array(state(found.trajectory, 0.0)) == pytest.approx(
+            np.array([q, *rates]), abs=SAME)
 
 
 def test_jerk_is_continuous_after_the_start():
