@@ -25,10 +25,14 @@ from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.meshing import meshed
-from rrr_traj_planner.planners.joint_timing.problem import JointProblem, Solved
+from rrr_traj_planner.planners.joint_timing.problem import (
+    brought_within,
+    JointProblem,
+    Solved,
+)
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest, with_durations
 from rrr_traj_planner.planners.joint_timing.tightening import tightened
-from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
+from rrr_traj_planner.planners.joint_timing.within_limits import fitted, torque_fits
 from rrr_traj_planner.planners.short_durations import durations_too_short, least_feasible
 from rrr_traj_planner.planners.solver.limits import DurationConstraints, fixed_ends
 from rrr_traj_planner.planners.solver.splines import Mesh, time_scaled, Variables
@@ -38,6 +42,7 @@ from rrr_traj_planner.planners.tolerances import DURATION_TOLERANCE
 # Chosen values, without unit: half and twice of LEAST_SCALING, and of LEAST_REDUCTION's excess
 # over 1, change peak accelerations of 11 random tasks by 0.01 % in the mean, by 0.1 % at most.
 LEAST_SCALING = 0.2     # of prescribed durations, down to which the problem is solved
+SLOWER = 1e-5           # part by which the fastest motion is slowed to start from
 FREE_WEIGHT = 1e-3      # of free durations while the scaling of the prescribed is minimised
 LEAST_REDUCTION = 1.02  # factor on peak acceleration that justifies another round
 
@@ -146,7 +151,10 @@ def prescribed(task: JointTask, mesh: Mesh, durations: Array) -> Solved | None:
     if solved is None:
         return None
     if not problem.is_met_by(solved):
-        raise _too_short(problem)
+        own = fastest(task, mesh)
+        solved = None if own is None else _from_own(problem, own)
+        if solved is None or not problem.is_met_by(solved):
+            raise _too_short(problem, own)
     if problem.free.any():
         return _fastest_of_free(problem, solved)
     return _least_peak_acceleration(problem, solved)
@@ -155,19 +163,50 @@ def prescribed(task: JointTask, mesh: Mesh, durations: Array) -> Solved | None:
 def _least_scaled(problem: PrescribedProblem) -> Solved | None:
     """Return the motion with the least common factor on the prescribed durations."""
     durations, free = problem.durations, problem.free
-    proportions = np.where(free, 0.0, durations)
-    weights = np.where(free, FREE_WEIGHT, 1.0 / np.where(free, 1.0, durations) / (~free).sum())
 
     def initial_motion(planned: JointTask, constraints: JointConstraints) -> Variables | None:
         m = rest_to_rest(planned, constraints)
         if m is None:
             return None
         scaling = float((m.T / durations)[~free].max())
-        return with_durations(m, np.where(free, m.T, scaling * proportions))
+        return with_durations(m, np.where(free, m.T, scaling * durations))
 
-    refined, start = meshed(problem.problem(
-        proportions, weights, LEAST_SCALING * proportions), initial_motion)
+    refined, start = meshed(_scaled(problem), initial_motion)
     return tightened(refined, start, initial_motion)
+
+
+def _scaled(problem: PrescribedProblem) -> JointProblem:
+    """Return the problem of the least common factor on the prescribed durations."""
+    durations, free = problem.durations, problem.free
+    proportions = np.where(free, 0.0, durations)
+    weights = np.where(free, FREE_WEIGHT, 1.0 / np.where(free, 1.0, durations) / (~free).sum())
+    return problem.problem(proportions, weights, LEAST_SCALING * proportions)
+
+
+def _from_own(problem: PrescribedProblem, own: Solved) -> Solved | None:
+    """
+    Return the motion with the least common factor that is found from the fastest motion, slowed.
+
+    Slow motions with stops may not lead there: near the ends of ranges, and between via points
+    that are close together. None where the fastest motion's durations are not shorter.
+    """
+    durations, free = problem.durations, problem.free
+    ratios = (own.motion.T / durations)[~free]
+    least = float(ratios.max()) * (1.0 + SLOWER)
+    if not least <= 1.0:
+        return None
+    slower = time_scaled(own.motion, float(np.median(least / ratios)))
+    start = own.mesh.restored(problem.task.points, slower._replace(
+        T=np.where(free, slower.T, least * durations)))
+    scaled = _scaled(problem._replace(mesh=own.mesh))
+    found = tightened(scaled, lambda planned, constraints: brought_within(
+        constraints, start, scaled.durations, planned.should_stop))
+    slowed = fitted(problem.task, own.mesh.trajectory(problem.task.points, start), True)
+    if slowed is None:
+        return found
+    cost = scaled.durations.cost(np.diff(slowed.via_times))
+    kept = Solved(slowed, start, own.mesh, cost, own.gap)
+    return kept if found is None or cost < found.cost else found
 
 
 def _in_time(problem: PrescribedProblem, found: list[Solved]) -> Solved | None:
@@ -237,7 +276,7 @@ def _fastest_of_free(problem: PrescribedProblem, solved: Solved) -> Solved | Non
     return found if problem.is_met_by(found) else _in_time(problem, [solved])
 
 
-def _too_short(problem: PrescribedProblem) -> TimingError:
+def _too_short(problem: PrescribedProblem, own: Solved | None) -> TimingError:
     """Return the error of prescribed durations that are too short, with feasible ones."""
     durations, least_T = problem.durations, np.nan_to_num(problem.durations)
     found = fastest(problem.task, problem.mesh, least_T)
@@ -245,7 +284,8 @@ def _too_short(problem: PrescribedProblem) -> TimingError:
 
     def is_feasible(T: Array) -> bool:
         longer = problem._replace(durations=T)
-        return longer.is_met_by(_least_scaled(longer))
+        return longer.is_met_by(_least_scaled(longer)) or (
+            own is not None and longer.is_met_by(_from_own(longer, own)))
 
     return durations_too_short(
         durations, least_feasible(durations, [least], is_feasible))

@@ -16,7 +16,7 @@
 
 from dataclasses import replace
 
-from helpers.planning_cases import ARM, LIMITS, STRONG
+from helpers.planning_cases import ARM, LIMITS, NONE, STRONG
 from helpers.time_optimal_cases import (
     A,
     B,
@@ -32,8 +32,12 @@ from helpers.time_optimal_cases import (
 )
 import numpy as np
 import pytest
+from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.errors import TimingError
 from rrr_traj_planner.planners.planning import plan
+from rrr_traj_planner.planners.request import PlanningRequest
+
+SLACK = 1.0 + 1e-6  # of limits
 
 each_strong_limits = pytest.mark.parametrize(
     'limits', [LIMITS, replace(STRONG, **TORQUE_LIMITED)], ids=['acceleration', 'torque'])
@@ -137,3 +141,27 @@ def test_long_durations_are_kept_where_gravity_exceeds_a_limit_by_a_millionth_on
     m = measured(LIMITS, q, segment_durations=[20.8] * 9, velocity_scaling=0.3)
     assert durations_of(m.plan) == pytest.approx([20.8] * 9, abs=KEPT)
     assert m.violations() == []
+
+
+@pytest.mark.parametrize('seed', [8, 17, 25, 37, 45])
+def test_durations_of_the_fastest_motion_a_little_slower_are_kept_at_ends_of_ranges(seed):
+    """Slowed, that motion keeps every limit: gravity alone is within those of torque."""
+    rng = np.random.default_rng(1000 + seed)
+    n, beside_ends = int(rng.integers(3, 13)), seed % 4 != 1
+    low, high = np.array([-1.0, 0.3, -1.0]), np.array([1.0, 1.8, 1.0])
+    q, where = rng.uniform(low, high, (n, 3)), rng.random((n, 3))
+    inside = 10.0 ** -rng.uniform(1.0, 7.0, (n, 3)) if beside_ends else 0.0
+    q = np.where(where < 0.3, low + inside, np.where(where > 0.7, high - inside, q))
+    by_torque = rng.random() < 0.5
+    limits = JointLimits(
+        min_position=low, max_position=high, max_velocity=[1.5] * 3,
+        max_jerk=[100.0 if by_torque else 20.0] * 3,
+        max_acceleration=NONE if by_torque else [2.0] * 3,
+        max_effort=[350.0, 350.0, 150.0] if by_torque else NONE)
+    request = PlanningRequest(joint_via_points=q, planner_id='time_optimal')
+    durations = 1.05 * durations_of(plan(ARM, limits, request))
+    found = plan(ARM, limits, replace(request, segment_durations=durations))
+    assert durations_of(found) == pytest.approx(durations, abs=KEPT)
+    for name in ('velocity', 'acceleration', 'jerk'):
+        assert (getattr(found.peaks, name) <= getattr(limits, f'max_{name}') * SLACK).all()
+    assert (found.effort <= limits.max_effort * SLACK).all()
