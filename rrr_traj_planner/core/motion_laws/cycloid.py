@@ -62,13 +62,19 @@ class CycloidPiece(NamedTuple):
 
         """
         T, w, phase = self.duration, self.w, self.w * s
-        sine = np.sin(phase)
-        versine = 2.0 * np.sin(0.5 * phase) ** 2  # 1 - cos, exact near 0
+        sine, versine = np.sin(phase), _versine(phase)
         velocity = self.velocity + T * (self.c * s - self.b / w * sine)
         position = self.position + T * (
             self.velocity * s + T * (0.5 * self.c * s * s - self.b / w ** 2 * versine))
-        acceleration = (self.c - self.b) + self.b * versine
-        return position, velocity, acceleration, self.b * w / T * sine
+        return position, velocity, self._acceleration(versine), self._peak_jerk * sine
+
+    def _acceleration(self, versine: Any) -> Any:
+        return (self.c - self.b) + self.b * versine
+
+    @property
+    def _peak_jerk(self) -> Any:
+        """Of a full period [rad/s^3]."""
+        return self.b * self.w / self.duration
 
     def parameters(self) -> dict[str, Any]:
         """Return every value by its name; see `Pieces`."""
@@ -120,10 +126,10 @@ class CycloidPiece(NamedTuple):
 
     def peaks(self) -> tuple[Array, Array]:
         """Return the largest magnitudes of acceleration and of jerk; see `Pieces`."""
-        turning = np.minimum(pi / self.w, 1.0)
-        return (_largest(self.at(s)[2] for s in (0.0, turning, 1.0)),
-                _largest(self.at(np.minimum(phase / self.w, 1.0))[3]
-                         for phase in (0.5 * pi, 1.5 * pi)))
+        w, jerk = self.w, self._peak_jerk
+        return (_largest(self._acceleration(_versine(phase))
+                         for phase in (0.0, np.minimum(pi, w), w)),
+                _largest(jerk * np.sin(np.minimum(phase, w)) for phase in (0.5 * pi, 1.5 * pi)))
 
 
 def transition(duration: Any, position: Any, velocity: Any, end_velocity: Any) -> CycloidPiece:
@@ -237,6 +243,11 @@ def general_transition(position: float, velocity: float, end_velocity: float,
             f'a change of velocity of {change} rad/s has no transition of mean acceleration '
             f'{mean} rad/s^2')
     return CycloidPiece(change / mean, position, velocity, c, b, w)
+
+
+def _versine(phase: Any) -> Any:
+    """Return 1 - cos, exact near 0."""
+    return 2.0 * np.sin(0.5 * phase) ** 2
 
 
 def _largest(values: Any) -> Array:
