@@ -263,3 +263,17 @@ def test_points_added_between_are_those_of_all_times_together(trajectory, period
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-13, abs=1e-13)
     spline = spline_where_divided(spline_through(points_at(trajectory, times)), found, index)
     assert (spline.coefficients == spline_through(found).coefficients).all()
+
+
+@pytest.mark.parametrize('apart', [1e-5, 1e-4, 2e-3])
+def test_rounded_times_of_points_close_together_do_not_change_the_acceleration_between(apart):
+    first = 0.5 + 0.4e-9  # rounded down; the second one up
+    steady = JointProfile(cruise(np.array([1.0]), np.array([0.2]), np.array([1.0])))
+    motion = PiecewiseTrajectory([steady] * 3, [0.0, first, first + apart + 0.2e-9, 1.0])
+    points = sample(motion, 0.01)
+    k = int(np.abs(points.times - 0.5).argmin())
+    assert points.times[k + 1] - points.times[k] == pytest.approx(apart, abs=1.5e-9)
+    between = spline_through(points).within([0.2, 0.5, 0.8], np.array([k]))
+    assert between[2] == pytest.approx(0.0, abs=1e-3)
+    assert points.positions[[k, k + 1]] == pytest.approx(
+        motion(motion.via_times[1:3])[0], abs=1.5e-9)
