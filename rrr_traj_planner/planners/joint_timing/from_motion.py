@@ -192,6 +192,8 @@ def after_a_stop(task: JointTask, fastest: Callable[[JointTask], Solved | None])
     """
     Return a motion that stops first, as fast as the arm's `hold`, then goes on from rest.
 
+    While it stops jerk is constant piece by piece: it has steps, as that of `hold`.
+
     Parameters
     ----------
     task : JointTask
@@ -202,7 +204,7 @@ def after_a_stop(task: JointTask, fastest: Callable[[JointTask], Solved | None])
     Returns
     -------
     Solved or None
-        None where there is no motion from rest.
+        Its note says that it stops. None where there is no motion from rest.
 
     Raises
     ------
@@ -229,7 +231,8 @@ def after_a_stop(task: JointTask, fastest: Callable[[JointTask], Solved | None])
         going = profile.pieces.parameters().values()
         profiles.append(JointProfile(PolynomialPiece(*map(np.concatenate, zip(braking, going)))))
     via_times = np.concatenate(([0.0], solved.trajectory.via_times[1:] + h.sum()))
-    return solved._replace(trajectory=PiecewiseTrajectory(profiles, via_times),
+    note = f'the arm stops first, in {h.sum():.3g} s: no motion was found that goes straight on'
+    return solved._replace(trajectory=PiecewiseTrajectory(profiles, via_times, note),
                            cost=float(via_times[-1]), gap=np.inf)
 
 

@@ -21,6 +21,9 @@ Jerk is linear in each interval of a mesh and continuous everywhere, also throug
 interior-point method (`solver.interior_point`), starting from a motion with stops at every via
 point. Squared jerk has a small weight in the objective (`solver.limits.SMOOTHNESS`). Between two
 rough solutions and the last one the mesh is refined (`solver.refinement`).
+
+From a state of motion from which no motion is found that goes straight on, the arm stops first, as
+when it is held: jerk has steps until it rests, and the motion's note says so.
 """
 
 from __future__ import annotations
@@ -64,7 +67,8 @@ def plan(task: JointTask) -> Trajectory:
     Returns
     -------
     Trajectory
-        Within the limits; its note tells if the method ended before it converged.
+        Within the limits; its note tells if the method ended before it converged, and if the arm
+        stops first.
 
     Raises
     ------
@@ -88,7 +92,9 @@ def plan(task: JointTask) -> Trajectory:
         found = _at_a_sampled_pace(task, mesh)
     if found is None:
         raise cannot_be_held(task, mesh)
-    return found.trajectory.noted(unconverged_note(found.gap, found.cost))
+    trajectory = found.trajectory
+    return trajectory.noted('; '.join(filter(None, (
+        trajectory.note, unconverged_note(found.gap, found.cost)))))
 
 
 def _at_a_sampled_pace(task: JointTask, mesh: Mesh) -> Solved | None:

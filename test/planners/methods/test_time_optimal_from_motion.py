@@ -142,6 +142,8 @@ def test_without_a_way_on_the_arm_stops_first_as_when_held():
     held = stop(from_state((*q, *qd, *qdd), 0), 0.0, LIMITS, ARM).motion
     t = np.linspace(0.0, held.end, 50)[:-1]
     assert found.trajectory(t)[0] == pytest.approx(held.at(t)[0], abs=2e-4)
+    assert found.note.startswith(f'the arm stops first, in {held.end:.2g}'), found.note
+    assert 'the arm stops' not in plan(ARM, LIMITS, request).note
     rest = plan(ARM, LIMITS, through([held.final, B])).trajectory
     assert found.trajectory.duration == pytest.approx(held.end + rest.duration, rel=5e-3)
     assert plan(ARM, LIMITS, request).trajectory.duration < found.trajectory.duration
