@@ -188,9 +188,12 @@ def _from_own(problem: PrescribedProblem, own: Solved) -> Solved | None:
     Return the motion with the least common factor that is found from the fastest motion, slowed.
 
     Slow motions with stops may not lead there: near the ends of ranges, and between via points
-    that are close together. None where the fastest motion's durations are not shorter.
+    that are close together. None where the fastest motion's durations are longer.
     """
     durations, free = problem.durations, problem.free
+    if (np.abs(np.diff(own.trajectory.via_times) / durations - 1.0) <= DURATION_TOLERANCE)[
+            ~free].all():
+        return own  # such as durations that are those of a plan
     ratios = (own.motion.T / durations)[~free]
     least = float(ratios.max()) * (1.0 + SLOWER)
     if not least <= 1.0:

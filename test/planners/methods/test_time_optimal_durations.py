@@ -165,3 +165,11 @@ def test_durations_of_the_fastest_motion_a_little_slower_are_kept_at_ends_of_ran
     for name in ('velocity', 'acceleration', 'jerk'):
         assert (getattr(found.peaks, name) <= getattr(limits, f'max_{name}') * SLACK).all()
     assert (found.effort <= limits.max_effort * SLACK).all()
+
+
+@pytest.mark.parametrize('q', [[A, B], [A, B, C], [C, A, B, C, B]])
+@each_strong_limits
+def test_durations_of_a_plan_are_its_own_again(limits, q):
+    own = plan(ARM, limits, through(q))
+    found = plan(ARM, limits, through(q, segment_durations=durations_of(own)))
+    assert durations_of(found) == pytest.approx(durations_of(own), abs=KEPT)
