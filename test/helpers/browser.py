@@ -87,11 +87,7 @@ class Browser:
 
     def ask(self, method, **parameters):
         """Return the browser's answer to a command."""
-        self._number += 1
-        message = {'id': self._number, 'method': method, 'params': parameters}
-        if self._session:
-            message['sessionId'] = self._session
-        os.write(self._out, json.dumps(message).encode() + b'\0')
+        self.tell(method, **parameters)
         deadline = time.monotonic() + DEADLINE
         while True:
             answer = self._next(deadline)
@@ -99,6 +95,14 @@ class Browser:
                 assert 'error' not in answer, answer
                 return answer['result']
             self.events.append(answer)
+
+    def tell(self, method, **parameters):
+        """Give the browser a command, without waiting until it is done."""
+        self._number += 1
+        message = {'id': self._number, 'method': method, 'params': parameters}
+        if self._session:
+            message['sessionId'] = self._session
+        os.write(self._out, json.dumps(message).encode() + b'\0')
 
     def _next(self, deadline):
         while b'\0' not in self._rest:
@@ -155,10 +159,11 @@ class Browser:
         self.mouse('mousePressed', x, y)
         self.mouse('mouseReleased', x, y)
 
-    def mouse(self, what, x, y, **more):
+    def mouse(self, what, x, y, waits=True, **more):
         """Do something with the mouse's left button at a place in the window."""
         button = {} if what == 'mouseMoved' and not more else {'button': 'left', 'clickCount': 1}
-        self.ask('Input.dispatchMouseEvent', type=what, x=x, y=y, **{**button, **more})
+        (self.ask if waits else self.tell)(
+            'Input.dispatchMouseEvent', type=what, x=x, y=y, **{**button, **more})
 
     def drag(self, begin, end, steps=10):
         """Drag with the mouse from one place to another."""
