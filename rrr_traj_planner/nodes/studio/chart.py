@@ -33,6 +33,8 @@ ROOM = 1.1       # of the axis, where 1 is the limit
 HEIGHT = 210     # pixels
 POINTS = 300     # of a curve
 PERIOD = 0.08    # s between two places of the cursor
+STILL = 0.2      # s without another plan, after which one is drawn: the browser takes longer for
+#                  the chart than for all else of a plan, and the path would have to wait
 
 
 class Chart:
@@ -51,7 +53,8 @@ class Chart:
     def __init__(self, gui: viser.GuiApi, joint_names: Sequence[str]) -> None:
         self._plan: Planned | None = None
         self._time: float | None = None
-        self._drawn = 0.0  # when the cursor was drawn [s]
+        self._came = 0.0   # when the plan came [s]
+        self._drawn = 0.0  # when the chart was drawn [s]
         self._quantity = gui.add_dropdown(
             'plot', QUANTITIES, hint='as shares of the limits, which are the red lines')
         self._chart = gui.add_uplot(
@@ -67,7 +70,7 @@ class Chart:
 
     def show(self, plan: Planned) -> None:
         """
-        Show a plan.
+        Show a plan, soon.
 
         Parameters
         ----------
@@ -75,12 +78,11 @@ class Chart:
             With its curves.
 
         """
-        self._plan = plan
-        self._draw()
+        self._plan, self._came = plan, monotonic()
 
     def show_time(self, time: float | None) -> None:
         """
-        Show the moment at which the ghost is; called again and again.
+        Show the moment at which the ghost is, and a new plan; called again and again.
 
         Parameters
         ----------
@@ -88,7 +90,9 @@ class Chart:
             Of the plan [s]; None: there is no ghost.
 
         """
-        if time != self._time and monotonic() - self._drawn >= PERIOD:
+        now, is_new = monotonic(), self._drawn <= self._came
+        if now - self._came >= STILL and (
+                is_new or time != self._time and now - self._drawn >= PERIOD):
             self._time = time
             self._draw()
 

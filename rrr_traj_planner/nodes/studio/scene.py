@@ -34,7 +34,7 @@ import viser
 
 ARM, GHOST = Look((70, 90, 120)), Look((150, 170, 200), has_own=False, opacity=0.4)
 VIA, CHOSEN, AT_FAULT = (245, 140, 30), (250, 205, 60), (200, 30, 30)
-DRIVEN, REACH = (0, 150, 130), (90, 150, 220)
+DRIVEN, REACH, GRID = (0, 150, 130), (90, 150, 220), (190, 190, 190)
 REACH_OPACITY = 0.15
 
 # Light from all sides, beside viser's two lamps, in place of the surroundings that viser has
@@ -42,7 +42,9 @@ REACH_OPACITY = 0.15
 SKY, GROUND, BRIGHTNESS = (255, 255, 255), (170, 175, 190), 2.3
 
 # Sizes, as fractions of the arm's.
-BALL, HANDLE, CELL = 0.018, 0.16, 0.1
+BALL, HANDLE, AXES = 0.018, 0.16, 0.1
+SEGMENT = 0.01       # least one of the planned path: short ones are drawn over each other
+GRID_CELL, CELLS = 0.2, 8  # of the grid; from its middle to each side
 CHOSEN_SCALE = 1.5  # of a ball
 PLAN_LINE, DRIVEN_LINE = 6.0, 2.0  # pixels
 COLUMNS = 28  # characters of a refusal's line beside its via point
@@ -92,9 +94,9 @@ class Scene:
         scene.add_light_hemisphere(
             '/light', sky_color=SKY, ground_color=GROUND, intensity=BRIGHTNESS,
             position=(0.0, 0.0, 1.0))  # where the sky is
-        scene.add_grid('/grid', width=4.0 * size, height=4.0 * size, cell_size=CELL * size,
-                       section_size=10.0 * CELL * size)
-        scene.add_frame('/base', axes_length=CELL * size, axes_radius=0.05 * CELL * size)
+        scene.add_line_segments('/grid', GRID_CELL * size * _grid(CELLS), GRID, thickness=1.0,
+                                thickness_units='screen')
+        scene.add_frame('/base', axes_length=AXES * size, axes_radius=0.05 * AXES * size)
 
     def show_points(self, points: Array, refusal: Refusal | None) -> None:
         """
@@ -147,7 +149,10 @@ class Scene:
 
         """
         if plan is not None:
-            self._plan.show(plan.path, path_colours(plan, meaning, is_current))
+            kept = _spread(plan.path, SEGMENT * self._size)
+            colours = path_colours(plan, meaning, is_current)
+            self._plan.show(plan.path[kept], np.stack(
+                (colours[kept[:-1], 0], colours[kept[1:] - 1, 1]), axis=1))
 
     def show_arm(self, joints: Sequence[float], driven: list[Point]) -> None:
         """
@@ -194,6 +199,20 @@ class Scene:
     def reach(self) -> viser.MeshHandle | None:
         """Return what is drawn by `add_reach`."""
         return self._reach
+
+
+def _grid(count: int) -> NDArray[np.float32]:
+    """Return the ends of a grid's lines in x, y, cells of 1, shape (n, 2, 3)."""
+    at = np.arange(-count, count + 1, dtype=np.float32)
+    lines = np.zeros((len(at), 2, 3), np.float32)
+    lines[:, :, 0], lines[:, :, 1] = at[:, None], (-count, count)
+    return np.concatenate((lines, lines[:, :, (1, 0, 2)]))
+
+
+def _spread(path: Array, step: float) -> NDArray[np.intp]:
+    """Return the indices of points along a path that are about a step apart, ends included."""
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1).cumsum() // step
+    return np.union1d((0, len(path) - 1), 1 + np.flatnonzero(np.diff(steps, prepend=0.0)))
 
 
 class _Path:

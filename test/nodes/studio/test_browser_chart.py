@@ -27,6 +27,7 @@ from rrr_traj_planner.nodes.studio.planned import LIMITED, Planned
 pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
 serving = import_module('rrr_traj_planner.nodes.studio.web.server').serving
 PlanFolder = import_module('rrr_traj_planner.nodes.studio.panel.plan').PlanFolder
+scripts_html = import_module('rrr_traj_planner.nodes.studio.panel.browser').scripts_html
 
 COUNT = 50
 DEADLINE = 30.0  # s
@@ -71,6 +72,7 @@ def test_click_and_drag_in_the_chart_move_the_ghost(tmp_path):
     studio = Studio()
     with serving('127.0.0.1', 8080) as server, browser.Browser(tmp_path) as page:
         folder = PlanFolder(server.gui, ('joint_1', 'joint_2', 'joint_3'))
+        server.gui.add_html(scripts_html())
         folder.connect(studio, lambda act: act())
         folder.show(plan(), '')
         folder.show_time(None)

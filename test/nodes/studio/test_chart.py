@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -54,6 +55,28 @@ def test_line_is_at_the_moment_and_curves_stay_as_they_are(time):
     up, = np.flatnonzero(cursor > chart.ROOM)
     assert times[up] == time and (times[up - 1:up + 2] == time).all()
     np.testing.assert_allclose(joints, np.outer((0.5, -0.5, 0.1), times))
+
+
+def test_a_plan_is_drawn_once_no_other_has_come_for_a_while(monkeypatch):
+    class Gui:
+
+        def add_dropdown(self, *_, **__):
+            return SimpleNamespace(value='jerk', on_update=lambda _: None)
+
+        def add_uplot(self, data, *_, **__):
+            return SimpleNamespace(data=data)
+
+    clock = []
+    monkeypatch.setattr(chart, 'monotonic', lambda: clock[-1])
+    shown = chart.Chart(Gui(), ('a', 'b', 'c'))
+    seen = []
+    for time, count in ((10.0, 5), (10.1, 7), (10.25, 0), (10.31, 0), (10.5, 0)):
+        clock.append(time)
+        if count:
+            shown.show(plan(count))
+        shown.show_time(None)
+        seen.append(len(shown._chart.data[0]))
+    assert seen == [1, 1, 1, 7, 7]
 
 
 def test_long_plans_are_thinned_out():

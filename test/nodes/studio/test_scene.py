@@ -77,6 +77,19 @@ def test_paths_are_changed_and_not_added_again(drawn, shown):
         assert drawn.node(name).points.tolist() == [[[3, 0, 0], [3, 4, 0]]]
 
 
+def test_segments_of_a_path_are_not_shorter_than_can_be_seen(drawn, shown):
+    slow = np.linspace(0.0, 0.1, 400)
+    fast = np.linspace(0.1, 1.1, 21)[1:]
+    path = np.zeros((420, 3))
+    path[:, 0] = np.concatenate((slow, fast))
+    shown.show_plan(plan_of(path), True, SPEED)
+    points = drawn.node('/plan').points
+    np.testing.assert_array_equal(points[1:, 0], points[:-1, 1])  # without a gap
+    np.testing.assert_allclose(points[[0, -1], [0, 1], 0], (0.0, 1.1), atol=1e-6)
+    lengths = np.diff(points[..., 0], axis=1).ravel()
+    assert len(points) <= 25 and (lengths[:-1] > 0.01).all()
+
+
 def test_every_end_of_a_path_has_a_colour(drawn, shown):
     path = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 2.0, 0.0)]
     shown.show_plan(plan_of(path), True, SPEED)

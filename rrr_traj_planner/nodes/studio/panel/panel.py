@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.nodes.studio.editor import Editor
 from rrr_traj_planner.nodes.studio.panel.arm import ArmFolder
+from rrr_traj_planner.nodes.studio.panel.browser import scripts_html
 from rrr_traj_planner.nodes.studio.panel.comparison import ComparisonFolder
 from rrr_traj_planner.nodes.studio.panel.controls import Folder, Post
 from rrr_traj_planner.nodes.studio.panel.files import FilesFolder
@@ -63,6 +64,7 @@ class Panel:
         self._comparison = ComparisonFolder(gui)
         self.view = ViewFolder(gui, is_dark)
         self._report = ReportButton(gui)
+        gui.add_html(scripts_html())
         self.show_status, self.show_tracking = self._arm.show_status, self._arm.show_tracking
         self.show_comparison = self._comparison.show
         self.show_plan, self.show_time = self._plan.show, self._plan.show_time

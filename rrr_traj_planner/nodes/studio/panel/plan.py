@@ -17,8 +17,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from html import escape
-from importlib.resources import files
 
 from rrr_traj_planner.nodes.studio.chart import Chart
 from rrr_traj_planner.nodes.studio.panel.controls import given, Post
@@ -26,15 +24,7 @@ from rrr_traj_planner.nodes.studio.planned import Planned
 from rrr_traj_planner.nodes.studio.studio import Studio
 import viser
 
-STEP = 0.001         # of the moment
-SCRIPTS = ('moment.js',  # knows the title of the chart and the label of the slider
-           'numbers.js')
-
-# The legend tells of the joints alone; the chart can be clicked.
-STYLE = """<style>
-.uplot:has(> .u-title) .u-legend .u-series:nth-child(n+5) { display: none; }
-.uplot:has(> .u-title) .u-over { cursor: ew-resize; touch-action: none; }
-</style>"""
+STEP = 0.001  # of the moment
 
 
 class PlanFolder:
@@ -59,7 +49,6 @@ class PlanFolder:
             self._moment = gui.add_slider(
                 'moment', 0.0, 1.0, STEP, 0.0,
                 hint='of the motion, as a fraction of its duration; or click in the chart')
-            gui.add_html(_scripts())
 
     def connect(self, studio: Studio, post: Post) -> None:
         """Have the controls do something."""
@@ -100,15 +89,3 @@ class PlanFolder:
         if time is not None and self._plan is not None and self._play.value:
             share = time / self._plan.duration if self._plan.duration > 0.0 else 0.0
             self._moment.value = round(share / STEP) * STEP
-
-
-def _scripts() -> str:
-    """
-    Return what brings clicks in the chart to the slider, and numbers back to fields.
-
-    viser tells of neither, and takes no script; the handler of an image that cannot be loaded is
-    one.
-    """
-    codes = (files(__package__).joinpath(name).read_text(encoding='utf-8') for name in SCRIPTS)
-    return STYLE + ''.join(
-        f'<img hidden alt="" src="data:," onerror="{escape(code)}">' for code in codes)
