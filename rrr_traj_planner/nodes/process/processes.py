@@ -17,6 +17,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+import os
 from pathlib import Path
 import signal
 import subprocess
@@ -28,10 +29,16 @@ from rrr_traj_planner.nodes.process.signals import signal_arrived, signals_block
 
 SCRIPTS = 'rrr_traj_planner.nodes.scripts'
 
-# Like `python -m`, but with this copy of the package: -m prefers one in the current folder.
+# Like `python -m`, but with this copy of the package: -m prefers one in the current folder. If the
+# parent process ends without ending this one, as by SIGKILL, Linux sends this one SIGINT.
 PACKAGE_PATH = str(Path(__file__).parents[3])
+SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG
 RUN_MODULE = f"""\
-import runpy, sys
+import ctypes, os, runpy, signal, sys
+if sys.platform == 'linux':
+    ctypes.CDLL(None).prctl({SET_DEATH_SIGNAL}, signal.SIGINT)
+if os.getppid() != int(sys.argv.pop(1)):
+    sys.exit('the parent process has ended')
 sys.path[:1] = [] if {PACKAGE_PATH!r} in sys.path else [{PACKAGE_PATH!r}]
 del sys.argv[0]
 runpy.run_module(sys.argv[0], run_name='__main__', alter_sys=True)"""
@@ -66,7 +73,7 @@ class NodeProcesses:
             with signals_blocked():
                 for name in self._scripts:
                     self._processes[name] = subprocess.Popen([
-                        sys.executable, '-c', RUN_MODULE, f'{SCRIPTS}.{name}',
+                        sys.executable, '-c', RUN_MODULE, str(os.getpid()), f'{SCRIPTS}.{name}',
                         *self._ros_arguments])
         except BaseException:
             self.stop()

@@ -85,6 +85,15 @@ def test_node_that_ends_takes_the_others_with_it(ros, name, number, code, text):
     assert errors.endswith(f'bringup: {text}\n')
 
 
+def test_nodes_end_with_a_bringup_that_is_killed(ros):
+    states = ros.listen(JointState, 'joint_states')
+    with Script(script('bringup')) as bringup:
+        assert_up(ros, states)
+        children = bringup.started(3)
+        bringup.process.kill()
+        assert all(child.has_ended() for child in children)
+
+
 def test_node_that_cannot_start_ends_bringup_with_its_code(tmp_path):
     file = tmp_path / 'arm.yaml'
     file.write_text('/**:\n  ros__parameters: {arm: {d1: 1000.0}}\n')
