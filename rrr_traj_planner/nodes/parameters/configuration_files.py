@@ -45,7 +45,7 @@ def found_file(name: str, *folders: Path) -> Path:
     Raises
     ------
     InvalidInputError
-        If there is no such file; the message names similar ones, or else all of the package's.
+        If there is no such file; the message names similar ones.
 
     """
     shipped = (shipped_folder(), shipped_folder() / 'arms')
@@ -59,8 +59,8 @@ def found_file(name: str, *folders: Path) -> Path:
     near = [f'{stem}{ending}' for stem in get_close_matches(
         Path(name).stem, [Path(n).stem for n in names])]
     places = ' and '.join(dict.fromkeys(map(str, folders)))
-    raise InvalidInputError(f"no file '{name}' in {places}, nor among the package's" + (
-        f'; {did_you_mean(*near)}' if near else f': {", ".join(names)}'))
+    raise InvalidInputError(f"no file '{name}' in {places}, nor among the package's"
+                            + (f'; {did_you_mean(*near)}' if near else ''))
 
 
 def shipped_folder() -> Path:

@@ -134,12 +134,10 @@ def test_malformed_file_is_named_with_what_is_wrong(here, content, text):
 
 
 @pytest.mark.parametrize('find', [read_task, lambda name: found_file(name, Path.cwd())])
-def test_missing_file_is_reported_with_the_package_s_own(here, find):
+def test_missing_file_like_no_other_is_reported_without_a_list(here, find):
     with pytest.raises(InvalidInputError) as caught:
         find('nowhere.yaml')
-    text = str(caught.value)
-    assert text.startswith(f"no file 'nowhere.yaml' in {here}, nor among the package's: ")
-    assert 'table_6_1.yaml, table_6_3.yaml, thesis_arm.yaml' in text
+    assert str(caught.value) == f"no file 'nowhere.yaml' in {here}, nor among the package's"
 
 
 @pytest.mark.parametrize(('name', 'near'), [
