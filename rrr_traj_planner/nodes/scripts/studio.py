@@ -105,7 +105,7 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
     from rrr_traj_planner.nodes.runs.spun_node import pause
     from rrr_traj_planner.nodes.studio.page import show_wait
     from rrr_traj_planner.nodes.studio.tasks import another_start, first_start, started_again
-    from rrr_traj_planner.nodes.studio.web.server import serving
+    from rrr_traj_planner.nodes.studio.web.server import address, serving
 
     ros_arguments = [*own_arguments, *limits_arguments(options.joint_limits)]
     start, before = first_start(read_task(options.task), ros_arguments), None
@@ -123,7 +123,7 @@ def _run(options: argparse.Namespace, own_arguments: list[str]) -> int:
                 if print_address:
                     port = server.get_port()
                     taken = f'port {options.port} is in use; ' * (options.port not in (0, port))
-                    print(f'studio: http://{options.host}:{port}  ({taken}Ctrl-C ends)',
+                    print(f'studio: {address(options.host, port)}  ({taken}Ctrl-C ends)',
                           flush=True)
                     print_address = False
                 while studio.tasks.next is None:

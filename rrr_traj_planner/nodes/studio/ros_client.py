@@ -152,12 +152,23 @@ class StudioClient(SpunNode):
         found = [f'the service {client.srv_name}' for client in self._triggers.values()
                  if not client.service_is_ready()]
         if self._controller is not None and not self._controller.server_is_ready():
-            found.append(f'the controller (action {self.controller}{ACTION})')
+            found.append(self._controller_name)
         unknown = [name for name in joint_names if name not in self._states]
         if unknown:
             found.append(f'the position of {", ".join(unknown)} (topic '
                          f'{self.resolve_topic_name("joint_states")})')
         return found
+
+    @property
+    def gone(self) -> str:
+        """Return what is not there of all that moves the arm; empty: nothing."""
+        if self._controller is not None and not self._controller.server_is_ready():
+            return self._controller_name
+        return '' if self._action.server_is_ready() else 'the motion server'
+
+    @property
+    def _controller_name(self) -> str:
+        return f'the controller (action {self.controller}{ACTION})'
 
     def joints(self, joint_names: tuple[str, ...], field: str = 'position') -> Array:
         """

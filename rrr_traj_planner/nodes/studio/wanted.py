@@ -22,7 +22,7 @@ import numpy as np
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.arm.payload import Payload
 from rrr_traj_planner.core.arrays import Array, BoolArray
-from rrr_traj_planner.core.errors import UnreachableError
+from rrr_traj_planner.core.errors import InvalidInputError, UnreachableError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.kinematics.inverse import nearest_solution
 from rrr_traj_planner.nodes.point_files.task import Task
@@ -232,7 +232,10 @@ def wanted_of(task: Task, model: RobotModel, base_frame: str, default_planner: s
 
     """
     task.check_frame(base_frame)
-    planner(task.planner_id or default_planner)
+    try:
+        planner(task.planner_id or default_planner)
+    except InvalidInputError as error:
+        raise InvalidInputError(f'{task.name}: {error}') from None
     joints = task.joint_via_points(model.joint_names)
     points = task.via_points if joints is None else forward_kinematics(model, joints)
     return Wanted(replace(task, via_points=points, joint_positions=None, frame='',

@@ -39,7 +39,7 @@ PLAN = Planned('cycloid', 1.0, 0.0, '', np.zeros((2, 3)), np.zeros(1), np.arange
 class Arm:
     """An arm whose answers come when the test wants; keeps what is shown."""
 
-    controller, replanning_lead = '', 0.25
+    controller, replanning_lead, gone = '', 0.25, ''
 
     def __init__(self):
         self.text, self.answers, self.ends, self.session = '', {}, [], Session(WANTED, id)
@@ -108,6 +108,16 @@ def test_run_without_a_plan_is_told_after_hold_too(arm):
     arm.commands.run()
     arm.answer('hold')
     assert NO_PLAN in arm.text
+
+
+def test_run_without_a_controller_is_refused_at_once(arm):
+    arm.end(MoveThrough.Result.SUCCESS)
+    arm.gone = 'the controller'
+    arm.commands.run()
+    assert 'the controller is not there' in arm.text and len(arm.ends) == 1
+    arm.gone = ''
+    arm.commands.run()
+    assert len(arm.ends) == 2
 
 
 def test_run_after_hold_is_sent_though_the_goal_before_has_no_answer_yet(arm):

@@ -119,6 +119,13 @@ def test_via_points_in_another_frame_are_refused(tmp_path):
         wanted_of(read_task(str(file)), RobotModel(), 'base', 'cycloid')
 
 
+def test_unknown_planner_is_told_with_the_file_s_name(tmp_path):
+    file = tmp_path / 'points.yaml'
+    file.write_text('planner_id: cycloyd\nvia_points: [[0.9, 0.3, 1.0], [1.0, 0.3, 1.0]]\n')
+    with pytest.raises(InvalidInputError, match="^points: planner_id 'cycloyd' is unknown"):
+        wanted(str(file))
+
+
 def test_joint_positions_have_positions_of_the_tip_and_stay(tmp_path):
     file = tmp_path / 'points.yaml'
     file.write_text('joint_via_points: [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]]\n')

@@ -16,6 +16,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 import re
 import signal
 import socket
@@ -83,6 +84,16 @@ def test_port_in_use_is_told_and_another_one_taken(tmp_path):
         with Script(script('studio'), '--port', port, cwd=tmp_path) as studio:
             line = studio.read_until('studio: http')[-1]
     assert f':{port} ' not in line and f'(port {port} is in use; Ctrl-C ends)' in line
+
+
+@pytest.mark.parametrize(('host', 'opened', 'is_told'), [
+    ('127.0.0.1', 'http://127.0.0.1:80', False), ('0.0.0.0', 'http://127.0.0.1:80', True),
+    ('::', 'http://[::1]:80', True), ('::1', 'http://[::1]:80', False)])
+def test_address_can_be_opened_in_a_browser(host, opened, is_told):
+    pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
+    address = import_module('rrr_traj_planner.nodes.studio.web.server').address
+    found = address(host, 80)
+    assert found.split(',')[0] == opened and ('from the network' in found) == is_told
 
 
 def test_real_arm_that_is_not_there_is_waited_for_and_none_is_simulated(tmp_path):

@@ -34,6 +34,7 @@ MOVES = 0.01  # rad/s, of a joint above which the arm moves
 NO_PLAN = 'these via points have no plan to run'
 CHANGED = 'the motion has changed since the question: nothing is sent'
 NO_MOTION = 'no motion of this page to stop'
+GONE = '{} is not there: nothing is sent'
 
 
 class Commands:
@@ -98,6 +99,8 @@ class Commands:
             self._show_error(NO_PLAN)
         elif self.is_real and asked is not wanted:
             self._show_error(CHANGED)
+        elif self._client.gone:
+            self._show_error(GONE.format(self._client.gone))
         else:
             if not self._moves:
                 self._trail.clear()

@@ -13,7 +13,7 @@
 // limitations under the License.
 
 // Clicking in the chart, or dragging there, moves the slider of the moment, as its number field
-// would. This runs once for each page; the labels are those of chart.py.
+// would. This runs once for each page; the labels are those of chart.py and plan.py.
 (function () {
   if (window.rrrMoment) {
     return;
@@ -24,7 +24,7 @@
 
   function field() {
     const label = Array.from(document.querySelectorAll('label[for]')).find(
-      (element) => element.textContent === 'moment');
+      (element) => element.textContent === 'moment / duration');
     const slider = label && document.getElementById(label.htmlFor);
     return slider && slider.parentElement.querySelector('input:not([type=hidden])');
   }

@@ -47,8 +47,8 @@ class PlanFolder:
             self._chart = Chart(gui, joint_names)
             self._play = gui.add_checkbox('play', False, hint='the arm does the plan as a ghost')
             self._moment = gui.add_slider(
-                'moment', 0.0, 1.0, STEP, 0.0,
-                hint='of the motion, as a fraction of its duration; or click in the chart')
+                'moment / duration', 0.0, 1.0, STEP, 0.0,
+                hint='of the motion; or click in the chart')
 
     def connect(self, studio: Studio, post: Post) -> None:
         """Have the controls do something."""

@@ -95,6 +95,29 @@ def serving(host: str, port: int) -> Iterator[Server]:
             server.stop()
 
 
+def address(host: str, port: int) -> str:
+    """
+    Return the address of the page for a browser on this machine.
+
+    Parameters
+    ----------
+    host : str
+        Address at which is listened.
+    port : int
+        Port.
+
+    Returns
+    -------
+    str
+        With a note where it is listened at all addresses, which is none that a browser can open.
+
+    """
+    own = {'0.0.0.0': '127.0.0.1', '::': '::1'}.get(host, host)
+    name = f'[{own}]' if ':' in own else own
+    others = '' if own == host else ', and from the network by the names of this machine'
+    return f'http://{name}:{port}{others}'
+
+
 def _check_address(host: str, port: int) -> None:
     """Refuse an address that is not this machine's, at which viser would wait for ever."""
     try:
