@@ -40,7 +40,7 @@ SPEED, TIGHTEST = 'speed of the tip', 'tightest limit'
 
 def plan_html(plan: Planned | None, refusal: Refusal | None, joint_names: Sequence[str]) -> str:
     """
-    Return the figures of a plan, and why a newer one is refused.
+    Return the figures of a plan.
 
     Parameters
     ----------
@@ -57,19 +57,35 @@ def plan_html(plan: Planned | None, refusal: Refusal | None, joint_names: Sequen
         HTML.
 
     """
-    parts = []
-    if refusal is not None:
-        parts.append(f'<p style="color:{RED}"><b>refused</b>: {escape(refusal.text)}</p>')
     if plan is None:
-        return _block(*parts, *([] if parts else ['<p>planning</p>']))
+        return _block(*([] if refusal is not None else ['<p>planning</p>']))
     grey = ' style="opacity:0.5"' if refusal is not None else ''
     head = 'last plan, ' if refusal is not None else ''
     note = f'<p>{escape(plan.note)}</p>' if plan.note else ''
-    parts.append(
+    return _block(
         f'<div{grey}><p>{head}{escape(plan.planner_id)}: <b>{plan.duration:.3f} s</b>, tip up to '
         f'{plan.speed.max():.2f} m/s, planned in {1e3 * plan.planning_time:.0f} ms</p>{note}'
         f'{_table(plan, joint_names)}</div>')
-    return _block(*parts)
+
+
+def refusal_html(refusal: Refusal | None) -> str:
+    """
+    Return why there is no plan of the via points as they are.
+
+    Parameters
+    ----------
+    refusal : Refusal, optional
+        None: there is one.
+
+    Returns
+    -------
+    str
+        HTML; empty without a refusal.
+
+    """
+    if refusal is None:
+        return ''
+    return _block(f'<p style="color:{RED}"><b>refused</b>: {escape(refusal.text)}</p>')
 
 
 def _table(plan: Planned, joint_names: Sequence[str]) -> str:

@@ -112,6 +112,7 @@ class Page:
     def show_points(self, points: Array, refusal: Refusal | None) -> None:
         """Show the via points, and which one is at fault."""
         self._scene.show_points(points, refusal)
+        self._panel.show_refusal(refusal)
 
     def show_wanted(self, editor: Editor) -> None:
         """Show all that the user can change."""

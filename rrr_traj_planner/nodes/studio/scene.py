@@ -34,7 +34,7 @@ import viser
 
 ARM, GHOST = Look((70, 90, 120)), Look((150, 170, 200), has_own=False, opacity=0.4)
 VIA, CHOSEN, AT_FAULT = (245, 140, 30), (250, 205, 60), (200, 30, 30)
-DRIVEN, REACH, GRID = (0, 150, 130), (90, 150, 220), (190, 190, 190)
+DRIVEN, REACH, GRID = (0, 150, 130), (90, 150, 220), (150, 150, 150)
 REACH_OPACITY = 0.15
 
 # Light from all sides, beside viser's two lamps, in place of the surroundings that viser has
@@ -46,7 +46,7 @@ BALL, HANDLE, AXES = 0.018, 0.16, 0.1
 SEGMENT = 0.01       # least one of the planned path: short ones are drawn over each other
 GRID_CELL, CELLS = 0.2, 8  # of the grid; from its middle to each side
 CHOSEN_SCALE = 1.5  # of a ball
-PLAN_LINE, DRIVEN_LINE = 6.0, 2.0  # pixels
+PLAN_LINE, DRIVEN_LINE, GRID_LINE = 6.0, 2.0, 0.6  # pixels
 COLUMNS = 28  # characters of a refusal's line beside its via point
 
 
@@ -94,7 +94,7 @@ class Scene:
         scene.add_light_hemisphere(
             '/light', sky_color=SKY, ground_color=GROUND, intensity=BRIGHTNESS,
             position=(0.0, 0.0, 1.0))  # where the sky is
-        scene.add_line_segments('/grid', GRID_CELL * size * _grid(CELLS), GRID, thickness=1.0,
+        scene.add_line_segments('/grid', GRID_CELL * size * _grid(CELLS), GRID, thickness=GRID_LINE,
                                 thickness_units='screen')
         scene.add_frame('/base', axes_length=AXES * size, axes_radius=0.05 * AXES * size)
 

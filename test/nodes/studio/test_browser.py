@@ -92,9 +92,10 @@ def check_refusal(window, place):
     window.drag(arrow, arrow + (0.0, 0.0, FAR_UP))
     window.wait_for("out of the arm's reach")
     window.browser.mouse('mouseMoved', 5, 5)  # what it is over is highlighted
-    assert window.browser.value(
-        '(b => getComputedStyle(b.parentElement).color)([...document.querySelectorAll("b")].find('
-        'b => b.innerText === "refused"))') == RED
+    refused = '([...document.querySelectorAll("b")].find(b => b.innerText === "refused"))'
+    assert window.browser.value(f'(b => getComputedStyle(b.parentElement).color){refused}') == RED
+    assert window.browser.value(  # however far the panel is scrolled
+        f'(b => (r => 0 < r.top && r.bottom < innerHeight)(b.getBoundingClientRect())){refused}')
     window.until(lambda: redness(window.colours_near(place + (0.0, 0.0, FAR_UP), NEAR)) > 0)
 
 

@@ -12,7 +12,7 @@
 # See the License for the specific language governing permissions and
 # limitations under the License.
 
-"""The folder of the arm: Run, Hold, Reset, what it does, and how well it follows."""
+"""The folder of the arm: Run, Hold, Reset, how far it is, and how well it follows."""
 
 from __future__ import annotations
 
@@ -49,8 +49,6 @@ class ArmFolder:
         with gui.add_folder('Arm'):
             self._run = gui.add_button('Run', color='green')
             self._hold, self._reset = gui.add_button('Hold'), gui.add_button('Reset')
-            # below, where it does not move the buttons as it comes and grows
-            self._status = gui.add_html('')
             self._progress = gui.add_progress_bar(0.0)
             self._errors = gui.add_uplot(
                 (np.zeros(1),) * 4, ({'label': 's'}, *(
@@ -71,19 +69,16 @@ class ArmFolder:
             when(self._reset, post, commands.reset)
             when(self._run, post, commands.run)
 
-    def show_status(self, text: str, share: float) -> None:
+    def show_progress(self, share: float) -> None:
         """
-        Show what the arm does.
+        Show how far the motion is.
 
         Parameters
         ----------
-        text : str
-            HTML.
         share : float
             Of the motion that is done, 0 to 1.
 
         """
-        self._status.content = text
         self._progress.value = 100.0 * min(max(share, 0.0), 1.0)
 
     def show_tracking(self, times: Array, errors: Array) -> None:

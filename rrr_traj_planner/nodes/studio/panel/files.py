@@ -86,7 +86,5 @@ class FilesFolder:
         if tasks is not None:
             arm = 'own arm' if tasks.arm is None else tasks.arm.stem
             text = status_html(f'{editor.wanted.task.name}, {arm}')
-            if tasks.message:
-                text += status_html(tasks.message, tasks.is_error)
             if text != self._name.content:
                 self._name.content = text

@@ -25,12 +25,14 @@ from rrr_traj_planner.nodes.studio.panel.browser import scripts_html
 from rrr_traj_planner.nodes.studio.panel.comparison import ComparisonFolder
 from rrr_traj_planner.nodes.studio.panel.controls import Folder, Post
 from rrr_traj_planner.nodes.studio.panel.files import FilesFolder
+from rrr_traj_planner.nodes.studio.panel.head import Head
 from rrr_traj_planner.nodes.studio.panel.motion import MotionFolder
 from rrr_traj_planner.nodes.studio.panel.plan import PlanFolder
 from rrr_traj_planner.nodes.studio.panel.points import PointsFolder
 from rrr_traj_planner.nodes.studio.panel.report import ReportButton
 from rrr_traj_planner.nodes.studio.panel.view import ViewFolder
 from rrr_traj_planner.nodes.studio.studio import Studio
+from rrr_traj_planner.nodes.studio.tasks import Tasks
 from rrr_traj_planner.nodes.studio.wanted import Wanted
 import viser
 
@@ -56,6 +58,8 @@ class Panel:
 
     def __init__(self, gui: viser.GuiApi, planner_ids: Sequence[str], wanted: Wanted,
                  model: RobotModel, is_dark: bool) -> None:
+        self._head = Head(gui)
+        self._tasks: Tasks | None = None
         self._files = FilesFolder(gui)
         self._points = PointsFolder(gui, wanted)
         self._motion = MotionFolder(gui, planner_ids, wanted, model)
@@ -65,7 +69,7 @@ class Panel:
         self.view = ViewFolder(gui, is_dark)
         self._report = ReportButton(gui)
         gui.add_html(scripts_html())
-        self.show_status, self.show_tracking = self._arm.show_status, self._arm.show_tracking
+        self.show_refusal, self.show_tracking = self._head.show_refusal, self._arm.show_tracking
         self.show_comparison = self._comparison.show
         self.show_plan, self.show_time = self._plan.show, self._plan.show_time
 
@@ -74,8 +78,24 @@ class Panel:
         folders: tuple[Folder, ...] = (
             self._files, self._points, self._motion, self._arm, self._plan, self._comparison,
             self._report)
+        self._tasks = studio.tasks
         for folder in folders:
             folder.connect(studio, post)
+
+    def show_status(self, text: str, share: float) -> None:
+        """
+        Show what the arm does.
+
+        Parameters
+        ----------
+        text : str
+            HTML.
+        share : float
+            Of the motion that is done, 0 to 1.
+
+        """
+        self._head.show_status(text)
+        self._arm.show_progress(share)
 
     def show_wanted(self, editor: Editor) -> None:
         """
@@ -89,3 +109,5 @@ class Panel:
         """
         for folder in (self._files, self._points, self._motion):
             folder.show_wanted(editor)
+        if self._tasks is not None:
+            self._head.say(self._tasks.message, self._tasks.is_error)
