@@ -87,7 +87,7 @@ def test_only_what_draws_the_studio_s_page_knows_viser():
     studio = f'{PACKAGE}.nodes.studio'
     found = {module.removeprefix(f'{studio}.').split('.')[0] for module in MODULES
              if any(name.split('.')[0] == 'viser' for name in imports_of(module))}
-    assert found == {'arm_drawing', 'chart', 'panel', 'scene', 'web'}
+    assert found == {'chart', 'panel', 'scene', 'web'}
 
 
 def test_files_are_short():

@@ -32,7 +32,7 @@ from rrr_traj_planner.nodes.studio.figures import status_html
 from rrr_traj_planner.nodes.studio.panel.controls import Post
 from rrr_traj_planner.nodes.studio.panel.panel import Panel
 from rrr_traj_planner.nodes.studio.planned import Planned
-from rrr_traj_planner.nodes.studio.scene import Scene
+from rrr_traj_planner.nodes.studio.scene.scene import Scene
 from rrr_traj_planner.nodes.studio.session import Refusal
 from rrr_traj_planner.nodes.studio.studio import Studio
 from rrr_traj_planner.nodes.studio.tasks import STARTING

@@ -83,18 +83,17 @@ class StudioClient(SpunNode):
         self.replanning_lead = Options(self.controller).lead
         self.create_subscription(JointState, 'joint_states', self._take_state, 10)
         self._plan = self.create_client(PlanTrajectory, 'plan_trajectory')
-        self._triggers: dict[str, ServiceClient] = {}
-        self._controller: ActionClient | None = None
+        self._triggers: dict[str, ServiceClient] = {
+            name: self.create_client(Trigger, f'{ARM_NODE}/{name}')
+            for name in (() if self.controller else ('hold', 'reset'))}
+        self._controllers: dict[str, ActionClient] = {}  # one at most
         if self.controller:
-            self._controller = ActionClient(
-                self, FollowJointTrajectory, f'{self.controller}{ACTION}')
+            action = f'{self.controller}{ACTION}'
+            self._controllers[f'the controller (action {action})'] = ActionClient(
+                self, FollowJointTrajectory, action)
             self.create_subscription(
                 JointTrajectoryControllerState, f'{self.controller}/controller_state',
                 self._take_controller_state, 10)
-        else:
-            self._triggers = {
-                name: self.create_client(Trigger, f'{ARM_NODE}/{name}') for name in (
-                    'hold', 'reset')}
         self._settings = {
             name: self.create_client(SetParametersAtomically, f'{name}/set_parameters_atomically')
             for name in (PLANNER_NODE, *([] if self.controller else [ARM_NODE]))}
@@ -102,9 +101,8 @@ class StudioClient(SpunNode):
 
     def destroy_node(self) -> None:
         """Release the actions' clients too."""
-        self._action.destroy()
-        if self._controller is not None:
-            self._controller.destroy()
+        for client in (self._action, *self._controllers.values()):
+            client.destroy()
         super().destroy_node()
 
     def connect(self, ended: Callable[[], tuple[str, int] | None]) -> PlannerConfig:
@@ -141,8 +139,7 @@ class StudioClient(SpunNode):
         else:
             self.wait(lambda: not self._missing(names), 'the arm')
         self.wait(self._action.server_is_ready, 'the motion server')
-        lead = 'replanning_lead'
-        self.replanning_lead = values_of(self, 'motion_server', [lead])[lead]
+        self.replanning_lead, = values_of(self, 'motion_server', ['replanning_lead']).values()
         known = bool(self._triggers) and values_of(self, ARM_NODE, [KNOWN])[KNOWN]
         self.payload = Payload(self.parameters[MASS], known)
         return config
@@ -150,25 +147,15 @@ class StudioClient(SpunNode):
     def _missing(self, joint_names: tuple[str, ...]) -> list[str]:
         """Return what is not there of the arm."""
         found = [f'the service {client.srv_name}' for client in self._triggers.values()
-                 if not client.service_is_ready()]
-        if self._controller is not None and not self._controller.server_is_ready():
-            found.append(self._controller_name)
+                 if not client.service_is_ready()] + _not_ready(self._controllers)
         unknown = [name for name in joint_names if name not in self._states]
-        if unknown:
-            found.append(f'the position of {", ".join(unknown)} (topic '
-                         f'{self.resolve_topic_name("joint_states")})')
-        return found
+        topic = self.resolve_topic_name('joint_states')
+        return found + [f'the position of {", ".join(unknown)} (topic {topic})'] * bool(unknown)
 
     @property
     def gone(self) -> str:
         """Return what is not there of all that moves the arm; empty: nothing."""
-        if self._controller is not None and not self._controller.server_is_ready():
-            return self._controller_name
-        return '' if self._action.server_is_ready() else 'the motion server'
-
-    @property
-    def _controller_name(self) -> str:
-        return f'the controller (action {self.controller}{ACTION})'
+        return ' and '.join(_not_ready({'the motion server': self._action, **self._controllers}))
 
     def joints(self, joint_names: tuple[str, ...], field: str = 'position') -> Array:
         """
@@ -230,15 +217,13 @@ class StudioClient(SpunNode):
             Gets why it is refused; empty: it is not.
 
         """
-        if self.controller:
-            answered('')
-        else:
-            self._set(ARM_NODE, {MASS: payload.mass, KNOWN: payload.known_to_controller}, answered)
+        values = {MASS: payload.mass, KNOWN: payload.known_to_controller}
+        answered('') if self.controller else self._set(ARM_NODE, values, answered)
 
     def _set(self, node: str, values: dict[str, Any], answered: Callable[[str], None]) -> None:
-        request = SetParametersAtomically.Request(parameters=[
-            Parameter(name, value=value).to_parameter_msg() for name, value in values.items()])
-        self._call(self._settings[node], request, lambda response: answered(
+        self._call(self._settings[node], SetParametersAtomically.Request(parameters=[
+            Parameter(name, value=value).to_parameter_msg() for name, value in values.items()
+        ]), lambda response: answered(
             '' if response.result.successful else response.result.reason or 'refused'))
 
     def trigger(self, name: str, answered: Callable[[Trigger.Response], None]) -> None:
@@ -308,3 +293,7 @@ class StudioClient(SpunNode):
     @staticmethod
     def _call(client: ServiceClient, request: Any, answered: Callable[[Any], None]) -> None:
         client.call_async(request).add_done_callback(lambda future: answered(future.result()))
+
+
+def _not_ready(clients: dict[str, ActionClient]) -> list[str]:
+    return [name for name, client in clients.items() if not client.server_is_ready()]

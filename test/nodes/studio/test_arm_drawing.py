@@ -25,7 +25,7 @@ from rrr_traj_planner.core.arm.urdf_frames import MovingFrame, Placement
 from rrr_traj_planner.nodes.output.arm_shape import ArmShape, Part, ShownLink
 
 pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
-drawing = import_module('rrr_traj_planner.nodes.studio.arm_drawing')
+drawing = import_module('rrr_traj_planner.nodes.studio.scene.arm_drawing')
 
 STILL = Placement((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))
 TURNED = Placement((1.0, 2.0, 3.0), (0.6, 0.0, 0.0, 0.8))

@@ -114,7 +114,7 @@ def test_run_without_a_controller_is_refused_at_once(arm):
     arm.end(MoveThrough.Result.SUCCESS)
     arm.gone = 'the controller'
     arm.commands.run()
-    assert 'the controller is not there' in arm.text and len(arm.ends) == 1
+    assert 'nothing is sent: the controller is not there' in arm.text and len(arm.ends) == 1
     arm.gone = ''
     arm.commands.run()
     assert len(arm.ends) == 2

@@ -24,9 +24,10 @@ import pytest
 from rrr_traj_planner.nodes.output.arm_shape import ArmShape
 from rrr_traj_planner.nodes.studio.figures import SPEED
 from rrr_traj_planner.nodes.studio.planned import Planned
+from rrr_traj_planner.nodes.studio.session import Refusal
 
 pytest.importorskip('viser', reason='viser is not installed: make studio installs it')
-scene = import_module('rrr_traj_planner.nodes.studio.scene')
+scene = import_module('rrr_traj_planner.nodes.studio.scene.scene')
 
 
 class Drawn:
@@ -49,6 +50,23 @@ class Drawn:
         """Return the only one of a name."""
         node, = (node for node in self.added if node.name == name)
         return node
+
+
+class Controls(Drawn):
+    """Keeps handles too, whose events nobody causes."""
+
+    def add_transform_controls(self, *_, position, **__):
+        return SimpleNamespace(position=np.array(position), on_update=lambda _: None)
+
+    def add_icosphere(self, *_, **__):
+        return SimpleNamespace(on_click=lambda _: None)
+
+    def add_label(self, name, text, **__):
+        self.added.append(SimpleNamespace(name=name, text=text, visible=True))
+        return self.added[-1]
+
+    def seen(self):
+        return [node.text for node in self.added if '/label' in node.name and node.visible]
 
 
 def plan_of(path):
@@ -104,6 +122,17 @@ def test_a_path_of_less_than_two_points_is_not_to_be_seen(drawn, shown, driven):
     shown.show_arm([0.0] * 3, driven)
     begin, end = drawn.node('/driven').points[0].tolist()
     assert begin == end
+
+
+def test_via_points_at_one_place_have_one_label():
+    labels = Controls()
+    shown = scene.Scene(labels, 2.0, None, ArmShape((), ()))
+    shown.show_points(np.array([[1.0, 0, 1], [0, 1, 1], [1.001, 0, 1]]), None)
+    assert labels.seen() == ['0, 2', '1']
+    shown.show_points(np.array([[1.0, 0, 1], [0, 1, 1], [0.5, 0, 1]]), None)
+    assert labels.seen() == ['0', '1', '2']
+    shown.show_points(np.array([[1.0, 0, 1], [0, 1, 1], [0, 1, 1]]), Refusal('too far', 2))
+    assert labels.seen() == ['0', '1, 2', 'too far']
 
 
 def test_nothing_is_reflected_and_no_shadows_are_drawn(drawn, shown):

@@ -34,7 +34,7 @@ MOVES = 0.01  # rad/s, of a joint above which the arm moves
 NO_PLAN = 'these via points have no plan to run'
 CHANGED = 'the motion has changed since the question: nothing is sent'
 NO_MOTION = 'no motion of this page to stop'
-GONE = '{} is not there: nothing is sent'
+GONE = 'nothing is sent: {} is not there'
 
 
 class Commands:

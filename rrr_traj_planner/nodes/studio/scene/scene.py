@@ -21,14 +21,14 @@ from textwrap import fill
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.link_positions import Point
 from rrr_traj_planner.core.kinematics.reach import Surface
 from rrr_traj_planner.nodes.output.arm_shape import ArmShape
-from rrr_traj_planner.nodes.studio.arm_drawing import ArmDrawing, Look
 from rrr_traj_planner.nodes.studio.figures import path_colours
 from rrr_traj_planner.nodes.studio.planned import Planned
+from rrr_traj_planner.nodes.studio.scene.arm_drawing import ArmDrawing, Look
+from rrr_traj_planner.nodes.studio.scene.lines import grid, Path, spread
 from rrr_traj_planner.nodes.studio.session import Refusal
 import viser
 
@@ -87,14 +87,14 @@ class Scene:
         self._arm = ArmDrawing(scene, '/arm', shape, ARM)
         self._ghost = ArmDrawing(scene, '/ghost', shape, GHOST)
         self._reach: viser.MeshHandle | None = None
-        self._plan = _Path(scene, '/plan', PLAN_LINE)
-        self._driven = _Path(scene, '/driven', DRIVEN_LINE)
+        self._plan = Path(scene, '/plan', PLAN_LINE)
+        self._driven = Path(scene, '/driven', DRIVEN_LINE)
         scene.configure_default_lights(cast_shadow=False)
         scene.configure_environment_map(None)
         scene.add_light_hemisphere(
             '/light', sky_color=SKY, ground_color=GROUND, intensity=BRIGHTNESS,
             position=(0.0, 0.0, 1.0))  # where the sky is
-        scene.add_line_segments('/grid', GRID_CELL * size * _grid(CELLS), GRID, thickness=GRID_LINE,
+        scene.add_line_segments('/grid', GRID_CELL * size * grid(CELLS), GRID, thickness=GRID_LINE,
                                 thickness_units='screen')
         scene.add_frame('/base', axes_length=AXES * size, axes_radius=0.05 * AXES * size)
 
@@ -116,10 +116,12 @@ class Scene:
             index = len(self._points)
             self._points.append(
                 _Handle(self._scene, index, points[index], self._size, self._events))
+        distances = np.linalg.norm(points[:, None] - points, axis=2)
         for index, handle in enumerate(self._points):
             handle.put(points[index])
+            here = np.flatnonzero(distances[index] < BALL * self._size).tolist()
             handle.mark(refusal.text if refusal is not None and refusal.via_point == index
-                        else '')
+                        else '', here if here[0] == index else [])
 
     def show_chosen(self, chosen: int) -> None:
         """
@@ -149,7 +151,7 @@ class Scene:
 
         """
         if plan is not None:
-            kept = _spread(plan.path, SEGMENT * self._size)
+            kept = spread(plan.path, SEGMENT * self._size)
             colours = path_colours(plan, meaning, is_current)
             self._plan.show(plan.path[kept], np.stack(
                 (colours[kept[:-1], 0], colours[kept[1:] - 1, 1]), axis=1))
@@ -201,51 +203,13 @@ class Scene:
         return self._reach
 
 
-def _grid(count: int) -> NDArray[np.float32]:
-    """Return the ends of a grid's lines in x, y, cells of 1, shape (n, 2, 3)."""
-    at = np.arange(-count, count + 1, dtype=np.float32)
-    lines = np.zeros((len(at), 2, 3), np.float32)
-    lines[:, :, 0], lines[:, :, 1] = at[:, None], (-count, count)
-    return np.concatenate((lines, lines[:, :, (1, 0, 2)]))
-
-
-def _spread(path: Array, step: float) -> NDArray[np.intp]:
-    """Return the indices of points along a path that are about a step apart, ends included."""
-    steps = np.linalg.norm(np.diff(path, axis=0), axis=1).cumsum() // step
-    return np.union1d((0, len(path) - 1), 1 + np.flatnonzero(np.diff(steps, prepend=0.0)))
-
-
-class _Path:
-    """A path, drawn by one object that is changed: the browser need not make another one."""
-
-    def __init__(self, scene: viser.SceneApi, name: str, width: float) -> None:
-        self._lines = scene.add_line_segments(
-            name, np.zeros((1, 2, 3), np.float32), (0, 0, 0), thickness=width,
-            thickness_units='screen')
-
-    def show(self, path: Array, colours: Any) -> None:
-        """Draw it elsewhere, with a colour or those of its segments' ends."""
-        ends = np.stack((path[:-1], path[1:]), axis=1)
-        if not len(ends):
-            ends, colours = np.zeros((1, 2, 3)), (0, 0, 0)  # a line without length: not to be seen
-        self._lines.points = ends.astype(np.float32)
-        self._lines.colors = np.broadcast_to(_linear(np.asarray(colours)), ends.shape)
-
-
-def _linear(colours: Array) -> NDArray[np.uint8]:
-    """Return colours as viser's lines have them: proportional to light (IEC 61966-2-1)."""
-    share = colours / 255.0
-    light = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-    return (255.0 * light).round().astype(np.uint8)
-
-
 class _Handle:
     """A via point: a ball with its number, to be chosen by a click, and arrows to drag it by."""
 
     def __init__(self, scene: viser.SceneApi, index: int, position: Array, size: float,
                  events: PointEvents) -> None:
         name = f'/via_point_{index}'
-        self._index, self._text = index, ''
+        self._text, self._numbers = '', [index]
         self._is_held = self._is_chosen = False
         self._controls = scene.add_transform_controls(
             name, HANDLE * size, disable_rotations=True, depth_test=False,
@@ -274,11 +238,12 @@ class _Handle:
         if not self._is_held and not np.array_equal(self._controls.position, position):
             self._controls.position = tuple(position)
 
-    def mark(self, text: str) -> None:
-        """Make the via point red, with a text beside it; empty: neither."""
-        if text != self._text:
-            self._text = text
-            self._label.text = fill(text, COLUMNS) or str(self._index)
+    def mark(self, text: str, numbers: list[int]) -> None:
+        """Make it red, with a text beside it, if there is one; else show numbers, if any."""
+        if (text, numbers) != (self._text, self._numbers):
+            self._text, self._numbers = text, numbers
+            self._label.text = fill(text, COLUMNS) or ', '.join(map(str, numbers))
+            self._label.visible = bool(self._label.text)
             self._colour()
 
     def choose(self, is_chosen: bool) -> None:
