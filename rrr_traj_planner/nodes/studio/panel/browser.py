@@ -19,13 +19,11 @@ from __future__ import annotations
 from html import escape
 from importlib.resources import files
 
-SCRIPTS = ('frames.js', 'numbers.js',
+SCRIPTS = ('frames.js', 'head.js', 'numbers.js',
            'moment.js')  # knows the title of the chart and the label of the slider
 
-# The head stays on top. The chart's legend tells of the joints alone; the chart can be clicked.
+# The chart's legend tells of the joints alone; the chart can be clicked.
 STYLE = """<style>
-div:has(> .head) { position: sticky; top: 0; z-index: 2; background: var(--mantine-color-body); }
-div:has(> div > div > div > .head) { overflow: clip !important; contain: inline-size; }
 .head { min-height: 2.5em; padding: .5em 0; }
 .head p { margin: 0; }
 .uplot:has(> .u-title) .u-legend .u-series:nth-child(n+5) { display: none; }
