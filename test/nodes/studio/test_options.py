@@ -17,14 +17,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from threading import Condition
 from time import monotonic
 
 from helpers.arm_in_ros import Arm
 from helpers.move_client import start_motion_server
 from helpers.plan_requests import TABLE_6_1
 from helpers.planner_in_ros import parameter_value, plan, start_planner
-from helpers.studio_page import studio_of
+from helpers.studio_page import Page, studio_of
 import numpy as np
 import pytest
 from rcl_interfaces.srv import GetParameters
@@ -33,7 +32,6 @@ from rrr_traj_planner.nodes.studio.edits import with_duration, with_dwell
 from rrr_traj_planner.nodes.studio.ros_client import StudioClient
 from rrr_traj_planner.nodes.studio.studio import NO_PLAN_TO_KEEP
 
-DEADLINE = 20.0      # s
 SOON = 5.0           # s, after which the arm has been told
 MASS = 2.0           # kg, at the tip
 TOO_HEAVY = 2.0e4    # kg, above the parameter's range
@@ -41,30 +39,6 @@ NOT_HELD = 40.0      # kg, that joint 2 cannot hold at arm's length
 FAR_AWAY = (9.0, 9.0, 9.0)
 BOTH_ELBOWS = ((0.6, 0.6, 1.4), (0.4, 0.7, 1.3), (0.45, 0.38, 1.45))  # m
 DIGITS = 1e-9        # s, of a duration in whole nanoseconds
-
-
-class Page:
-    """Keeps the last plan, refusal and status; waits for answers."""
-
-    def __init__(self):
-        self.refusal, self.status, self._answered = None, '', Condition()
-
-    def __getattr__(self, name):
-        return lambda *_: None
-
-    def show_points(self, points, refusal):
-        self.refusal = refusal
-
-    def show_plan(self, plan, is_current, text):
-        with self._answered:
-            self._answered.notify_all()
-
-    def show_status(self, text, share):
-        self.status = text
-
-    def wait(self, ready):
-        with self._answered:
-            assert self._answered.wait_for(ready, DEADLINE), (self.refusal, self.status)
 
 
 @pytest.fixture
@@ -85,7 +59,7 @@ def studio(ros, page):
 def changed(ros, page, studio, change):
     """Change what is wanted, and return its plan."""
     ros.run(lambda: studio.editor.change(change(studio.editor.wanted)))
-    page.wait(lambda: studio.session.is_current)
+    page.wait(lambda _: studio.session.is_current)
     return studio.session.plan
 
 
@@ -126,7 +100,7 @@ def test_posture_deviation_rest_and_times_are_the_planner_s(ros, page, studio):
     assert near.duration == pytest.approx(response.via_times[-1], abs=DIGITS)
     ros.run(lambda: studio.editor.change(with_duration(
         studio.editor.wanted.with_planner('cycloid'), 1, 4.0)))
-    page.wait(lambda: page.refusal is not None)
+    page.wait(lambda _: page.refusal is not None)
     assert page.refusal.text == (
         'time of via point 2 is not given: planner cycloid takes every duration or none')
     ros.run(studio.editor.undo)
@@ -140,16 +114,16 @@ def test_posture_deviation_rest_and_times_are_the_planner_s(ros, page, studio):
 def test_plan_through_kept_joints_is_the_same_in_another_posture_too(ros, page, studio):
     down = changed(ros, page, studio, lambda w: replace(elsewhere(w), elbow='down'))
     ros.run(lambda: studio.keep_joints(True))
-    page.wait(lambda: studio.session.is_current)
+    page.wait(lambda _: studio.session.is_current)
     kept = studio.session.plan
     assert kept.duration == pytest.approx(down.duration, abs=1e-6)
     np.testing.assert_allclose(kept.via_joints, down.via_joints, atol=1e-6)
     ros.run(lambda: studio.editor.move(1, FAR_AWAY))
-    page.wait(lambda: page.refusal is not None)
+    page.wait(lambda _: page.refusal is not None)
     assert page.refusal.via_point == 1
     ros.run(lambda: studio.keep_joints(False))
     ros.run(lambda: studio.keep_joints(True))
-    assert NO_PLAN_TO_KEEP in page.status and studio.editor.wanted.joints is None
+    assert NO_PLAN_TO_KEEP in page.statuses[-1][0] and studio.editor.wanted.joints is None
 
 
 def test_payload_is_planned_with_and_carried(ros, page, studio):
@@ -165,13 +139,13 @@ def test_payload_is_planned_with_and_carried(ros, page, studio):
     assert carries(ros, MASS, True)
     ros.run(lambda: studio.editor.change(
         replace(studio.editor.wanted, payload=Payload(TOO_HEAVY, True))))
-    page.wait(lambda: page.refusal is not None)
+    page.wait(lambda _: page.refusal is not None)
     assert page.refusal.text == 'payload is 20000.0 kg, must be in [0.0, 10000.0] kg'
     ros.run(studio.editor.undo)
-    page.wait(lambda: studio.session.is_current)
+    page.wait(lambda _: studio.session.is_current)
     assert carries(ros, MASS, True)
     ros.run(studio.editor.undo)
-    page.wait(lambda: studio.session.is_current)
+    page.wait(lambda _: studio.session.is_current)
     assert carries(ros, 0.0, False)
     assert holding(studio.session.plan) == pytest.approx(without)
 
@@ -179,15 +153,15 @@ def test_payload_is_planned_with_and_carried(ros, page, studio):
 def test_payload_without_a_plan_is_compared_with_and_never_carried(ros, page, studio):
     ros.run(lambda: studio.editor.change(
         replace(studio.editor.wanted, payload=Payload(NOT_HELD, True))))
-    page.wait(lambda: page.refusal is not None)
+    page.wait(lambda _: page.refusal is not None)
     assert 'torque' in page.refusal.text or 'N m' in page.refusal.text
     ros.run(lambda: studio.comparison.start(studio.session.wanted))
-    page.wait(lambda: not studio.comparison.waits_for)
+    page.wait(lambda _: not studio.comparison.waits_for)
     assert studio.comparison.rows and not studio.comparison.planned
     assert parameter_value(ros, 'payload.mass').double_value == NOT_HELD
     assert carries(ros, 0.0, False)
     ros.run(studio.editor.undo)
-    page.wait(lambda: studio.session.is_current)
+    page.wait(lambda _: studio.session.is_current)
     assert parameter_value(ros, 'payload.mass').double_value == 0.0
 
 
@@ -196,10 +170,10 @@ def test_payload_of_a_plan_that_is_taken_from_the_comparison_is_carried(ros, pag
     ros.run(lambda: studio.editor.change(replace(
         studio.editor.wanted, payload=Payload(MASS, False), max_deviation=1e-9).with_planner(
             'line_arc')))
-    page.wait(lambda: page.refusal is not None)
+    page.wait(lambda _: page.refusal is not None)
     assert page.refusal.text.startswith('deviation is 1e-09 m, must be 0 or in ')
     assert carries(ros, 0.0, False)
     ros.run(lambda: studio.comparison.start(studio.session.wanted))
-    page.wait(lambda: 'cycloid' in studio.comparison.planned)
+    page.wait(lambda _: 'cycloid' in studio.comparison.planned)
     ros.run(lambda: studio.take('cycloid'))
     assert carries(ros, MASS, False)
