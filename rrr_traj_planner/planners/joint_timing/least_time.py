@@ -20,11 +20,13 @@ from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.errors import StartStateError
 from rrr_traj_planner.planners.joint_timing.from_motion import (
     after_a_stop,
     from_motion,
 )
 from rrr_traj_planner.planners.joint_timing.meshing import meshed
+from rrr_traj_planner.planners.joint_timing.pose_ahead import through_a_pose_ahead
 from rrr_traj_planner.planners.joint_timing.problem import (
     InitialMotion,
     JointProblem,
@@ -35,7 +37,7 @@ from rrr_traj_planner.planners.joint_timing.tightening import SCHEDULE, tightene
 from rrr_traj_planner.planners.joint_timing.within_limits import torque_fits
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.refinement import halved, moved
-from rrr_traj_planner.planners.solver.splines import Mesh, time_scaled
+from rrr_traj_planner.planners.solver.splines import Mesh, time_scaled, uniform_mesh
 from rrr_traj_planner.planners.tasks import JointTask
 
 # Restarts from the best motion so far. On 28 random tasks half and twice of each value change no
@@ -66,17 +68,29 @@ def fastest(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> Solved
         None where no path is found along which the motors can hold the arm.
 
     """
-    durations = DurationConstraints.all_free(len(task.points) - 1, 3)
     if task.start_rates is None:
-        return _fastest(JointProblem(task, mesh, durations, least_T), rest_to_rest)
-    durations = durations.from_motion()
+        return _fastest(JointProblem(task, mesh, DurationConstraints.all_free(
+            len(task.points) - 1, 3), least_T), rest_to_rest)
     for own in (mesh, halved(mesh)):
-        found = _fastest(JointProblem(task, own, durations, least_T), from_motion(durations))
+        found = _straight_on(task, own, least_T)
         if found is not None:
             return found
         if task.should_stop():
             break
-    return after_a_stop(task, lambda from_rest: fastest(from_rest, mesh, least_T))
+    try:
+        return after_a_stop(task, lambda from_rest: fastest(from_rest, mesh, least_T))
+    except StartStateError:
+        found = through_a_pose_ahead(task, lambda ahead: _straight_on(
+            ahead, uniform_mesh(len(ahead.points) - 1, mesh.n)))
+        if found is None:
+            raise
+        return found
+
+
+def _straight_on(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> Solved | None:
+    """Return the fastest motion from a moving start that the first iterates lead to."""
+    durations = DurationConstraints.all_free(len(task.points) - 1, 3).from_motion()
+    return _fastest(JointProblem(task, mesh, durations, least_T), from_motion(durations))
 
 
 def _fastest(whole: JointProblem, start: InitialMotion) -> Solved | None:

@@ -59,13 +59,14 @@ def meshed(problem: JointProblem,
     problem : JointProblem
         The same, on another mesh.
     initial_motion : callable
-        Returns a motion near the fastest where that is within the constraints, else as given.
+        Returns a motion near the fastest where that is within the constraints, else as given;
+        None where that gives none.
 
     """
     task, barrier = problem.task, None
     first = initial_motion(task, problem.without_margins)
     if first is None:
-        return problem, initial_motion
+        return problem, lambda planned, within: None
     for centred in ROUGHLY_CENTRED:
         if task.should_stop():
             break

@@ -19,10 +19,11 @@ from itertools import count
 from unittest.mock import patch
 
 from helpers.measured_motions import Measured, planned_motions
-from helpers.planning_cases import ARM, FREE, LIMITS
+from helpers.planning_cases import ARM, FREE, LIMITS, NONE
 from helpers.time_optimal_cases import A, B, C, EITHER_LIMITS, through
 import numpy as np
 import pytest
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
 from rrr_traj_planner.core.errors import InvalidInputError, StartStateError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.stopping.stop import stop
@@ -147,6 +148,24 @@ def test_without_a_way_on_the_arm_stops_first_as_when_held():
     rest = plan(ARM, LIMITS, through([held.final, B])).trajectory
     assert found.trajectory.duration == pytest.approx(held.end + rest.duration, rel=5e-3)
     assert plan(ARM, LIMITS, request).trajectory.duration < found.trajectory.duration
+
+
+def test_an_arm_that_cannot_stop_goes_on_and_folds():
+    """In a state of a motion between other points, joint 2 would need 224 N m to stop."""
+    q, qd = [0.78170907, 0.57722076, 2.10736836], [0.9696377, -0.64859548, 0.99981035]
+    qdd = [-0.47615928, 0.24986832, -0.00049661]
+    limits = replace(LIMITS, max_acceleration=NONE, max_jerk=[100.0] * 3)
+    state_of_arm = np.concatenate((q, qd, qdd))
+    assert any('N m' in w for w in stop(from_state(tuple(state_of_arm), 0), 0.0, limits, ARM)[1])
+    points = np.array([[0.554, 0.792, 0.122], [0.256, 0.22, 0.566]])
+    found = plan(ARM, limits, replace(moving(q, [A], qd, qdd), via_points=points))
+    t = np.linspace(0.0, found.trajectory.duration, 5000)
+    torque = motor_torque(ARM, *found.trajectory(t)[:3])
+    assert (np.abs(torque) <= ALLOWED * limits.max_effort).all()
+    assert found.trajectory(np.zeros(1))[0][0] == pytest.approx(q, abs=SAME)
+    tips = forward_kinematics(ARM, found.trajectory(found.via_times)[0])
+    assert tips == pytest.approx(points, abs=1e-8)
+    assert len(found.via_times) == 2 and 'stops' not in found.note
 
 
 FASTEST = least_time._fastest
