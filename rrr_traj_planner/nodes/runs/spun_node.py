@@ -16,7 +16,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
+from functools import partial
 from time import monotonic, sleep
 from typing import Any, TypeVar
 
@@ -47,6 +49,27 @@ class SpunNode(Node):
     """
 
     ended: Callable[[], tuple[str, int] | None] = staticmethod(lambda: None)
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._posted: deque[Callable[[], Any]] = deque()
+
+    def post(self, function: Callable[..., Any], *args: Any) -> None:
+        """
+        Call a function in the executor's thread, after those that were posted before.
+
+        rclpy's executor begins the newest of its tasks first.
+
+        Parameters
+        ----------
+        function : callable
+            The function.
+        *args
+            Its arguments.
+
+        """
+        self._posted.append(partial(function, *args))
+        self.executor.create_task(lambda: self._posted.popleft()())
 
     def check_processes(self) -> None:
         """

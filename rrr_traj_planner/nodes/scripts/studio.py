@@ -157,7 +157,7 @@ def _started(stack: ExitStack, server: Any, controller: str, start: Start
     page = Page(server, config, description_folder(arguments), planner_ids(), wanted)
     studio = Studio(client, config, wanted, page, start.arm)
     stack.callback(page.disconnect)
-    page.connect(studio, client.executor.create_task)
+    page.connect(studio, client.post)
     client.in_executor(lambda: studio.start(start.error))
     client.in_executor(lambda: client.create_timer(FRAME_PERIOD, studio.tick))
     return client, studio
