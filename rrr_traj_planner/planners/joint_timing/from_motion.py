@@ -32,6 +32,7 @@ from rrr_traj_planner.core.stopping.stop import stop
 from rrr_traj_planner.core.stopping.task import from_state
 from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.quintic_spline import hermite, polynomial
+from rrr_traj_planner.planners.joint_timing.braking import braking, stops_for
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.problem import (
     brought_within,
@@ -49,7 +50,7 @@ from rrr_traj_planner.planners.tasks import JointTask, StartRates
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 # Chosen values.
-HEAD = 8  # segments in which a longer motion comes to rest
+HEAD = 8  # segments, at least, in which a longer motion comes to rest
 DURATIONS = 1.1 ** np.arange(-30.0, 8.0)  # of the first segment, over that from rest to rest
 WITHOUT_TORQUE = 0.5  # of the acceleration that torque allows
 DIRECT = 1e-3         # part of the way by which a direct motion may overshoot
@@ -74,8 +75,9 @@ def from_motion(durations: DurationConstraints) -> InitialMotion:
 
     """
     def found(task: JointTask, constraints: JointConstraints) -> Variables | None:
-        if len(task.points) - 1 > 2 * HEAD:
-            return _with_rest_to_rest(task, constraints, durations)
+        head = max(HEAD, *stops_for(task))
+        if len(task.points) - 1 > 2 * head:
+            return _with_rest_to_rest(task, constraints, durations, head)
         motions = [brought_within(constraints, m, durations, task.should_stop)
                    for m in straight_on(task, constraints.mesh)]
         best = min(filter(None, motions), key=lambda m: durations.cost(m.T), default=None)
@@ -88,18 +90,18 @@ def from_motion(durations: DurationConstraints) -> InitialMotion:
 
 
 def _with_rest_to_rest(task: JointTask, constraints: JointConstraints,
-                       durations: DurationConstraints) -> Variables | None:
-    """Return a motion that rests after HEAD segments, and at all later via points."""
+                       durations: DurationConstraints, head: int) -> Variables | None:
+    """Return a motion that rests after some segments, and at all later via points."""
     first = from_motion(durations._replace(
-        free=durations.free[:HEAD], proportions=durations.proportions[:HEAD],
-        weights=durations.weights[:HEAD], fixed=np.concatenate(
-            (durations.fixed[:HEAD], durations.fixed[-1:]))))(
-        replace(task, points=task.points[:HEAD + 1]), constraints.of_first(HEAD))
+        free=durations.free[:head], proportions=durations.proportions[:head],
+        weights=durations.weights[:head], fixed=np.concatenate(
+            (durations.fixed[:head], durations.fixed[-1:]))))(
+        replace(task, points=task.points[:head + 1]), constraints.of_first(head))
     if first is None:
         return None
     m = _rest_to_rest(task, constraints.mesh)
-    return brought_within(constraints, Variables(*(np.concatenate((head, f[len(head):]))
-                                                   for head, f in zip(first, m))),
+    return brought_within(constraints, Variables(*(np.concatenate((own, f[len(own):]))
+                                                   for own, f in zip(first, m))),
                           durations, task.should_stop)
 
 
@@ -154,6 +156,7 @@ def straight_on(task: JointTask, mesh: Mesh) -> Iterator[Variables]:
                     own[1] = f[-1]
             yield mesh.restored(task.points, Variables(
                 inner, *via, T=np.concatenate((T[i], m.T[1:]))))
+    yield from braking(task, mesh, m)
 
 
 def _rest_to_rest(task: JointTask, mesh: Mesh) -> Variables:
@@ -233,7 +236,7 @@ def after_a_stop(task: JointTask, fastest: Callable[[JointTask], Solved | None])
     via_times = np.concatenate(([0.0], solved.trajectory.via_times[1:] + h.sum()))
     note = f'the arm stops first, in {h.sum():.3g} s: no motion was found that goes straight on'
     return solved._replace(trajectory=PiecewiseTrajectory(profiles, via_times, note),
-                           cost=float(via_times[-1]), gap=np.inf)
+                           cost=float(via_times[-1]))
 
 
 def _jerk_warnings(task: JointTask, h: Array, c: Array) -> tuple[str, ...]:

@@ -150,6 +150,17 @@ def test_without_a_way_on_the_arm_stops_first_as_when_held():
     assert plan(ARM, LIMITS, request).trajectory.duration < found.trajectory.duration
 
 
+@pytest.mark.parametrize('number', [5, 11, 31])
+def test_via_points_closer_than_the_way_to_stop_are_passed_as_before(number):
+    q = np.linspace((0.2, 0.8, 0.0), (1.2, 1.3, 0.5), number)
+    before = plan(ARM, FREE, through(q))
+    for part in (0.3, 0.42, 0.54, 0.66, 0.78):
+        t = part * before.trajectory.duration
+        start, *rates = state(before.trajectory, t)
+        found = plan(ARM, FREE, moving(start, q[before.via_times > t], *rates))
+        assert found.trajectory.duration < 1.005 * (before.trajectory.duration - t)
+
+
 def test_an_arm_that_cannot_stop_goes_on_and_folds():
     """In a state of a motion between other points, joint 2 would need 224 N m to stop."""
     q, qd = [0.78170907, 0.57722076, 2.10736836], [0.9696377, -0.64859548, 0.99981035]
