@@ -49,12 +49,11 @@ def stops_for(task: JointTask) -> list[int]:
     speed = float(np.linalg.norm(speeds))
     if speed == 0.0:
         return [0]
-    per_speed = speeds / speed
     with np.errstate(divide='ignore'):
-        deceleration = float((acceleration_scale(
-            task.model, task.limits, task.points) / per_speed).min())
-        rise = deceleration * float((per_speed / task.limits.max_jerk).max())
-    least = 0.5 * speed ** 2 / deceleration + speed * rise
+        a, j = (float((limit * speed / speeds).min()) for limit in (
+            acceleration_scale(task.model, task.limits, task.points), task.limits.max_jerk))
+    a = min(a, np.sqrt(speed * j))  # what jerk lets it reach
+    least = 0.5 * speed * (speed / a + a / j)
     last = len(task.points) - 1
     return [min(int(np.searchsorted(way, longer * least)), last) for longer in LONGER]
 
@@ -78,8 +77,9 @@ def braking(task: JointTask, mesh: Mesh, rests: Variables) -> Iterator[Variables
         The motions, which may exceed limits; none where the arm comes to rest in one segment.
 
     """
-    for stop in dict.fromkeys(stops_for(task)):
-        if stop > 1:
+    stops = stops_for(task)
+    if stops[0] > 1:
+        for stop in dict.fromkeys(stops):
             yield _to(task, mesh, rests, stop)
 
 
