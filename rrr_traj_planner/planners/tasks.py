@@ -79,6 +79,12 @@ class JointTask(ReadOnlyArrays):
     least_jerk_rise: float = LEAST_JERK_RISE
     start_rates: StartRates | None = None
 
+    @property
+    def rates_at_start(self) -> StartRates:
+        """Return how the joints move at the start, which is not at rest."""
+        assert self.start_rates is not None
+        return self.start_rates
+
     def segment_number(self, segment: int) -> int:
         """
         Return a segment's number in the request.

@@ -45,7 +45,7 @@ def stops_for(task: JointTask) -> list[int]:
         One for each braking distance, the last one where the way is shorter; 0 is the start.
 
     """
-    speeds, way = np.abs(_rates(task).velocity), _way(task)
+    speeds, way = np.abs(task.rates_at_start.velocity), _way(task)
     speed = float(np.linalg.norm(speeds))
     if speed == 0.0:
         return [0]
@@ -85,7 +85,7 @@ def braking(task: JointTask, mesh: Mesh, rests: Variables) -> Iterator[Variables
 
 def _to(task: JointTask, mesh: Mesh, rests: Variables, stop: int) -> Variables:
     """Return the motion that comes to rest at a via point, by quintics through those before."""
-    rates, way = _rates(task), _way(task)[:stop + 1]
+    rates, way = task.rates_at_start, _way(task)[:stop + 1]
     D = np.diff(task.points[:stop + 1], axis=0)
     speeds = np.linalg.norm(rates.velocity) * np.sqrt(1.0 - way / way[-1])
     T = (2.0 * np.diff(way) / (speeds[:-1] + speeds[1:]))[:, np.newaxis]
@@ -119,8 +119,3 @@ def _with_acceleration(rates: StartRates, D: Array, T: Array) -> Array:
 def _way(task: JointTask) -> Array:
     """Return the distances along straight segments, in joint space [rad], shape (N + 1,)."""
     return np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(task.points, axis=0), axis=1))))
-
-
-def _rates(task: JointTask) -> StartRates:
-    assert task.start_rates is not None
-    return task.start_rates

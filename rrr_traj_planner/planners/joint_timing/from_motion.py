@@ -46,7 +46,7 @@ from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
-from rrr_traj_planner.planners.tasks import JointTask, StartRates
+from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 # Chosen values.
@@ -110,7 +110,7 @@ def _without_torque(task: JointTask, mesh: Mesh,
     """Return a motion within limits on acceleration in place of those on torque."""
     scale = WITHOUT_TORQUE * acceleration_scale(task.model, task.limits, task.points)
     limits = replace(task.limits, max_effort=np.full(3, np.inf), max_acceleration=np.maximum(
-        scale, 2.0 * np.abs(_rates(task).acceleration)))
+        scale, 2.0 * np.abs(task.rates_at_start.acceleration)))
     problem = JointProblem(replace(task, limits=limits), mesh, durations)
     first = from_motion(durations)(problem.task, problem.without_margins)
     return None if first is None else problem.minimised(
@@ -138,7 +138,7 @@ def straight_on(task: JointTask, mesh: Mesh) -> Iterator[Variables]:
         The motions.
 
     """
-    (v, a), D, N = _rates(task), task.points[1] - task.points[0], len(task.points) - 1
+    (v, a), D, N = task.rates_at_start, task.points[1] - task.points[0], len(task.points) - 1
     m = _rest_to_rest(task, mesh)
     T, zero = m.T[0] * DURATIONS[:, np.newaxis], np.zeros(3)
     families = [hermite(T, (zero, v, a), (D, zero, zero)),
@@ -171,11 +171,6 @@ def _rest_to_rest(task: JointTask, mesh: Mesh) -> Variables:
             break
     assert m is not None
     return m
-
-
-def _rates(task: JointTask) -> StartRates:
-    assert task.start_rates is not None
-    return task.start_rates
 
 
 def _durations(task: JointTask, c: Array, t: Array, way: float) -> set[int]:
@@ -217,7 +212,7 @@ def after_a_stop(task: JointTask, fastest: Callable[[JointTask], Solved | None])
     """
     kept = replace(task.limits, **{name: (1.0 - STOP_ROOM) * getattr(task.limits, name)
                                    for name in ('max_velocity', 'max_effort')})
-    state = np.concatenate((task.points[0], *_rates(task)))
+    state = np.concatenate((task.points[0], *task.rates_at_start))
     stopping, warnings = stop(from_state(tuple(state.tolist()), 0), 0.0, kept, task.model)
     h, c = np.diff(stopping.knots), np.moveaxis(stopping.coefficients, 1, 0)
     if not warnings:
@@ -241,7 +236,7 @@ def after_a_stop(task: JointTask, fastest: Callable[[JointTask], Solved | None])
 
 def _jerk_warnings(task: JointTask, h: Array, c: Array) -> tuple[str, ...]:
     """Return a warning for each joint that stops with more jerk than its limit."""
-    before = np.concatenate((_rates(task).acceleration[:, np.newaxis],
+    before = np.concatenate((task.rates_at_start.acceleration[:, np.newaxis],
                              2.0 * c[..., 2] + 6.0 * c[..., 3] * h), axis=1)
     after = np.concatenate((2.0 * c[..., 2], np.zeros((3, 1))), axis=1)
     steps = np.abs(after - before).max(axis=1) > STEP

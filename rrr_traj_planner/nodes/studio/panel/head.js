@@ -1,5 +1,5 @@
-// The panel's head stays on top of what is scrolled. By selectors with :has(), the browser would
-// look for it again at every change of the page. This runs whenever the panel is made.
+// The panel's head stays on top of what is scrolled: viser gives the elements around it no names by
+// which a style could find them. This runs whenever the panel is made.
 (function () {
   const head = document.querySelector('.head');
   let element = head && head.parentElement;
