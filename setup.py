@@ -32,7 +32,8 @@ KERNELS = Extension(
     [path for folder in NATIVE for path in sorted(glob(f'{folder}/*.c'))], include_dirs=NATIVE,
     depends=[path for folder in NATIVE for path in sorted(glob(f'{folder}/*.[hi]*'))],
     extra_compile_args=['-std=c99', '-O3', '-fno-math-errno', '-fno-trapping-math',
-                        '-fvisibility=hidden'])
+                        '-fvisibility=hidden',
+                        '-Wno-psabi'])  # functions that return vectors are inlined
 
 
 class BuildKernels(build_ext):

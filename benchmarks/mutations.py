@@ -95,7 +95,7 @@ FAULTS = {
         ('growth ** max(round_ - schedule.patience, 0)',
          'growth ** max(round_ + schedule.patience, 0)'),
         # torques and their derivatives
-        ('x[i] += product[i] + g.first[i] +', 'x[i] += product[i] - g.first[i] +'),
+        ('x[i] += product[i] + gravity[i] +', 'x[i] += product[i] - gravity[i] +'),
         ('+ product[j][i] - product[i][j];', '+ product[j][i] + product[i][j];'),
         ('by_w[l][j] + by_w[j][l] - w[1]', 'by_w[l][j] + by_w[j][l] + w[1]'),
         # constraints
@@ -105,7 +105,7 @@ FAULTS = {
         ('- (barrier + dual[1] * shift[1]) * inverse[1];',
          '+ (barrier + dual[1] * shift[1]) * inverse[1];'),
         ('return 2.0 * p->N * (constraints_of(p)', 'return 1.0 * p->N * (constraints_of(p)'),
-        ('w.hv * s.a + w.vj * s.j + w.vu * u', 'w.hv * s.a + w.vj * s.j - w.vu * u'),
+        ('v + (w).hv * a + (w).vj * j + (w).vu * u,', 'v + (w).hv * a + (w).vj * j - (w).vu * u,'),
         # Newton steps
         ('*common_gradient += p->proportions[k] * right[B];', '*common_gradient += right[B];'),
         ('decrease = -(r_T[k] + p->weights[k]) * dT;', 'decrease = -r_T[k] * dT;'),

@@ -30,11 +30,12 @@ typedef struct {
     const double *viscous;        /* (3), friction [N m s/rad] */
 } Arm;
 
-/* The joint torques x (3) of a motion at the state z (q, qd, qdd, jerk of each joint: 12), viscous
- * friction included; their gradients by z (3, 12); and added to second (12, 12), the second
- * derivatives of their weighted sum. Each may be NULL. */
-void torque_at(const Arm *arm, const double *z, double *x, double *gradient,
-               const double *weights, double *second);
+/* torque.c: the joint torques x (n, 3) of motions at n states z (n, 12: q, qd, qdd, jerk of each
+ * joint), viscous friction included; and with their gradients by z (n, 3, 12), and, added to second
+ * (n, 12, 12), the second derivatives of each state's sum of torques times weights (n, 3). */
+void torques_at(const Arm *arm, int32_t n, const double *z, double *x);
+void torque_derivatives_at(const Arm *arm, int32_t n, const double *z, const double *weights,
+                           double *x, double *gradient, double *second);
 
 /* tip.c: the tip's positions (n, 3) at n states; at one, with its Jacobian (coordinate, joint). */
 void arm_tip(const Arm *arm, int32_t n, const double *q, double *p);

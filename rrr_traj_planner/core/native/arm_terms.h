@@ -26,18 +26,17 @@ static const int element[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};  /* by row a
 
 /* M and its derivatives by q2 (count a) and q3 (count b), by a + b, then by b: number
  * (a + b) (a + b + 1) / 2 + b. */
-enum { ORDERS_1 = 3, ORDERS_2 = 6, ORDERS_3 = 10 };
+enum { ORDERS_1 = 3, ORDERS_3 = 10 };
 
-/* order: a constant at every call, so that the loops unroll. */
-static inline void add_inertia(const Arm *arm, const Basis *by, const int order,
-                               double (*M)[ELEMENTS])
+INLINE void inertia_derivatives(const Arm *arm, const Basis *by, const int order,
+                                Real (*M)[ELEMENTS])
 {
+    memset(M, 0, (order == 1 ? ORDERS_1 : ORDERS_3) * sizeof *M);
     for (int n = 0; n < arm->inertia_count; ++n) {
         const int32_t *at = arm->inertia_at + 3 * n;
-        const double x = arm->inertia[n];
-        double second[MOST_ORDER + 1], third[MOST_ORDER + 1];
+        Real second[MOST_ORDER + 1], third[MOST_ORDER + 1];
         for (int d = 0; d <= order; ++d) {
-            second[d] = x * by[1].d[d][at[1]];
+            second[d] = arm->inertia[n] * by[1].d[d][at[1]];
             third[d] = by[2].d[d][at[2]];
         }
         for (int total = 0, row = 0; total <= order; ++total)
@@ -46,30 +45,18 @@ static inline void add_inertia(const Arm *arm, const Basis *by, const int order,
     }
 }
 
-static inline void inertia_derivatives(const Arm *arm, const Basis *by, int order,
-                                double (*M)[ELEMENTS])
-{
-    memset(M, 0, (order == 1 ? ORDERS_1 : order == 2 ? ORDERS_2 : ORDERS_3) * sizeof *M);
-    if (order == 1)
-        add_inertia(arm, by, 1, M);
-    else if (order == 2)
-        add_inertia(arm, by, 2, M);
-    else
-        add_inertia(arm, by, 3, M);
-}
-
 /* Derivatives of the potential energy: first (3), second (3, 3) and third (3, 3, 3), of these those
  * with indices in ascending order, up to an order. */
 typedef struct {
-    double first[3], second[3][3], third[3][3][3];
+    Real first[3], second[3][3], third[3][3][3];
 } Gravity;
 
-static inline void gravity_derivatives(const Arm *arm, const Basis *by, int order, Gravity *g)
+INLINE void gravity_derivatives(const Arm *arm, const Basis *by, const int order, Gravity *g)
 {
-    memset(g, 0, sizeof *g);
+    memset(g, 0, order == 1 ? sizeof g->first : sizeof *g);
     for (int n = 0; n < arm->potential_count; ++n) {
         const int32_t *at = arm->potential_at + 3 * n;
-        double a[MOST_ORDER + 1], b[MOST_ORDER + 1], c[MOST_ORDER + 1];
+        Real a[MOST_ORDER + 1], b[MOST_ORDER + 1], c[MOST_ORDER + 1];
         for (int d = 0; d <= order; ++d) {
             a[d] = arm->potential[n] * by[0].d[d][at[0]];
             b[d] = by[1].d[d][at[1]], c[d] = by[2].d[d][at[2]];
@@ -77,7 +64,7 @@ static inline void gravity_derivatives(const Arm *arm, const Basis *by, int orde
         g->first[0] += a[1] * b[0] * c[0];
         g->first[1] += a[0] * b[1] * c[0];
         g->first[2] += a[0] * b[0] * c[1];
-        if (order < 2)
+        if (order < 3)
             continue;
         g->second[0][0] += a[2] * b[0] * c[0];
         g->second[0][1] += a[1] * b[1] * c[0];
@@ -85,8 +72,6 @@ static inline void gravity_derivatives(const Arm *arm, const Basis *by, int orde
         g->second[1][1] += a[0] * b[2] * c[0];
         g->second[1][2] += a[0] * b[1] * c[1];
         g->second[2][2] += a[0] * b[0] * c[2];
-        if (order < 3)
-            continue;
         g->third[0][0][0] += a[3] * b[0] * c[0];
         g->third[0][0][1] += a[2] * b[1] * c[0];
         g->third[0][0][2] += a[2] * b[0] * c[1];
@@ -101,22 +86,22 @@ static inline void gravity_derivatives(const Arm *arm, const Basis *by, int orde
 }
 
 /* M v for M by its elements. */
-static inline void times(const double *M, const double *v, double *product)
+INLINE void times(const Real *M, const Real *v, Real *product)
 {
     product[0] = M[0] * v[0] + M[1] * v[1] + M[2] * v[2];
     product[1] = M[1] * v[0] + M[3] * v[1] + M[4] * v[2];
     product[2] = M[2] * v[0] + M[4] * v[1] + M[5] * v[2];
 }
 
-static inline double dot(const double *a, const double *b)
+INLINE Real dot(const Real *a, const Real *b)
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* Coriolis and centrifugal torques; by: derivatives of M by q2 and q3. */
-static inline void coriolis(const double (*by)[ELEMENTS], const double *qd, double *torque)
+INLINE void coriolis(const Real (*by)[ELEMENTS], const Real *qd, Real *torque)
 {
-    double p2[3], p3[3];
+    Real p2[3], p3[3];
     times(by[0], qd, p2), times(by[1], qd, p3);
     for (int i = 0; i < 3; ++i)
         torque[i] = qd[1] * p2[i] + qd[2] * p3[i];
@@ -124,12 +109,12 @@ static inline void coriolis(const double (*by)[ELEMENTS], const double *qd, doub
 }
 
 /* M x = b, for M by its elements, symmetric and positive definite. */
-static inline void solve_symmetric(const double *M, const double *b, double *x)
+INLINE void solve_symmetric(const Real *M, const Real *b, Real *x)
 {
-    const double C00 = M[3] * M[5] - M[4] * M[4], C01 = M[2] * M[4] - M[1] * M[5];
-    const double C02 = M[1] * M[4] - M[2] * M[3], C11 = M[0] * M[5] - M[2] * M[2];
-    const double C12 = M[1] * M[2] - M[0] * M[4], C22 = M[0] * M[3] - M[1] * M[1];
-    const double det = M[0] * C00 + M[1] * C01 + M[2] * C02;
+    const Real C00 = M[3] * M[5] - M[4] * M[4], C01 = M[2] * M[4] - M[1] * M[5];
+    const Real C02 = M[1] * M[4] - M[2] * M[3], C11 = M[0] * M[5] - M[2] * M[2];
+    const Real C12 = M[1] * M[2] - M[0] * M[4], C22 = M[0] * M[3] - M[1] * M[1];
+    const Real det = M[0] * C00 + M[1] * C01 + M[2] * C02;
     x[0] = (C00 * b[0] + C01 * b[1] + C02 * b[2]) / det;
     x[1] = (C01 * b[0] + C11 * b[1] + C12 * b[2]) / det;
     x[2] = (C02 * b[0] + C12 * b[1] + C22 * b[2]) / det;

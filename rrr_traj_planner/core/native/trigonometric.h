@@ -16,24 +16,38 @@
 #ifndef RRR_TRAJ_PLANNER_TRIGONOMETRIC_H
 #define RRR_TRAJ_PLANNER_TRIGONOMETRIC_H
 
+#include "processor.h"
+
 #include <math.h>
 
 enum { FUNCTIONS = 5, MOST_ORDER = 3 };
 
+/* A number of each of as many states, 1 by default, with which they are computed at once. */
+#ifdef STATES
+typedef double Real __attribute__((vector_size(STATES * sizeof(double))));
+#else
+#define STATES 1
+typedef double Real;
+#endif
+
 /* The functions at one joint's position, and their derivatives. */
 typedef struct {
-    double d[MOST_ORDER + 1][FUNCTIONS];
+    Real d[MOST_ORDER + 1][FUNCTIONS];
 } Basis;
 
 /* Evaluate them at all joints' positions, up to an order. */
-static inline void bases(const double *q, int order, Basis *by)
+INLINE void bases(const Real *q, int order, Basis *by)
 {
     for (int j = 0; j < 3; ++j) {
-        const double c = cos(q[j]), s = sin(q[j]), c2 = c * c - s * s, s2 = 2.0 * c * s;
-        double (*d)[FUNCTIONS] = by[j].d;
-        d[0][0] = 1.0, d[0][1] = c, d[0][2] = s, d[0][3] = c2, d[0][4] = s2;
+        Real c, s, (*d)[FUNCTIONS] = by[j].d;
+        for (int k = 0; k < STATES; ++k) {
+            const double x = ((const double *)(q + j))[k];
+            ((double *)&c)[k] = cos(x), ((double *)&s)[k] = sin(x);
+        }
+        d[0][0] = (Real){0.0} + 1.0, d[0][1] = c, d[0][2] = s;
+        d[0][3] = c * c - s * s, d[0][4] = 2.0 * c * s;
         for (int n = 1; n <= order; ++n) {  /* cos k q becomes -k sin k q, sin k q k cos k q */
-            d[n][0] = 0.0;
+            d[n][0] = (Real){0.0};
             d[n][1] = -d[n - 1][2], d[n][2] = d[n - 1][1];
             d[n][3] = -2.0 * d[n - 1][4], d[n][4] = 2.0 * d[n - 1][3];
         }

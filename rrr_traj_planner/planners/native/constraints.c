@@ -26,13 +26,25 @@ static double *duration_slacks(const Problem *p, double *slack)
     return slack + 2 * (size_t)p->N * constraints_of(p);
 }
 
-void general_constraints(const Problem *p, int k, int i, const double *z, double *x,
-                         double *gradient, const double *weights, double *second)
+int points_with_general(const Problem *p, int first, int most)
 {
-    if (p->arm)
-        torque_at(p->arm, z, x, gradient, weights, second);
-    else
-        path_at(p, k, i, z, x, gradient, weights, second);
+    int count = 0;
+    while (count < most && first + count <= 2 * p->n && p->has_general[first + count])
+        ++count;
+    return count;
+}
+
+/* The values x (P, E) of the general constraints of segment k at its states z (P, Z). */
+static void general_values(const Problem *p, int k, const double *z, double *x)
+{
+    const int Z = 4 * p->J, P = 2 * p->n + 1;
+    for (int i = 0, count; i < P; i += count + 1) {
+        count = points_with_general(p, i, P);
+        if (p->arm)
+            torques_at(p->arm, count, z + i * Z, x + i * p->E);
+        for (int m = i; m < i + count && !p->arm; ++m)
+            path_at(p, k, m, z + m * Z, x + m * p->E, NULL, NULL, NULL);
+    }
 }
 
 void segment_slacks(const Problem *p, int k, const double *z, double part, double *x,
@@ -46,9 +58,8 @@ void segment_slacks(const Problem *p, int k, const double *z, double part, doubl
         to[0] = upper[i] - z[i];
         to[1] = z[i] - lower[i];
     }
-    for (int i = 0; i < P && p->general; ++i)
-        if (p->has_general[i])
-            general_constraints(p, k, i, z + (size_t)i * Z, x + (size_t)i * E, NULL, NULL, NULL);
+    if (p->general)
+        general_values(p, k, z, x);
     lower = p->general_lower + (size_t)k * P * E;
     upper = p->general_upper + (size_t)k * P * E;
     for (int c = 0; c < p->general; ++c, to += 2) {

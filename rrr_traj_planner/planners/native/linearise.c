@@ -13,6 +13,7 @@
 // limitations under the License.
 
 /* The barrier problem linearised at an iterate. */
+#include "processor.h"
 #include "timing_problem.h"
 
 #include <string.h>
@@ -57,38 +58,51 @@ static inline void barrier_derivatives(double lower, double upper, double value,
     *weight = dual[0] * inverse[0] + dual[1] * inverse[1];
 }
 
-/* timing_linearise for the general constraints of a segment, whose slacks begin at an offset. */
-static void linearise_general(const Problem *p, int k, size_t offset, double barrier)
+/* timing_linearise for the general constraints at points of segment k, the first of them number c
+ * of its general ones; returns the number of that after the last. */
+static int linearise_points(const Problem *p, int k, int first, int count, int c, double barrier)
 {
-    const double *dual = p->dual;
-    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
-    const double *lower = p->general_lower + (size_t)k * P * E,
-        *upper = p->general_upper + (size_t)k * P * E;
-    const int32_t *at = p->general_at, *end = at + p->general;
-    size_t c = offset;
-    for (int i = 0; i < P; ++i) {
-        const size_t point = (size_t)k * P + i, block = point * Z * Z;
-        double *x = p->values + point * E, *g = p->jacobian + point * E * Z,
-            *r = p->gradient + point * Z, *Q = p->hessian + block, *full = p->exact + block;
-        if (p->has_general[i]) {
-            double weights[MOST_GENERAL] = {0.0};
-            const int32_t *first = at;
-            for (size_t d = c; at < end && *at < (i + 1) * E; ++at, d += 2)
-                weights[*at - i * E] = dual[d] - dual[d + 1];
-            general_constraints(p, k, i, p->states + point * Z, x, g, weights, full);
-            for (; first < at; ++first, c += 2) {
-                const int e = *first - i * E;
-                double f, weight;
-                barrier_derivatives(lower[*first], upper[*first], x[e], dual + c, p->shift + c,
-                                    barrier, p->slack + c, p->inverse + c, &f, &weight);
-                add_general_constraint(p, e, g + (size_t)e * Z, f, weight, r, Q);
-            }
-        }
+    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E, begin = c;
+    const size_t point = (size_t)k * P + first;
+    const size_t offset = 2 * (k * constraints_of(p) + p->bounds);
+    const double *lower = p->general_lower + point * E, *upper = p->general_upper + point * E;
+    const double *z = p->states + point * Z, *dual = p->dual + offset;
+    double *x = p->values + point * E, *g = p->jacobian + point * E * Z;
+    double *r = p->gradient + point * Z, *Q = p->hessian + point * Z * Z;
+    double *exact = p->exact + point * Z * Z, weights[VECTOR * MOST_GENERAL] = {0.0};
+    for (; c < p->general && p->general_at[c] < (first + count) * E; ++c)
+        weights[p->general_at[c] - first * E] = dual[2 * c] - dual[2 * c + 1];
+    if (p->arm)
+        torque_derivatives_at(p->arm, count, z, weights, x, g, exact);
+    for (int m = 0; m < count && !p->arm; ++m)
+        path_at(p, k, first + m, z + m * Z, x + m * E, g + m * E * Z, weights + m * E,
+                exact + m * Z * Z);
+    for (int d = begin; d < c; ++d) {
+        const int e = p->general_at[d] - first * E, m = e / E;
+        const size_t at = offset + 2 * d;
+        double f, weight;
+        barrier_derivatives(lower[e], upper[e], x[e], p->dual + at, p->shift + at, barrier,
+                            p->slack + at, p->inverse + at, &f, &weight);
+        add_general_constraint(p, e % E, g + e * Z, f, weight, r + m * Z, Q + m * Z * Z);
+    }
+    return c;
+}
+
+/* timing_linearise for the general constraints of a segment. */
+static void linearise_general(const Problem *p, int k, double barrier)
+{
+    const int Z = 4 * p->J, P = 2 * p->n + 1;
+    double *Q = p->hessian + (size_t)k * P * Z * Z, *exact = p->exact + (size_t)k * P * Z * Z;
+    for (int i = 0, count, c = 0; i < P; i += count ? count : 1) {
+        count = points_with_general(p, i, VECTOR);
+        c = linearise_points(p, k, i, count, c, barrier);
+    }
+    for (int i = 0; i < P; ++i, Q += Z * Z, exact += Z * Z) {
         for (int a = 0; a < Z; ++a)
             for (int b = 0; b < a; ++b)
                 Q[b * Z + a] = Q[a * Z + b];
         for (int q = 0; q < Z * Z; ++q)
-            full[q] += Q[q];
+            exact[q] += Q[q];
     }
 }
 
@@ -121,7 +135,7 @@ void linearise_segment(const Problem *p, int k, double barrier)
         Q[whole ? i * Z + i % Z : i] += weight;
     }
     if (whole)
-        linearise_general(p, k, first + 2 * (size_t)p->bounds, barrier);
+        linearise_general(p, k, barrier);
     p->gradient_T[k] = p->hessian_T[k] = 0.0;
 }
 

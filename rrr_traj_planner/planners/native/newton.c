@@ -16,42 +16,39 @@
  * its ends and its duration (Schur complement), free durations are eliminated, and the velocities,
  * accelerations and jerks at the via points follow from a banded system. The cost is linear in
  * intervals and segments. */
+#include "processor.h"
 #include "timing_problem.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { VECTOR = 4 };  /* doubles that a processor adds at once; loops are over multiples of it */
-
-/* Functions that are compiled for processors with AVX2 too, of which one is chosen when the
- * library is loaded; they round alike. What they call is compiled with them. */
-#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
-#define BY_PROCESSOR __attribute__((target_clones("avx2", "default")))
-#else
-#define BY_PROCESSOR
-#endif
-#define INLINE static inline __attribute__((always_inline))
-
 #define J 1
+#define REAL double
 #define FRONT(name) one_##name
 #include "riccati.inc"
+#undef REAL
+#undef FRONT
+/* A number of each coordinate, which need not be aligned in memory. */
+typedef double Coordinates __attribute__((vector_size(VECTOR * sizeof(double)), aligned(8)));
+#define REAL Coordinates
+#define FRONT(name) each_##name
+#include "riccati.inc"
 #undef J
+#undef REAL
 #undef FRONT
 #define J 3
+#define REAL double
 #define FRONT(name) three_##name
 #include "riccati.inc"
 #undef J
+#undef REAL
 #undef FRONT
 
-/* With bounds alone the coordinates are coupled through the durations only. */
-static int is_decoupled(const Problem *p)
-{
-    return p->J == 1 || bounds_alone(p);
-}
-
+/* With bounds alone the coordinates are coupled through the durations only: `each`. */
 static size_t rows_size(const Problem *p)
 {
-    return is_decoupled(p) ? p->J * one_rows_size(p->n) : three_rows_size(p->n);
+    return bounds_alone(p) ? each_rows_size(p->n)
+        : p->J == 1 ? one_rows_size(p->n) : three_rows_size(p->n);
 }
 
 static size_t band_size(const Problem *p)
@@ -64,30 +61,22 @@ EXPORTED int64_t timing_newton_size(const Problem *p)
 {
     const size_t B = 2 * ORDERS * p->J, P = 2 * p->n + 1;
     return p->N * ((B + 1) * (B + 2) + rows_size(p)) + 2 * band_size(p)
-        + P * (4 + 16 + 4 + 4) + (size_t)p->n + (p->N + 1) * ORDERS * p->J;
+        + VECTOR * (P * (4 + 16 + 4 + 4) + (size_t)p->n) + (p->N + 1) * ORDERS * p->J;
 }
 
-/* Copy one coordinate's states and its first and second derivatives. */
-static void extract_coordinate(const Problem *p, int j, const double *z, const double *Q,
-                               const double *r, double *own_z, double *own_Q, double *own_r)
+/* Copy a number of each coordinate, the last one's again where there are fewer. */
+INLINE void copy_each(const double *from, int J, Coordinates *to)
 {
-    const int J = p->J, Z = 4 * J;
-    for (int i = 0; i < 2 * p->n + 1; ++i)
-        for (int a = 0; a < 4; ++a) {
-            own_z[4 * i + a] = z[i * Z + a * J + j];
-            own_r[4 * i + a] = r[i * Z + a * J + j];
-            for (int b = 0; b < 4; ++b)
-                own_Q[16 * i + 4 * a + b] = !bounds_alone(p)
-                    ? Q[((size_t)i * Z + a * J + j) * Z + b * J + j]
-                    : a == b ? Q[(size_t)i * Z + a * J + j] : 0.0;
-        }
+    double *of = (double *)to;
+    for (int k = 0; k < VECTOR; ++k)
+        of[k] = from[k < J ? k : J - 1];
 }
 
 /* Scratch memory of a step; W = 6 J + 1 unknowns of a condensed segment. */
 typedef struct {
     double *S, *right;               /* (N, W, W) and (N, W): the condensed segments */
     double *rows;                    /* of their eliminations */
-    double *z, *Q, *r, *dz, *inner;  /* of one coordinate */
+    Coordinates *z, *Q, *r, *dz, *inner;  /* of a segment whose coordinates are decoupled */
     double *via_step;                /* (N + 1, 3 J) */
     double *band;                    /* the system of the via points, twice */
 } Scratch;
@@ -99,40 +88,41 @@ static Scratch scratch_of(const Problem *p)
     s.S = p->newton;
     s.right = s.S + N * W * W;
     s.rows = s.right + N * W;
-    s.z = s.rows + N * rows_size(p);
+    s.z = (Coordinates *)(s.rows + N * rows_size(p));
     s.Q = s.z + 4 * P;
     s.r = s.Q + 16 * P;
     s.dz = s.r + 4 * P;
     s.inner = s.dz + 4 * P;
-    s.via_step = s.inner + p->n;
+    s.via_step = (double *)(s.inner + p->n);
     s.band = s.via_step + (N + 1) * ORDERS * p->J;
     return s;
 }
 
 /* Condense a segment whose coordinates are coupled through its duration only. */
-static int condense_decoupled(const Problem *p, const Scratch *s, int k, double T,
-                              const double *z, const double *Q, const double *r, double *S,
-                              double *right, double *rows)
+static int condense_each(const Problem *p, const Scratch *s, int k, double T, const double *z,
+                         const double *Q, const double *r, double *S, double *right,
+                         double *rows)
 {
     enum { BORDER = 2 * ORDERS + 1 };
-    const int J = p->J, B = 2 * ORDERS * J, W = B + 1;
-    memset(S, 0, (size_t)W * W * sizeof(double));
-    memset(right, 0, (size_t)W * sizeof(double));
-    for (int j = 0; j < J; ++j) {
-        double one[BORDER * BORDER], one_r[BORDER];
-        int at[BORDER] = {0};
-        for (int i = 0; i < BORDER; ++i)
-            at[i] = i < BORDER - 1 ? i * J + j : B;
-        extract_coordinate(p, j, z, Q, r, s->z, s->Q, s->r);
-        if (one_condense(p, k, T, s->z, s->Q, s->r, one, one_r,
-                         (one_Rows *)(rows + j * one_rows_size(p->n))))
-            return 1;
-        for (int a = 0; a < BORDER; ++a) {
-            right[at[a]] += one_r[a];
-            for (int b = 0; b < BORDER; ++b)
-                S[at[a] * W + at[b]] += one[BORDER * a + b];
-        }
+    const int J = p->J, B = 2 * ORDERS * J, W = B + 1, states = 4 * (2 * p->n + 1);
+    Coordinates each[BORDER][BORDER], each_right[BORDER];
+    memset(s->Q, 0, 4 * states * sizeof *s->Q);
+    for (int i = 0; i < states; ++i) {
+        copy_each(z + i * J, J, s->z + i);
+        copy_each(r + i * J, J, s->r + i);
+        copy_each(Q + i * J, J, s->Q + 4 * i + i % 4);
     }
+    if (each_condense(p, k, T, s->z, s->Q, s->r, each[0], each_right, (each_Rows *)rows))
+        return 1;
+    memset(S, 0, (size_t)W * W * sizeof(double));
+    right[B] = 0.0;
+    for (int j = 0; j < J; ++j)
+        for (int a = 0; a < BORDER; ++a) {
+            const int row = a < BORDER - 1 ? a * J + j : B;
+            right[row] = (row == B ? right[row] : 0.0) + each_right[a][j];
+            for (int b = 0; b < BORDER; ++b)
+                S[row * W + (b < BORDER - 1 ? b * J + j : B)] += each[a][b][j];
+        }
     return 0;
 }
 
@@ -146,8 +136,9 @@ static int condense(const Problem *p, const Scratch *s, int k, const double *Q, 
     double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
     double *rows = s->rows + k * rows_size(p);
     const double *z = p->states + k * states, *Qk = Q + k * hessian_size(p);
-    const int singular = is_decoupled(p)
-        ? condense_decoupled(p, s, k, T, z, Qk, r + k * states, S, right, rows)
+    const int singular = bounds_alone(p)
+        ? condense_each(p, s, k, T, z, Qk, r + k * states, S, right, rows) : p->J == 1
+        ? one_condense(p, k, T, z, Qk, r + k * states, S, right, (one_Rows *)rows)
         : three_condense(p, k, T, z, Qk, r + k * states, S, right, (three_Rows *)rows);
     S[B * W + B] += p->hessian_T[k];
     right[B] += r_T[k] + p->weights[k];
@@ -190,26 +181,21 @@ static double duration_step(const Problem *p, const Scratch *s, int k, const dou
 }
 
 /* Back substitution in a segment whose coordinates are coupled through its duration only. */
-static void expand_decoupled(const Problem *p, const Scratch *s, int k, double T, const double *z,
-                             const double *border, double dT, double part, const double *rows,
-                             double *inner, double *dz)
+static void expand_each(const Problem *p, const Scratch *s, int k, double T, const double *z,
+                        const double *border, double dT, double part, const double *rows,
+                        double *inner, double *dz)
 {
-    const int J = p->J, Z = 4 * J, n = p->n, P = 2 * n + 1;
-    for (int j = 0; j < J; ++j) {
-        double own[2 * ORDERS];
-        for (int i = 0; i < 2 * ORDERS; ++i)
-            own[i] = border[i * J + j];
-        for (int i = 0; i < P; ++i)
-            for (int a = 0; a < 4; ++a)
-                s->z[4 * i + a] = z[i * Z + a * J + j];
-        one_expand(p, k, T, s->z, own, dT, part, (const one_Rows *)(rows + j * one_rows_size(n)),
-                   s->inner, s->dz);
-        for (int i = 0; i < n - 1; ++i)
-            inner[i * J + j] = s->inner[i];
-        for (int i = 0; i < P; ++i)
-            for (int a = 0; a < 4; ++a)
-                dz[i * Z + a * J + j] = s->dz[4 * i + a];
-    }
+    const int J = p->J, n = p->n, states = 4 * (2 * n + 1);
+    Coordinates own[2 * ORDERS];
+    for (int i = 0; i < 2 * ORDERS; ++i)
+        copy_each(border + i * J, J, own + i);
+    for (int i = 0; i < states; ++i)
+        copy_each(z + i * J, J, s->z + i);
+    each_expand(p, k, T, s->z, own, dT, part, (const each_Rows *)rows, s->inner, s->dz);
+    for (int i = 0; i < n - 1; ++i)
+        memcpy(inner + i * J, s->inner + i, J * sizeof *inner);
+    for (int i = 0; i < states; ++i)
+        memcpy(dz + i * J, s->dz + i, J * sizeof *dz);
 }
 
 /* The steps of a segment's duration, inner jerks and states, from those of the via points and the
@@ -226,8 +212,10 @@ static double expand(const Problem *p, const Scratch *s, int k, const double *r,
     double *to = dz + k * states, *inner = step.inner + (size_t)k * (p->n - 1) * J;
     const double dT = step.T[k] = duration_step(p, s, k, border, common, part);
     double decrease = -(r_T[k] + p->weights[k]) * dT;
-    if (is_decoupled(p))
-        expand_decoupled(p, s, k, T, z, border, dT, part, rows, inner, to);
+    if (bounds_alone(p))
+        expand_each(p, s, k, T, z, border, dT, part, rows, inner, to);
+    else if (p->J == 1)
+        one_expand(p, k, T, z, border, dT, part, (const one_Rows *)rows, inner, to);
     else
         three_expand(p, k, T, z, border, dT, part, (const three_Rows *)rows, inner, to);
     for (size_t i = 0; i < states; ++i)

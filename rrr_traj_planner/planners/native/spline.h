@@ -54,12 +54,15 @@ static inline Advance advance_of(double h, double x)
                      t * t * (3.0 - x) / 6.0, t * t * x / 6.0, t * (2.0 - x) / 2.0, t * x / 2.0};
 }
 
+/* The state q, v, a, j after the part x of the interval, as an initialiser: of numbers or vectors. */
+#define ADVANCED(w, q, v, a, j, u, x) { \
+    q + (w).hv * v + (w).qa * a + (w).qj * j + (w).qu * u, \
+    v + (w).hv * a + (w).vj * j + (w).vu * u, a + (w).aj * j + (w).au * u, j + (x) * (u - j)}
+
 static inline State advanced(State s, double u, double h, double x)
 {
     const Advance w = advance_of(h, x);
-    return (State){s.q + w.hv * s.v + w.qa * s.a + w.qj * s.j + w.qu * u,
-                   s.v + w.hv * s.a + w.vj * s.j + w.vu * u, s.a + w.aj * s.j + w.au * u,
-                   s.j + x * (u - s.j)};
+    return (State)ADVANCED(w, s.q, s.v, s.a, s.j, u, x);
 }
 
 /* Samples of every interval: per_interval of them from its start on, and the segment's end. */

@@ -140,7 +140,7 @@ static inline const double *jerks_at(const Problem *p, Variables m, int k, int n
 void motion_states(const Problem *p, Variables m, double *z);
 int step_motion(const Problem *p, Variables m, Variables step, double size, Variables moved);
 
-/* path_table.c: the general constraints at a point, as torque_at of arm.h. Values x (E), gradients
+/* path_table.c: the general constraints at a point of a path. Values x (E), gradients
  * by state (E, Z), and second derivatives (Z, Z) of the weighted sum, which are added; each may be
  * NULL. */
 void path_at(const Problem *p, int segment, int point, const double *z, double *x,
@@ -172,8 +172,7 @@ void linearise_segment(const Problem *p, int k, double barrier);
 void segment_slacks(const Problem *p, int k, const double *z, double part, double *x,
                     double *slack);
 void segment_rates(const Problem *p, int k, const double *dz, double part, double *rate);
-void general_constraints(const Problem *p, int k, int i, const double *z, double *x,
-                         double *gradient, const double *weights, double *second);
+int points_with_general(const Problem *p, int first, int most);  /* in a row */
 double log_sum(const double *slack, size_t size);
 void slacks_at(const Problem *p, const double *T, const double *z, double part, double *x,
                double *slack);
