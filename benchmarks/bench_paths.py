@@ -32,7 +32,7 @@ from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.planners.path_timing.least_time import fastest_along
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.planning import plan
-from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
+from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, limits_for_sampling
 from tasks import gentle, NONE, STRONG, Task, WEAK
 from tasks import table as thesis_table
 from toppra import algorithm, constraint
@@ -160,8 +160,8 @@ def _arm_path(task: Task) -> ArmPath:
 
 def _timed(task: Task, arm_path: ArmPath) -> float:
     """Return how long our motion along a path that is ready takes [s]."""
-    limits = limits_for_sampling(task.model, task.limits, arm_path(arm_path.path.via_s).q,
-                                 task.request.sample_period)
+    scale = acceleration_scale(task.model, task.limits, arm_path(arm_path.path.via_s).q)
+    limits = limits_for_sampling(task.limits, scale, task.request.sample_period)
     fresh = replace(arm_path)  # with nothing remembered
     return fastest_along(PathTask(
         fresh, limits, task.request.max_tip_speed, task.request.steady_zones,

@@ -24,8 +24,9 @@ from rrr_traj_planner.core.kernels import declared, load, same_size_as
 from rrr_traj_planner.core.kinematics.common_normal import CommonNormal
 from rrr_traj_planner.core.simulation.time_step import Load
 from rrr_traj_planner.planners.solver.segment_steps import _Rules, _Segments
-from rrr_traj_planner.planners.solver.timing_problem import _Problem, _Step
+from rrr_traj_planner.planners.solver.timing_problem import _Problem
 from rrr_traj_planner.planners.solver.via_barrier import _ViaProblem
+from rrr_traj_planner.planners.solver.workspace import _Step
 from rrr_traj_planner.planners.transitions.local_steps import _LocalRules
 
 SOURCES = [path for layer in ('core', 'planners')

@@ -38,19 +38,17 @@ SAMPLES_PER_TRANSITION = 5.0
 NO_INERTIA = 1e-12
 
 
-def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
+def limits_for_sampling(limits: JointLimits, acceleration: Array,
                         sample_period: float) -> JointLimits:
     """
     Return limits with jerk bounded so that every change of acceleration lasts several samples.
 
     Parameters
     ----------
-    model : RobotModel
-        The arm.
     limits : JointLimits
-        Its limits.
-    q : ndarray, shape (n, 3)
-        Poses along the motion [rad].
+        The arm's.
+    acceleration : ndarray, shape (3,)
+        The largest of each joint, see `acceleration_scale` [rad/s^2].
     sample_period : float
         [s].
 
@@ -59,14 +57,11 @@ def limits_for_sampling(model: RobotModel, limits: JointLimits, q: Array,
     JointLimits
         With finite limits on jerk.
 
-    Raises
-    ------
-    InvalidInputError
-        If a joint has neither an acceleration nor an effort limit.
-
     """
     samples = np.where(np.isinf(limits.max_acceleration), SAMPLES, SAMPLES_OF_LIMITED)
-    jerk = jerk_over_samples(np.pi, acceleration_scale(model, limits, q), samples, sample_period)
+    jerk = jerk_over_samples(np.pi, acceleration, samples, sample_period)
+    if (limits.max_jerk <= jerk).all():
+        return limits
     return replace(limits, max_jerk=np.minimum(limits.max_jerk, jerk))
 
 

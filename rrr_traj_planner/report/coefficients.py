@@ -32,9 +32,10 @@ from rrr_traj_planner.core.motion_laws.cycloid import CycloidPiece
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
 from rrr_traj_planner.core.motion_laws.transition_shape import ShapedPiece
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
 from rrr_traj_planner.core.trajectory.paused import motions_of
 from rrr_traj_planner.core.trajectory.pieces import Pieces
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 
 CRUISE = 2        # coefficients of a piece at constant velocity

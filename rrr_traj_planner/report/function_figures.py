@@ -26,8 +26,8 @@ from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.motion_laws.gauss import GAUSS, maclaurin, maclaurin_error
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
 from rrr_traj_planner.core.trajectory.pieces import TransitionFunction
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.report import drawing
 from rrr_traj_planner.report.coefficients import is_transition
 from rrr_traj_planner.report.picture import Picture

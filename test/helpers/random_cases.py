@@ -25,7 +25,8 @@ from rrr_traj_planner.core.motion_laws.cycloid import (
     ramp,
     transition,
 )
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 
 
 def random_model(rng):

@@ -35,7 +35,7 @@ from rrr_traj_planner.planners.path_timing.least_time import fastest_along
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.request import PlanningRequest
-from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
+from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, limits_for_sampling
 from rrr_traj_planner.planners.solver.splines import Mesh
 
 PLANNERS = ('line_arc', 'line_polynomial')
@@ -68,7 +68,8 @@ class PathCase:
     def sampled_limits(self):
         """Return the limits with the jerk limit due to sampling, which the planner keeps too."""
         q = self.arm_path(self.arm_path.path.via_s).q
-        return limits_for_sampling(self.model, self.limits, q, self.request.sample_period)
+        scale = acceleration_scale(self.model, self.limits, q)
+        return limits_for_sampling(self.limits, scale, self.request.sample_period)
 
     def timed(self, max_tip_speed=np.inf, **limits):
         """Return the fastest motion along the path, with limits changed."""

@@ -37,10 +37,15 @@ def random_poses(seed):
     return random_model(rng), rng.uniform(-1.0, 1.0, (5, 3))
 
 
+def bounded(model, limits, q):
+    """Return limits whose jerk the sampling bounds."""
+    return limits_for_sampling(limits, acceleration_scale(model, limits, q), PERIOD)
+
+
 def test_a_jerk_limit_that_is_low_enough_stays():
     model, q = random_poses(0)
     limits = JointLimits(max_jerk=[10.0, 20.0, 30.0])
-    jerk = limits_for_sampling(model, limits, q, PERIOD).max_jerk
+    jerk = bounded(model, limits, q).max_jerk
     assert jerk.tolist() == [10.0, 20.0, 30.0]
 
 
@@ -48,7 +53,7 @@ def test_a_ramp_from_one_limit_to_the_other_lasts_four_samples():
     # Half a cosine of 2 A in four periods: jerk pi A / (4 periods).
     model, q = random_poses(1)
     limits = JointLimits(max_acceleration=[1.0, 2.0, 3.0], max_jerk=NONE)
-    found = limits_for_sampling(model, replace(limits, max_effort=NONE), q, PERIOD).max_jerk
+    found = bounded(model, replace(limits, max_effort=NONE), q).max_jerk
     assert found == pytest.approx(np.pi * np.array((1.0, 2.0, 3.0)) / (4.0 * PERIOD))
 
 
@@ -57,7 +62,7 @@ def test_without_an_acceleration_limit_torque_decides_and_two_samples_are_enough
     model, q = random_poses(seed)
     limits = JointLimits(max_acceleration=NONE, max_jerk=NONE, max_effort=[90.0, 150.0, 70.0])
     scale = acceleration_scale(model, limits, q)
-    assert limits_for_sampling(model, limits, q, PERIOD).max_jerk == pytest.approx(
+    assert bounded(model, limits, q).max_jerk == pytest.approx(
         np.pi * scale / (2.0 * PERIOD))
     # No joint that moves alone can be accelerated more, at any of the poses.
     for p in q:
@@ -72,7 +77,7 @@ def test_without_an_acceleration_limit_torque_decides_and_two_samples_are_enough
 def test_all_limits_but_jerk_stay():
     model, q = random_poses(2)
     limits = JointLimits(max_jerk=NONE)
-    found = limits_for_sampling(model, limits, q, PERIOD)
+    found = bounded(model, limits, q)
     for name in ('min_position', 'max_position', 'max_velocity', 'max_acceleration', 'max_effort'):
         assert getattr(found, name).tolist() == getattr(limits, name).tolist()
     assert np.isfinite(found.max_jerk).all()
@@ -82,4 +87,4 @@ def test_a_joint_without_acceleration_and_effort_limit_is_refused_by_name():
     limits = JointLimits(max_acceleration=[1.0, np.inf, 1.0], max_effort=[9.0, np.inf, 9.0])
     with pytest.raises(InvalidInputError, match='needs an acceleration or an effort limit on '
                                                 'every joint, joint_2 has neither$'):
-        limits_for_sampling(RobotModel(), limits, np.zeros((1, 3)), PERIOD)
+        bounded(RobotModel(), limits, np.zeros((1, 3)))

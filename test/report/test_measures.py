@@ -26,7 +26,8 @@ from rrr_traj_planner.core.motion_laws import cycloid
 from rrr_traj_planner.core.motion_laws.gauss import GAUSS
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.registry import planner_ids
 from rrr_traj_planner.planners.request import PlanningRequest
 from rrr_traj_planner.report.attempts import attempts, planned, Task

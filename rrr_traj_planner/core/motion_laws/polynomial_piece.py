@@ -109,8 +109,9 @@ class PolynomialPiece(NamedTuple):
 
     def peaks(self) -> tuple[Array, Array]:
         """Return the largest magnitudes of acceleration and of jerk; see `Pieces`."""
+        T, _, _, a, j, n = self
+        end = j + T * n
         with np.errstate(divide='ignore', invalid='ignore'):
-            level = np.where(self.snap != 0.0, -self.jerk / (self.snap * self.duration), 0.0)
-        turning = np.clip(np.where(np.isfinite(level), level, 0.0), 0.0, 1.0)
-        _, _, accelerations, jerks = zip(*(self.at(s) for s in (0.0, turning, 1.0)))
-        return (np.abs(accelerations).max(axis=0), np.abs(jerks).max(axis=0))
+            turning = np.where(j * end < 0.0, a - 0.5 * j * j / n, a)  # where jerk is zero
+        return (np.abs([a, turning, a + 0.5 * T * (j + end)]).max(axis=0),
+                np.abs([j, end]).max(axis=0))

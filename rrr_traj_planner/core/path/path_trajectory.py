@@ -29,8 +29,8 @@ from numpy.typing import ArrayLike
 from rrr_traj_planner.core.arrays import Array, parameter_values
 from rrr_traj_planner.core.path.arm_path import ArmPath
 from rrr_traj_planner.core.read_only import make_read_only
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
 from rrr_traj_planner.core.trajectory.maximum import maximum_over_time
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile
 from rrr_traj_planner.core.trajectory.trajectory import (
     ending_at_duration,
     ONE_SIDED,

@@ -24,7 +24,8 @@ from rrr_traj_planner.core.arrays import Array, parameter_values
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.read_only import make_read_only
 from rrr_traj_planner.core.rounding import JOINT_ROUNDING, TIME_ROUNDING
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import (
     ending_at_duration,
     Peaks,

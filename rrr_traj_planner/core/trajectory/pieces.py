@@ -85,7 +85,7 @@ class Pieces(Protocol):
         """
 
     def turning_points(self) -> Array:
-        """Return the normalised times, shape (n, m), between which velocity is monotone."""
+        """Return the normalised times from 0 to 1, (n, m), between which velocity is monotone."""
 
     def peaks(self) -> tuple[Array, Array]:
         """Return the largest magnitudes of acceleration and of jerk, exactly, shape (n,)."""

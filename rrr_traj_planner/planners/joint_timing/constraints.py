@@ -16,7 +16,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from rrr_traj_planner.core.arm.compiled_arm import compiled
@@ -26,7 +26,8 @@ from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.planners.effort_limits import effort_less_friction
 from rrr_traj_planner.planners.solver.limits import DurationConstraints, FAR, Limits
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
-from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
+from rrr_traj_planner.planners.solver.workspace import Workspace
 
 # Relaxation of position bounds so that joints resting at a range's end have an interior [rad];
 # below JOINT_ROUNDING.
@@ -72,9 +73,6 @@ class JointConstraints:
 
     Attributes
     ----------
-    effort : ndarray, shape (N, 2 n, 3)
-        Bounds of the torques, less Coulomb friction and margins, at all points but a segment's
-        first [N m].
     with_torque : bool
         Whether torque is limited; without it the joints are coupled through the durations only.
 
@@ -87,23 +85,27 @@ class JointConstraints:
                  starts_moving: bool = False) -> None:
         self.mesh, self.points, self.limits, self.least_T = mesh, points, limits, least_T
         self.with_torque = bool(np.isfinite(limits.max_effort).any())
-        effort = effort_less_friction(model, limits)
-        self.effort = (np.minimum(effort, FAR) - effort_margins)[:, 1:]
+        self._effort = effort_less_friction(model, limits)
         self._workspace, self._stays = workspace, stays
         self._first_jerk = 0 if starts_moving else 1
         self._model, self._margins = model, margins
         self._velocity_margins, self._acceleration_margins = velocity_margins, acceleration_margins
         self._effort_margins = effort_margins
 
+    @property
+    def effort(self) -> Array:
+        """Bounds of torques less Coulomb friction, but at first points, (N, 2 n, 3) [N m]."""
+        return np.asarray((np.minimum(self._effort, FAR) - self._effort_margins)[:, 1:])
+
     @cached_property
     def problem(self) -> TimingProblem:
         """Return the problem that the solver works on."""
         lower, upper, bounded = self._bounds()
         N, P, _ = lower.shape
-        general = np.zeros((P, 3), bool)
-        general[1:] = self.with_torque
-        effort = np.concatenate((np.full((N, 1, 3), FAR), self.effort), axis=1)
-        arm = compiled(self._model) if self.with_torque else None
+        general = np.zeros((P, 3 if self.with_torque else 0), bool)
+        effort, arm = np.full((N, *general.shape), FAR), None
+        if self.with_torque:
+            general[1:], effort[:, 1:], arm = True, self.effort, compiled(self._model)
         return TimingProblem(self.mesh, self.points, Limits(
             lower, upper, bounded, -effort, effort, general, self.least_T, arm), self._workspace)
 
@@ -144,9 +146,11 @@ class JointConstraints:
             False also where a joint that is to stay at a via point does not.
 
         """
-        via = np.stack((motion.v, motion.a, motion.j), axis=1)[1:-1]
-        stays = self._stays is None or not via[self._stays].any()
-        return stays and self.problem.is_within(motion)
+        if self._stays is not None and self._stays.any():
+            via = np.stack((motion.v, motion.a, motion.j), axis=1)[1:-1]
+            if via[self._stays].any():
+                return False
+        return self.problem.is_within(motion)
 
     def staying(self, motion: Variables) -> Variables:
         """
@@ -193,20 +197,18 @@ class JointConstraints:
     def _bounds(self) -> tuple[Array, Array, BoolArray]:
         """Return lower and upper bounds on states (N, P, 12), and which are limited (P, 12)."""
         limits, n, N = self.limits, self.mesh.n, len(self.points) - 1
-        bounds, bounded = np.zeros((2, N, 2 * n + 1, 4, 3)), np.zeros((2 * n + 1, 4, 3), bool)
-        inside = np.r_[1:n, n + 1:2 * n + 1]  # not at the via points, where position is given
-        fastest = limits.max_velocity - self._velocity_margins[:, 1:]
-        hardest = limits.max_acceleration - self._acceleration_margins[:, 1:]
-        above, below = self._margins[:, :, inside]
-        for column, points, lowest, highest in (
-                (0, inside, limits.min_position - EDGE + below,
-                 limits.max_position + EDGE - above),
-                (1, np.arange(1, 2 * n + 1), -fastest, fastest),
-                (2, np.arange(1, 2 * n + 1), -hardest, hardest),
-                (3, np.arange(self._first_jerk, n + 1), -limits.max_jerk, limits.max_jerk)):
-            bounds[0][:, points, column] = np.maximum(lowest, -FAR)
-            bounds[1][:, points, column] = np.minimum(highest, FAR)
-            bounded[points, column] = np.isfinite(highest).any() or np.isfinite(lowest).any()
+        lower, upper = bounds = np.empty((2, N, 2 * n + 1, 4, 3))
+        upper[:, :, 0] = limits.max_position + EDGE - self._margins[0]
+        upper[:, :, 1] = limits.max_velocity - self._velocity_margins
+        upper[:, :, 2] = limits.max_acceleration - self._acceleration_margins
+        upper[:, :, 3] = limits.max_jerk
+        lower[:, :, 0] = limits.min_position - EDGE + self._margins[1]
+        np.negative(upper[:, :, 1:], out=lower[:, :, 1:])
+        np.minimum(np.maximum(bounds, -FAR, out=bounds), FAR, out=bounds)
+        finite = (np.isfinite(limit).any() for limit in (
+            (limits.min_position, limits.max_position), limits.max_velocity,
+            limits.max_acceleration, limits.max_jerk))
+        bounded = _bounded_points(n, self._first_jerk, tuple(map(bool, finite))).copy()
         if self._stays is not None and self._stays.any():
             via, largest = self.points[1:-1], OUTWARDS * limits.max_acceleration
             largest = np.where(np.isfinite(largest), largest, OUTWARDS)
@@ -217,3 +219,13 @@ class JointConstraints:
             bounded[n, 2] |= self._stays[:, 0].any(axis=0)
         lower, upper = bounds.reshape(2, N, 2 * n + 1, 12)
         return lower, upper, bounded.reshape(-1, 12)
+
+
+@lru_cache
+def _bounded_points(n: int, first_jerk: int, limited: tuple[bool, bool, bool, bool]) -> BoolArray:
+    """Return where the limited ones of q, qd, qdd and jerk have bounds, (P, 4, 3)."""
+    found = np.zeros((2 * n + 1, 4, 3), bool)
+    found[1:n, 0] = found[n + 1:, 0] = True  # not at the via points, where position is given
+    found[1:, 1:3] = True
+    found[first_jerk:n + 1, 3] = True
+    return np.asarray(found & np.array(limited)[:, np.newaxis])

@@ -60,9 +60,9 @@ class JointCheck:
 
     def __init__(self, task: JointTask, mesh: Mesh, m: Variables) -> None:
         self._task, self._effort = task, effort_less_friction(task.model, task.limits)
-        self.q, self.qd, self.qdd, jerk = np.moveaxis(
-            mesh.samples(task.points, m, 2 * CHECKS), 2, 0)
-        self._peak_jerk = np.abs(jerk).max(axis=(0, 1))  # it is at a node
+        states = mesh.samples(task.points, m, 2 * CHECKS)
+        self.q, self.qd, self.qdd = (states[:, :, order] for order in range(3))
+        self._peak_jerk = np.abs(states[:, ::2 * CHECKS, 3]).max(axis=(0, 1))  # it is at a node
 
     @cached_property
     def tau(self) -> Array | None:

@@ -30,7 +30,8 @@ from rrr_traj_planner.core.errors import StartStateError
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
 from rrr_traj_planner.core.stopping.stop import stop
 from rrr_traj_planner.core.stopping.task import from_state
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.quintic_spline import hermite, polynomial
 from rrr_traj_planner.planners.joint_timing.braking import braking, stops_for
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints

@@ -96,9 +96,7 @@ def _straight_on(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> S
 def _fastest(whole: JointProblem, start: InitialMotion) -> Solved | None:
     task = whole.task
     if np.isfinite(task.limits.max_acceleration).all():
-        without_torque = replace(whole, task=replace(
-            task, limits=replace(task.limits, max_effort=np.full(3, np.inf))))
-        without_torque, first = meshed(without_torque, start)
+        without_torque, first = meshed(_without_torque(whole), start)
         whole = replace(whole, mesh=without_torque.mesh)
         found = tightened(without_torque, first, start)
         task.should_stop()
@@ -110,6 +108,14 @@ def _fastest(whole: JointProblem, start: InitialMotion) -> Solved | None:
     whole, first = meshed(whole, start)
     found = tightened(whole, first, start)
     return None if found is None else _refined(whole, found)
+
+
+def _without_torque(problem: JointProblem) -> JointProblem:
+    limits = problem.task.limits
+    if np.isinf(limits.max_effort).all():
+        return problem
+    unlimited = replace(limits, max_effort=np.full(3, np.inf))
+    return replace(problem, task=replace(problem.task, limits=unlimited))
 
 
 def _refined(problem: JointProblem, solved: Solved) -> Solved:

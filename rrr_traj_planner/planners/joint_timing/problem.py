@@ -39,7 +39,8 @@ from rrr_traj_planner.planners.solver.interior_point import (
 )
 from rrr_traj_planner.planners.solver.limits import DurationConstraints, Limits
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
-from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
+from rrr_traj_planner.planners.solver.workspace import Workspace
 from rrr_traj_planner.planners.tasks import JointTask
 
 # Chosen values.
@@ -120,14 +121,15 @@ class JointProblem(ReadOnlyArrays):
     def _stays(self) -> BoolArray:
         """Return where via velocities must be zero, for the joint is at an end of its range."""
         found = np.zeros((len(self.durations.free) - 1, 3, 3), bool)
-        found[:, 0] = self._at_ends.any(axis=0)
+        upper, lower = self._at_ends
+        found[:, 0] = upper | lower
         return found
 
     @property
-    def _at_ends(self) -> BoolArray:
-        """Return which joints are at the upper or the lower end at a via point, (2, N - 1, 3)."""
+    def _at_ends(self) -> tuple[BoolArray, BoolArray]:
+        """Return which joints are at the upper, and at the lower end at via points, (N - 1, 3)."""
         limits, via = self.task.limits, self.task.points[1:-1]
-        return np.stack((limits.max_position - via, via - limits.min_position)) <= AT_END
+        return limits.max_position - via <= AT_END, via - limits.min_position <= AT_END
 
     def inwards(self, motion: Variables) -> Variables:
         """

@@ -93,9 +93,10 @@ def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:
     beyond = np.zeros((2, len(task.points) - 1, 3))
     starts = trajectory.via_times[1:-1] - TIME_ROUNDING
     limits = task.limits
+    velocity, _, _ = trajectory.peak_rates
     for j, profile in enumerate(trajectory.profiles):
-        # a piece moves at most its peak velocity times its duration
-        largest_step = profile.peak_velocity * profile.pieces.duration
+        # a piece moves at most its joint's peak velocity times its duration
+        largest_step = velocity[j] * profile.pieces.duration
         begins = profile.begins
         if ((begins + largest_step <= limits.max_position[j])
                 & (begins - largest_step >= limits.min_position[j])).all():
@@ -124,10 +125,7 @@ def kinematic_time_scale(task: JointTask, trajectory: PiecewiseTrajectory) -> fl
         At most 1 where they hold as it is.
 
     """
-    profiles = trajectory.profiles
-    acceleration, jerk = np.array([[v.max() for v in p.pieces.peaks()] for p in profiles]).T
-    return task.limits.time_scale(
-        np.array([p.peak_velocity for p in profiles]), acceleration, jerk)
+    return task.limits.time_scale(*trajectory.peak_rates)
 
 
 def torque_fits(task: JointTask, trajectory: PiecewiseTrajectory) -> bool:

@@ -29,8 +29,10 @@ when it is held: jerk has steps until it rests, and the motion's note says so.
 from __future__ import annotations
 
 from dataclasses import replace
+from statistics import median
 
 import numpy as np
+from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
@@ -80,12 +82,13 @@ def plan(task: JointTask) -> Trajectory:
         If no path between two via points is found along which the motors can hold the arm.
 
     """
-    limits = limits_for_sampling(task.model, task.limits, task.points, task.sample_period)
+    scale = acceleration_scale(task.model, task.limits, task.points)
+    limits = limits_for_sampling(task.limits, scale, task.sample_period)
     rise = task.least_jerk_rise
     if np.isinf(task.limits.max_jerk).any():  # else there is no limit to rise to
         rise = min(rise, task.sample_period)
     task = replace(task, limits=limits, least_jerk_rise=rise)
-    mesh = uniform_mesh(len(task.points) - 1, _intervals(task))
+    mesh = uniform_mesh(len(task.points) - 1, _intervals(task, scale))
     found = fastest(task, mesh) if task.durations is None else prescribed(
         task, mesh, task.durations)
     if found is None and task.durations is None and task.start_rates is None:
@@ -118,12 +121,15 @@ def _at_a_sampled_pace(task: JointTask, mesh: Mesh) -> Solved | None:
     return None
 
 
-def _intervals(task: JointTask) -> int:
-    """Return the number of a segment's intervals: more where the jerk limit allows short ones."""
-    scale = acceleration_scale(task.model, task.limits, task.points)
+def _intervals(task: JointTask, scale: Array) -> int:
+    """
+    Return the number of a segment's intervals: more where the jerk limit allows short ones.
+
+    scale: the largest acceleration of each joint, shape (3,) [rad/s^2].
+    """
     D = np.abs(np.diff(task.points, axis=0))
-    T = float(np.median(np.maximum(2.0 * np.sqrt(D / scale),
-                                   D / task.limits.max_velocity).max(axis=1)))
+    T = median(np.maximum(2.0 * np.sqrt(D / scale),
+                          D / task.limits.max_velocity).max(axis=1).tolist())
     swing = float((np.pi * scale / task.limits.max_jerk).max())
     n = INTERVALS
     if len(D) == 1:

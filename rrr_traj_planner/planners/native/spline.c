@@ -16,6 +16,11 @@
  * again. */
 #include "timing_problem.h"
 
+#include <math.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
 /* The jerk at node i of segment k. */
 static double node(int J, int n, Variables m, int k, int i, int j)
 {
@@ -91,6 +96,49 @@ void meet_points(int J, int N, int n, const double *parts, const double *points,
             for (int i = 0; i < n - 1; ++i)
                 for (int o = 0; o < ORDERS; ++o)
                     m.inner[((size_t)k * (n - 1) + i) * J + j] += shapes[ORDERS * i + o] * by[o];
+        }
+    }
+}
+
+/* Three shapes of jerk at the inner nodes of a segment of unit duration, (n - 1, 3), and what each
+ * changes of acceleration, velocity and position at its end (change, shape). */
+static void sines(int n, const double *parts, double *shapes, double (*end)[ORDERS])
+{
+    State at[ORDERS];
+    double s = 0.0;
+    memset(at, 0, sizeof at);
+    for (int i = 0; i < n; ++i) {
+        s += parts[i];
+        for (int o = 0; o < ORDERS; ++o) {
+            const double jerk = i < n - 1 ? sin(PI * (o + 1) * s) : 0.0;
+            if (i < n - 1)
+                shapes[ORDERS * i + o] = jerk;
+            at[o] = advanced(at[o], jerk, parts[i], 1.0);
+        }
+    }
+    for (int o = 0; o < ORDERS; ++o)
+        end[0][o] = at[o].a, end[1][o] = at[o].v, end[2][o] = at[o].q;
+}
+
+/* The shapes (N, n - 1, 3) of meet_points, for solver/splines.py: sines, combined. */
+EXPORTED void spline_restoring_shapes(int32_t N, int32_t n, const double *parts, double *shapes)
+{
+    for (int k = 0; k < N; ++k, parts += n, shapes += (size_t)(n - 1) * ORDERS) {
+        double M[ORDERS][ORDERS], cofactor[ORDERS][ORDERS], determinant = 0.0;
+        sines(n, parts, shapes, M);
+        for (int r = 0; r < ORDERS; ++r)
+            for (int c = 0; c < ORDERS; ++c) {
+                const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+                cofactor[r][c] = M[r1][c1] * M[r2][c2] - M[r1][c2] * M[r2][c1];
+            }
+        for (int c = 0; c < ORDERS; ++c)
+            determinant += M[0][c] * cofactor[0][c];
+        for (int i = 0; i < n - 1; ++i) {
+            double *own = shapes + ORDERS * i;
+            const double from[ORDERS] = {own[0], own[1], own[2]};
+            for (int r = 0; r < ORDERS; ++r)
+                own[r] = (from[0] * cofactor[r][0] + from[1] * cofactor[r][1]
+                          + from[2] * cofactor[r][2]) / determinant;
         }
     }
 }

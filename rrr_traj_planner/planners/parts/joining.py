@@ -23,8 +23,9 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array, BoolArray, IntArray
 from rrr_traj_planner.core.motion_laws import cycloid
 from rrr_traj_planner.core.trajectory.joined import joined
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
 from rrr_traj_planner.core.trajectory.paused import PausedTrajectory
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.parts.spans import Span
 from rrr_traj_planner.planners.request import PlanningRequest

@@ -35,7 +35,8 @@ from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.limits import FAR, Limits
 from rrr_traj_planner.planners.solver.splines import Mesh
-from rrr_traj_planner.planners.solver.timing_problem import TimingProblem, Workspace
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
+from rrr_traj_planner.planners.solver.workspace import Workspace
 
 QUANTITIES = 14  # three each of velocity, acceleration, jerk and torque, then:
 VELOCITY, ACCELERATION, JERK, TORQUE = (slice(3 * k, 3 * k + 3) for k in range(4))

@@ -31,7 +31,7 @@ from rrr_traj_planner.core.path.workspace_check import check_workspace
 from rrr_traj_planner.planners.deadline import part_of
 from rrr_traj_planner.planners.path_timing.least_time import RoughMotion, Timed
 from rrr_traj_planner.planners.path_timing.task import PathTask
-from rrr_traj_planner.planners.sampling_jerk_limit import limits_for_sampling
+from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale, limits_for_sampling
 from rrr_traj_planner.planners.solver.convergence import unconverged_note
 from rrr_traj_planner.planners.tasks import CartesianTask
 from rrr_traj_planner.planners.via_points import holding_failure
@@ -173,8 +173,8 @@ def _path_task(task: CartesianTask, path: CartesianPath) -> PathTask:
     failure = holding_failure(task.model, task.limits, arm_path(path.via_s).q)
     if failure is not None:
         raise failure
-    limits = limits_for_sampling(
-        task.model, task.limits, arm_path(path.via_s).q, task.sample_period)
+    scale = acceleration_scale(task.model, task.limits, arm_path(path.via_s).q)
+    limits = limits_for_sampling(task.limits, scale, task.sample_period)
     return PathTask(arm_path, limits, task.max_tip_speed, task.steady_zones, task.should_stop)
 
 

@@ -31,7 +31,7 @@ from rrr_traj_planner.planners.path_timing.constraints import (
 from rrr_traj_planner.planners.path_timing.table import PathTable
 from rrr_traj_planner.planners.path_timing.task import PathTask
 from rrr_traj_planner.planners.solver.splines import Mesh
-from rrr_traj_planner.planners.solver.timing_problem import Workspace
+from rrr_traj_planner.planners.solver.workspace import Workspace
 
 
 @dataclass(frozen=True, eq=False)

@@ -46,7 +46,8 @@ from rrr_traj_planner.planners.solver.line_search import (
 )
 from rrr_traj_planner.planners.solver.segment_steps import SegmentSteps, take_own_steps
 from rrr_traj_planner.planners.solver.splines import Variables
-from rrr_traj_planner.planners.solver.timing_problem import Step, TimingProblem
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
+from rrr_traj_planner.planners.solver.workspace import Step
 
 # Chosen values, without unit. RELATIVE_GAP decides accuracy, the others the number of iterations:
 # half and twice of each (SMALL_SHIFT: 0.25 and 0.9; DUAL_CORRIDOR: 1e4 and 1e8) change durations

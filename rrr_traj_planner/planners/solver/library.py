@@ -41,6 +41,7 @@ KERNELS = declared({
     'refined_parts': (None, [*[c_int32] * 2, *[c_void_p] * 4]),
     'rise_between_samples': (None, [*[c_int32] * 3, c_void_p, c_void_p]),
     'spline_meet_points': (None, [*[c_int32] * 3, *[c_void_p] * 4]),
+    'spline_restoring_shapes': (None, [*[c_int32] * 2, *[c_void_p] * 2]),
     'spline_sample': (None, [*[c_int32] * 3, *[c_void_p] * 3, *[c_int32] * 2, c_void_p]),
     'timing_accept': (None, [c_void_p, c_void_p, c_int32, *[c_double] * 3]),
     'timing_central_duals': (None, [c_void_p, c_double]),

@@ -31,7 +31,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from rrr_traj_planner.planners.solver.library import KERNELS
-from rrr_traj_planner.planners.solver.timing_problem import Step, TimingProblem
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
+from rrr_traj_planner.planners.solver.workspace import Step
 
 # Chosen values, without unit; sizes are parts of the whole Newton step. SUFFICIENT_DECREASE and
 # TO_BOUNDARY are usual (Nocedal & Wright 3.1, 19.2); half and twice of the others (LONGEST_RETRY:

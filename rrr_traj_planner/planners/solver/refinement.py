@@ -63,8 +63,7 @@ def refined(mesh: Mesh, points: Array, m: Variables, max_jerk: Array,
         Nearly the same; it may exceed limits slightly.
 
     """
-    n = mesh.n
-    jerk = mesh.states(points, m).jerk[:, :n + 1]
+    n, jerk = mesh.n, _node_jerks(mesh, m)
     own = np.maximum(np.abs(jerk).max(axis=(0, 1)), np.finfo(float).tiny)
     limited = np.isfinite(max_jerk)
     scale = np.where(limited, np.where(limited, max_jerk, 1.0) * (own / max_jerk).max(), own)
@@ -97,8 +96,8 @@ def moved(mesh: Mesh, to: Mesh, points: Array, m: Variables) -> Variables:
         Nearly the same; it may exceed limits slightly.
 
     """
-    jerk = contiguous(mesh.states(points, m).jerk[:, :mesh.n + 1])
-    N, J = len(m.T), jerk.shape[2]
+    jerk = _node_jerks(mesh, m)
+    N, _, J = jerk.shape
     inner = np.empty((N, to.n - 1, J))
     KERNELS.jerks_on_mesh(J, N, mesh.n, mesh.parts.ctypes.data, jerk.ctypes.data, to.n,
                           to.parts.ctypes.data, inner.ctypes.data)
@@ -121,6 +120,14 @@ def halved(mesh: Mesh) -> Mesh:
 
     """
     return Mesh(np.repeat(0.5 * mesh.parts, 2, axis=1))
+
+
+def _node_jerks(mesh: Mesh, m: Variables) -> Array:
+    """Return a motion's jerks at all nodes, shape (N, n + 1, J)."""
+    N, _, J = m.inner.shape
+    jerk = np.empty((N, mesh.n + 1, J))
+    jerk[:, 0], jerk[:, 1:-1], jerk[:, -1] = m.j[:-1], m.inner, m.j[1:]
+    return jerk
 
 
 def _equal_shares(monitor: Array, parts: Array, least: Array) -> Array:

@@ -32,7 +32,8 @@ import numpy as np
 from rrr_traj_planner.core.kernels import declared, same_size_as
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.line_search import SUFFICIENT_DECREASE
-from rrr_traj_planner.planners.solver.timing_problem import Step, TimingProblem
+from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
+from rrr_traj_planner.planners.solver.workspace import Step
 
 # Segments from which on they take steps of their own; chosen: with 20, planning takes as long
 # either way, with 40 a third less.

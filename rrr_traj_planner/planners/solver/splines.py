@@ -24,7 +24,6 @@ quadratic and a cubic.
 
 from __future__ import annotations
 
-from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +31,8 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kernels import contiguous
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
 from rrr_traj_planner.core.read_only import make_read_only
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.solver.library import KERNELS
 
 LEAST_INTERVALS = 5  # of a segment: two for each of its ends' three conditions, less one
@@ -66,9 +66,11 @@ class Variables(NamedTuple):
             Views of the vector.
 
         """
-        ends = list(accumulate((f.size for f in self), initial=0))
-        return Variables(*(flat[start:end].reshape(f.shape)
-                           for start, end, f in zip(ends, ends[1:], self)))
+        found, end = [], 0
+        for field in self:
+            start, end = end, end + field.size
+            found.append(flat[start:end].reshape(field.shape))
+        return Variables(*found)
 
 
 def with_stops(inner: Array, T: Array) -> Variables:
@@ -125,10 +127,9 @@ class Mesh:
     def __init__(self, parts: Array) -> None:
         self.parts = contiguous(parts)
         N, self.n = self.parts.shape
-        s = np.cumsum(self.parts, axis=1)[:, :-1, np.newaxis]
-        shapes = np.sin(np.pi * s * np.arange(1, 4))
-        end = self.samples(np.zeros((N + 1, 3)), with_stops(shapes, np.ones(N)), 1)[:, -1]
-        self.restore = contiguous(shapes @ np.linalg.inv(end[:, 2::-1]))
+        self.restore = np.empty((N, self.n - 1, 3))
+        KERNELS.spline_restoring_shapes(
+            N, self.n, self.parts.ctypes.data, self.restore.ctypes.data)
         make_read_only((self.parts, self.restore))
 
     @property
@@ -140,8 +141,10 @@ class Mesh:
     @property
     def node_shares(self) -> Array:
         """Return the weights of the trapezoidal rule, shape (N, n + 1); 1 in sum."""
-        beside = np.pad(self.parts, ((0, 0), (1, 1)))
-        return 0.5 * (beside[:, 1:] + beside[:, :-1])
+        shares, halves = np.zeros((len(self.parts), self.n + 1)), 0.5 * self.parts
+        shares[:, :-1] += halves
+        shares[:, 1:] += halves
+        return shares
 
     def samples(self, points: Array, m: Variables, per_interval: int) -> Array:
         """
@@ -179,7 +182,8 @@ class Mesh:
             Position [rad], velocity [rad/s], acceleration [rad/s^2], jerk [rad/s^3].
 
         """
-        return States(*np.moveaxis(self._sampled(points, m, 2, nodes_first=True), 2, 0))
+        z = self._sampled(points, m, 2, nodes_first=True)
+        return States(*(z[:, :, order] for order in range(4)))
 
     def _sampled(self, points: Array, m: Variables, per_interval: int,
                  nodes_first: bool) -> Array:

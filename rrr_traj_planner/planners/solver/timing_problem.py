@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import ctypes
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
@@ -34,8 +34,7 @@ from rrr_traj_planner.core.kernels import contiguous, same_size_as
 from rrr_traj_planner.planners.solver.library import Arena, KERNELS
 from rrr_traj_planner.planners.solver.limits import DurationConstraints, FAR, Limits
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
-
-STEPS = 4  # of one iteration: two Newton steps, each followed by its second-order correction
+from rrr_traj_planner.planners.solver.workspace import ARRAYS, Size, Step, Workspace
 
 
 @same_size_as('size_of_problem')
@@ -49,56 +48,8 @@ class _Problem(ctypes.Structure):  # as in native/timing_problem.h
         ('longest', ctypes.c_double),
         *((name, ctypes.c_void_p) for name in (
             'free', 'proportions', 'weights', 'jerk_weights', 'fixed', 'arm', 'table', 'overshoot',
-            'viscous', 'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual',
-            'shift', 'hessian', 'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables',
-            'trial_states', 'trial_values', 'trial_slack', 'trial_gradient', 'trial_gradient_T',
-            'step_states', 'newton')),
+            'viscous', *ARRAYS)),
         ('shifted', ctypes.c_int32)]
-
-
-_STEP = 'direction', 'correction', 'rate', 'variables', 'slack'
-
-
-@same_size_as('size_of_step')
-class _Step(ctypes.Structure):  # as in native/timing_problem.h
-    _fields_ = [*((name, ctypes.c_void_p) for name in _STEP),
-                *((name, ctypes.c_double) for name in (
-                    'predicted_decrease', 'max_relative_slack_decrease', 'cost', 'log',
-                    'suggested_size'))]
-
-
-class Step(NamedTuple):
-    """A Newton step, and the result of a trial along it."""
-
-    address: Any    # of the structure, for the kernels
-    structure: Any  # see native/timing_problem.h
-
-
-class Workspace:
-    """Memory shared by problems that are solved one after the other: allocation costs time."""
-
-    def __init__(self) -> None:
-        self._arenas: dict[tuple[tuple[int, ...], ...], Arena] = {}
-
-    def arena(self, shapes: dict[str, tuple[int, ...]]) -> Arena:
-        """
-        Return memory for arrays of given shapes.
-
-        Parameters
-        ----------
-        shapes : dict
-            The shape of each array.
-
-        Returns
-        -------
-        Arena
-            The same one for the same shapes.
-
-        """
-        key = tuple(shapes.values())
-        if key not in self._arenas:
-            self._arenas[key] = Arena(shapes)
-        return self._arenas[key]
 
 
 class TimingProblem:
@@ -157,39 +108,24 @@ class TimingProblem:
         setattr(self._problem, name, values.ctypes.data)
 
     @cached_property
+    def _memory(self) -> tuple[Arena, list[Step]]:
+        problem = self._problem
+        arena, steps = self._workspace.memory(
+            Size(*self._shape, problem.E, problem.bounds + problem.general,
+                 self.limits.bounds_alone), self.address)
+        for name in ARRAYS:
+            setattr(problem, name, arena.addresses[name])
+        return arena, steps
+
+    @property
     def arrays(self) -> Arena:
         """Return the kernels' arrays, under the names of native/timing_problem.h."""
-        (N, n, J), p = self._shape, self._problem
-        P, Z, E = 2 * n + 1, 4 * J, p.E
-        unknowns = N * (n - 1) * J + 3 * (N + 1) * J + N
-        slacks, states, values = 2 * N * (p.bounds + p.general + 1), (N, P, Z), (N, P, E)
-        hessian = states if self.limits.bounds_alone else (N, P, Z, Z)
-        shapes: dict[str, tuple[int, ...]] = {
-            'variables': (unknowns,), 'states': states, 'values': values,
-            'jacobian': (N, P, E, Z), 'slack': (slacks,), 'inverse': (slacks,),
-            'dual': (slacks,), 'shift': (slacks,), 'hessian': hessian,
-            'exact': (0,) if self.limits.bounds_alone else hessian, 'gradient': states,
-            'gradient_T': (N,), 'hessian_T': (N,), 'trial_variables': (unknowns,),
-            'trial_states': states, 'trial_values': values, 'trial_slack': (slacks,),
-            'trial_gradient': states, 'trial_gradient_T': (N,), 'step_states': states,
-            'newton': (KERNELS.timing_newton_size(self.address),)}
-        sizes = (unknowns, unknowns, slacks, unknowns, slacks)
-        arena = self._workspace.arena({**shapes, **{
-            f'{name} {k}': (size,) for k in range(STEPS) for name, size in zip(_STEP, sizes)}})
-        for name in shapes:
-            setattr(p, name, arena.addresses[name])
-        return arena
+        return self._memory[0]
 
-    @cached_property
+    @property
     def steps(self) -> list[Step]:
         """Return the memory of an iteration's steps; every second one has a correction."""
-        found = []
-        for k in range(STEPS):
-            direction, correction, *others = (
-                self.arrays.addresses[f'{name} {k}'] for name in _STEP)
-            step = _Step(direction, correction if k % 2 else None, *others)
-            found.append(Step(ctypes.byref(step), step))
-        return found
+        return self._memory[1]
 
     def begin(self, motion: Variables, durations: DurationConstraints) -> None:
         """

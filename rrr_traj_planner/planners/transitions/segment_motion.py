@@ -27,8 +27,9 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kernels import contiguous
 from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
 from rrr_traj_planner.core.trajectory.pieces import Pieces, TransitionFunction
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.transitions.largest_displacement import largest_cruise
 from rrr_traj_planner.planners.transitions.transition_law import SegmentLimits, TransitionLaw

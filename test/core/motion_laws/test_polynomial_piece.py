@@ -18,7 +18,7 @@ from helpers.random_cases import central_difference
 import numpy as np
 import pytest
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
 
 S = np.linspace(0.0, 1.0, 20001)
 BETWEEN_SAMPLES = 1e-7  # relative, of a parabola's peak between two of 20,001 samples

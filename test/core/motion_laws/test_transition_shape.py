@@ -21,7 +21,8 @@ from rrr_traj_planner.core.motion_laws.cycloid_transitions import CYCLOID
 from rrr_traj_planner.core.motion_laws.gauss import GAUSS, gauss
 from rrr_traj_planner.core.motion_laws.quartic import QUARTIC
 from rrr_traj_planner.core.motion_laws.septic import SEPTIC
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from scipy.integrate import quad
 
 SHAPES = [SEPTIC, QUARTIC, GAUSS, gauss(3.0), gauss(0.8), gauss(order=9)]

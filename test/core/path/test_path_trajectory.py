@@ -25,7 +25,7 @@ from rrr_traj_planner.core.kinematics.forward import forward_kinematics, jacobia
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
 from rrr_traj_planner.core.path.design import line_arc, line_polynomial
 from rrr_traj_planner.core.path.path_trajectory import PathTrajectory
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
 from rrr_traj_planner.core.trajectory.sampling import sample
 
 FREE = JointLimits(min_position=np.full(3, -np.inf), max_position=np.full(3, np.inf))

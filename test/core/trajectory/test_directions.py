@@ -26,7 +26,8 @@ import pytest
 from rrr_traj_planner.core.dynamics.motor_torque import smooth_motor_torque
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
 from rrr_traj_planner.core.trajectory.directions import directions
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import peak_torque
 from rrr_traj_planner.core.trajectory.torque_sweep import torque_grid, torque_sweep
 

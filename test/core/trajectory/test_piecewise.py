@@ -19,7 +19,8 @@ import numpy as np
 import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, CycloidPiece, ramp, transition
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 
 ROUNDING = 1e-12
 # A parabola between samples of a two-thousandth of a piece: (pi / 2,000)^2 / 2.

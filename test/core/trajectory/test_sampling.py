@@ -20,7 +20,8 @@ import pytest
 from rrr_traj_planner.core.errors import InvalidInputError
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.quintic_spline import spline_through, spline_where_divided
 from rrr_traj_planner.core.trajectory.sampling import (
     points_at,

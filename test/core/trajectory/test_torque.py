@@ -22,8 +22,9 @@ from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
 from rrr_traj_planner.core.trajectory.maximum import maximum_over_time
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import (
     peak_holding_torque,
     peak_torque,

@@ -29,7 +29,8 @@ from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
 from rrr_traj_planner.core.motion_laws.cycloid import cruise, transition
-from rrr_traj_planner.core.trajectory.piecewise import JointProfile, PiecewiseTrajectory
+from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
+from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
 from rrr_traj_planner.core.trajectory.torque import peak_torque, time_scale_for_torque
 from rrr_traj_planner.core.trajectory.torque_sweep import torque_sweep
 
