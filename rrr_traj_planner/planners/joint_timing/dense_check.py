@@ -51,18 +51,30 @@ class JointCheck:
     m : Variables
         The motion.
 
-    Attributes
-    ----------
-    q, qd, qdd : ndarray, shape (N, 2 n CHECKS + 1, 3)
-        In the order of time [rad, rad/s, rad/s^2].
-
     """
 
     def __init__(self, task: JointTask, mesh: Mesh, m: Variables) -> None:
-        self._task, self._effort = task, effort_less_friction(task.model, task.limits)
-        states = mesh.samples(task.points, m, 2 * CHECKS)
-        self.q, self.qd, self.qdd = (states[:, :, order] for order in range(3))
-        self._peak_jerk = np.abs(states[:, ::2 * CHECKS, 3]).max(axis=(0, 1))  # it is at a node
+        self._task, self._mesh, self._motion = task, mesh, m
+        self._effort = effort_less_friction(task.model, task.limits)
+
+    @cached_property
+    def _states(self) -> Array:
+        return self._mesh.samples(self._task.points, self._motion, 2 * CHECKS)
+
+    @property
+    def q(self) -> Array:
+        """Return positions, in the order of time, shape (N, 2 n CHECKS + 1, 3) [rad]."""
+        return self._states[:, :, 0]
+
+    @property
+    def qd(self) -> Array:
+        """Return velocities, likewise [rad/s]."""
+        return self._states[:, :, 1]
+
+    @property
+    def qdd(self) -> Array:
+        """Return accelerations, likewise [rad/s^2]."""
+        return self._states[:, :, 2]
 
     @cached_property
     def tau(self) -> Array | None:
@@ -85,7 +97,8 @@ class JointCheck:
 
         """
         limits, tau = self._task.limits, self.tau
-        factor = limits.time_scale(np.abs(self.qd), np.abs(self.qdd), self._peak_jerk)
+        jerk = np.abs(self._states[:, ::2 * CHECKS, 3])  # it peaks at a node
+        factor = limits.time_scale(np.abs(self.qd), np.abs(self.qdd), jerk.max(axis=(0, 1)))
         if tau is None:
             return factor
         over = (np.abs(tau) > self._effort * (1.0 + LIMIT_ROUNDING)).any(axis=2)

@@ -129,8 +129,9 @@ class _Rounds:
             if self.best is not None:
                 return True
         self._check = check = JointCheck(task, self._problem.mesh, outcome.motion)
-        within = check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any()
-        if within or not durations.may_scale:  # the check is a little stricter than `fitting`
+        # `fitting` is exact; with torque it takes much longer than this check, a little stricter
+        if np.isinf(task.limits.max_effort).all() or not durations.may_scale or (
+                check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any()):
             task.should_stop()
             # in short motions a further round is as fast as slowing after the start
             fitting = self._fitting if self._by_segments() else self._problem.fitting

@@ -79,10 +79,13 @@ class Arena:
         ends = list(accumulate(map(math.prod, shapes.values()), initial=0))
         self._parts = dict(zip(shapes, zip(ends, ends[1:])))
         self._block = np.empty(ends[-1])
+        self._views: dict[str, Array] = {}
         first, size = self._block.ctypes.data, self._block.itemsize
         self.addresses = {name: first + size * start for name, start in zip(shapes, ends)}
 
     def __getitem__(self, name: str) -> Array:
         """Return an array: a view of the memory that kernels write into."""
-        start, end = self._parts[name]
-        return self._block[start:end].reshape(self._shapes[name])
+        if name not in self._views:
+            start, end = self._parts[name]
+            self._views[name] = self._block[start:end].reshape(self._shapes[name])
+        return self._views[name]
