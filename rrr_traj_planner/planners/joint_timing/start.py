@@ -182,7 +182,7 @@ def rest_to_rest_legs(parts: Array, points: Array) -> Array:
     return jerks[1:-1]
 
 
-def cannot_be_held(task: JointTask, mesh: Mesh) -> LimitViolationError:
+def cannot_be_held(task: JointTask, intervals: int) -> LimitViolationError:
     """
     Return the error of a segment without a path along which the motors can hold the arm.
 
@@ -190,8 +190,8 @@ def cannot_be_held(task: JointTask, mesh: Mesh) -> LimitViolationError:
     ----------
     task : JointTask
         The arm, its limits and the via points.
-    mesh : Mesh
-        Its n intervals in each segment.
+    intervals : int
+        In each segment.
 
     Returns
     -------
@@ -203,7 +203,7 @@ def cannot_be_held(task: JointTask, mesh: Mesh) -> LimitViolationError:
     straight = np.array([np.linspace(start, end, 100) for start, end in ends])
     needs = np.abs(gravity_torque(task.model, straight)).max(axis=1) + task.model.friction.coulomb
     blocked = (k for k, (start, end) in enumerate(zip(task.points[:-1], task.points[1:]))
-               if statically_feasible_path(task, start, end, mesh.n // LEAST_INTERVALS) is None)
+               if statically_feasible_path(task, start, end, intervals // LEAST_INTERVALS) is None)
     k = next(blocked, int((needs / task.limits.max_effort).max(axis=1).argmax()))
     torque = needs[k]
     joint = int((torque / task.limits.max_effort).argmax())

@@ -36,6 +36,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
+from rrr_traj_planner.planners.joint_timing.meshing import first_mesh
 from rrr_traj_planner.planners.joint_timing.prescribed import prescribed
 from rrr_traj_planner.planners.joint_timing.problem import Solved
 from rrr_traj_planner.planners.joint_timing.start import cannot_be_held
@@ -88,13 +89,16 @@ def plan(task: JointTask) -> Trajectory:
     if np.isinf(task.limits.max_jerk).any():  # else there is no limit to rise to
         rise = min(rise, task.sample_period)
     task = replace(task, limits=limits, least_jerk_rise=rise)
-    mesh = uniform_mesh(len(task.points) - 1, _intervals(task, scale))
-    found = fastest(task, mesh) if task.durations is None else prescribed(
-        task, mesh, task.durations)
-    if found is None and task.durations is None and task.start_rates is None:
-        found = _at_a_sampled_pace(task, mesh)
+    n = _intervals(task, scale)
+    if task.durations is not None:
+        found = prescribed(task, uniform_mesh(len(task.points) - 1, n), task.durations)
+    else:
+        mesh = first_mesh(task, scale, n)
+        found = fastest(task, mesh)
+        if found is None and task.start_rates is None:
+            found = _at_a_sampled_pace(task, mesh)
     if found is None:
-        raise cannot_be_held(task, mesh)
+        raise cannot_be_held(task, n)
     trajectory = found.trajectory
     return trajectory.noted('; '.join(filter(None, (
         trajectory.note, unconverged_note(found.gap, found.cost)))))

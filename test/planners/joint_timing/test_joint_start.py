@@ -163,7 +163,7 @@ def test_error_without_a_path_names_segment_joint_and_torque():
         task.limits, min_position=[-2.9, 1.2, -2.9], max_position=[3.1, 1.6, 3.1]))
     assert not is_connected(task, margin=-2.0)
     assert rest_to_rest(task, constraints) is None
-    error = cannot_be_held(replace(task, segment_numbers=np.array([4])), constraints.mesh)
+    error = cannot_be_held(replace(task, segment_numbers=np.array([4])), constraints.mesh.n)
     assert isinstance(error, LimitViolationError)
     torque = np.abs(gravity_torque(ARM, np.linspace(*task.points, 4001)))[:, 1].max()
     assert str(error).startswith('segment 4: no path found along which the motors can hold')

@@ -14,6 +14,8 @@
 
 """Refined meshes, of which a few segments may keep the mesh that they had."""
 
+from dataclasses import replace
+
 from helpers.spline_cases import all_free, ARM, FREE
 import numpy as np
 import pytest
@@ -21,6 +23,7 @@ from rrr_traj_planner.planners.joint_timing import meshing
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem
 from rrr_traj_planner.planners.joint_timing.start import rest_to_rest
+from rrr_traj_planner.planners.methods.time_optimal import plan
 from rrr_traj_planner.planners.solver.refinement import moved
 from rrr_traj_planner.planners.solver.splines import Mesh, uniform_mesh
 from rrr_traj_planner.planners.tasks import JointTask
@@ -73,3 +76,16 @@ def test_a_segment_that_would_exceed_limits_keeps_its_mesh_if_few_do(most, is_ke
     assert remeshed.constraints(margins).is_within(slower)
     assert remeshed.mesh.states(points, slower).q[:, INTERVALS] == pytest.approx(
         points[1:], abs=1e-9)
+
+
+@pytest.mark.parametrize('speed', [0.01, 0.05, 0.2])
+@pytest.mark.parametrize('way', [0.5, 2.0])
+def test_long_cruises_between_short_ramps_take_the_least_time(way, speed):
+    # Ramps with jerk J and acceleration a: Biagiotti & Melchiorri, Trajectory Planning for
+    # Automatic Machines and Robots, 2008, 3.4. That jerk takes 20 ms to rise makes them longer.
+    J, a = 10.0, 1.0
+    ramp = speed / a + a / J if speed * J > a ** 2 else 2.0 * np.sqrt(speed / J)
+    limits = replace(FREE, max_velocity=[speed] * 3, max_acceleration=[a] * 3, max_jerk=[J] * 3)
+    points = np.array([[0.1, 1.4, 0.0], [0.1 + way, 1.4, -0.5 * way]])
+    found = plan(JointTask(ARM, limits, points, None, 0.01))
+    assert found.duration == pytest.approx(way / speed + ramp, abs=0.04)
