@@ -88,4 +88,4 @@ def test_long_cruises_between_short_ramps_take_the_least_time(way, speed):
     limits = replace(FREE, max_velocity=[speed] * 3, max_acceleration=[a] * 3, max_jerk=[J] * 3)
     points = np.array([[0.1, 1.4, 0.0], [0.1 + way, 1.4, -0.5 * way]])
     found = plan(JointTask(ARM, limits, points, None, 0.01))
-    assert found.duration == pytest.approx(way / speed + ramp, abs=0.04)
+    assert found.duration == pytest.approx(way / speed + ramp, abs=0.06)
