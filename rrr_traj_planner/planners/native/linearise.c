@@ -45,6 +45,13 @@ static inline void add_general_constraint(const Problem *p, int e, const double 
         add_constraint(g, 0, 4, 4, f, weight, r, Q);
 }
 
+/* The shifts of a constraint: zero where none is shifted, which is not read then. */
+static inline const double *shifts_at(const Problem *p, size_t at)
+{
+    static const double none[2] = {0.0};
+    return p->shifted ? p->shift + at : none;
+}
+
 /* Slacks of a two-sided bound and their inverses; f: the barrier's first derivative by the value,
  * with shifts reduced along the step; weight: its primal-dual second derivative. */
 static inline void barrier_derivatives(double lower, double upper, double value,
@@ -81,7 +88,7 @@ static int linearise_points(const Problem *p, int k, int first, int count, int c
         const int e = p->general_at[d] - first * E, m = e / E;
         const size_t at = offset + 2 * d;
         double f, weight;
-        barrier_derivatives(lower[e], upper[e], x[e], p->dual + at, p->shift + at, barrier,
+        barrier_derivatives(lower[e], upper[e], x[e], p->dual + at, shifts_at(p, at), barrier,
                             p->slack + at, p->inverse + at, &f, &weight);
         add_general_constraint(p, e % E, g + e * Z, f, weight, r + m * Z, Q + m * Z * Z);
     }
@@ -122,7 +129,7 @@ void linearise_segment(const Problem *p, int k, double barrier)
         const int i = p->bound_at[c];
         const size_t at = first + 2 * c;
         double f, weight;
-        barrier_derivatives(lower[i], upper[i], z[i], dual + at, p->shift + at, barrier,
+        barrier_derivatives(lower[i], upper[i], z[i], dual + at, shifts_at(p, at), barrier,
                             p->slack + at, p->inverse + at, &f, &weight);
         r[i] += f;
         Q[whole ? i * Z + i % Z : i] += weight;

@@ -72,6 +72,15 @@ INLINE void copy_each(const double *from, int J, Coordinates *to)
         of[k] = from[k < J ? k : J - 1];
 }
 
+/* Copy numbers of each coordinate. */
+INLINE void copy_back(const Coordinates *from, int count, int J, double *to)
+{
+    for (int i = 0; i < count; ++i, to += J)
+        for (int k = 0; k < MOST_JOINTS; ++k)
+            if (k < J)
+                to[k] = from[i][k];
+}
+
 /* Scratch memory of a step; W = 6 J + 1 unknowns of a condensed segment. */
 typedef struct {
     double *S, *right;               /* (N, W, W) and (N, W): the condensed segments */
@@ -192,16 +201,14 @@ static void expand_each(const Problem *p, const Scratch *s, int k, double T, con
     for (int i = 0; i < states; ++i)
         copy_each(z + i * J, J, s->z + i);
     each_expand(p, k, T, s->z, own, dT, part, (const each_Rows *)rows, s->inner, s->dz);
-    for (int i = 0; i < n - 1; ++i)
-        memcpy(inner + i * J, s->inner + i, J * sizeof *inner);
-    for (int i = 0; i < states; ++i)
-        memcpy(dz + i * J, s->dz + i, J * sizeof *dz);
+    copy_back(s->inner, n - 1, J, inner);
+    copy_back(s->dz, states, J, dz);
 }
 
-/* The steps of a segment's duration, inner jerks and states, from those of the via points and the
- * part that is taken of the step with these fixed; returns the predicted decrease. */
+/* The steps of a segment's duration, inner jerks and states (P, Z), from those of the via points and
+ * the part that is taken of the step with these fixed; returns the predicted decrease. */
 static double expand(const Problem *p, const Scratch *s, int k, const double *r,
-                     const double *r_T, double common, double part, Variables step, double *dz)
+                     const double *r_T, double common, double part, Variables step, double *to)
 {
     const double T = variables_at(p, p->variables).T[k];
     const int J = p->J;
@@ -209,7 +216,7 @@ static double expand(const Problem *p, const Scratch *s, int k, const double *r,
     const double *border = s->via_step + (size_t)k * ORDERS * J;  /* of both ends in a row */
     const double *z = p->states + k * states, *rows = s->rows + k * rows_size(p);
     const double *gradient = r + k * states;
-    double *to = dz + k * states, *inner = step.inner + (size_t)k * (p->n - 1) * J;
+    double *inner = step.inner + (size_t)k * (p->n - 1) * J;
     const double dT = step.T[k] = duration_step(p, s, k, border, common, part);
     double decrease = -(r_T[k] + p->weights[k]) * dT;
     if (bounds_alone(p))
@@ -218,8 +225,12 @@ static double expand(const Problem *p, const Scratch *s, int k, const double *r,
         one_expand(p, k, T, z, border, dT, part, (const one_Rows *)rows, inner, to);
     else
         three_expand(p, k, T, z, border, dT, part, (const three_Rows *)rows, inner, to);
-    for (size_t i = 0; i < states; ++i)
-        decrease -= gradient[i] * to[i];
+    double sums[VECTOR] = {0.0};  /* states are a multiple */
+    for (size_t i = 0; i < states; i += VECTOR)
+        for (int c = 0; c < VECTOR; ++c)
+            sums[c] += gradient[i + c] * to[i + c];
+    for (int c = 0; c < VECTOR; ++c)
+        decrease -= sums[c];
     return decrease;
 }
 
@@ -251,7 +262,7 @@ int newton_step(const Problem *p, const double *Q, const double *r, const double
     const double common = solve_via_points(p, all, s.S, s.right, NULL, common_hessian,
                                            common_gradient, s.via_step, s.band);
     for (int k = 0; k < p->N; ++k)
-        decrease += expand(p, &s, k, r, r_T, common, 1.0, step, dz);
+        decrease += expand(p, &s, k, r, r_T, common, 1.0, step, dz + k * points_of(p) * 4 * p->J);
     put_via_steps(p, &s, all, step);
     *predicted_decrease = decrease;
     return 0;
@@ -275,14 +286,17 @@ void rest_ends(const Problem *p, Range at)
     memset(s.via_step + at.end * half, 0, half * sizeof(double));
 }
 
-void damped_step(const Problem *p, Range at, const double *damping, double *direction,
-                 double *decrease)
+void damped_via_step(const Problem *p, Range at, const double *damping, double *direction)
 {
-    const Variables step = variables_at(p, direction);
     const Scratch s = scratch_of(p);
     solve_via_points(p, at, s.S, s.right, damping, 0.0, 0.0, s.via_step, s.band);
-    for (int k = at.begin; k < at.end; ++k)
-        decrease[k] = expand(p, &s, k, p->gradient, p->gradient_T, 0.0, 1.0 / damping[k], step,
-                             p->step_states);
-    put_via_steps(p, &s, at, step);
+    put_via_steps(p, &s, at, variables_at(p, direction));
+}
+
+double damped_segment_step(const Problem *p, int k, double damping, double *direction,
+                           double *dz)
+{
+    const Scratch s = scratch_of(p);
+    return expand(p, &s, k, p->gradient, p->gradient_T, 0.0, 1.0 / damping,
+                  variables_at(p, direction), dz);
 }

@@ -25,19 +25,37 @@ enum { HALO = 2, BESIDE = 1 };
 EXPORTED const int64_t size_of_segment_rules = sizeof(SegmentRules);
 EXPORTED const int64_t size_of_segments = sizeof(Segments);
 
-double decrement_of(const Problem *p, int k, const double *rate)
+double decrement_of(const Problem *p, int k, const double *rates)
 {
-    double sum = 0.0;
-    for (size_t i = k * count_of(p); i < (k + 1) * count_of(p); ++i)
-        sum += p->dual[i] * p->inverse[i] * rate[i] * rate[i];
-    return sum;
+    const double *dual = p->dual + k * count_of(p), *inverse = p->inverse + k * count_of(p);
+    double sums[2] = {0.0};  /* of both sides of the bounds */
+    for (size_t i = 0; i < count_of(p); i += 2)
+        for (size_t side = i; side < i + 2; ++side)
+            sums[side - i] += dual[side] * inverse[side] * rates[side] * rates[side];
+    return sums[0] + sums[1];
 }
 
-/* Linearise and condense the active segments, and compute their Newton step, with its slacks'
- * derivatives. Returns 1 where that fails. */
-static int newton(const Problem *p, Step *s, Segments *l, double barrier)
+/* The step of segment k, that of its via points known, and the derivatives of its slacks. */
+static void step_within(const Problem *p, const Step *s, const Segments *l, int k)
+{
+    double *rates = rates_of(p, s, l, k), worst = 0.0;
+    const double *inverse = p->inverse + k * count_of(p);
+    double *dz = p->step_states;
+    l->decrease[k] = damped_segment_step(p, k, l->damping[k], s->direction, dz);
+    segment_rates(p, k, dz, 1.0 / l->damping[k], rates);
+    for (size_t i = 0; i < count_of(p); ++i) {
+        const double fall = -rates[i] * inverse[i];
+        worst = fall > worst ? fall : worst;
+    }
+    l->fall[k] = worst;
+}
+
+/* Linearise and condense the active segments, and compute their Newton step. Returns 1 where that
+ * fails. */
+static int newton(const Problem *p, const Step *s, Segments *l, double barrier)
 {
     l->predicted_decrease = 0.0;
+    memset(l->again, 0, p->N);
     FOR_SEGMENTS(k, p, l->active) {
         linearise_segment(p, k, barrier);
         l->damping[k] = 1.0;
@@ -46,13 +64,12 @@ static int newton(const Problem *p, Step *s, Segments *l, double barrier)
     }
     FOR_RANGES(at, p, l->active) {
         rest_ends(p, at);
-        damped_step(p, at, l->damping, s->direction, l->decrease);
+        damped_via_step(p, at, l->damping, s->direction);
     }
     for (int k = 0; k < p->N; ++k) {
-        double *rate = s->rate + k * count_of(p);
         if (l->active[k]) {
-            segment_rates(p, k, p->step_states + (size_t)k * points_of(p) * 4 * p->J, 1.0, rate);
-            l->decrement[k] = decrement_of(p, k, s->rate);
+            step_within(p, s, l, k);
+            l->decrement[k] = decrement_of(p, k, rates_of(p, s, l, k));
         }
         l->predicted_decrease += l->active[k] ? l->decrease[k] : l->decrement[k];
     }
@@ -60,15 +77,14 @@ static int newton(const Problem *p, Step *s, Segments *l, double barrier)
 }
 
 /* Compute the step again around changed segments. */
-static void step_again(const Problem *p, Step *s, Segments *l, double *rate)
+static void step_again(const Problem *p, const Step *s, Segments *l)
 {
     mark_around(p, l->changed, l->active, HALO, l->marked);
     FOR_RANGES(at, p, l->marked)
-        damped_step(p, at, l->damping, s->direction, l->decrease);
+        damped_via_step(p, at, l->damping, s->direction);
     FOR_SEGMENTS(k, p, l->marked) {
-        segment_rates(p, k, p->step_states + (size_t)k * points_of(p) * 4 * p->J,
-                      1.0 / l->damping[k], rate + k * count_of(p));
-        l->untried[k] = 1;
+        l->again[k] = l->untried[k] = 1;
+        step_within(p, s, l, k);
     }
 }
 
@@ -76,20 +92,24 @@ static void step_again(const Problem *p, Step *s, Segments *l, double *rate)
 static void accept_segment(const Problem *p, const SegmentRules *rules, const Step *s, int k,
                            double barrier)
 {
-    double *change = p->trial_slack, worst = 0.0;
-    const size_t begin = k * count_of(p), end = begin + count_of(p);
-    for (size_t i = begin; i < end; ++i) {
-        change[i] = (barrier - p->dual[i] * s->rate[i]) * p->inverse[i] - p->dual[i];
-        if (-change[i] > worst * p->dual[i])
-            worst = -change[i] / p->dual[i];
+    const size_t begin = k * count_of(p), count = count_of(p);
+    const double *moved = s->slack + begin, *rates = s->rate + begin;
+    const double *inverse = p->inverse + begin;
+    double *change = p->trial_slack, *duals = p->dual + begin, worst = 0.0;
+    for (size_t i = 0; i < count; ++i) {
+        change[i] = (barrier - duals[i] * rates[i]) * inverse[i] - duals[i];
+        if (-change[i] > worst * duals[i])
+            worst = -change[i] / duals[i];
     }
     const double size = worst > rules->to_boundary ? rules->to_boundary / worst : 1.0;
-    for (size_t i = begin; i < end; ++i) {
-        const double central = barrier / s->slack[i];
-        p->dual[i] = fmax(central / rules->corridor,
-                          fmin(central * rules->corridor, p->dual[i] + size * change[i]));
-        p->slack[i] = s->slack[i];
+    const double part = 1.0 / rules->corridor;
+    for (size_t i = 0; i < count; ++i) {
+        const double central = barrier / moved[i], least = central * part;
+        const double most = central * rules->corridor, dual = duals[i] + size * change[i];
+        duals[i] = dual < least ? least : dual > most ? most : dual;
     }
+    for (size_t i = 0; i < count && p->shifted; ++i)
+        p->slack[begin + i] = moved[i];
 }
 
 /* Reduce a segment's shifts by its part of the step; returns whether any is left. */
@@ -120,7 +140,8 @@ static void accept(Problem *p, const SegmentRules *rules, const Step *s, Segment
     FOR_SEGMENTS(k, p, l->active) {
         accept_segment(p, rules, s, k, barrier);
         const int left = reduce_shifts(p, rules, l, k);
-        l->log[k] = log_sum(p->slack + k * count_of(p), count_of(p));
+        l->log[k] = p->shifted ? log_sum(p->slack + k * count_of(p), count_of(p))
+            : l->moved_log[k];
         l->changed[k] = left || l->decrement[k] > least;
         shifted |= left;
     }
@@ -147,33 +168,28 @@ EXPORTED double segments_log_sum(const Problem *p, Segments *l)
 }
 
 /* Shorten the step until it is acceptable; returns whether that succeeds. */
-static int shorten(const Problem *p, const SegmentRules *rules, Step *s, Segments *l,
-                   double barrier,
-                   double *rate)
+static int shorten(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
+                   double barrier)
 {
     memcpy(l->marked, l->active, p->N);
     memcpy(l->untried, l->active, p->N);
     for (int round = 0; round < rules->rounds; ++round) {
-        if (!fall_too_fast(p, rules, l, rate) && !are_too_short(p, s, l)
-            && !fall_too_far(p, rules, s, l, rate)
-            && !decreases_too_little(p, rules, s, l, barrier, rate))
+        if (!fall_too_fast(p, rules, l) && !are_too_short(p, s, l)
+            && !fall_too_far(p, rules, s, l) && !decreases_too_little(p, rules, s, l, barrier))
             return 1;
-        step_again(p, s, l, rate);
+        step_again(p, s, l);
     }
     return 0;
 }
 
 /* Take a step. Returns 0 where none is acceptable. */
-EXPORTED int32_t segments_step(Problem *p, Step *s, Segments *l, const SegmentRules *rules,
+EXPORTED int32_t segments_step(Problem *p, const Step *s, Segments *l, const SegmentRules *rules,
                                double barrier)
 {
-    double *rate = p->trial_slack;  /* of the step that is taken; the multipliers' is Newton's */
     if (newton(p, s, l, barrier))
         return 0;
     memcpy(s->variables, p->variables, variables_size(p) * sizeof(double));
-    FOR_SEGMENTS(k, p, l->active)
-        memcpy(rate + k * count_of(p), s->rate + k * count_of(p), count_of(p) * sizeof(double));
-    if (!shorten(p, rules, s, l, barrier, rate))
+    if (!shorten(p, rules, s, l, barrier))
         return 0;
     accept(p, rules, s, l, barrier);
     return 1;

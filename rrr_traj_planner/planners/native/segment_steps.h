@@ -42,9 +42,11 @@ typedef struct {
     double *damping;            /* of the last step, at least 1 */
     double *decrease;           /* that it predicts */
     double *decrement;          /* squared, of each segment's last Newton step */
-    double *log;                /* sums of the slacks' logarithms */
+    double *fall;               /* largest relative one of a slack, to first order */
+    double *log, *moved_log;    /* sums of the slacks' logarithms; those after the step */
     double *change;             /* of the merit */
     uint8_t *active;            /* 1: takes the next step */
+    uint8_t *again;             /* 1: its step is not Newton's */
     uint8_t *changed, *marked, *untried;  /* scratch */
     double predicted_decrease;  /* of the Newton step, and of the segments that rest */
     double damped_decrease;     /* predicted of the step that is taken */
@@ -89,17 +91,23 @@ static inline int any(const Problem *p, const uint8_t *in)
 
 static inline size_t count_of(const Problem *p) { return 2 * constraints_of(p); }
 
-/* The second-order part of a segment's decrease along a step, twice: of the constraints. */
-double decrement_of(const Problem *p, int k, const double *rate);
+/* The derivatives of a segment's slacks along its step. */
+static inline double *rates_of(const Problem *p, const Step *s, const Segments *l, int k)
+{
+    return (l->again[k] ? p->trial_slack : s->rate) + k * count_of(p);
+}
+
+/* The second-order part of a segment's decrease along a step with these derivatives of its slacks,
+ * twice: of the constraints. */
+double decrement_of(const Problem *p, int k, const double *rates);
 
 /* segment_trials.c: whether a step is not acceptable, by the derivatives of the marked segments'
  * slacks; by the durations, and by the slacks, of the segments that have not been tried; by the
  * merit. Where it is not, segments are damped, and marked as changed. */
-int fall_too_fast(const Problem *p, const SegmentRules *rules, Segments *l, const double *rate);
+int fall_too_fast(const Problem *p, const SegmentRules *rules, Segments *l);
 int are_too_short(const Problem *p, const Step *s, Segments *l);
-int fall_too_far(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
-                 const double *rate);
+int fall_too_far(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l);
 int decreases_too_little(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
-                         double barrier, const double *rate);
+                         double barrier);
 
 #endif

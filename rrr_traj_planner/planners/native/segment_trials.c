@@ -23,29 +23,16 @@ static const double SHORTEST = 0.25;
 /* Factor by which the fall of slacks may exceed its part before a segment is damped again. */
 static const double TOLERANCE = 1.05;
 
-/* The largest relative decrease of a segment's slacks along a step, to first order. */
-static double fastest_fall(const Problem *p, int k, const double *rate)
-{
-    double worst = 0.0;
-    for (size_t i = k * count_of(p); i < (k + 1) * count_of(p); ++i) {
-        const double fall = -rate[i] * p->inverse[i];
-        worst = fall > worst ? fall : worst;
-    }
-    return worst;
-}
-
 /* Find the marked segments whose slacks fall too fast, to first order, and damp them; returns
  * whether there are any. */
-int fall_too_fast(const Problem *p, const SegmentRules *rules, Segments *l, const double *rate)
+int fall_too_fast(const Problem *p, const SegmentRules *rules, Segments *l)
 {
     memset(l->changed, 0, p->N);
-    FOR_SEGMENTS(k, p, l->marked) {
-        const double fall = fastest_fall(p, k, rate);
-        if (!(fall <= TOLERANCE * rules->to_boundary)) {
-            l->damping[k] *= fall / (rules->shorter * rules->to_boundary);
+    FOR_SEGMENTS(k, p, l->marked)
+        if (!(l->fall[k] <= TOLERANCE * rules->to_boundary)) {
+            l->damping[k] *= l->fall[k] / (rules->shorter * rules->to_boundary);
             l->changed[k] = 1;
         }
-    }
     memset(l->marked, 0, p->N);
     return any(p, l->changed);
 }
@@ -53,19 +40,19 @@ int fall_too_fast(const Problem *p, const SegmentRules *rules, Segments *l, cons
 /* The part of a segment's step at which the parabola of every slack, through its value, its
  * derivative and its value after the step, retains the target: 1 if none retains too little. */
 static double retaining_part(const Problem *p, const SegmentRules *rules, int k,
-                             const double *rate,
-                             const double *moved)
+                             const double *rates, const double *moved)
 {
+    const double *slacks = p->slack + k * count_of(p);
     double least = INFINITY;
     int too_far = 0;
-    for (size_t i = k * count_of(p); i < (k + 1) * count_of(p); ++i) {
-        const double slack = p->slack[i], fall = (1.0 - rules->target) * slack;
+    for (size_t i = 0; i < count_of(p); ++i) {
+        const double slack = slacks[i], rate = rates[i], fall = (1.0 - rules->target) * slack;
         too_far |= !(moved[i] >= rules->retained * slack);
         if (moved[i] >= slack - fall)
             continue;
-        const double curvature = moved[i] - slack - rate[i];
-        least = fmin(least, 2.0 * fall / (sqrt(rate[i] * rate[i] - 4.0 * curvature * fall)
-                                          - rate[i]));
+        const double curvature = moved[i] - slack - rate;
+        const double part = 2.0 * fall / (sqrt(rate * rate - 4.0 * curvature * fall) - rate);
+        least = fmin(least, part);
     }
     return too_far ? least : 1.0;
 }
@@ -89,23 +76,21 @@ int are_too_short(const Problem *p, const Step *s, Segments *l)
 
 /* Move a segment, its ends moved already; returns the part of the step that it retains. */
 static double move_segment(const Problem *p, const SegmentRules *rules, const Step *s,
-                           const Segments *l,
-                           int k, const double *rate)
+                           const Segments *l, int k)
 {
     const Variables moved = variables_at(p, s->variables);
-    double *z = p->trial_states + (size_t)k * points_of(p) * 4 * p->J;
+    double *z = p->trial_states;
     double *slack = s->slack + k * count_of(p);
     step_segment(p, variables_at(p, p->variables), variables_at(p, s->direction), 1.0, k, moved);
     meet_segment(p, moved, k);
     segment_states(p, moved, k, z);
     segment_slacks(p, k, z, 1.0 - 1.0 / l->damping[k], NULL, slack);
-    return retaining_part(p, rules, k, rate, s->slack);
+    return retaining_part(p, rules, k, rates_of(p, s, l, k), slack);
 }
 
 /* Move the untried segments and those beside; damp those whose slacks fall too far, and return
  * whether there are any. Via points at the ends of active ranges do not move. */
-int fall_too_far(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
-                        const double *rate)
+int fall_too_far(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l)
 {
     const Variables m = variables_at(p, p->variables), step = variables_at(p, s->direction),
         moved = variables_at(p, s->variables);
@@ -118,9 +103,11 @@ int fall_too_far(const Problem *p, const SegmentRules *rules, const Step *s, Seg
             step_via_point(p, m, step, 1.0, l->damping, k, moved);
     memset(l->changed, 0, N);
     FOR_SEGMENTS(k, p, l->untried) {
-        const double part = move_segment(p, rules, s, l, k, rate);
-        if (part == 1.0)
+        const double part = move_segment(p, rules, s, l, k);
+        if (part == 1.0) {
+            l->moved_log[k] = log_sum(s->slack + k * count_of(p), count_of(p));
             continue;
+        }
         l->damping[k] /= fmax(rules->shorter * fmin(part, 1.0), SHORTEST);
         l->changed[k] = 1;
     }
@@ -131,14 +118,14 @@ int fall_too_far(const Problem *p, const SegmentRules *rules, const Step *s, Seg
 /* Whether the merit decreases too little; then damp the segments where it rises over what the step
  * predicts, all if there are none. */
 int decreases_too_little(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
-                         double barrier, const double *rate)
+                         double barrier)
 {
     const Variables m = variables_at(p, p->variables), moved = variables_at(p, s->variables);
     double change = 0.0;
     l->damped_decrease = 0.0;
     FOR_SEGMENTS(k, p, l->active) {
         l->change[k] = segment_cost(p, moved, k) - segment_cost(p, m, k)
-            - barrier * (log_sum(s->slack + k * count_of(p), count_of(p)) - l->log[k]);
+            - barrier * (l->moved_log[k] - l->log[k]);
         change += l->change[k];
         l->damped_decrease += l->decrease[k];
     }
@@ -146,7 +133,8 @@ int decreases_too_little(const Problem *p, const SegmentRules *rules, const Step
         return 0;
     memset(l->changed, 0, p->N);
     FOR_SEGMENTS(k, p, l->active)
-        l->changed[k] = l->change[k] + l->decrease[k] > rules->bad * decrement_of(p, k, rate);
+        l->changed[k] = l->change[k] + l->decrease[k]
+            > rules->bad * decrement_of(p, k, rates_of(p, s, l, k));
     if (!any(p, l->changed))
         memcpy(l->changed, l->active, p->N);
     FOR_SEGMENTS(k, p, l->changed)

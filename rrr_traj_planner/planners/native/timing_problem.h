@@ -198,12 +198,14 @@ int newton_step(const Problem *p, const double *hessian, const double *gradient,
                 double *predicted_decrease);
 
 /* newton.c: Newton steps of a range of segments, for free durations: each segment condensed, which
- * returns 1 where that fails; the steps at the range's ends set to zero; and the step, damped, with
- * the changes of the states in step_states and each segment's predicted decrease, (N). The Hessian
- * of each segment is multiplied by its damping (N), at least 1. */
+ * returns 1 where that fails; the steps at the range's ends set to zero; the step of its via points,
+ * and that of a segment between them, with the changes dz of its states (P, Z): returned is the
+ * predicted decrease. The Hessian of each segment is multiplied by its damping (N), at least
+ * 1. */
 int condense_segment(const Problem *p, int k);
 void rest_ends(const Problem *p, Range at);
-void damped_step(const Problem *p, Range at, const double *damping, double *direction,
-                 double *decrease);
+void damped_via_step(const Problem *p, Range at, const double *damping, double *direction);
+double damped_segment_step(const Problem *p, int k, double damping, double *direction,
+                           double *dz);
 
 #endif

@@ -66,8 +66,8 @@ class _Rules(ctypes.Structure):  # as in native/segment_steps.h
 @same_size_as('size_of_segments')
 class _Segments(ctypes.Structure):  # as in native/segment_steps.h
     _fields_ = [*((name, c_void_p) for name in (
-        'damping', 'decrease', 'decrement', 'log', 'change', 'active', 'changed', 'marked',
-        'untried')), *((name, c_double) for name in (
+        'damping', 'decrease', 'decrement', 'fall', 'log', 'moved_log', 'change', 'active',
+        'again', 'changed', 'marked', 'untried')), *((name, c_double) for name in (
             'predicted_decrease', 'damped_decrease', 'cost', 'total_log'))]
 
 
@@ -115,7 +115,7 @@ class SegmentSteps:
 
     def __init__(self, problem: TimingProblem, dual_corridor: float, small_shift: float) -> None:
         N = len(problem.points) - 1
-        self._floats, self._flags = np.ones((5, N)), np.ones((4, N), np.uint8)
+        self._floats, self._flags = np.ones((7, N)), np.ones((5, N), np.uint8)
         self.active = self._flags[0]
         self.structure: Any = _Segments(
             *(row.ctypes.data for row in (*self._floats, *self._flags)))
