@@ -44,21 +44,26 @@ void motion_samples(int J, int N, int n, const double *parts, const double *poin
 {
     const int per = at.per_interval, first = at.nodes_first;
     const size_t Z = 4 * (size_t)J, step = Z * (first ? 1 : per);  /* from node to node */
-    for (int k = 0; k < N; ++k, parts += n, z += ((size_t)n * per + 1) * Z)
-        for (int j = 0; j < J; ++j) {
-            State s = via_state(J, points, m, k, j);
-            for (int i = 0; i <= n; ++i) {
-                put(z + i * step + j, J, s);
-                if (i == n)
-                    break;
-                const double h = parts[i] * m.T[k], u = node(J, n, m, k, i + 1, j);
-                double *to = z
-                    + (first ? n + 1 + (size_t)i * (per - 1) : (size_t)i * per + 1) * Z + j;
-                for (int r = 1; r < per; ++r, to += Z)
-                    put(to, J, advanced(s, u, h, (double)r / per));
-                s = advanced(s, u, h, 1.0);
+    for (int k = 0; k < N; ++k, parts += n, z += ((size_t)n * per + 1) * Z) {
+        State s[MOST_JOINTS];
+        for (int j = 0; j < J; ++j)
+            put(z + j, J, s[j] = via_state(J, points, m, k, j));
+        for (int i = 0; i < n; ++i) {
+            const double h = parts[i] * m.T[k];
+            double *to = z + (first ? n + 1 + (size_t)i * (per - 1) : (size_t)i * per + 1) * Z;
+            for (int r = 1; r < per; ++r, to += Z) {
+                const double x = (double)r / per;
+                const Advance w = advance_of(h, x);
+                for (int j = 0; j < J; ++j)
+                    put(to + j, J, advanced(s[j], node(J, n, m, k, i + 1, j), &w, x));
+            }
+            const Advance whole = advance_of(h, 1.0);
+            for (int j = 0; j < J; ++j) {
+                s[j] = advanced(s[j], node(J, n, m, k, i + 1, j), &whole, 1.0);
+                put(z + (i + 1) * step + j, J, s[j]);
             }
         }
+    }
 }
 
 /* For solver/splines.py. */
@@ -86,17 +91,24 @@ void meet_points(int J, int N, int n, const double *parts, const double *points,
 {
     for (int k = 0; k < N; ++k, parts += n, shapes += (size_t)(n - 1) * ORDERS) {
         const double T = m.T[k], to_v = T * T, to_q = to_v * T;
-        for (int j = 0; j < J; ++j) {
-            State s = via_state(J, points, m, k, j);
-            const State end = via_state(J, points, m, k + 1, j);
-            for (int i = 0; i < n; ++i)
-                s = advanced(s, node(J, n, m, k, i + 1, j), parts[i] * T, 1.0);
-            const double by[ORDERS] = {
-                (end.a - s.a) / T, (end.v - s.v) / to_v, (end.q - s.q) / to_q};
-            for (int i = 0; i < n - 1; ++i)
-                for (int o = 0; o < ORDERS; ++o)
-                    m.inner[((size_t)k * (n - 1) + i) * J + j] += shapes[ORDERS * i + o] * by[o];
+        double by[MOST_JOINTS][ORDERS], *inner = m.inner + (size_t)k * (n - 1) * J;
+        State s[MOST_JOINTS];
+        for (int j = 0; j < J; ++j)
+            s[j] = via_state(J, points, m, k, j);
+        for (int i = 0; i < n; ++i) {
+            const Advance whole = advance_of(parts[i] * T, 1.0);
+            for (int j = 0; j < J; ++j)
+                s[j] = advanced(s[j], node(J, n, m, k, i + 1, j), &whole, 1.0);
         }
+        for (int j = 0; j < J; ++j) {
+            const State end = via_state(J, points, m, k + 1, j);
+            by[j][0] = (end.a - s[j].a) / T, by[j][1] = (end.v - s[j].v) / to_v;
+            by[j][2] = (end.q - s[j].q) / to_q;
+        }
+        for (int i = 0; i < n - 1; ++i)
+            for (int j = 0; j < J; ++j)
+                for (int o = 0; o < ORDERS; ++o)
+                    inner[i * J + j] += shapes[ORDERS * i + o] * by[j][o];
     }
 }
 
@@ -108,12 +120,13 @@ static void sines(int n, const double *parts, double *shapes, double (*end)[ORDE
     double s = 0.0;
     memset(at, 0, sizeof at);
     for (int i = 0; i < n; ++i) {
+        const Advance whole = advance_of(parts[i], 1.0);
         s += parts[i];
         for (int o = 0; o < ORDERS; ++o) {
             const double jerk = i < n - 1 ? sin(PI * (o + 1) * s) : 0.0;
             if (i < n - 1)
                 shapes[ORDERS * i + o] = jerk;
-            at[o] = advanced(at[o], jerk, parts[i], 1.0);
+            at[o] = advanced(at[o], jerk, &whole, 1.0);
         }
     }
     for (int o = 0; o < ORDERS; ++o)

@@ -49,9 +49,10 @@ typedef struct { double hv, qa, qj, qu, vj, vu, aj, au; } Advance;
 
 static inline Advance advance_of(double h, double x)
 {
-    const double t = h * x;
-    return (Advance){t, 0.5 * t * t, t * t * t * (4.0 - x) / 24.0, t * t * t * x / 24.0,
-                     t * t * (3.0 - x) / 6.0, t * t * x / 6.0, t * (2.0 - x) / 2.0, t * x / 2.0};
+    const double t = h * x, tt = t * t, ttt = tt * t;
+    return (Advance){t, 0.5 * tt, ttt * (4.0 - x) * (1.0 / 24.0), ttt * x * (1.0 / 24.0),
+                     tt * (3.0 - x) * (1.0 / 6.0), tt * x * (1.0 / 6.0), t * (2.0 - x) * 0.5,
+                     t * x * 0.5};
 }
 
 /* The state q, v, a, j after the part x of the interval, as an initialiser: of numbers or vectors. */
@@ -59,10 +60,9 @@ static inline Advance advance_of(double h, double x)
     q + (w).hv * v + (w).qa * a + (w).qj * j + (w).qu * u, \
     v + (w).hv * a + (w).vj * j + (w).vu * u, a + (w).aj * j + (w).au * u, j + (x) * (u - j)}
 
-static inline State advanced(State s, double u, double h, double x)
+static inline State advanced(State s, double u, const Advance *w, double x)
 {
-    const Advance w = advance_of(h, x);
-    return (State)ADVANCED(w, s.q, s.v, s.a, s.j, u, x);
+    return (State)ADVANCED(*w, s.q, s.v, s.a, s.j, u, x);
 }
 
 /* Samples of every interval: per_interval of them from its start on, and the segment's end. */
