@@ -92,8 +92,9 @@ class JointBrakes:
         task, q = self.task, self.q[chosen, np.newaxis]
         brakes = JointBrake(self.brakes.velocity[chosen, np.newaxis], *(
             x[:, chosen, np.newaxis] for x in self.brakes[1:]))
-        t = self.durations[chosen, np.newaxis, np.newaxis] * np.linspace(
-            0.0, 1.0, samples)[:, np.newaxis]
+        ends = np.cumsum(self.brakes.times[:, chosen], axis=0)  # of phases: acceleration bends
+        t = np.concatenate((self.durations[chosen, np.newaxis] * np.linspace(0.0, 1.0, samples),
+                            *ends), axis=1)[..., np.newaxis]
         displacement, qd, qdd, _ = brakes.at(t)
         moved = q + displacement
         at_first = np.abs(motor_torque(task.model, q, qd[:, :1], self.qdd[chosen, np.newaxis]))

@@ -170,6 +170,31 @@ def stop(motion: ReferenceTrajectory, now: float, limits: JointLimits, model: Ro
     return Stop(found, tuple(warnings))
 
 
+def stop_of_state(motion: ReferenceTrajectory, limits: JointLimits,
+                  model: RobotModel) -> ReferenceTrajectory | None:
+    """
+    Return the fastest stop of a single state within ranges and limits, that of jerk too.
+
+    Parameters
+    ----------
+    motion : ReferenceTrajectory
+        The state, as of `from_state`.
+    limits : JointLimits
+        Jerk is limited.
+    model : RobotModel
+        The arm, for its torques.
+
+    Returns
+    -------
+    ReferenceTrajectory or None
+        Its pieces have constant jerk. None where none of the candidates is within the limits.
+
+    """
+    task = StopTask(motion, 0.0, limits, model)
+    best = _cheapest(_joint_brakes(task, *_delays(task)), None)
+    return None if best is None else best[0]
+
+
 def _within_limits(task: StopTask) -> ReferenceTrajectory | None:
     """Return the cheapest candidate within ranges and limits, if there is one."""
     delays, states = _delays(task)

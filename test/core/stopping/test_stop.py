@@ -24,7 +24,7 @@ import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
 from rrr_traj_planner.core.arm.model import RobotModel
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque, inverse_dynamics
-from rrr_traj_planner.core.stopping.stop import stop
+from rrr_traj_planner.core.stopping.stop import stop, stop_of_state
 from rrr_traj_planner.core.stopping.task import from_state, time_inside
 from rrr_traj_planner.core.trajectory.reference_trajectory import reference_through
 from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
@@ -272,3 +272,24 @@ def test_time_inside_is_when_a_motion_leaves_its_ranges():
     assert time_inside(motion, NOW, LIMITS) == pytest.approx(NOW + 0.8, abs=0.003)
     assert time_inside(motion, NOW + 1.0, LIMITS) == -inf
     assert time_inside(parabola(np.pi / 2, 1.0), NOW, LIMITS) == NOW + 2.0
+
+
+def test_torque_is_kept_by_a_joint_that_stops_within_milliseconds_while_another_takes_seconds():
+    """Joint 1 could stop in 3 ms, by jerk, with some 30 rad/s^2: a time sample or none."""
+    limits = JointLimits(max_acceleration=[inf, 1.0, 0.1], max_jerk=[2e4, 10.0, 10.0],
+                         max_effort=[150.0, 200.0, 200.0])
+    state = (0.5, 1.1, -0.2, 0.05, 0.0, 0.4, 0.0, 0.0, 0.0)
+    motion = stop_of_state(from_state(state, 0), limits, MODEL)
+    assert motion.end > 4.0  # joint 3, with 0.1 rad/s^2
+    t = np.concatenate([np.linspace(a, b, 50) for a, b in zip(motion.knots, motion.knots[1:])])
+    torque = inverse_dynamics(MODEL, *motion.at(t)[:3])
+    assert (np.abs(torque).max(axis=0) <= 1.001 * limits.max_effort).all()
+    assert np.abs(torque[:, 0]).max() > 0.5 * limits.max_effort[0]
+
+
+def test_a_stop_that_keeps_jerk_is_refused_where_only_more_jerk_would_do():
+    """Joint 1 needs 0.049 rad to turn back with 10 rad/s^3, and is 0.04 rad from its end."""
+    limits = replace(LIMITS, max_acceleration=FREE)
+    state = (limits.max_position[0] - 0.04, 1.1, -0.2, 0.3, 0.0, 0.0, 0.0, 0.0, 0.0)
+    assert stopped(state, limits).warnings == ()
+    assert stop_of_state(from_state(state, 0), limits, MODEL) is None
