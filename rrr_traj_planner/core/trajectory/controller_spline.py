@@ -48,7 +48,7 @@ RANGE_TOLERANCE = 8e-7   # rad
 # limit is below a Bernstein coefficient of position, velocity, acceleration or of the polynomial
 # through the coarse samples of torque. Chosen.
 COARSE_STEPS, FINE_STEPS = 4, 64
-BLOCK = 2000  # intervals that are checked at once: their samples stay in the cache; chosen
+BLOCK, DENSE_BLOCK = 2000, 200  # intervals checked at once: they stay in the cache; chosen
 
 
 class SplineExcess(NamedTuple):
@@ -241,14 +241,14 @@ def _exceeds(most: Array, limit: Array) -> BoolArray:
 def _checked_densely(model: RobotModel, limits: JointLimits, spline: QuinticSpline,
                      found: CheckedIntervals, should_stop: ShouldStop) -> CheckedIntervals:
     """Return the findings with those of the dense check wherever it is needed."""
-    should_stop()
-    index = np.flatnonzero(found.to_check_densely(limits) & ~found.dense)
-    if len(index):
-        fine = _dense_check(model, limits, spline, index, rest_speed_of(spline.velocities))
-        for all_of_them, some in zip(
-                (found.time_scale, found.outside, found.place, found.dense_effort), fine):
-            all_of_them[index] = some
-        found.dense[index] = True
+    to_see = np.flatnonzero(found.to_check_densely(limits) & ~found.dense)
+    rest_speed, fields = rest_speed_of(spline.velocities), found[-4:]
+    for i in range(0, len(to_see), DENSE_BLOCK):
+        should_stop()
+        index = to_see[i:i + DENSE_BLOCK]
+        for values, some in zip(fields, _dense_check(model, limits, spline, index, rest_speed)):
+            values[index] = some
+    found.dense[to_see] = True
     return found
 
 

@@ -49,6 +49,8 @@ class PiecewiseTrajectory(Trajectory):
         When each via point is passed [s].
     note : str
         See `Trajectory`.
+    jerk_step_times : array_like
+        See `Trajectory`.
 
     Raises
     ------
@@ -59,9 +61,10 @@ class PiecewiseTrajectory(Trajectory):
     """
 
     def __init__(self, profiles: Sequence[JointProfile], via_times: ArrayLike,
-                 note: str = '') -> None:
+                 note: str = '', jerk_step_times: ArrayLike = ()) -> None:
         self.profiles, self.note = tuple(profiles), note
         self.duration = self.profiles[0].duration
+        self._jerk_steps = np.asarray(jerk_step_times, dtype=float)
         self.via_times = ending_at_duration(
             finite_array('via_times', via_times, (-1,)), self.duration)
         lengths = np.array([p.duration for p in self.profiles])
@@ -86,6 +89,11 @@ class PiecewiseTrajectory(Trajectory):
             derivative[resting] = 0.0
         q[flat >= self.duration] = self._end
         return tuple(v[0] for v in (q, qd, qdd, qddd)) if times.ndim == 0 else (q, qd, qdd, qddd)
+
+    @property
+    def jerk_step_times(self) -> Array:
+        """Return the times at which jerk steps; see `Trajectory`."""
+        return self._jerk_steps
 
     @property
     def knots(self) -> Array:
@@ -116,6 +124,7 @@ class PiecewiseTrajectory(Trajectory):
         """Return the same path with time scaled by a factor; see `Trajectory`."""
         factor = time_factor(factor)
         slower = PiecewiseTrajectory([p.time_scaled(factor) for p in self.profiles],
-                                     self.via_times * factor, self.note)
+                                     self.via_times * factor, self.note,
+                                     self._jerk_steps * factor)
         self.pass_cache(slower, factor)
         return slower

@@ -28,6 +28,9 @@ from rrr_traj_planner.core.trajectory.trajectory_points import TrajectoryPoints
 NANOSECOND = 1e-9  # s
 
 LEAST_GAP = 0.1  # of the period, between a regular sample and a via point's; chosen
+# The same [s], up to half a period: a via point's time is rounded to a nanosecond, which changes
+# the acceleration of a quintic beside it by 1 / gap times as much as velocity. Chosen.
+SHORTEST_GAP = 5e-4
 
 # The quintic of an interval in which acceleration steps has the same mean and first moment of
 # acceleration as the motion, and overshoots. With the step at one end of the interval, it
@@ -42,6 +45,11 @@ STEP_GAP = 0.3
 # Time [s] from a via point to the next below which rounding of both times to nanoseconds matters:
 # at 1 rad/s it would change acceleration by 5e-4 rad/s^2 and more; chosen.
 SOON = 3e-3
+
+# Time [s] from the start to a via point below which that has no point of its own: over its square,
+# rounding of positions would be an acceleration of 1e-4 rad/s^2 and more. No jerk that a joint can
+# have makes it miss such a via point by more than rounding. Chosen.
+AT_ONCE = 1e-5
 
 # Default limit on the number of points, which bounds the memory used; chosen.
 MOST_POINTS = 200_000
@@ -164,11 +172,11 @@ def with_states_at(points: TrajectoryPoints, trajectory: Trajectory, times: Samp
 def sample_times(trajectory: Trajectory, period: float,
                  most_points: int = MOST_POINTS) -> SampleTimes:
     """
-    Return the sampling times of a motion: every period, every via time and the end.
+    Return the sampling times of a motion: every period, every via time from AT_ONCE on, the end.
 
     Also where jerk steps: a quintic across a step of jerk in its interval overshoots it by up to
     37 % of it, however short the interval is, one that begins or ends there not at all. A regular
-    point nearer than a tenth of a period to one of these is dropped. One nearer than three tenths
+    point nearer than `_least_gap` to one of these is dropped. One nearer than three tenths
     to a step of acceleration is replaced by points half a period before and after the step.
     See `STEP_FRACTION` for quintics across steps.
 
@@ -196,10 +204,11 @@ def sample_times(trajectory: Trajectory, period: float,
     most_points = whole_number('most_points', most_points, least=1)
     check_size(trajectory.duration, period, most_points)
     fixed = np.sort(np.concatenate(([0.0], trajectory.via_times, [trajectory.duration])))
-    fixed = fixed[np.concatenate(([True], np.diff(fixed) >= 1.5 * NANOSECOND))]
+    fixed = fixed[np.concatenate(([True], np.diff(fixed) >= 1.5 * NANOSECOND))
+                  & ((fixed == 0.0) | (fixed >= AT_ONCE) | (fixed == trajectory.duration))]
     fixed[-1] = trajectory.duration
     regular: Array = period * np.arange(1.0, int(trajectory.duration / period) + 1)
-    gap, steps = LEAST_GAP * period, trajectory.step_times
+    gap, steps = _least_gap(period), trajectory.step_times
     beside = _beside_steps(steps, regular, period)
     bends = _apart(trajectory.jerk_step_times, beside, steps, period)
     retained = regular[(_distance(regular, steps) >= STEP_GAP * period)
@@ -230,6 +239,11 @@ def _in_step(times: Array, rounded: Array) -> Array:
         if k + 2 < len(times):  # the motion rests at the last one
             found[k + 1] = found[k] + rounded[k + 1] - rounded[k]
     return found
+
+
+def _least_gap(period: float) -> float:
+    """Return the least time between a regular sample and a via point's [s]."""
+    return max(LEAST_GAP * period, min(0.5 * period, SHORTEST_GAP))
 
 
 def _beside_steps(steps: Array, regular: Array, period: float) -> Array:

@@ -251,5 +251,9 @@ def test_long_motions_are_checked_block_by_block_as_at_once(seed, monkeypatch):
     spline = swinging(rng, np.cumsum(rng.uniform(0.05, 1.0, 30)))
     whole = spline_excess(model, limits, spline)
     monkeypatch.setattr(controller_spline, 'BLOCK', 7)
-    for found, expected in zip(spline_excess(model, limits, spline), whole):
+    monkeypatch.setattr(controller_spline, 'DENSE_BLOCK', 3)
+    polled = []
+    found_in_blocks = spline_excess(model, limits, spline, lambda: bool(polled.append(1)))
+    for found, expected in zip(found_in_blocks, whole):
         assert found == pytest.approx(expected, rel=1e-12, abs=1e-12)
+    assert len(polled) > 30 / 7 + np.count_nonzero(whole.time_scale > 1.0) / 3
