@@ -32,6 +32,28 @@ def never() -> bool:
     return False
 
 
+def until_found(should_stop: ShouldStop) -> ShouldStop:
+    """
+    Return a callback for the search of a first feasible result, which is not to end without one.
+
+    Parameters
+    ----------
+    should_stop : callable
+        For the whole time.
+
+    Returns
+    -------
+    callable
+        It raises as the given one does, and otherwise returns False.
+
+    """
+    def goes_on() -> bool:
+        should_stop()
+        return False
+
+    return goes_on
+
+
 @contextmanager
 def step(name: str) -> Iterator[None]:
     """

@@ -26,11 +26,13 @@ from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.tasks import JointTask, StartRates
 
 # Chosen values.
-LONGER = (1.0, 2.0)  # braking distances, over the shortest by the limits, tried in turn
+LONGER = (1.0, 2.0)  # braking distances, over the shortest by the limits
+FURTHER = (0.5, *LONGER, 4.0, 8.0, 16.0)  # those of which the best are tried,
+TRIED = 2                                 # so many
 SHORT = 0.3          # duration of a first segment over the second's, in which jerk is zero
 
 
-def stops_for(task: JointTask) -> list[int]:
+def stops_for(task: JointTask, longer: tuple[float, ...] = LONGER) -> list[int]:
     """
     Return the via points at which a moving arm can come to rest on its way.
 
@@ -38,6 +40,8 @@ def stops_for(task: JointTask) -> list[int]:
     ----------
     task : JointTask
         The arm, its limits, the via points and how the joints move at the start.
+    longer : tuple of float
+        Braking distances, over the shortest by the limits.
 
     Returns
     -------
@@ -45,22 +49,21 @@ def stops_for(task: JointTask) -> list[int]:
         One for each braking distance, the last one where the way is shorter; 0 is the start.
 
     """
-    speeds, way = np.abs(task.rates_at_start.velocity), _way(task)
-    speed = float(np.linalg.norm(speeds))
+    speed, way = float(np.linalg.norm(task.rates_at_start.velocity)), _way(task)
     if speed == 0.0:
         return [0]
-    with np.errstate(divide='ignore'):
-        a, j = (float((limit * speed / speeds).min()) for limit in (
-            acceleration_scale(task.model, task.limits, task.points), task.limits.max_jerk))
+    a, j = _along(task)
     a = min(a, np.sqrt(speed * j))  # what jerk lets it reach
     least = 0.5 * speed * (speed / a + a / j)
     last = len(task.points) - 1
-    return [min(int(np.searchsorted(way, longer * least)), last) for longer in LONGER]
+    return [min(int(np.searchsorted(way, part * least)), last) for part in longer]
 
 
 def braking(task: JointTask, mesh: Mesh, rests: Variables) -> Iterator[Variables]:
     """
     Give motions that brake evenly through the via points, and rest at later ones.
+
+    Of several braking distances, those by which the motions exceed limits least.
 
     Parameters
     ----------
@@ -77,17 +80,20 @@ def braking(task: JointTask, mesh: Mesh, rests: Variables) -> Iterator[Variables
         The motions, which may exceed limits; none where the arm comes to rest in one segment.
 
     """
-    stops = stops_for(task)
-    if stops[0] > 1:
-        for stop in dict.fromkeys(stops):
-            yield _to(task, mesh, rests, stop)
+    if stops_for(task)[0] > 1:
+        stops = {stop for stop in stops_for(task, FURTHER) if stop > 1}
+        found = [_to(task, mesh, rests, stop) for stop in sorted(stops)]
+        for _, motion in sorted(found, key=lambda m: m[0])[:TRIED]:
+            yield motion
 
 
-def _to(task: JointTask, mesh: Mesh, rests: Variables, stop: int) -> Variables:
-    """Return the motion that comes to rest at a via point, by quintics through those before."""
+def _to(task: JointTask, mesh: Mesh, rests: Variables, stop: int) -> tuple[float, Variables]:
+    """Return the motion to rest at a via point, by quintics, and its excess over limits."""
     rates, way = task.rates_at_start, _way(task)[:stop + 1]
     D = np.diff(task.points[:stop + 1], axis=0)
     speeds = np.linalg.norm(rates.velocity) * np.sqrt(1.0 - way / way[-1])
+    most = _along(task)[1]  # jerk limits the end, where speed falls with the square of time
+    speeds = np.minimum(speeds, 0.5 * most * np.cbrt(6.0 * (way[-1] - way) / most) ** 2)
     T = (2.0 * np.diff(way) / (speeds[:-1] + speeds[1:]))[:, np.newaxis]
     T[0] = _with_acceleration(rates, D[0], T[0])
     chords, both = D / T, T[:-1] + T[1:]
@@ -99,13 +105,27 @@ def _to(task: JointTask, mesh: Mesh, rests: Variables, stop: int) -> Variables:
         v[1], a[1] = v[0] + T[0] * a[0], a[0]
     c = hermite(T, (np.zeros_like(D), v[:-1], a[:-1]), (D, v[1:], a[1:]))
     t = mesh.starts[:stop, :, np.newaxis] * T[:, np.newaxis]
-    jerk = polynomial(np.stack(c)[:, :, np.newaxis], t, 3)
+    qd, qdd, jerk = (polynomial(np.stack(c)[:, :, np.newaxis], t, k) for k in (1, 2, 3))
+    excess = max(
+        float((np.abs(qd) / task.limits.max_velocity).max()),
+        float((np.abs(qdd) / acceleration_scale(task.model, task.limits, task.points)).max()) ** (
+            1.0 / 2.0),
+        float((np.abs(jerk) / task.limits.max_jerk).max()) ** (1.0 / 3.0))
     j = np.concatenate((jerk[:, 0], np.zeros((1, 3))))
-    return mesh.restored(task.points, rests._replace(
+    return excess, mesh.restored(task.points, rests._replace(
         inner=np.concatenate((jerk[:, 1:-1], rests.inner[stop:])),
         T=np.concatenate((T[:, 0], rests.T[stop:])),
         **{name: np.concatenate((own, getattr(rests, name)[stop + 1:]))
            for name, own in (('v', v), ('a', a), ('j', j))}))
+
+
+def _along(task: JointTask) -> tuple[float, float]:
+    """Return the largest acceleration and jerk in the direction of motion."""
+    speeds = np.abs(task.rates_at_start.velocity)
+    with np.errstate(divide='ignore'):
+        a, j = (float((limit * np.linalg.norm(speeds) / speeds).min()) for limit in (
+            acceleration_scale(task.model, task.limits, task.points), task.limits.max_jerk))
+    return a, j
 
 
 def _with_acceleration(rates: StartRates, D: Array, T: Array) -> Array:

@@ -26,9 +26,10 @@ from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import until_found
 from rrr_traj_planner.core.errors import StartStateError
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
-from rrr_traj_planner.core.stopping.stop import stop
+from rrr_traj_planner.core.stopping.stop import stop, stop_of_state
 from rrr_traj_planner.core.stopping.task import from_state
 from rrr_traj_planner.core.trajectory.joint_profile import JointProfile
 from rrr_traj_planner.core.trajectory.piecewise import PiecewiseTrajectory
@@ -48,14 +49,13 @@ from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 from rrr_traj_planner.planners.tasks import JointTask
-from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 # Chosen values.
-HEAD = 8  # segments, at least, in which a longer motion comes to rest
-DURATIONS = 1.1 ** np.arange(-30.0, 8.0)  # of the first segment, over that from rest to rest
+HEAD = 20  # segments, at least, in which a longer motion comes to rest
+# of the first segment, over that from rest to rest, and over the time to stop where that is longer
+DURATIONS = 1.1 ** np.arange(-30.0, 8.0)
 WITHOUT_TORQUE = 0.5  # of the acceleration that torque allows
 DIRECT = 1e-3         # part of the way by which a direct motion may overshoot
-STEP = 1e-6           # rad/s^2, of acceleration, above which it is no rounding
 STOP_ROOM = 2e-4      # part of its limits that a stop leaves, for it is checked at samples
 
 
@@ -79,13 +79,19 @@ def from_motion(durations: DurationConstraints) -> InitialMotion:
         head = max(HEAD, *stops_for(task))
         if len(task.points) - 1 > 2 * head:
             return _with_rest_to_rest(task, constraints, durations, head)
-        motions = [brought_within(constraints, m, durations, task.should_stop)
-                   for m in straight_on(task, constraints.mesh)]
-        best = min(filter(None, motions), key=lambda m: durations.cost(m.T), default=None)
-        if best is not None or not constraints.with_torque:
+        # where planning ends early the arm may stop first; after that there is no other way
+        goes_on = until_found(task.should_stop) if task.should_stop() else task.should_stop
+        best = None
+        for motion in straight_on(task, constraints.mesh):
+            within = brought_within(constraints, motion, durations, goes_on)
+            if within and (best is None or durations.cost(within.T) < durations.cost(best.T)):
+                best = within
+            if best and task.should_stop():
+                break
+        if best or not constraints.with_torque:
             return best
         without = _without_torque(task, constraints.mesh, durations)
-        return without and brought_within(constraints, without, durations, task.should_stop)
+        return without and brought_within(constraints, without, durations, goes_on)
 
     return found
 
@@ -103,7 +109,7 @@ def _with_rest_to_rest(task: JointTask, constraints: JointConstraints,
     m = _rest_to_rest(task, constraints.mesh)
     return brought_within(constraints, Variables(*(np.concatenate((own, f[len(own):]))
                                                    for own, f in zip(first, m))),
-                          durations, task.should_stop)
+                          durations, until_found(task.should_stop))
 
 
 def _without_torque(task: JointTask, mesh: Mesh,
@@ -141,13 +147,15 @@ def straight_on(task: JointTask, mesh: Mesh) -> Iterator[Variables]:
     """
     (v, a), D, N = task.rates_at_start, task.points[1] - task.points[0], len(task.points) - 1
     m = _rest_to_rest(task, mesh)
-    T, zero = m.T[0] * DURATIONS[:, np.newaxis], np.zeros(3)
+    longest = max(m.T[0], _time_to_stop(task))
+    T = np.sort(np.outer(np.unique([m.T[0], longest]), DURATIONS), axis=None)[:, np.newaxis]
+    zero = np.zeros(3)
     families = [hermite(T, (zero, v, a), (D, zero, zero)),
                 [zero, v, 0.5 * a, (D - T * (v + 0.5 * T * a)) / T ** 3]]
     s = mesh.starts[0][:, np.newaxis, np.newaxis]
     for family in families[:N]:
         c = np.stack(np.broadcast_arrays(*family))
-        for i in _durations(task, c, s * T, float((np.abs(D) + np.abs(v) * m.T[0]).max())):
+        for i in _durations(task, c, s * T, float((np.abs(D) + np.abs(v) * longest).max())):
             rates = [polynomial(c[:, i], s[:, 0] * T[i], k) for k in (1, 2, 3)]
             inner, via = m.inner.copy(), (m.v.copy(), m.a.copy(), m.j.copy())
             inner[0] = rates[2][1:-1]
@@ -174,6 +182,13 @@ def _rest_to_rest(task: JointTask, mesh: Mesh) -> Variables:
     return m
 
 
+def _time_to_stop(task: JointTask) -> float:
+    """Return about how long the joints take to stop, by acceleration and jerk [s]."""
+    v, limits = np.abs(task.rates_at_start.velocity), task.limits
+    a = acceleration_scale(task.model, limits, task.points)
+    return float(np.maximum(v / a, 2.0 * np.sqrt(v / limits.max_jerk)).max())
+
+
 def _durations(task: JointTask, c: Array, t: Array, way: float) -> set[int]:
     """Return the first segment's durations, of K: of least excess, the longest that is direct."""
     limits, D = task.limits, task.points[1] - task.points[0]
@@ -182,7 +197,7 @@ def _durations(task: JointTask, c: Array, t: Array, way: float) -> set[int]:
                      np.sqrt(np.abs(qdd) / limits.max_acceleration),
                      np.cbrt(np.abs(jerk) / limits.max_jerk)], axis=(0, 1, 3))
     over = np.maximum(q - np.maximum(D, 0.0), np.minimum(D, 0.0) - q).max(axis=(0, 2))
-    found = {int((factor + over / way).argmin())}
+    found = {int((factor + over / max(way, np.finfo(float).tiny)).argmin())}
     direct = np.flatnonzero(over <= DIRECT * way)
     return found | set(direct[-1:].tolist())
 
@@ -208,41 +223,31 @@ def after_a_stop(task: JointTask, fastest: Callable[[JointTask], Solved | None])
     Raises
     ------
     StartStateError
-        If the arm cannot stop within its limits.
+        If no stop within its limits is found.
 
     """
     kept = replace(task.limits, **{name: (1.0 - STOP_ROOM) * getattr(task.limits, name)
                                    for name in ('max_velocity', 'max_effort')})
     state = np.concatenate((task.points[0], *task.rates_at_start))
-    stopping, warnings = stop(from_state(tuple(state.tolist()), 0), 0.0, kept, task.model)
+    moving = from_state(tuple(state.tolist()), 0)
+    stopping = stop_of_state(moving, kept, task.model)
+    if stopping is None:
+        reasons = ': '.join(('', *stop(moving, 0.0, kept, task.model).warnings[:1]))
+        raise StartStateError(
+            f'start state: no way on was found, nor a stop within the limits{reasons}')
     h, c = np.diff(stopping.knots), np.moveaxis(stopping.coefficients, 1, 0)
-    if not warnings:
-        warnings = _jerk_warnings(task, h, c)
-    if warnings:
-        raise StartStateError(f'start state: the arm cannot stop within its limits: {warnings[0]}')
     solved = fastest(replace(
         task, points=np.vstack((stopping.final, task.points[1:])), start_rates=None))
     if solved is None:
         return None
     profiles = []
+    at_rest = float(h.sum())
     for own, profile in zip(c, solved.trajectory.profiles):
         braking = h, own[:, 0], own[:, 1], 2.0 * own[:, 2], 6.0 * own[:, 3], 24.0 * own[:, 4]
         going = profile.pieces.parameters().values()
         profiles.append(JointProfile(PolynomialPiece(*map(np.concatenate, zip(braking, going)))))
-    via_times = np.concatenate(([0.0], solved.trajectory.via_times[1:] + h.sum()))
-    note = f'the arm stops first, in {h.sum():.3g} s: no motion was found that goes straight on'
-    return solved._replace(trajectory=PiecewiseTrajectory(profiles, via_times, note),
-                           cost=float(via_times[-1]))
-
-
-def _jerk_warnings(task: JointTask, h: Array, c: Array) -> tuple[str, ...]:
-    """Return a warning for each joint that stops with more jerk than its limit."""
-    before = np.concatenate((task.rates_at_start.acceleration[:, np.newaxis],
-                             2.0 * c[..., 2] + 6.0 * c[..., 3] * h), axis=1)
-    after = np.concatenate((2.0 * c[..., 2], np.zeros((3, 1))), axis=1)
-    steps = np.abs(after - before).max(axis=1) > STEP
-    jerk = 6.0 * np.abs(c[..., 3]).max(axis=1)
-    limit = task.limits.max_jerk
-    return tuple(f'{name} would need more jerk than {most:.6g} rad/s^3' for name, most, beyond in
-                 zip(task.model.joint_names, limit.tolist(),
-                     steps | (jerk > limit * (1.0 + LIMIT_ROUNDING))) if beyond)
+    via_times = np.concatenate(([0.0], solved.trajectory.via_times[1:] + at_rest))
+    note = f'the arm stops first, in {at_rest:.3g} s: no motion was found that goes straight on'
+    return solved._replace(
+        trajectory=PiecewiseTrajectory(profiles, via_times, note, stopping.knots),
+        cost=float(via_times[-1]))

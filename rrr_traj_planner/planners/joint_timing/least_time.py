@@ -20,6 +20,7 @@ from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.cancellation import until_found
 from rrr_traj_planner.core.errors import StartStateError
 from rrr_traj_planner.planners.joint_timing.from_motion import (
     after_a_stop,
@@ -75,12 +76,15 @@ def fastest(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> Solved
         found = _straight_on(task, own, least_T)
         if found is not None:
             return found
-        if task.should_stop():
+        if ended_early := task.should_stop():
             break
     try:
         return after_a_stop(task, lambda from_rest: fastest(from_rest, mesh, least_T))
     except StartStateError:
-        found = through_a_pose_ahead(task, lambda ahead: _straight_on(
+        patient = replace(task, should_stop=until_found(task.should_stop))
+        tries = (task, patient) if ended_early else ()  # the first motion, or an optimised one
+        again = filter(None, (_straight_on(t, mesh, least_T) for t in tries))
+        found = next(again, None) or through_a_pose_ahead(task, lambda ahead: _straight_on(
             ahead, uniform_mesh(len(ahead.points) - 1, mesh.n)))
         if found is None:
             raise

@@ -36,7 +36,7 @@ from rrr_traj_planner.planners.tasks import StartRates
 ALLOWED = 1e-3  # part of a limit: to which a controller's quintics keep the limits of an answer
 # Chosen values.
 ROOM = 2e-4      # part by which a limit is above what the state needs
-NARROW = 1e-3    # rad, that braking leaves before the end of a range; there the joint
+NARROW = 3e-3      # rad, that braking leaves before the end of a range; there the joint
 FOR_ROOM = 4e-4  # may brake harder by this part
 
 
@@ -86,9 +86,9 @@ def limits_of_moving_start(model: RobotModel, limits: JointLimits, start: Array,
         raised[name] = np.maximum(limit, (1.0 + ROOM) * needed)
     found = replace(limits, **raised)
     narrow = _room(model, found, start, rates) < NARROW
-    return replace(found, max_acceleration=np.where(
-        narrow, np.maximum(found.max_acceleration, (1.0 + FOR_ROOM) * limits.max_acceleration),
-        found.max_acceleration))
+    return replace(found, **{name: np.where(
+        narrow, np.maximum(getattr(found, name), (1.0 + FOR_ROOM) * getattr(limits, name)),
+        getattr(found, name)) for name in ('max_acceleration', 'max_jerk')})
 
 
 def _room(model: RobotModel, limits: JointLimits, start: Array, rates: StartRates) -> Array:

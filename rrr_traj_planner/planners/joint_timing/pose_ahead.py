@@ -57,8 +57,7 @@ def through_a_pose_ahead(task: JointTask,
 
     """
     for pose in _poses_ahead(task):
-        if task.should_stop():
-            break
+        task.should_stop()
         found = fastest(replace(task, points=np.insert(task.points, 1, pose, axis=0)))
         if found is not None:
             passed = found.trajectory

@@ -46,7 +46,7 @@ from rrr_traj_planner.planners.tasks import JointTask
 # Chosen values.
 AT_END = 1e-6        # rad, distance of a via point from the end of a range, at which joints stop
 INWARDS = 0.1        # least acceleration away from it, of displacement / duration^2
-WIDER = (0.1, 1.0, 10.0, 100.0)  # parts by which limits are first exceeded, tried in turn
+WIDER = (0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)  # parts by which limits are first exceeded, tried
 FIRST_GAP = 0.3      # as a part of the objective, to which a motion is brought within them
 MOST_TO_RETURN = 40  # iterations from beyond the limits, which usually take two to five
 

@@ -19,6 +19,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from rrr_traj_planner.core.cancellation import until_found
 from rrr_traj_planner.planners.joint_timing.dense_check import JointCheck
 from rrr_traj_planner.planners.joint_timing.local_repairs import Span
 from rrr_traj_planner.planners.joint_timing.margins import Margins
@@ -67,7 +68,7 @@ def slowed_after_start(problem: JointProblem, motion: Variables) -> Variables | 
     slower = time_scaled(motion, factor * (1.0 + ROOM))
     slower.v[0], slower.a[0] = motion.v[0], motion.a[0]
     head = Span(0, FIRST).problem(replace(problem, task=replace(
-        task, should_stop=lambda: task.should_stop() and False)))
+        task, should_stop=until_found(task.should_stop))))
     head = replace(head, durations=head.durations.from_motion())
     start, margins = Span(0, FIRST).motion(slower), Margins.none(head.mesh, FIRST)
     start = head.mesh.restored(head.task.points, start)

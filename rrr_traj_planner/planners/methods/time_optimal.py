@@ -37,6 +37,11 @@ from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
 from rrr_traj_planner.planners.joint_timing.meshing import first_mesh
+from rrr_traj_planner.planners.joint_timing.passed_at_once import (
+    passing,
+    times_of_points_passed_at_once,
+    without_first_points,
+)
 from rrr_traj_planner.planners.joint_timing.prescribed import prescribed
 from rrr_traj_planner.planners.joint_timing.problem import Solved
 from rrr_traj_planner.planners.joint_timing.start import cannot_be_held
@@ -53,6 +58,7 @@ ALONE_BY_TORQUE = 60  # and where torque alone limits them
 MOST_INTERVALS = 40   # in a segment where the jerk limit allows short changes of acceleration
 SHAPED = 0.1          # acceleration reversal / segment, by duration: INTERVALS suffice above it
 SAMPLES = (10.0, 30.0, 100.0)  # of the longest segment, tried where torque would allow fewer
+FROM_START = 2.0  # largest acceleration there, over that of a moving start
 MEAN_ACCELERATION = 0.9  # of a change of velocity, over its peak: ramps are about a tenth of it
 
 
@@ -89,17 +95,19 @@ def plan(task: JointTask) -> Trajectory:
     if np.isinf(task.limits.max_jerk).any():  # else there is no limit to rise to
         rise = min(rise, task.sample_period)
     task = replace(task, limits=limits, least_jerk_rise=rise)
+    at_once = np.zeros(0)
+    if task.start_rates is not None:
+        at_once = times_of_points_passed_at_once(task)
+        task = without_first_points(task, len(at_once))
     n = _intervals(task, scale)
     if task.durations is not None:
         found = prescribed(task, uniform_mesh(len(task.points) - 1, n), task.durations)
     else:
         mesh = first_mesh(task, scale, n)
-        found = fastest(task, mesh)
-        if found is None and task.start_rates is None:
-            found = _at_a_sampled_pace(task, mesh)
+        found = fastest(task, mesh) or _at_a_sampled_pace(task, mesh)
     if found is None:
         raise cannot_be_held(task, n)
-    trajectory = found.trajectory
+    trajectory = passing(found.trajectory, at_once)
     return trajectory.noted('; '.join(filter(None, (
         trajectory.note, unconverged_note(found.gap, found.cost)))))
 
@@ -114,8 +122,11 @@ def _at_a_sampled_pace(task: JointTask, mesh: Mesh) -> Solved | None:
     """
     way = float(np.abs(np.diff(task.points, axis=0)).max())
     scale = acceleration_scale(task.model, task.limits, task.points)
+    v, a = task.start_rates or np.zeros((2, 3))
     for samples in SAMPLES:
-        most = 4.0 * way / (samples * task.sample_period) ** 2  # from rest to rest
+        shortest = samples * task.sample_period
+        most = np.maximum(4.0 * way / shortest ** 2,  # from rest to rest
+                          np.maximum(np.abs(v) / shortest, FROM_START * np.abs(a)))
         if (scale <= most).all():
             continue
         found = fastest(replace(task, limits=replace(task.limits, max_acceleration=np.minimum(

@@ -68,3 +68,16 @@ def test_infinite_limits_stay_infinite():
     limits = replace(LIMITS, max_velocity=NONE, max_acceleration=NONE, max_jerk=NONE)
     found = limits_of_moving_start(ARM, limits, Q, StartRates(np.ones(3), np.ones(3)))
     assert np.isinf([found.max_velocity, found.max_acceleration, found.max_jerk]).all()
+
+
+@pytest.mark.parametrize('room', [2e-3, 0.3])
+def test_where_braking_leaves_little_room_harder_acceleration_and_jerk_are_allowed(room):
+    # it brakes by jerk alone: 0.3 rad/s until (2 v / J)^0.5 later, after 2 v / 3 times that
+    limits = replace(LIMITS, max_acceleration=NONE)
+    way = 2.0 / 3.0 * 0.3 * np.sqrt(2.0 * 0.3 / 10.0)
+    start = np.array([LIMITS.max_position[0] - way - room, 1.6, 0.2])
+    found = limits_of_moving_start(
+        ARM, limits, start, StartRates(np.array([0.3, 0.0, 0.0]), np.zeros(3)))
+    more = found.max_jerk / limits.max_jerk - 1.0
+    assert (more[0] > 0.0) == (room < 0.1)
+    assert more[0] <= 1e-3 and more[1:].tolist() == [0.0, 0.0]

@@ -15,7 +15,7 @@
 """`time_optimal` from states at which the arm moves."""
 
 from dataclasses import replace
-from itertools import count
+from itertools import count, product
 from unittest.mock import patch
 
 from helpers.measured_motions import Measured, planned_motions
@@ -28,6 +28,7 @@ from rrr_traj_planner.core.errors import InvalidInputError, StartStateError
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics
 from rrr_traj_planner.core.stopping.stop import stop
 from rrr_traj_planner.core.stopping.task import from_state
+from rrr_traj_planner.core.trajectory.quintic_spline import spline_through
 from rrr_traj_planner.planners.joint_timing import least_time
 from rrr_traj_planner.planners.planning import plan
 from rrr_traj_planner.planners.registry import planner_ids
@@ -161,6 +162,21 @@ def test_via_points_closer_than_the_way_to_stop_are_passed_as_before(number):
         assert found.trajectory.duration < 1.005 * (before.trajectory.duration - t)
 
 
+def test_close_points_of_a_curved_motion_are_passed_as_before_while_it_brakes():
+    slow, motions = [], 0
+    for limits in (FREE, replace(FREE, max_velocity=[3.0] * 3, max_jerk=[30.0] * 3)):
+        before = plan(ARM, limits, through([A, B, C])).trajectory
+        for number, part in product((21, 25, 31), (0.69, 0.74, 0.79, 0.84)):
+            t = part * before.duration
+            start, *rates = state(before, t)
+            points = before(np.linspace(t, before.duration, number)[1:])[0]
+            found = plan(ARM, limits, moving(start, points, *rates))
+            motions += 1
+            if found.trajectory.duration > 1.002 * (before.duration - t):
+                slow.append((number, part, found.trajectory.duration / (before.duration - t)))
+    assert len(slow) <= 0.15 * motions, slow
+
+
 def test_an_arm_that_cannot_stop_goes_on_and_folds():
     """In a state of a motion between other points, joint 2 would need 224 N m to stop."""
     q, qd = [0.78170907, 0.57722076, 2.10736836], [0.9696377, -0.64859548, 0.99981035]
@@ -177,6 +193,62 @@ def test_an_arm_that_cannot_stop_goes_on_and_folds():
     tips = forward_kinematics(ARM, found.trajectory(found.via_times)[0])
     assert tips == pytest.approx(points, abs=1e-8)
     assert len(found.via_times) == 2 and 'stops' not in found.note
+
+
+def test_planning_that_ends_at_once_still_finds_a_way_on_where_the_arm_cannot_stop():
+    q, qd = [0.78170907, 0.57722076, 2.10736836], [0.9696377, -0.64859548, 0.99981035]
+    limits = replace(LIMITS, max_acceleration=NONE, max_jerk=[100.0] * 3)
+    points = np.array([[0.554, 0.792, 0.122], [0.256, 0.22, 0.566]])
+    found = plan(ARM, limits, replace(
+        moving(q, [A], qd, [-0.47615928, 0.24986832, -0.00049661]), via_points=points,
+        should_stop=lambda: True))
+    assert 'stops' not in found.note
+    tips = forward_kinematics(ARM, found.trajectory(found.via_times)[0])
+    assert tips == pytest.approx(points, abs=1e-8)
+
+
+@pytest.mark.parametrize('way', [1e-5, 1e-4])
+@pytest.mark.parametrize('period', [1e-3, 1e-2])
+def test_a_point_beside_a_moving_arm_is_reached_without_a_stop_before(way, period):
+    found = plan(ARM, FREE, moving(A, [np.add(A, way)], [0.5, -0.3, 0.2], sample_period=period))
+    assert 'stops' not in found.note
+    # it turns back: 0.5 rad/s with 1 rad/s^2 takes 0.5 s, and 0.125 rad back 0.71 s
+    assert 1.2 < found.trajectory.duration < 1.7
+
+
+@pytest.mark.parametrize('soon', [1e-8, 1e-7, 1e-6, 1e-5])
+def test_a_via_point_is_passed_however_soon_after_the_start_it_is(soon):
+    q = [A, B, C]
+    before = plan(ARM, FREE, through(q))
+    T, t = before.trajectory.duration, before.via_times[1] - soon
+    found = plan(ARM, FREE, moving(
+        state(before.trajectory, t)[0], q[1:], *state(before.trajectory, t)[1:]))
+    assert found.trajectory.duration < 1.002 * (T - t)
+    assert found.via_times[0] == pytest.approx(soon, rel=1e-2, abs=2e-9)
+    assert found.trajectory(found.via_times)[0] == pytest.approx(np.array(q[1:]), abs=SAME)
+    assert np.diff(found.points.times).min() > 5e-6
+
+
+@pytest.mark.parametrize('period', [0.005, 0.03])
+def test_placeholder_efforts_do_not_keep_a_moving_arm_from_going_on(period):
+    limits = replace(LIMITS, max_acceleration=NONE, max_jerk=NONE, max_effort=[5e6] * 3)
+    before = plan(ARM, limits, through([A, B, C], sample_period=period)).trajectory
+    q, *rates = state(before, 0.1 * before.duration)
+    for points in ([q + 1e-4], [C, A]):
+        found = plan(ARM, limits, moving(q, points, *rates, sample_period=period))
+        assert found.trajectory(found.via_times)[0] == pytest.approx(np.array(points), abs=SAME)
+
+
+def test_a_controller_keeps_the_limits_where_jerk_steps_in_a_stop():
+    limits = replace(LIMITS, max_jerk=NONE, max_effort=NONE)
+    request = moving(A, [B], [0.6, -0.4, 0.5], [0.5, 0.2, -0.3], sample_period=1e-3)
+    with patch.object(least_time, '_fastest', lambda problem, start: (
+            None if problem.task.start_rates is not None else FASTEST(problem, start))):
+        found = plan(ARM, limits, request)
+    assert 'stops first' in found.note
+    spline = spline_through(found.points)
+    qdd = spline.within(np.linspace(0.0, 1.0, 20), slice(None))[2]
+    assert np.abs(qdd).max() <= ALLOWED
 
 
 FASTEST = least_time._fastest
