@@ -61,8 +61,7 @@ TARGETS = 'rest', 'dense', 'near', 'clustered', 'behind', 'other', 'range', 'sho
 WEAK, STRONG = (1.05, 1.5), (1e2, 1e5)  # over what holds the arm; over its own effort limits
 TRIES = 200                      # at drawing poses that can be held
 HELD = 0.95                      # of the effort limits, at drawn poses
-SLOW = 1.6                       # over what was left of the motion
-LEFT = 0.1                       # s, left of a motion, below which times are not compared
+SLOW, LEFT = 1.6, 0.1            # over what was left of the motion, if that was so long [s]
 TIME_LIMITS, LATE = (None, None, 0.2, 1.0), 0.3  # s, and s after the limit
 STATE, TIP, RANGE = 1e-9, 1e-8, 1e-6  # rad (and its derivatives), m, rad
 POSTURE = 1e-4                   # rad: nearer points with the same tip are one
@@ -90,10 +89,11 @@ class Case:
         return plan(self.model, self.limits, request)
 
     def is_possible(self) -> bool:
-        """Return whether the via points can be reached from where the motion ends."""
+        """Return whether the via points can be held, and reached from where the motion ends."""
         q = self.request.joint_via_points
-        if self.left is not None or np.abs(q - self.end).max() == 0.0:
-            return True
+        needed = np.abs(gravity_torque(self.model, q)) + self.model.friction.coulomb
+        if self.left is not None or (needed > self.limits.max_effort).any():
+            return bool((needed <= self.limits.max_effort).all())
         try:
             plan(self.model, self.limits, replace(
                 self.request, start=self.end, start_velocity=None, start_acceleration=None))
