@@ -107,7 +107,7 @@ class JointProblem(ReadOnlyArrays):
 
     @cached_property
     def without_margins(self) -> JointConstraints:
-        """The limits themselves, as the solver takes them."""
+        """Return the limits themselves, as the solver takes them."""
         return self._constraints(Margins.none(self.mesh, len(self.durations.free)))
 
     def _constraints(self, margins: Margins) -> JointConstraints:
