@@ -109,7 +109,7 @@ FAULTS = {
         # Newton steps
         ('*common_gradient += p->proportions[k] * right[B];', '*common_gradient += right[B];'),
         ('decrease = -(r_T[k] + p->weights[k]) * dT;', 'decrease = -r_T[k] * dT;'),
-        ('decrease -= gradient[i] * to[i];', 'decrease += gradient[i] * to[i];'),
+        ('decrease -= sums[c];', 'decrease += sums[c];'),
         ('own[s] -= column[i] * own[i * sides + s];',
          'own[s] += column[i] * own[i * sides + s];'),
         # trials, multipliers, shifts
