@@ -158,12 +158,17 @@ static void accept(Problem *p, const SegmentRules *rules, const Step *s, Segment
     }
 }
 
-/* The sums of the slacks' logarithms, of which that of all is returned. */
+/* The sums of the logarithms of the slacks at the iterate, of which that of all is returned. */
 EXPORTED double segments_log_sum(const Problem *p, Segments *l)
 {
+    const Variables m = variables_at(p, p->variables);
     l->total_log = 0.0;
-    for (int k = 0; k < p->N; ++k)
-        l->total_log += l->log[k] = log_sum(p->slack + k * count_of(p), count_of(p));
+    for (int k = 0; k < p->N; ++k) {
+        double *slack = p->slack + k * count_of(p);
+        segment_states(p, m, k, p->trial_states);
+        segment_slacks(p, k, p->trial_states, 1.0, NULL, slack);
+        l->total_log += l->log[k] = log_sum(slack, count_of(p));
+    }
     return l->total_log;
 }
 

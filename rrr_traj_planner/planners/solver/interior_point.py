@@ -151,6 +151,7 @@ class _Run:
         self._log = math.nan            # of the iterate's slacks, summed; not known yet
         self._predicted_decrease = math.inf  # of the merit function, by the last step
         self._moved = True
+        self._knows_logs = False        # whether the segments know theirs
         self._segments = SegmentSteps(
             problem, DUAL_CORRIDOR, SMALL_SHIFT) if by_segments else None
         self.ended = False
@@ -159,13 +160,15 @@ class _Run:
         """Take one Newton step, as far as slacks and merit allow; `ended` if there is none."""
         if self._segments is None or not self._step_segments(self._segments):
             self._step_whole()
+            self._knows_logs = False
 
     def _step_segments(self, segments: SegmentSteps) -> bool:
         """Take a step that each segment shortens for itself; return whether there is one."""
         problem, shifted = self._problem, self._problem.shifted
         self._steps = None
-        if math.isnan(self._log):
-            self._log = segments.log_sum()
+        if not self._knows_logs:
+            segments.log_sum()
+            self._knows_logs = True
         if not segments.take(problem.steps[-1], self._barrier):
             segments.activate_all()
             self._log = math.nan

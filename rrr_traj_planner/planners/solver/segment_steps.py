@@ -129,7 +129,7 @@ class SegmentSteps:
         self.active[:] = 1
 
     def log_sum(self) -> float:
-        """Return the sum of the logarithms of all slacks, which the problem's arrays hold."""
+        """Return the sum of the logarithms of all slacks at the iterate."""
         return float(KERNELS.segments_log_sum(self._problem.address, self._addresses[0]))
 
     def take(self, step: Step, barrier: float) -> bool:
