@@ -100,5 +100,7 @@ def passing(motion: PiecewiseTrajectory, times: Array) -> PiecewiseTrajectory:
         With k more via times.
 
     """
+    if not len(times):
+        return motion
     return PiecewiseTrajectory(motion.profiles, np.insert(motion.via_times, 1, times),
                                motion.note, motion.jerk_step_times)

@@ -33,9 +33,9 @@ from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.via_points import can_hold
 
 # Tried in turn, over the time in which the joints would stop by the torque and inertia of their
-# best poses: what gravity leaves of a torque may be a small part. Chosen: the first four plan for 11
-# of 23 random states in which the arm cannot stop; of 10,000 states of planned motions one needs
-# one of the others.
+# best poses: what gravity leaves of a torque may be a small part. Chosen: the first four plan for
+# 11 of 23 random states in which the arm cannot stop; one of 10,000 states of planned motions
+# needs one of the others.
 AHEAD = (32.0, 64.0, 16.0, 1.0, 128.0, 4.0)
 
 

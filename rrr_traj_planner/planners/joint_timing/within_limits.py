@@ -29,6 +29,8 @@ from rrr_traj_planner.planners.tasks import JointTask
 from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 from rrr_traj_planner.planners.torque_scaling import torque_time_scale
 
+MOST_SLOWED = 4  # times, until no torque exceeds its limit by more than rounding; chosen
+
 
 def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
            may_scale: bool) -> PiecewiseTrajectory | None:
@@ -65,12 +67,14 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
         return trajectory.time_scaled(factor) if factor > 1.0 and may_scale else trajectory
     if not may_scale:
         return None
-    slowed = trajectory.time_scaled(factor)
-    if not dynamic and task.model.friction.viscous.any():
-        # A factor that another limit requires may be too large for a torque.
-        further = torque_time_scale(task, slowed)
-        return slowed.time_scaled(further) if further > 1.0 + LIMIT_ROUNDING else slowed
-    return None if dynamic and not torque_fits(task, slowed) else slowed
+    for _ in range(MOST_SLOWED):
+        trajectory = trajectory.time_scaled(factor)
+        trajectory.cache.clear()  # maxima of torque may be elsewhere in a slower motion
+        factor = 1.0 if dynamic else torque_time_scale(task, trajectory)
+        if factor <= 1.0 + LIMIT_ROUNDING:
+            break
+    # slower, inertia may take less from the torque of viscous friction and gravity
+    return trajectory if torque_fits(task, trajectory) else None
 
 
 def beyond_range(task: JointTask, trajectory: PiecewiseTrajectory) -> Array:

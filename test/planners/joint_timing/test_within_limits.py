@@ -16,10 +16,12 @@
 
 from dataclasses import replace
 
+from helpers.friction_arms import with_friction
 from helpers.spline_cases import ARM, LIMITS, NONE, random_motion, share_of
 import numpy as np
 import pytest
 from rrr_traj_planner.core.arm.limits import JointLimits
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
 from rrr_traj_planner.core.dynamics.rigid_body import inverse_dynamics
 from rrr_traj_planner.planners.joint_timing.within_limits import (
     beyond_range,
@@ -188,3 +190,20 @@ def test_without_torque_limits_every_motion_fits_them():
     assert torque_fits(case.task(), case.trajectory)
     assert not torque_fits(replace(case.task(), limits=replace(LIMITS, max_effort=[1.0] * 3)),
                            case.trajectory)
+
+
+@pytest.mark.parametrize('seed', range(60))
+def test_a_slowed_motion_keeps_the_torque_limits_of_an_arm_with_friction(seed):
+    # Slower, inertia takes less from the torque of gravity and viscous friction, which may grow.
+    rng = np.random.default_rng(seed)
+    mesh, points, motion = random_motion(seed)
+    trajectory = mesh.trajectory(points, motion)
+    arm = with_friction(ARM, seed, viscous=60.0)
+    t = np.linspace(0.0, trajectory.duration, SAMPLES)
+    before = motor_torque(arm, *trajectory(t)[:3])
+    limits = replace(WIDE, max_effort=rng.uniform(0.999, 1.0) * np.abs(before).max(axis=0),
+                     max_velocity=rng.uniform(0.9, 1.0) * np.abs(trajectory(t)[1]).max(axis=0))
+    found = fitted(JointTask(arm, limits, points, None, 0.01), trajectory, True)
+    if found is not None:
+        torque = motor_torque(arm, *found(t * (found.duration / trajectory.duration))[:3])
+        assert (np.abs(torque).max(axis=0) <= (1.0 + 1e-6) * limits.max_effort).all()
