@@ -42,7 +42,7 @@ ROUGHLY_CENTRED = (2.0, 0.5)
 # begins and ends with the part RAMPS of its intervals in that time: with uniform first meshes
 # motions at 0.05 rad/s were 2 % slower. Motions by torque alone, whose ramps are longer than
 # estimated, were planned more slowly at SHORT = 0.25.
-SHORT, RAMPS, LONGER = 0.08, 0.25, 1.2
+SHORT, RAMPS, LONGER = 0.05, 0.25, 1.2
 KEPT = 0.03      # of the segments, at most, that keep their mesh for they would exceed limits
 FARTHER = 3.0    # first barrier parameter on a new mesh, over the last before, of long motions
 SLOWER = (1.003, 1.01, 1.02, 1.04, 1.08, 1.16, 1.3, 1.6)  # factors on all durations, tried in turn
@@ -50,7 +50,10 @@ SLOWER = (1.003, 1.01, 1.02, 1.04, 1.08, 1.16, 1.3, 1.6)  # factors on all durat
 
 def first_mesh(task: JointTask, acceleration: Array, n: int) -> Mesh:
     """
-    Return a mesh to begin with: uniform, but finer at the ends of segments that cruise for long.
+    Return a mesh to begin with: uniform, but for segments that cruise for long.
+
+    Those have short intervals at their ends. They keep them, for in rough solutions their ramps
+    are far longer than in the fastest motion.
 
     Parameters
     ----------
@@ -76,7 +79,7 @@ def first_mesh(task: JointTask, acceleration: Array, n: int) -> Mesh:
     zone[cruises] = LONGER * ramp / T[cruises]
     parts = np.repeat(((1.0 - 2.0 * zone) / (n - 2 * begins))[:, np.newaxis], n, axis=1)
     parts[:, :begins] = parts[:, n - begins:] = (zone / begins)[:, np.newaxis]
-    return Mesh(parts)
+    return Mesh(parts, cruises if cruises.any() else None)
 
 
 def meshed(problem: JointProblem,
@@ -176,7 +179,8 @@ def slower_on(problem: JointProblem, before: Variables, mesh: Mesh,
         parts = np.where(kept[:, np.newaxis], problem.mesh.parts, mesh.parts)
         inner = np.where(kept[:, np.newaxis, np.newaxis], time_scaled(before, factor).inner,
                          slower.inner)
-        partly, slower = replace(problem, mesh=Mesh(parts)), slower._replace(inner=inner)
+        partly = replace(problem, mesh=Mesh(parts, mesh.suits))
+        slower = slower._replace(inner=inner)
         if partly.without_margins.is_within(slower):
             return partly, slower
     return None

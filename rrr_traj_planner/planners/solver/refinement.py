@@ -29,11 +29,8 @@ from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
 
 # Of the monitor: its value where jerk is constant, over its mean where jerk goes from zero to its
-# limit in the course of a segment; and the weights of an interval and of each neighbour. Chosen.
-BASE, SMOOTHING = 0.25, (0.5, 0.25)
-# How long an interval may be, over a shorter neighbour, to be smoothed with it as if they were of
-# one length: else nodes go to the long intervals beside short ramps. Half and twice are as good.
-LONGEST = 4.0
+# limit in the course of a segment; and the weights of an interval and its two neighbours. Chosen.
+BASE, SMOOTHING = 0.25, (0.25, 0.5, 0.25)
 
 # Longest that the least interval may be, over the mean one; chosen: nodes remain to be moved.
 MOST_UNIFORM = 0.9
@@ -72,7 +69,12 @@ def refined(mesh: Mesh, points: Array, m: Variables, max_jerk: Array,
     scale = np.where(limited, np.where(limited, max_jerk, 1.0) * (own / max_jerk).max(), own)
     change = np.abs(np.diff(jerk, axis=1)) / scale
     monitor = change.max(axis=2) / (mesh.parts * n) + BASE
-    found = Mesh(_equal_shares(_smoothed(monitor, mesh.parts), mesh.parts, least_rise / m.T))
+    beside = np.concatenate((monitor[:, :1], monitor, monitor[:, -1:]), axis=1)
+    monitor = np.sum([f * beside[:, i:i + n] for i, f in enumerate(SMOOTHING)], axis=0)
+    parts = _equal_shares(monitor, mesh.parts, least_rise / m.T)
+    if mesh.suits is not None:
+        parts = np.where(mesh.suits[:, np.newaxis], mesh.parts, parts)
+    found = Mesh(parts, mesh.suits)
     return found, moved(mesh, found, points, m)
 
 
@@ -120,19 +122,7 @@ def halved(mesh: Mesh) -> Mesh:
         Its intervals in halves.
 
     """
-    return Mesh(np.repeat(0.5 * mesh.parts, 2, axis=1))
-
-
-def _smoothed(monitor: Array, parts: Array) -> Array:
-    """Return monitors smoothed over neighbours; see LONGEST."""
-    own, near = SMOOTHING
-    found = own * monitor
-    for at, beside in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[:, :-1], np.s_[:, 1:])):
-        part = np.minimum(1.0, LONGEST * parts[beside] / parts[at])
-        found[at] += near * part * monitor[beside]
-    found[:, 0] += near * monitor[:, 0]
-    found[:, -1] += near * monitor[:, -1]
-    return found
+    return Mesh(np.repeat(0.5 * mesh.parts, 2, axis=1), mesh.suits)
 
 
 def _node_jerks(mesh: Mesh, m: Variables) -> Array:

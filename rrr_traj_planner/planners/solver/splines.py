@@ -27,7 +27,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.arrays import Array, BoolArray
 from rrr_traj_planner.core.kernels import contiguous
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
 from rrr_traj_planner.core.read_only import make_read_only
@@ -110,22 +110,22 @@ class Mesh:
     Parameters
     ----------
     parts : ndarray, shape (N, n)
-        Durations of the intervals over their segment's; n at least `LEAST_INTERVALS`.
+        Durations of the n intervals over their segment's; n at least `LEAST_INTERVALS`.
+    suits : ndarray of bool, shape (N,), optional
+        Which segments' nodes suit their motion: refinements keep them.
 
     Attributes
     ----------
-    parts : ndarray, shape (N, n)
+    parts, suits, n
         As given.
-    n : int
-        Number of intervals in a segment.
     restore : ndarray, shape (N, n - 1, 3)
         Smooth inner jerks which, in a segment of unit duration, change acceleration, velocity or
         position at its end by 1.
 
     """
 
-    def __init__(self, parts: Array) -> None:
-        self.parts = contiguous(parts)
+    def __init__(self, parts: Array, suits: BoolArray | None = None) -> None:
+        self.parts, self.suits = contiguous(parts), suits
         N, self.n = self.parts.shape
         self.restore = np.empty((N, self.n - 1, 3))
         KERNELS.spline_restoring_shapes(

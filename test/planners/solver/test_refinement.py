@@ -39,8 +39,7 @@ def monitor_of(mesh, points, m):
     scale = MAX_JERK * (np.abs(jerk).max(axis=(0, 1)) / MAX_JERK).max()
     change = np.abs(np.diff(jerk, axis=1) / scale).max(axis=2) / (mesh.parts * mesh.n) + BASE
     beside = np.pad(change, ((0, 0), (1, 1)), mode='edge')
-    own, near = SMOOTHING
-    return sum(f * beside[:, i:i + mesh.n] for i, f in enumerate((near, own, near)))
+    return sum(f * beside[:, i:i + mesh.n] for i, f in enumerate(SMOOTHING))
 
 
 @pytest.mark.parametrize('seed', SEEDS)
