@@ -61,8 +61,8 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion,
     initial_motion : callable
         Returns a motion to start from, strictly within the constraints, or None.
     slow_motion : callable, optional
-        Returns a motion far from the ends of ranges, which bounds margins; by default, the first
-        start.
+        Returns a motion far from the ends of ranges, which bounds margins; by default, and where
+        the arm starts moving, the first start.
 
     Returns
     -------
@@ -162,7 +162,9 @@ class _Rounds:
     def _find_slow_motion(self) -> None:
         problem = self._problem
         if not problem.durations.from_rest:
-            self._slow = None  # there is none
+            # There is none. Without a bound, a margin just before a via point at the end of a
+            # range makes motions several times slower.
+            self._slow = self._slow or self._outcomes[0][1]
         elif self._slow is None and self._slow_motion is not None:
             self._slow = self._slow_motion(problem.task, problem.without_margins)
 
@@ -213,7 +215,8 @@ class _Rounds:
     def _partly_slow(self, motions: Sequence[tuple[Outcome, Variables]]) -> Solved | None:
         """Return the motion that is least out of range, mixed with as much of a slow one."""
         self._find_slow_motion()
-        if self._slow is None or self._slow_motion is None:
+        if (self._slow is None or self._slow_motion is None
+                or not self._problem.durations.from_rest):
             return None
         task, mesh = self._problem.task, self._problem.mesh
         outcome, motion = min(
