@@ -15,8 +15,9 @@
 """
 Motions that start moving: first iterates, and the motion that stops first where none leads on.
 
-First iterates go straight to the first via point, in a time that exceeds limits least. Shifted
-barriers bring them within limits (`problem.brought_within`).
+First iterates go straight to the first via point, in a time that exceeds limits least, or, where
+none of these leads on, as the motion that stops first. Shifted barriers bring them within limits
+(`problem.brought_within`).
 """
 
 from __future__ import annotations
@@ -200,6 +201,36 @@ def _durations(task: JointTask, c: Array, t: Array, way: float) -> set[int]:
     found = {int((factor + over / max(way, np.finfo(float).tiny)).argmin())}
     direct = np.flatnonzero(over <= DIRECT * way)
     return found | set(direct[-1:].tolist())
+
+
+def as_with_a_stop(stopping: PiecewiseTrajectory,
+                   durations: DurationConstraints) -> InitialMotion:
+    """
+    Return how a motion is found that begins like one that stops first.
+
+    Parameters
+    ----------
+    stopping : PiecewiseTrajectory
+        The motion that stops first; without its steps of jerk it may exceed limits.
+    durations : DurationConstraints
+        Of the problem.
+
+    Returns
+    -------
+    callable
+        Returns a motion within constraints near that one; None where none is found.
+
+    """
+    def found(task: JointTask, constraints: JointConstraints) -> Variables | None:
+        mesh, at, T = constraints.mesh, stopping.via_times, np.diff(stopping.via_times)
+        inside = at[:-1, np.newaxis] + mesh.starts[:, 1:-1] * T[:, np.newaxis]
+        inner = stopping(inside.ravel())[3].reshape(*inside.shape, 3)
+        v, a, j = via = np.stack(stopping(at)[1:])
+        via[:2, 0], via[:, -1] = task.rates_at_start, 0.0
+        motion = mesh.restored(task.points, Variables(inner, v, a, j, T))
+        return brought_within(constraints, motion, durations, task.should_stop)
+
+    return found
 
 
 def after_a_stop(task: JointTask, fastest: Callable[[JointTask], Solved | None]) -> Solved | None:

@@ -16,7 +16,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
@@ -24,6 +26,7 @@ from rrr_traj_planner.core.cancellation import until_found
 from rrr_traj_planner.core.errors import StartStateError
 from rrr_traj_planner.planners.joint_timing.from_motion import (
     after_a_stop,
+    as_with_a_stop,
     from_motion,
 )
 from rrr_traj_planner.planners.joint_timing.meshing import meshed
@@ -79,7 +82,11 @@ def fastest(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> Solved
         if ended_early := task.should_stop():
             break
     try:
-        return after_a_stop(task, lambda from_rest: fastest(from_rest, mesh, least_T))
+        stops = after_a_stop(task, lambda from_rest: fastest(from_rest, mesh, least_T))
+        if stops is None or task.should_stop():
+            return stops
+        found = _straight_on(task, mesh, least_T, partial(as_with_a_stop, stops.trajectory))
+        return found if found is not None and found.cost < stops.cost else stops
     except StartStateError:
         patient = replace(task, should_stop=until_found(task.should_stop))
         tries = (task, patient) if ended_early else ()  # the first motion, or an optimised one
@@ -91,10 +98,12 @@ def fastest(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> Solved
         return found
 
 
-def _straight_on(task: JointTask, mesh: Mesh, least_T: Array | None = None) -> Solved | None:
+def _straight_on(
+        task: JointTask, mesh: Mesh, least_T: Array | None = None,
+        start: Callable[[DurationConstraints], InitialMotion] = from_motion) -> Solved | None:
     """Return the fastest motion from a moving start that the first iterates lead to."""
     durations = DurationConstraints.all_free(len(task.points) - 1, 3).from_motion()
-    return _fastest(JointProblem(task, mesh, durations, least_T), from_motion(durations))
+    return _fastest(JointProblem(task, mesh, durations, least_T), start(durations))
 
 
 def _fastest(whole: JointProblem, start: InitialMotion) -> Solved | None:

@@ -216,6 +216,19 @@ def test_a_point_beside_a_moving_arm_is_reached_without_a_stop_before(way, perio
     assert 1.2 < found.trajectory.duration < 1.7
 
 
+# Times of Ruckig 0.19.4, in which joints overshoot their goals.
+@pytest.mark.parametrize('q, velocity, acceleration, goal, ruckig', [
+    ([1.45087, 1.13751, 2.6729], [-0.34177, 0.37962, -0.72726], [-0.51712, 0.62363, -0.99881],
+     [1.34761, 1.41356, 2.29451], 1.3815),
+    ([0.90949, 2.53014, -2.53846], [-0.00872, -0.15866, 0.61838], [-0.01424, -0.16927, 0.99956],
+     [0.80461, 2.47425, -2.27117], 1.3463)])
+def test_joints_that_overshoot_do_not_stop_first(q, velocity, acceleration, goal, ruckig):
+    found = plan(ARM, FREE, moving(
+        q, [q], velocity, acceleration, via_points=None, joint_via_points=[goal]))
+    assert 'stops' not in found.note
+    assert found.trajectory.duration <= 1.03 * ruckig
+
+
 @pytest.mark.parametrize('soon', [1e-8, 1e-7, 1e-6, 1e-5])
 def test_a_via_point_is_passed_however_soon_after_the_start_it_is(soon):
     q = [A, B, C]
