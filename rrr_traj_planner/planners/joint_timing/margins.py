@@ -143,8 +143,8 @@ class Margins(NamedTuple):
         mesh : Mesh
             Its n intervals in each segment.
         slow : Variables, optional
-            Within the limits; margins of positions are at most half its distance to the ends of
-            the ranges, those of efforts half of what gravity leaves. None: no bound.
+            With stops at the via points; margins of positions are at most half its distance to
+            the ends of the ranges, those of efforts half of what gravity leaves. None: no bound.
         check : JointCheck
             Of a motion that exceeds limits.
 

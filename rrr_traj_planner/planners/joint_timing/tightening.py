@@ -31,12 +31,12 @@ from rrr_traj_planner.planners.joint_timing.local_repairs import LocalRepairs
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import InitialMotion, JointProblem, Solved
 from rrr_traj_planner.planners.joint_timing.slowed_after_start import slowed_after_start
-from rrr_traj_planner.planners.joint_timing.start import with_durations
+from rrr_traj_planner.planners.joint_timing.start import rest_to_rest_shapes, with_durations
 from rrr_traj_planner.planners.joint_timing.within_limits import beyond_range
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
 from rrr_traj_planner.planners.solver.limits import Limits
 from rrr_traj_planner.planners.solver.segment_steps import take_own_steps
-from rrr_traj_planner.planners.solver.splines import Variables
+from rrr_traj_planner.planners.solver.splines import Variables, with_stops
 from rrr_traj_planner.planners.solver.tightening import Schedule, tighten
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 
@@ -61,8 +61,8 @@ def tightened(problem: JointProblem, initial_motion: InitialMotion,
     initial_motion : callable
         Returns a motion to start from, strictly within the constraints, or None.
     slow_motion : callable, optional
-        Returns a motion far from the ends of ranges, which bounds margins; by default, and where
-        the arm starts moving, the first start.
+        Returns a motion far from the ends of ranges, which bounds margins; by default, the first
+        start. Where the arm starts moving, a straight motion that starts at rest bounds them.
 
     Returns
     -------
@@ -106,7 +106,7 @@ class _Rounds:
         self._start = self._wider = None
         if start is None:
             return None
-        if self._slow_motion is None:
+        if self._slow_motion is None and self._problem.durations.from_rest:
             self._slow = self._slow or start.motion
         outcome = self._problem.minimised(
             self._constraints, start, wider=wider)
@@ -161,11 +161,14 @@ class _Rounds:
 
     def _find_slow_motion(self) -> None:
         problem = self._problem
+        if self._slow is not None:
+            return
         if not problem.durations.from_rest:
-            # There is none. Without a bound, a margin just before a via point at the end of a
-            # range makes motions several times slower.
-            self._slow = self._slow or self._outcomes[0][1]
-        elif self._slow is None and self._slow_motion is not None:
+            # Without a bound, a margin just before a via point at the end of a range makes motions
+            # several times slower.
+            jerks = rest_to_rest_shapes(problem.mesh, problem.task.points)
+            self._slow = with_stops(jerks, np.ones(len(jerks)))
+        elif self._slow_motion is not None:
             self._slow = self._slow_motion(problem.task, problem.without_margins)
 
     def tighten(self) -> bool:
