@@ -67,6 +67,8 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
         return trajectory.time_scaled(factor) if factor > 1.0 and may_scale else trajectory
     if not may_scale:
         return None
+    if not (dynamic or task.model.friction.viscous.any()):
+        return trajectory.time_scaled(factor)
     for _ in range(MOST_SLOWED):
         trajectory = trajectory.time_scaled(factor)
         trajectory.cache.clear()  # maxima of torque may be elsewhere in a slower motion
