@@ -50,6 +50,31 @@ class ViaPointBehaviour(NamedTuple):
 THROUGH = ViaPointBehaviour()
 
 
+def ramp_time(velocity: Array, acceleration: Array, jerk: Array) -> Array:
+    """
+    Return the least time of a change of velocity between states without acceleration.
+
+    Jerk is constant but for its sign (Biagiotti & Melchiorri, Trajectory Planning for Automatic
+    Machines and Robots, 2008, section 3.4).
+
+    Parameters
+    ----------
+    velocity : ndarray
+        The change, its magnitude [rad/s].
+    acceleration, jerk : ndarray
+        Limits, positive [rad/s^2, rad/s^3], of shapes that broadcast.
+
+    Returns
+    -------
+    ndarray
+        Times [s].
+
+    """
+    peak = np.minimum(acceleration, np.sqrt(velocity * jerk))
+    moves = peak > 0.0
+    return np.asarray(np.where(moves, velocity / np.where(moves, peak, 1.0), 0.0) + peak / jerk)
+
+
 def joint_travel_time(limits: JointLimits, joint: int | slice, travel: Array,
                       ends: Array | IntArray | int, reversals: Array | IntArray | int,
                       passing: ViaPointBehaviour) -> Array:

@@ -12,7 +12,6 @@
 // See the License for the specific language governing permissions and
 // limitations under the License.
 
-
 /* Functions for processors with vector instructions. */
 #ifndef RRR_TRAJ_PLANNER_PROCESSOR_H
 #define RRR_TRAJ_PLANNER_PROCESSOR_H

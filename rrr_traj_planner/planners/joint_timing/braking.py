@@ -19,7 +19,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from rrr_traj_planner.core.arm.limits import kinematic_time_scale
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.travel_time import ramp_time
 from rrr_traj_planner.core.trajectory.quintic_spline import hermite, polynomial
 from rrr_traj_planner.planners.sampling_jerk_limit import acceleration_scale
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
@@ -52,9 +54,7 @@ def stops_for(task: JointTask, longer: tuple[float, ...] = LONGER) -> list[int]:
     speed, way = float(np.linalg.norm(task.rates_at_start.velocity)), _way(task)
     if speed == 0.0:
         return [0]
-    a, j = _along(task)
-    a = min(a, np.sqrt(speed * j))  # what jerk lets it reach
-    least = 0.5 * speed * (speed / a + a / j)
+    least = 0.5 * speed * float(ramp_time(np.asarray(speed), *_along(task)))
     last = len(task.points) - 1
     return [min(int(np.searchsorted(way, part * least)), last) for part in longer]
 
@@ -106,11 +106,10 @@ def _to(task: JointTask, mesh: Mesh, rests: Variables, stop: int) -> tuple[float
     c = hermite(T, (np.zeros_like(D), v[:-1], a[:-1]), (D, v[1:], a[1:]))
     t = mesh.starts[:stop, :, np.newaxis] * T[:, np.newaxis]
     qd, qdd, jerk = (polynomial(np.stack(c)[:, :, np.newaxis], t, k) for k in (1, 2, 3))
-    excess = max(
-        float((np.abs(qd) / task.limits.max_velocity).max()),
-        float((np.abs(qdd) / acceleration_scale(task.model, task.limits, task.points)).max()) ** (
-            1.0 / 2.0),
-        float((np.abs(jerk) / task.limits.max_jerk).max()) ** (1.0 / 3.0))
+    excess = kinematic_time_scale(
+        np.abs(qd) / task.limits.max_velocity,
+        np.abs(qdd) / acceleration_scale(task.model, task.limits, task.points),
+        np.abs(jerk) / task.limits.max_jerk)
     j = np.concatenate((jerk[:, 0], np.zeros((1, 3))))
     return excess, mesh.restored(task.points, rests._replace(
         inner=np.concatenate((jerk[:, 1:-1], rests.inner[stop:])),
@@ -119,11 +118,11 @@ def _to(task: JointTask, mesh: Mesh, rests: Variables, stop: int) -> tuple[float
            for name, own in (('v', v), ('a', a), ('j', j))}))
 
 
-def _along(task: JointTask) -> tuple[float, float]:
+def _along(task: JointTask) -> tuple[Array, Array]:
     """Return the largest acceleration and jerk in the direction of motion."""
     speeds = np.abs(task.rates_at_start.velocity)
     with np.errstate(divide='ignore'):
-        a, j = (float((limit * np.linalg.norm(speeds) / speeds).min()) for limit in (
+        a, j = ((limit * np.linalg.norm(speeds) / speeds).min() for limit in (
             acceleration_scale(task.model, task.limits, task.points), task.limits.max_jerk))
     return a, j
 

@@ -29,6 +29,7 @@ import numpy as np
 from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.cancellation import until_found
 from rrr_traj_planner.core.errors import StartStateError
+from rrr_traj_planner.core.kinematics.travel_time import ramp_time
 from rrr_traj_planner.core.motion_laws.polynomial_piece import PolynomialPiece
 from rrr_traj_planner.core.stopping.stop import stop, stop_of_state
 from rrr_traj_planner.core.stopping.task import from_state
@@ -184,10 +185,10 @@ def _rest_to_rest(task: JointTask, mesh: Mesh) -> Variables:
 
 
 def _time_to_stop(task: JointTask) -> float:
-    """Return about how long the joints take to stop, by acceleration and jerk [s]."""
+    """Return how long the joints would take to stop if they did not accelerate yet [s]."""
     v, limits = np.abs(task.rates_at_start.velocity), task.limits
     a = acceleration_scale(task.model, limits, task.points)
-    return float(np.maximum(v / a, 2.0 * np.sqrt(v / limits.max_jerk)).max())
+    return float(ramp_time(v, a, limits.max_jerk).max())
 
 
 def _durations(task: JointTask, c: Array, t: Array, way: float) -> set[int]:

@@ -20,6 +20,7 @@ from dataclasses import replace
 
 import numpy as np
 from rrr_traj_planner.core.arrays import Array
+from rrr_traj_planner.core.kinematics.travel_time import ramp_time
 from rrr_traj_planner.planners.joint_timing.constraints import JointConstraints
 from rrr_traj_planner.planners.joint_timing.problem import (
     brought_within,
@@ -48,6 +49,28 @@ FARTHER = 3.0    # first barrier parameter on a new mesh, over the last before, 
 SLOWER = (1.003, 1.01, 1.02, 1.04, 1.08, 1.16, 1.3, 1.6)  # factors on all durations, tried in turn
 
 
+def least_times(task: JointTask, acceleration: Array) -> Array:
+    """
+    Return the least times of the segments from rest to rest, by velocity and acceleration alone.
+
+    Parameters
+    ----------
+    task : JointTask
+        The via points, and the limits on velocity.
+    acceleration : ndarray, shape (3,)
+        The largest of each joint [rad/s^2].
+
+    Returns
+    -------
+    ndarray, shape (N,)
+        [s]; of the two limits the one that allows less.
+
+    """
+    D = np.abs(np.diff(task.points, axis=0))
+    return np.asarray(np.maximum(2.0 * np.sqrt(D / acceleration),
+                                 D / task.limits.max_velocity).max(axis=1))
+
+
 def first_mesh(task: JointTask, acceleration: Array, n: int) -> Mesh:
     """
     Return a mesh to begin with: uniform, but for segments that cruise for long.
@@ -70,10 +93,8 @@ def first_mesh(task: JointTask, acceleration: Array, n: int) -> Mesh:
         The mesh.
 
     """
-    v, J, D = task.limits.max_velocity, task.limits.max_jerk, np.abs(np.diff(task.points, axis=0))
-    ramp = np.where(v * J >= acceleration ** 2, v / acceleration + acceleration / J,
-                    2.0 * np.sqrt(v / J)).max()  # duration of one to the velocity limit
-    T = np.maximum(2.0 * np.sqrt(D / acceleration), D / v).max(axis=1)
+    limits, T = task.limits, least_times(task, acceleration)
+    ramp = ramp_time(limits.max_velocity, acceleration, limits.max_jerk).max()
     begins = min(int(RAMPS * n), n // 2 - 1)  # intervals at each end
     zone, cruises = np.full(len(T), begins / n), LONGER * ramp < SHORT * T
     zone[cruises] = LONGER * ramp / T[cruises]

@@ -36,7 +36,7 @@ from rrr_traj_planner.planners.tasks import StartRates
 ALLOWED = 1e-3  # part of a limit: to which a controller's quintics keep the limits of an answer
 # Chosen values.
 ROOM = 2e-4      # part by which a limit is above what the state needs
-NARROW = 3e-3      # rad, that braking leaves before the end of a range; there the joint
+NARROW = 3e-3    # rad, that braking leaves before the end of a range; there the joint
 FOR_ROOM = 4e-4  # may brake harder by this part
 
 

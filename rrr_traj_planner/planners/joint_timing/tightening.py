@@ -129,7 +129,8 @@ class _Rounds:
             if self.best is not None:
                 return True
         self._check = check = JointCheck(task, self._problem.mesh, outcome.motion)
-        # `fitting` is exact; with torque it takes much longer than this check, a little stricter
+        # `fitting` is exact. Where torque is limited it takes much longer than this check, which
+        # is a little stricter, and is not tried where that fails.
         if np.isinf(task.limits.max_effort).all() or not durations.may_scale or (
                 check.time_scale() <= 1.0 + tolerance and not check.beyond_range.any()):
             task.should_stop()

@@ -49,8 +49,8 @@ def fitted(task: JointTask, trajectory: PiecewiseTrajectory,
     Returns
     -------
     PiecewiseTrajectory or None
-        None where slowing does not help: a joint leaves its range, or the motion passes fast
-        through a pose that the motors cannot hold.
+        None where slowing does not help: a joint leaves its range, the motion passes fast through
+        a pose that the motors cannot hold, or viscous friction needs more torque in a slower one.
 
     """
     if beyond_range(task, trajectory).any():

@@ -36,7 +36,7 @@ from rrr_traj_planner.core.arrays import Array
 from rrr_traj_planner.core.kinematics.travel_time import ViaPointBehaviour
 from rrr_traj_planner.core.trajectory.trajectory import Trajectory
 from rrr_traj_planner.planners.joint_timing.least_time import fastest
-from rrr_traj_planner.planners.joint_timing.meshing import first_mesh
+from rrr_traj_planner.planners.joint_timing.meshing import first_mesh, least_times
 from rrr_traj_planner.planners.joint_timing.passed_at_once import (
     passing,
     times_of_points_passed_at_once,
@@ -142,12 +142,11 @@ def _intervals(task: JointTask, scale: Array) -> int:
 
     scale: the largest acceleration of each joint, shape (3,) [rad/s^2].
     """
-    D = np.abs(np.diff(task.points, axis=0))
-    T = median(np.maximum(2.0 * np.sqrt(D / scale),
-                          D / task.limits.max_velocity).max(axis=1).tolist())
+    times = least_times(task, scale).tolist()
+    T = median(times)
     swing = float((np.pi * scale / task.limits.max_jerk).max())
     n = INTERVALS
-    if len(D) == 1:
+    if len(times) == 1:
         by_torque = np.isinf(task.limits.max_acceleration).any()
         n = ALONE_BY_TORQUE if by_torque else INTERVALS_ALONE
     if swing >= SHAPED * T:

@@ -262,7 +262,8 @@ int newton_step(const Problem *p, const double *Q, const double *r, const double
     const double common = solve_via_points(p, all, s.S, s.right, NULL, common_hessian,
                                            common_gradient, s.via_step, s.band);
     for (int k = 0; k < p->N; ++k)
-        decrease += expand(p, &s, k, r, r_T, common, 1.0, step, dz + k * points_of(p) * 4 * p->J);
+        decrease += expand(p, &s, k, r, r_T, common, 1.0, step,
+                           dz + k * points_of(p) * 4 * p->J);
     put_via_steps(p, &s, all, step);
     *predicted_decrease = decrease;
     return 0;

@@ -24,11 +24,8 @@ from rrr_traj_planner.planners.solver.library import Arena, KERNELS
 
 STEPS = 4  # of one iteration: two Newton steps, each followed by its second-order correction
 
-ARRAYS = (  # that the kernels write
-    'variables', 'states', 'values', 'jacobian', 'slack', 'inverse', 'dual', 'shift', 'hessian',
-    'exact', 'gradient', 'gradient_T', 'hessian_T', 'trial_variables', 'trial_states',
-    'trial_values', 'trial_slack', 'trial_gradient', 'trial_gradient_T', 'step_states', 'newton')
-_STEP = 'direction', 'correction', 'rate', 'variables', 'slack'
+_STEP = {'direction': 'variables', 'correction': 'variables', 'rate': 'slack',
+         'variables': 'variables', 'slack': 'slack'}  # a step's arrays; as large as which
 
 
 @same_size_as('size_of_step')
@@ -49,12 +46,31 @@ class Step(NamedTuple):
 class Size(NamedTuple):
     """How large a problem is; see native/timing_problem.h."""
 
-    N: int
-    n: int
-    J: int
-    E: int
+    N: int            # segments
+    n: int            # intervals in a segment
+    J: int            # coordinates
+    E: int            # general constraints at a point, at most
     constraints: int  # of a segment
-    diagonal: bool    # whether there are bounds alone
+    diagonal: bool    # whether the Hessians are: with bounds alone
+
+
+def _shapes(size: Size, newton: int) -> dict[str, tuple[int, ...]]:
+    """Return the shapes of the arrays that kernels write, in the order of the structure."""
+    N, n, J, E, constraints, diagonal = size
+    P, Z = 2 * n + 1, 4 * J
+    unknowns, slacks = (N * (n - 1) * J + 3 * (N + 1) * J + N,), (2 * N * (constraints + 1),)
+    states, values = (N, P, Z), (N, P, E)
+    hessian: tuple[int, ...] = states if diagonal else (N, P, Z, Z)
+    return {
+        'variables': unknowns, 'states': states, 'values': values, 'jacobian': (N, P, E, Z),
+        'slack': slacks, 'inverse': slacks, 'dual': slacks, 'shift': slacks, 'hessian': hessian,
+        'exact': (0,) if diagonal else hessian, 'gradient': states, 'gradient_T': (N,),
+        'hessian_T': (N,), 'trial_variables': unknowns, 'trial_states': states,
+        'trial_values': values, 'trial_slack': slacks, 'trial_gradient': states,
+        'trial_gradient_T': (N,), 'step_states': states, 'newton': (newton,)}
+
+
+ARRAYS = tuple(_shapes(Size(1, 1, 1, 1, 1, False), 1))
 
 
 class Workspace:
@@ -83,24 +99,11 @@ class Workspace:
 
         """
         if size not in self._found:
-            arena = Arena(_shapes(size, KERNELS.timing_newton_size(problem)))
+            shapes = _shapes(size, KERNELS.timing_newton_size(problem))
+            arena = Arena(shapes | {f'{name} {k}': shapes[like] for k in range(STEPS)
+                                    for name, like in _STEP.items()})
             self._found[size] = arena, [_step(arena, k) for k in range(STEPS)]
         return self._found[size]
-
-
-def _shapes(size: Size, newton: int) -> dict[str, tuple[int, ...]]:
-    N, n, J, E, constraints, diagonal = size
-    P, Z = 2 * n + 1, 4 * J
-    unknowns, slacks = N * (n - 1) * J + 3 * (N + 1) * J + N, 2 * N * (constraints + 1)
-    states, values = (N, P, Z), (N, P, E)
-    hessian = states if diagonal else (N, P, Z, Z)
-    arrays: tuple[tuple[int, ...], ...] = (
-        (unknowns,), states, values, (N, P, E, Z), *[(slacks,)] * 4, hessian,
-        (0,) if diagonal else hessian, states, (N,), (N,), (unknowns,), states, values,
-        (slacks,), states, (N,), states, (newton,))
-    steps = {f'{name} {k}': (length,) for k in range(STEPS)
-             for name, length in zip(_STEP, (unknowns, unknowns, slacks, unknowns, slacks))}
-    return dict(zip(ARRAYS, arrays)) | steps
 
 
 def _step(arena: Arena, k: int) -> Step:

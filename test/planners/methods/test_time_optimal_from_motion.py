@@ -104,7 +104,7 @@ def test_long_motions_are_not_much_slower_when_planning_is_stopped():
     counter = count()
     best = plan(ARM, FREE, moving(q, points, *rates, should_stop=lambda: next(counter) < 0))
     calls = next(counter)
-    for k in np.linspace(0.55, 0.95, 6) * calls:
+    for k in np.linspace(0.5, 0.95, 6) * calls:
         counter = count()
         found = plan(ARM, FREE, moving(
             q, points, *rates, should_stop=lambda c=counter, k=k: next(c) >= k))
