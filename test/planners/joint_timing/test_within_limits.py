@@ -192,18 +192,23 @@ def test_without_torque_limits_every_motion_fits_them():
                            case.trajectory)
 
 
-@pytest.mark.parametrize('seed', range(60))
-def test_a_slowed_motion_keeps_the_torque_limits_of_an_arm_with_friction(seed):
-    # Slower, inertia takes less from the torque of gravity and viscous friction, which may grow.
-    rng = np.random.default_rng(seed)
-    mesh, points, motion = random_motion(seed)
-    trajectory = mesh.trajectory(points, motion)
-    arm = with_friction(ARM, seed, viscous=60.0)
-    t = np.linspace(0.0, trajectory.duration, SAMPLES)
-    before = motor_torque(arm, *trajectory(t)[:3])
-    limits = replace(WIDE, max_effort=rng.uniform(0.999, 1.0) * np.abs(before).max(axis=0),
-                     max_velocity=rng.uniform(0.9, 1.0) * np.abs(trajectory(t)[1]).max(axis=0))
+@pytest.mark.parametrize('seed', range(20))
+@pytest.mark.parametrize('slower', [1e-5, 6e-4])
+def test_a_motion_that_needs_more_torque_if_slower_is_not_slowed_beyond_its_limit(slower, seed):
+    # Slower, inertia takes less from the torque of gravity and viscous friction in this motion.
+    mesh, points, motion = random_motion(18)
+    trajectory, arm = mesh.trajectory(points, motion), with_friction(ARM, seed, viscous=20.0)
+    t = np.linspace(0.0, trajectory.duration, 40001)
+
+    def most(motion):
+        states = motion(t * (motion.duration / trajectory.duration))[:3]
+        return np.abs(motor_torque(arm, *states)).max(axis=0)
+
+    now, later = most(trajectory), most(trajectory.time_scaled(1.0 + slower))
+    joint = int((later / now).argmax())
+    if later[joint] <= now[joint]:
+        pytest.skip('this arm needs less torque for a slower motion')
+    limits = replace(WIDE, max_effort=np.where(np.arange(3) == joint, now, np.inf),
+                     max_velocity=np.abs(trajectory(t)[1]).max(axis=0) / (1.0 + slower))
     found = fitted(JointTask(arm, limits, points, None, 0.01), trajectory, True)
-    if found is not None:
-        torque = motor_torque(arm, *found(t * (found.duration / trajectory.duration))[:3])
-        assert (np.abs(torque).max(axis=0) <= (1.0 + 1e-6) * limits.max_effort).all()
+    assert found is None or most(found)[joint] <= (1.0 + 1.2e-7) * now[joint]
