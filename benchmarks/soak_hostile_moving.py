@@ -39,10 +39,10 @@ import time
 
 os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')  # before numpy; one process a core
 
+from moving_answers import broken_limit, other_start  # noqa: E402
 import numpy as np  # noqa: E402
 from rrr_traj_planner.core.arm.limits import JointLimits  # noqa: E402
 from rrr_traj_planner.core.arm.model import RobotModel  # noqa: E402
-from rrr_traj_planner.core.dynamics.motor_torque import motor_torque  # noqa: E402
 from rrr_traj_planner.core.dynamics.rigid_body import gravity_torque  # noqa: E402
 from rrr_traj_planner.core.errors import RrrPlannerError, TimeLimitError  # noqa: E402
 from rrr_traj_planner.core.kinematics.forward import forward_kinematics  # noqa: E402
@@ -63,9 +63,8 @@ TRIES = 200                      # at drawing poses that can be held
 HELD = 0.95                      # of the effort limits, at drawn poses
 SLOW, LEFT = 1.6, 0.1            # over what was left of the motion, if that was so long [s]
 TIME_LIMITS, LATE = (None, None, 0.2, 1.0), 0.3  # s, and s after the limit
-STATE, TIP, RANGE = 1e-9, 1e-8, 1e-6  # rad (and its derivatives), m, rad
+TIP = 1e-8                       # m
 POSTURE = 1e-4                   # rad: nearer points with the same tip are one
-ALLOWED = 1.001                  # times a limit: what a start may need
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,29 +102,14 @@ class Case:
 
     def fault(self, answer: Plan) -> str:
         """Return what is wrong with an answer, nothing if it is right."""
-        trajectory, request, limits = answer.trajectory, self.request, self.limits.scaled(
-            self.request.velocity_scaling, self.request.acceleration_scaling)
-        begins = np.max([np.abs(found[0] - asked).max() for found, asked in (
-            (answer.points.positions, request.start),
-            (answer.points.velocities, request.start_velocity),
-            (answer.points.accelerations, request.start_acceleration))])
-        if begins > STATE:
-            return f'begins {begins:.3g} beside the state'
-        passed = trajectory(answer.via_times)[0]
+        request = self.request
+        limits = self.limits.scaled(request.velocity_scaling, request.acceleration_scaling)
+        passed = answer.trajectory(answer.via_times)[0]
         missed = np.abs(passed - request.joint_via_points).max()
         tips = (forward_kinematics(self.model, q) for q in (passed, request.joint_via_points))
         if missed > POSTURE or np.abs(np.subtract(*tips)).max() > TIP:
             return f'misses a via point by {missed:.3g} rad'
-        t = np.linspace(0.0, trajectory.duration, 2000)
-        q, qd, qdd, jerk = trajectory(t)
-        if (q < limits.min_position - RANGE).any() or (q > limits.max_position + RANGE).any():
-            return 'leaves a range'
-        for name, found in (('max_velocity', qd), ('max_acceleration', qdd), ('max_jerk', jerk),
-                            ('max_effort', motor_torque(self.model, q, qd, qdd))):
-            ratio = (np.abs(found).max(axis=0) / getattr(limits, name)).max()
-            if ratio > ALLOWED:
-                return f'{name} times {ratio:.6f}'
-        return ''
+        return other_start(answer, request) or broken_limit(answer, limits, self.model, 2000)
 
 
 @cache
