@@ -29,4 +29,15 @@ enum { VECTOR = 4 };  /* doubles that a processor adds at once, with AVX2 */
 #endif
 #define INLINE static inline __attribute__((always_inline))
 
+/* So many doubles, which need not be aligned in memory. */
+typedef double Lanes __attribute__((vector_size(VECTOR * sizeof(double)), aligned(8)));
+typedef int64_t LaneFlags __attribute__((vector_size(VECTOR * sizeof(int64_t)), aligned(8)));
+
+/* Of each lane the larger number; b where a is none. */
+INLINE Lanes larger(Lanes a, Lanes b)
+{
+    const LaneFlags is_more = a > b;
+    return (Lanes)((is_more & (LaneFlags)a) | (~is_more & (LaneFlags)b));
+}
+
 #endif

@@ -58,7 +58,8 @@ class JointConstraints:
     velocity_margins : ndarray, shape (N, 2 n + 1, 3)
         Subtracted from each joint's velocity limit at each point [rad/s].
     acceleration_margins : ndarray, shape (N, 2 n + 1, 3)
-        Subtracted from each joint's acceleration limit at each point [rad/s^2].
+        Subtracted from each joint's acceleration limit at each point [rad/s^2]. This and the two
+        before: of one segment, if those of all are alike.
     effort_margins : ndarray, shape (N, 2 n + 1, 3)
         Subtracted from each joint's effort limit at each point [N m].
     least_T : ndarray, shape (N,), optional
@@ -101,7 +102,7 @@ class JointConstraints:
     def problem(self) -> TimingProblem:
         """Return the problem that the solver works on."""
         lower, upper, bounded = self._bounds()
-        N, P, _ = lower.shape
+        N, P = len(self.points) - 1, lower.shape[1]
         general = np.zeros((P, 3 if self.with_torque else 0), bool)
         effort, arm = np.full((N, *general.shape), FAR), None
         if self.with_torque:
@@ -195,8 +196,10 @@ class JointConstraints:
         return durations._replace(fixed=fixed, max_jerk=self.limits.max_jerk)
 
     def _bounds(self) -> tuple[Array, Array, BoolArray]:
-        """Return lower and upper bounds on states (N, P, 12), and which are limited (P, 12)."""
-        limits, n, N = self.limits, self.mesh.n, len(self.points) - 1
+        """Return lower and upper bounds on states (N or 1, P, 12), and which are limited."""
+        limits, n, N = self.limits, self.mesh.n, self._margins.shape[1]
+        if self._stays is not None and self._stays.any():
+            N = len(self.points) - 1
         lower, upper = bounds = np.empty((2, N, 2 * n + 1, 4, 3))
         upper[:, :, 0] = limits.max_position + EDGE - self._margins[0]
         upper[:, :, 1] = limits.max_velocity - self._velocity_margins

@@ -108,7 +108,10 @@ class JointProblem(ReadOnlyArrays):
     @cached_property
     def without_margins(self) -> JointConstraints:
         """Return the limits themselves, as the solver takes them."""
-        return self._constraints(Margins.none(self.mesh, len(self.durations.free)))
+        none = Margins.none(self.mesh, len(self.durations.free))
+        return self._constraints(none._replace(  # alike in all segments
+            positions=none.positions[:, :1], velocities=none.velocities[:1],
+            accelerations=none.accelerations[:1]))
 
     def _constraints(self, margins: Margins) -> JointConstraints:
         task = self.task

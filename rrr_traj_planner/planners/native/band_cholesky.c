@@ -16,10 +16,12 @@
  * 4.3.5). */
 #include "band_cholesky.h"
 
+#include "processor.h"
+
 #include <math.h>
 #include <stddef.h>
 
-int solve_band(double *band, double *right, int m, int w, int sides)
+BY_PROCESSOR int solve_band(double *band, double *right, int m, int w, int sides)
 {
     for (int c = 0; c < m; ++c) {
         double *column = band + (size_t)c * w, *own = right + (size_t)c * sides;
@@ -30,9 +32,12 @@ int solve_band(double *band, double *right, int m, int w, int sides)
         column[0] = inverse;
         for (int i = 1; i < below; ++i)
             column[i] *= inverse;
-        for (int i = 1; i < below; ++i)
-            for (int k = i; k < below; ++k)
-                column[i * w + k - i] -= column[i] * column[k];
+        for (int i = 1; i < below; ++i) {
+            double *restrict other = column + i * w;
+            const double *restrict rest = column + i, factor = column[i];
+            for (int k = 0; k < below - i; ++k)
+                other[k] -= factor * rest[k];
+        }
         for (int s = 0; s < sides; ++s) {
             own[s] *= inverse;
             for (int i = 1; i < below; ++i)

@@ -13,6 +13,8 @@
 // limitations under the License.
 
 /* The constraints: their slacks, and derivatives along a step. */
+#include "processor.h"
+#include "slacks.h"
 #include "timing_problem.h"
 
 #include <math.h>
@@ -47,21 +49,28 @@ static void general_values(const Problem *p, int k, const double *z, double *x)
     }
 }
 
-void segment_slacks(const Problem *p, int k, const double *z, double part, double *x,
-                    double *slack)
+BY_PROCESSOR static void bound_slacks(const Problem *p, int k, const double *z, double *slack)
 {
-    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
-    const double *lower = p->lower + (size_t)k * P * Z, *upper = p->upper + (size_t)k * P * Z;
-    double *to = slack;
-    for (int c = 0; c < p->bounds; ++c, to += 2) {
-        const int i = p->bound_at[c];
-        to[0] = upper[i] - z[i];
-        to[1] = z[i] - lower[i];
+    const size_t own = p->bounded_alike ? 0 : k * points_of(p) * 4 * p->J;
+    for (const Run *run = p->bound_runs; run < p->bound_runs + p->runs; ++run) {
+        const double *restrict lower = p->lower + own + run->at, *restrict value = z + run->at;
+        const double *restrict upper = p->upper + own + run->at;
+        double *restrict to = slack + 2 * run->number;
+        for (int i = 0; i < run->length; ++i) {
+            to[2 * i] = upper[i] - value[i];
+            to[2 * i + 1] = value[i] - lower[i];
+        }
     }
-    if (p->general)
-        general_values(p, k, z, x);
-    lower = p->general_lower + (size_t)k * P * E;
-    upper = p->general_upper + (size_t)k * P * E;
+}
+
+void slacks_of_values(const Problem *p, int k, const double *z, const double *x, double part,
+                      double *slack)
+{
+    const int P = 2 * p->n + 1, E = p->E;
+    const double *lower = p->general_lower + (size_t)k * P * E;
+    const double *upper = p->general_upper + (size_t)k * P * E;
+    double *to = slack + 2 * p->bounds;
+    bound_slacks(p, k, z, slack);
     for (int c = 0; c < p->general; ++c, to += 2) {
         const int i = p->general_at[c];
         to[0] = upper[i] - x[i];
@@ -73,17 +82,20 @@ void segment_slacks(const Problem *p, int k, const double *z, double part, doubl
         slack[i] += part * shift[i];
 }
 
-/* Slacks at the states z of a motion, the given part of the shifts included; x receives the values
- * of the general constraints. */
-void slacks_at(const Problem *p, const double *T, const double *z, double part, double *x,
-               double *slack)
+void segment_slacks(const Problem *p, Variables m, int k, double part, double *slack)
 {
-    const size_t P = points_of(p), Z = 4 * (size_t)p->J;
+    segment_states(p, m, k, p->trial_states);
+    if (p->general)
+        general_values(p, k, p->trial_states, p->trial_values);
+    slacks_of_values(p, k, p->trial_states, p->trial_values, part, slack);
+}
+
+void slacks_at(const Problem *p, Variables m, double part, double *slack)
+{
     for (int k = 0; k < p->N; ++k) {
-        segment_slacks(p, k, z + k * P * Z, part, x + k * P * p->E,
-                       slack + 2 * k * constraints_of(p));
+        segment_slacks(p, m, k, part, slack + 2 * k * constraints_of(p));
         double *duration_slack = duration_slacks(p, slack) + 2 * k;
-        duration_slack[1] = p->least_T ? T[k] - p->least_T[k] : 1.0;
+        duration_slack[1] = p->least_T ? m.T[k] - p->least_T[k] : 1.0;
         duration_slack[0] = p->least_T ? p->longest - duration_slack[1] : 1.0;
     }
 }
@@ -92,24 +104,6 @@ void slacks_at(const Problem *p, const double *T, const double *z, double part, 
 EXPORTED double timing_constraint_count(const Problem *p)
 {
     return 2.0 * p->N * (constraints_of(p) + (p->least_T ? DURATION_WEIGHT : 0));
-}
-
-/* The sum of logarithms; most of them are taken of products, which is faster. */
-double log_sum(const double *slack, size_t size)
-{
-    double sum = 0.0, product = 1.0;
-    size_t i = 0;
-    for (; i + 8 <= size; i += 8) {
-        product *= (slack[i] * slack[i + 1]) * (slack[i + 2] * slack[i + 3])
-            * ((slack[i + 4] * slack[i + 5]) * (slack[i + 6] * slack[i + 7]));
-        if (!(product > 1e-100 && product < 1e100)) {
-            sum += log(product);
-            product = 1.0;
-        }
-    }
-    for (; i < size; ++i)
-        sum += log(slack[i]);
-    return sum + log(product);
 }
 
 /* The sum of the slacks' logarithms. */
@@ -132,8 +126,9 @@ void weighted_gradient(const Problem *p, const double *weights, double *r, doubl
     for (int k = 0; k < p->N; ++k) {
         const double *from = weights + 2 * (size_t)k * constraints_of(p);
         double *rk = r + (size_t)k * P * Z;
-        for (int c = 0; c < p->bounds; ++c, from += 2)
-            rk[p->bound_at[c]] += from[0] - from[1];
+        for (const Run *run = p->bound_runs; run < p->bound_runs + p->runs; ++run)
+            for (int i = 0; i < run->length; ++i, from += 2)
+                rk[run->at + i] += from[0] - from[1];
         for (int c = 0; c < p->general; ++c, from += 2) {
             const int i = p->general_at[c];
             const double *g = p->jacobian + ((size_t)k * P * E + i) * Z, f = from[0] - from[1];
@@ -146,16 +141,25 @@ void weighted_gradient(const Problem *p, const double *weights, double *r, doubl
     }
 }
 
+BY_PROCESSOR static void bound_rates(const Problem *p, const double *dz, double *rate)
+{
+    for (const Run *run = p->bound_runs; run < p->bound_runs + p->runs; ++run) {
+        const double *restrict by = dz + run->at;
+        double *restrict to = rate + 2 * run->number;
+        for (int i = 0; i < run->length; ++i) {
+            to[2 * i] = -by[i];
+            to[2 * i + 1] = by[i];
+        }
+    }
+}
+
 /* Directional derivatives of a segment's slacks along a step that changes its states by dz and takes
  * the given part of the shifts. */
 void segment_rates(const Problem *p, int k, const double *dz, double part, double *rate)
 {
     const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
-    double *to = rate;
-    for (int c = 0; c < p->bounds; ++c, to += 2) {
-        to[0] = -dz[p->bound_at[c]];
-        to[1] = dz[p->bound_at[c]];
-    }
+    double *to = rate + 2 * p->bounds;
+    bound_rates(p, dz, rate);
     for (int c = 0; c < p->general; ++c, to += 2) {
         const int i = p->general_at[c];
         const double *g = p->jacobian + ((size_t)k * P * E + i) * Z,

@@ -14,6 +14,7 @@
 
 /* The barrier problem linearised at an iterate. */
 #include "processor.h"
+#include "slacks.h"
 #include "timing_problem.h"
 
 #include <string.h>
@@ -45,104 +46,104 @@ static inline void add_general_constraint(const Problem *p, int e, const double 
         add_constraint(g, 0, 4, 4, f, weight, r, Q);
 }
 
-/* The shifts of a constraint: zero where none is shifted, which is not read then. */
-static inline const double *shifts_at(const Problem *p, size_t at)
+/* The values of the general constraints of segment k, their gradients, and their second derivatives
+ * weighted by the multipliers. */
+static void linearise_general(const Problem *p, int k, const double *dual, Linearised at)
 {
-    static const double none[2] = {0.0};
-    return p->shifted ? p->shift + at : none;
-}
-
-/* Slacks of a two-sided bound and their inverses; f: the barrier's first derivative by the value,
- * with shifts reduced along the step; weight: its primal-dual second derivative. */
-static inline void barrier_derivatives(double lower, double upper, double value,
-                                       const double *dual, const double *shift, double barrier,
-                                       double *slack, double *inverse, double *f, double *weight)
-{
-    slack[0] = upper - value + shift[0], slack[1] = value - lower + shift[1];
-    inverse[0] = 1.0 / slack[0], inverse[1] = 1.0 / slack[1];
-    *f = (barrier + dual[0] * shift[0]) * inverse[0]
-        - (barrier + dual[1] * shift[1]) * inverse[1];
-    *weight = dual[0] * inverse[0] + dual[1] * inverse[1];
-}
-
-/* timing_linearise for the general constraints at points of segment k, the first of them number c
- * of its general ones; returns the number of that after the last. */
-static int linearise_points(const Problem *p, int k, int first, int count, int c, double barrier)
-{
-    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E, begin = c;
-    const size_t point = (size_t)k * P + first;
-    const size_t offset = 2 * (k * constraints_of(p) + p->bounds);
-    const double *lower = p->general_lower + point * E, *upper = p->general_upper + point * E;
-    const double *z = p->states + point * Z, *dual = p->dual + offset;
-    double *x = p->values + point * E, *g = p->jacobian + point * E * Z;
-    double *r = p->gradient + point * Z, *Q = p->hessian + point * Z * Z;
-    double *exact = p->exact + point * Z * Z, weights[VECTOR * MOST_GENERAL] = {0.0};
-    for (; c < p->general && p->general_at[c] < (first + count) * E; ++c)
-        weights[p->general_at[c] - first * E] = dual[2 * c] - dual[2 * c + 1];
-    if (p->arm)
-        torque_derivatives_at(p->arm, count, z, weights, x, g, exact);
-    for (int m = 0; m < count && !p->arm; ++m)
-        path_at(p, k, first + m, z + m * Z, x + m * E, g + m * E * Z, weights + m * E,
-                exact + m * Z * Z);
-    for (int d = begin; d < c; ++d) {
-        const int e = p->general_at[d] - first * E, m = e / E;
-        const size_t at = offset + 2 * d;
-        double f, weight;
-        barrier_derivatives(lower[e], upper[e], x[e], p->dual + at, shifts_at(p, at), barrier,
-                            p->slack + at, p->inverse + at, &f, &weight);
-        add_general_constraint(p, e % E, g + e * Z, f, weight, r + m * Z, Q + m * Z * Z);
+    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
+    const double *own = dual + 2 * p->bounds;
+    memset(at.exact, 0, hessian_size(p) * sizeof(double));
+    for (int i = 0, count, c = 0; i < P; i += count ? count : 1) {
+        double weights[VECTOR * MOST_GENERAL] = {0.0};
+        double *z = at.z + i * Z, *x = at.values + i * E, *g = at.jacobian + i * E * Z;
+        double *exact = at.exact + i * Z * Z;
+        count = points_with_general(p, i, VECTOR);
+        for (; c < p->general && p->general_at[c] < (i + count) * E; ++c)
+            weights[p->general_at[c] - i * E] = own[2 * c] - own[2 * c + 1];
+        if (p->arm)
+            torque_derivatives_at(p->arm, count, z, weights, x, g, exact);
+        for (int m = 0; m < count && !p->arm; ++m)
+            path_at(p, k, i + m, z + m * Z, x + m * E, g + m * E * Z, weights + m * E,
+                    exact + m * Z * Z);
     }
-    return c;
 }
 
-/* timing_linearise for the general constraints of a segment. */
-static void linearise_general(const Problem *p, int k, double barrier)
+enum { BLOCK = 64 };  /* constraints at once, at most */
+
+/* The barrier's derivatives by a few constraints' values, from number c of segment k. */
+static void derivatives(const Problem *p, int k, int c, int count, double barrier,
+                        const double *dual, Linearised at, double *f, double *weight)
+{
+    const double *shift = p->shifted ? p->shift + 2 * (k * constraints_of(p) + c) : NULL;
+    barrier_derivatives(dual + 2 * c, shift, at.inverse + 2 * c, count, barrier, f,
+                        at.hessian ? weight : NULL);
+}
+
+/* Add the barrier terms of a segment's bounds to gradient and Hessian. */
+static void add_bounds(const Problem *p, int k, double barrier, const double *dual, Linearised at)
+{
+    const int Z = 4 * p->J, whole = !bounds_alone(p);
+    double f[BLOCK], weight[BLOCK];
+    for (const Run *run = p->bound_runs; run < p->bound_runs + p->runs; ++run)
+        for (int done = 0; done < run->length; done += BLOCK) {
+            const int first = run->at + done;
+            const int count = run->length - done < BLOCK ? run->length - done : BLOCK;
+            derivatives(p, k, run->number + done, count, barrier, dual, at, f, weight);
+            for (int i = 0; i < count; ++i)
+                at.gradient[first + i] += f[i];
+            for (int i = 0; i < count && at.hessian && !whole; ++i)
+                at.hessian[first + i] += weight[i];
+            for (int i = first; i < first + count && at.hessian && whole; ++i)
+                at.hessian[i * Z + i % Z] += weight[i - first];
+        }
+}
+
+/* The same of its general constraints. */
+static void add_general(const Problem *p, int k, double barrier, const double *dual, Linearised at)
+{
+    const int Z = 4 * p->J, E = p->E;
+    double f[BLOCK], weight[BLOCK];
+    for (int done = 0; done < p->general; done += BLOCK) {
+        const int count = p->general - done < BLOCK ? p->general - done : BLOCK;
+        derivatives(p, k, p->bounds + done, count, barrier, dual, at, f, weight);
+        for (int c = 0; c < count; ++c) {
+            const int e = p->general_at[done + c], i = e / E;
+            add_general_constraint(p, e % E, at.jacobian + e * Z, f[c], weight[c],
+                                   at.gradient + i * Z, at.hessian + i * Z * Z);
+        }
+    }
+}
+
+void linearise_segment(const Problem *p, int k, double barrier, const double *dual,
+                       Linearised at)
 {
     const int Z = 4 * p->J, P = 2 * p->n + 1;
-    double *Q = p->hessian + (size_t)k * P * Z * Z, *exact = p->exact + (size_t)k * P * Z * Z;
-    for (int i = 0, count, c = 0; i < P; i += count ? count : 1) {
-        count = points_with_general(p, i, VECTOR);
-        c = linearise_points(p, k, i, count, c, barrier);
+    double *r = at.gradient, *Q = at.hessian, *exact = at.exact;
+    segment_states(p, variables_at(p, p->variables), k, at.z);
+    memset(r, 0, (size_t)P * Z * sizeof(double));
+    if (Q)
+        memset(Q, 0, hessian_size(p) * sizeof(double));
+    if (!bounds_alone(p))
+        linearise_general(p, k, dual, at);
+    slacks_of_values(p, k, at.z, at.values, 1.0, at.slack);
+    invert(at.slack, 2 * constraints_of(p), at.inverse);
+    add_bounds(p, k, barrier, dual, at);
+    const int size = p->jerk_weights ? (p->n + 1) * p->J : 0;
+    for (int c = 0; c < size; ++c) {
+        const int i = c / p->J * Z + 3 * p->J + c % p->J;
+        const double weight = 2.0 * p->jerk_weights[(size_t)k * size + c];
+        r[i] += weight * at.z[i];
+        if (Q)
+            Q[bounds_alone(p) ? i : i * Z + i % Z] += weight;
     }
-    for (int i = 0; i < P; ++i, Q += Z * Z, exact += Z * Z) {
+    add_general(p, k, barrier, dual, at);
+    for (int i = 0; i < P && !bounds_alone(p); ++i, Q += Z * Z, exact += Z * Z) {
         for (int a = 0; a < Z; ++a)
             for (int b = 0; b < a; ++b)
                 Q[b * Z + a] = Q[a * Z + b];
         for (int q = 0; q < Z * Z; ++q)
             exact[q] += Q[q];
     }
-}
-
-void linearise_segment(const Problem *p, int k, double barrier)
-{
-    const double *dual = p->dual;
-    const int Z = 4 * p->J, P = 2 * p->n + 1, whole = !bounds_alone(p);
-    const size_t first = 2 * (size_t)k * constraints_of(p), part = (size_t)k * P * Z;
-    double *z = p->states + part, *r = p->gradient + part, *Q = p->hessian + k * hessian_size(p);
-    const double *lower = p->lower + part, *upper = p->upper + part;
-    segment_states(p, variables_at(p, p->variables), k, z);
-    memset(r, 0, (size_t)P * Z * sizeof(double));
-    memset(Q, 0, hessian_size(p) * sizeof(double));
-    if (whole)
-        memset(p->exact + k * hessian_size(p), 0, hessian_size(p) * sizeof(double));
-    for (int c = 0; c < p->bounds; ++c) {
-        const int i = p->bound_at[c];
-        const size_t at = first + 2 * c;
-        double f, weight;
-        barrier_derivatives(lower[i], upper[i], z[i], dual + at, shifts_at(p, at), barrier,
-                            p->slack + at, p->inverse + at, &f, &weight);
-        r[i] += f;
-        Q[whole ? i * Z + i % Z : i] += weight;
-    }
-    const int size = p->jerk_weights ? (p->n + 1) * p->J : 0;
-    for (int c = 0; c < size; ++c) {
-        const int i = c / p->J * Z + 3 * p->J + c % p->J;
-        const double weight = 2.0 * p->jerk_weights[(size_t)k * size + c];
-        r[i] += weight * z[i];
-        Q[whole ? i * Z + i % Z : i] += weight;
-    }
-    if (whole)
-        linearise_general(p, k, barrier);
     p->gradient_T[k] = p->hessian_T[k] = 0.0;
 }
 
@@ -169,7 +170,8 @@ static void linearise_duration(const Problem *p, int k, double barrier)
 EXPORTED void timing_linearise(const Problem *p, double barrier)
 {
     for (int k = 0; k < p->N; ++k) {
-        linearise_segment(p, k, barrier);
+        linearise_segment(p, k, barrier, p->dual + 2 * k * constraints_of(p),
+                          linearised_of(p, k));
         linearise_duration(p, k, barrier);
     }
 }

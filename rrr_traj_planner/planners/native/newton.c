@@ -29,7 +29,7 @@
 #undef REAL
 #undef FRONT
 /* A number of each coordinate, which need not be aligned in memory. */
-typedef double Coordinates __attribute__((vector_size(VECTOR * sizeof(double)), aligned(8)));
+typedef Lanes Coordinates;
 #define REAL Coordinates
 #define FRONT(name) each_##name
 #include "riccati.inc"
@@ -136,21 +136,19 @@ static int condense_each(const Problem *p, const Scratch *s, int k, double T, co
 }
 
 /* Condense segment k to the states at its ends and its duration. Returns 1 where that fails. */
-static int condense(const Problem *p, const Scratch *s, int k, const double *Q, const double *r,
-                    const double *r_T)
+static int condense(const Problem *p, const Scratch *s, int k, const double *z, const double *Q,
+                    const double *r, double r_T)
 {
     const double T = variables_at(p, p->variables).T[k];
     const int B = 2 * ORDERS * p->J, W = B + 1;
-    const size_t states = points_of(p) * 4 * p->J;
     double *S = s->S + (size_t)k * W * W, *right = s->right + (size_t)k * W;
     double *rows = s->rows + k * rows_size(p);
-    const double *z = p->states + k * states, *Qk = Q + k * hessian_size(p);
     const int singular = bounds_alone(p)
-        ? condense_each(p, s, k, T, z, Qk, r + k * states, S, right, rows) : p->J == 1
-        ? one_condense(p, k, T, z, Qk, r + k * states, S, right, (one_Rows *)rows)
-        : three_condense(p, k, T, z, Qk, r + k * states, S, right, (three_Rows *)rows);
+        ? condense_each(p, s, k, T, z, Q, r, S, right, rows) : p->J == 1
+        ? one_condense(p, k, T, z, Q, r, S, right, (one_Rows *)rows)
+        : three_condense(p, k, T, z, Q, r, S, right, (three_Rows *)rows);
     S[B * W + B] += p->hessian_T[k];
-    right[B] += r_T[k] + p->weights[k];
+    right[B] += r_T + p->weights[k];
     return singular;
 }
 
@@ -205,20 +203,19 @@ static void expand_each(const Problem *p, const Scratch *s, int k, double T, con
     copy_back(s->dz, states, J, dz);
 }
 
-/* The steps of a segment's duration, inner jerks and states (P, Z), from those of the via points and
- * the part that is taken of the step with these fixed; returns the predicted decrease. */
-static double expand(const Problem *p, const Scratch *s, int k, const double *r,
-                     const double *r_T, double common, double part, Variables step, double *to)
+/* The steps of a segment's inner jerks and states (P, Z), from those of the via points and of the
+ * duration, and the part that is taken of the step with these fixed; returns the predicted
+ * decrease. */
+static double expand(const Problem *p, const Scratch *s, int k, const double *z, const double *r,
+                     double r_T, double dT, double part, Variables step, double *to)
 {
     const double T = variables_at(p, p->variables).T[k];
     const int J = p->J;
     const size_t states = points_of(p) * 4 * J;
     const double *border = s->via_step + (size_t)k * ORDERS * J;  /* of both ends in a row */
-    const double *z = p->states + k * states, *rows = s->rows + k * rows_size(p);
-    const double *gradient = r + k * states;
+    const double *rows = s->rows + k * rows_size(p);
     double *inner = step.inner + (size_t)k * (p->n - 1) * J;
-    const double dT = step.T[k] = duration_step(p, s, k, border, common, part);
-    double decrease = -(r_T[k] + p->weights[k]) * dT;
+    double decrease = -(r_T + p->weights[k]) * dT;
     if (bounds_alone(p))
         expand_each(p, s, k, T, z, border, dT, part, rows, inner, to);
     else if (p->J == 1)
@@ -228,16 +225,20 @@ static double expand(const Problem *p, const Scratch *s, int k, const double *r,
     double sums[VECTOR] = {0.0};  /* states are a multiple */
     for (size_t i = 0; i < states; i += VECTOR)
         for (int c = 0; c < VECTOR; ++c)
-            sums[c] += gradient[i + c] * to[i + c];
+            sums[c] += r[i + c] * to[i + c];
     for (int c = 0; c < VECTOR; ++c)
         decrease -= sums[c];
     return decrease;
 }
 
-/* Copy the steps at via points begin to end. */
-static void put_via_steps(const Problem *p, const Scratch *s, Range at, Variables step)
+/* The steps of a range's via points and durations, with the common factor's step. */
+static void put_steps(const Problem *p, const Scratch *s, Range at, const double *damping,
+                      double common, Variables step)
 {
     const int J = p->J;
+    for (int k = at.begin; k < at.end; ++k)
+        step.T[k] = duration_step(p, s, k, s->via_step + (size_t)k * ORDERS * J, common,
+                                  damping ? 1.0 / damping[k] : 1.0);
     for (int k = at.begin; k <= at.end; ++k)
         for (int j = 0; j < J; ++j) {
             const double *own = s->via_step + (size_t)k * ORDERS * J + j;
@@ -253,27 +254,29 @@ int newton_step(const Problem *p, const double *Q, const double *r, const double
     const Variables step = variables_at(p, direction);
     const Scratch s = scratch_of(p);
     const Range all = {0, p->N};
+    const size_t states = points_of(p) * 4 * p->J;
     double common_hessian = 0.0, common_gradient = 0.0, decrease = 0.0;
     for (int k = 0; k < p->N; ++k) {
-        if (condense(p, &s, k, Q, r, r_T))
+        if (condense(p, &s, k, p->states + k * states, Q + k * hessian_size(p), r + k * states,
+                     r_T[k]))
             return 1;
         eliminate_duration(p, &s, k, &common_hessian, &common_gradient);
     }
     const double common = solve_via_points(p, all, s.S, s.right, NULL, common_hessian,
                                            common_gradient, s.via_step, s.band);
+    put_steps(p, &s, all, NULL, common, step);
     for (int k = 0; k < p->N; ++k)
-        decrease += expand(p, &s, k, r, r_T, common, 1.0, step,
-                           dz + k * points_of(p) * 4 * p->J);
-    put_via_steps(p, &s, all, step);
+        decrease += expand(p, &s, k, p->states + k * states, r + k * states, r_T[k], step.T[k],
+                           1.0, step, dz + k * states);
     *predicted_decrease = decrease;
     return 0;
 }
 
-int condense_segment(const Problem *p, int k)
+int condense_segment(const Problem *p, int k, Linearised at)
 {
     const Scratch s = scratch_of(p);
     double hessian = 0.0, gradient = 0.0;
-    if (condense(p, &s, k, p->hessian, p->gradient, p->gradient_T))
+    if (condense(p, &s, k, at.z, at.hessian, at.gradient, p->gradient_T[k]))
         return 1;
     eliminate_duration(p, &s, k, &hessian, &gradient);
     return 0;
@@ -291,13 +294,14 @@ void damped_via_step(const Problem *p, Range at, const double *damping, double *
 {
     const Scratch s = scratch_of(p);
     solve_via_points(p, at, s.S, s.right, damping, 0.0, 0.0, s.via_step, s.band);
-    put_via_steps(p, &s, at, variables_at(p, direction));
+    put_steps(p, &s, at, damping, 0.0, variables_at(p, direction));
 }
 
-double damped_segment_step(const Problem *p, int k, double damping, double *direction,
-                           double *dz)
+double damped_segment_step(const Problem *p, int k, double damping, Linearised at,
+                           double *direction, double *dz)
 {
     const Scratch s = scratch_of(p);
-    return expand(p, &s, k, p->gradient, p->gradient_T, 0.0, 1.0 / damping,
-                  variables_at(p, direction), dz);
+    const Variables step = variables_at(p, direction);
+    return expand(p, &s, k, at.z, at.gradient, p->gradient_T[k], step.T[k], 1.0 / damping, step,
+                  dz);
 }

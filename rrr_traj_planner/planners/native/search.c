@@ -14,6 +14,7 @@
 
 /* Trial steps, second-order corrections and multipliers of the interior-point method
  * (solver/interior_point.py, solver/line_search.py). */
+#include "slacks.h"
 #include "timing_problem.h"
 
 #include <math.h>
@@ -47,8 +48,7 @@ EXPORTED double timing_slacks(const Problem *p, double *variables, double *slack
     const Variables m = variables_at(p, variables);
     const size_t all = slacks_size(p);
     double least = INFINITY;
-    motion_states(p, m, p->trial_states);
-    slacks_at(p, m.T, p->trial_states, 1.0, p->trial_values, slack);
+    slacks_at(p, m, 1.0, slack);
     for (size_t i = 0; i < all; ++i)
         if (!(slack[i] >= least))
             least = slack[i];
@@ -63,19 +63,6 @@ EXPORTED void timing_central_duals(const Problem *p, double barrier)
         p->dual[i] = barrier / p->slack[i];
 }
 
-/* The largest relative decrease of a slack over the whole step, to first order. */
-static double max_relative_slack_decrease(const Problem *p, const double *rate)
-{
-    const size_t all = slacks_size(p);
-    double worst = 0.0;
-    for (size_t i = 0; i < all; ++i) {
-        const double towards = -rate[i] * p->inverse[i];
-        if (towards > worst)
-            worst = towards;
-    }
-    return worst;
-}
-
 /* The Newton step of the linearised problem, with the constraints' second derivatives if exact is
  * not 0. Returns 0 where there is none. */
 EXPORTED int32_t timing_newton(const Problem *p, int32_t exact, Step *s)
@@ -84,7 +71,7 @@ EXPORTED int32_t timing_newton(const Problem *p, int32_t exact, Step *s)
                     p->step_states, &s->predicted_decrease) || !isfinite(s->predicted_decrease))
         return 0;
     slack_rates(p, variables_at(p, s->direction).T, p->step_states, s->rate);
-    s->max_relative_slack_decrease = max_relative_slack_decrease(p, s->rate);
+    s->max_relative_slack_decrease = largest_fall(s->rate, p->inverse, slacks_size(p));
     return 1;
 }
 
@@ -115,7 +102,7 @@ static double parabola(const Problem *p, const Step *s, double size, double reta
 EXPORTED int32_t timing_trial(const Problem *p, Step *s, double size, double retained,
                               double target)
 {
-    const size_t all = slacks_size(p), unknowns = variables_size(p);
+    const size_t unknowns = variables_size(p);
     const Variables moved = variables_at(p, s->variables);
     double *direction = s->direction;
     s->suggested_size = 0.0;
@@ -126,14 +113,12 @@ EXPORTED int32_t timing_trial(const Problem *p, Step *s, double size, double ret
     }
     if (!step_motion(p, variables_at(p, p->variables), variables_at(p, direction), size, moved))
         return 0;
-    motion_states(p, moved, p->trial_states);
-    slacks_at(p, moved.T, p->trial_states, 1.0 - size, p->trial_values, s->slack);
-    for (size_t i = 0; i < all; ++i)
-        if (!(s->slack[i] >= retained * p->slack[i])) {
-            const double root = parabola(p, s, size, target);
-            s->suggested_size = root > 0.0 ? root : 0.0;
-            return 0;
-        }
+    slacks_at(p, moved, 1.0 - size, s->slack);
+    if (!all_retain(p->slack, s->slack, slacks_size(p), retained)) {
+        const double root = parabola(p, s, size, target);
+        s->suggested_size = root > 0.0 ? root : 0.0;
+        return 0;
+    }
     s->cost = timing_cost(p, s->variables);
     s->log = p->shifted ? 0.0 : timing_log_sum(p, s->slack);
     return 1;
@@ -149,8 +134,7 @@ EXPORTED int32_t timing_correct(const Problem *p, const Step *s, double size, St
     if (!step_motion(p, variables_at(p, p->variables), variables_at(p, s->direction), size,
                         moved))
         return 0;
-    motion_states(p, moved, p->trial_states);
-    slacks_at(p, moved.T, p->trial_states, 1.0 - size, p->trial_values, weights);
+    slacks_at(p, moved, 1.0 - size, weights);
     for (size_t i = 0; i < all; ++i)
         weights[i] = -p->dual[i] * p->inverse[i] * (weights[i] - p->slack[i] - size * s->rate[i])
             / (size * size);
@@ -167,27 +151,15 @@ EXPORTED int32_t timing_correct(const Problem *p, const Step *s, double size, St
     return 1;
 }
 
-/* Accept the last trial, if move is not 0, and update the multipliers: a Newton step of their own
- * towards barrier / slack, shortened by the fraction to the boundary, then each is confined to
- * [1 / corridor, corridor] * barrier / slack (Waechter & Biegler 2006, eq. 16). */
+/* Accept the last trial, if move is not 0, and update the multipliers, which step and are confined
+ * then. */
 EXPORTED void timing_accept(const Problem *p, const Step *s, int32_t move, double barrier,
                             double to_boundary, double corridor)
 {
-    const double *rate = s->rate, *slack = move ? s->slack : p->slack;
     const size_t all = slacks_size(p);
-    double *change = p->trial_slack, worst = 0.0;
-    for (size_t i = 0; i < all; ++i) {
-        change[i] = (barrier - p->dual[i] * rate[i]) * p->inverse[i] - p->dual[i];
-        if (-change[i] > worst * p->dual[i])  /* divided seldom */
-            worst = -change[i] / p->dual[i];
-    }
-    const double size = worst > to_boundary ? to_boundary / worst : 1.0, part = 1.0 / corridor;
-    for (size_t i = 0; i < all; ++i) {
-        const double central = barrier / slack[i];
-        double d = p->dual[i] + size * change[i];
-        d = d < central * part ? central * part : d;
-        p->dual[i] = d > central * corridor ? central * corridor : d;
-    }
+    step_duals(p->dual, s->rate, p->inverse, all, barrier, to_boundary, p->trial_slack);
+    memcpy(p->dual, p->trial_slack, all * sizeof(double));
+    confine_duals(p->dual, move ? s->slack : p->slack, all, barrier, corridor);
     if (move)
         memcpy(p->variables, s->variables, variables_size(p) * sizeof(double));
 }

@@ -14,116 +14,95 @@
 
 /* The steps of segment_steps.h: Newton's, shortened where it has to be, and accepted. */
 #include "segment_steps.h"
+#include "slacks.h"
 
 #include <math.h>
 
 /* Segments on either side of one that changes, whose steps then change too;
- * and beside one that is not centred, which take a step with it. Chosen. */
-enum { HALO = 2, BESIDE = 1 };
+ * beside one that is not centred, which take a step with it;
+ * and those of a window, whose memory is in the cache while they are damped. Chosen. */
+enum { HALO = 2, BESIDE = 1, WINDOW = 32 };
 
 /* For solver/segment_steps.py, which compares them. */
 EXPORTED const int64_t size_of_segment_rules = sizeof(SegmentRules);
 EXPORTED const int64_t size_of_segments = sizeof(Segments);
 
-double decrement_of(const Problem *p, int k, const double *rates)
+/* Move the durations of marked segments in a range, and the via points between them. */
+static void move_between(const Problem *p, const Step *s, const Segments *l, Range at)
 {
-    const double *dual = p->dual + k * count_of(p), *inverse = p->inverse + k * count_of(p);
-    double sums[2] = {0.0};  /* of both sides of the bounds */
-    for (size_t i = 0; i < count_of(p); i += 2)
-        for (size_t side = i; side < i + 2; ++side)
-            sums[side - i] += dual[side] * inverse[side] * rates[side] * rates[side];
-    return sums[0] + sums[1];
-}
-
-/* The step of segment k, that of its via points known, and the derivatives of its slacks. */
-static void step_within(const Problem *p, const Step *s, const Segments *l, int k)
-{
-    double *rates = rates_of(p, s, l, k), worst = 0.0;
-    const double *inverse = p->inverse + k * count_of(p);
-    double *dz = p->step_states;
-    l->decrease[k] = damped_segment_step(p, k, l->damping[k], s->direction, dz);
-    segment_rates(p, k, dz, 1.0 / l->damping[k], rates);
-    for (size_t i = 0; i < count_of(p); ++i) {
-        const double fall = -rates[i] * inverse[i];
-        worst = fall > worst ? fall : worst;
+    const Variables m = variables_at(p, p->variables), step = variables_at(p, s->direction),
+        moved = variables_at(p, s->variables);
+    FOR_RANGES(marked, at, l->marked) {
+        for (int k = marked.begin; k < marked.end; ++k)
+            moved.T[k] = m.T[k] + step.T[k];
+        for (int k = marked.begin; k <= marked.end; ++k)
+            if (k == 0 || k == p->N || (k > marked.begin && k < marked.end))
+                step_via_point(p, m, step, 1.0, l->damping, k, moved);
     }
-    l->fall[k] = worst;
 }
 
-/* Linearise and condense the active segments, and compute their Newton step. Returns 1 where that
- * fails. */
-static int newton(const Problem *p, const Step *s, Segments *l, double barrier)
+/* Linearise and condense the active segments, compute their Newton step, and move those that have
+ * none beside them that falls too fast. Returns 1 where that fails. */
+static int newton(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l)
 {
-    l->predicted_decrease = 0.0;
-    memset(l->again, 0, p->N);
-    FOR_SEGMENTS(k, p, l->active) {
-        linearise_segment(p, k, barrier);
+    const Range all = all_segments(p);
+    const Linearised at = linearised_of(p, 0);
+    FOR_SEGMENTS(k, all, l->active) {
+        linearise_confined(p, rules, l, k, at);
         l->damping[k] = 1.0;
-        if (condense_segment(p, k))
+        if (condense_segment(p, k, at))
             return 1;
     }
-    FOR_RANGES(at, p, l->active) {
-        rest_ends(p, at);
-        damped_via_step(p, at, l->damping, s->direction);
+    FOR_RANGES(active, all, l->active) {
+        rest_ends(p, active);
+        damped_via_step(p, active, l->damping, s->direction);
     }
-    for (int k = 0; k < p->N; ++k) {
-        if (l->active[k]) {
-            step_within(p, s, l, k);
-            l->decrement[k] = decrement_of(p, k, rates_of(p, s, l, k));
-        }
+    memcpy(s->variables, p->variables, variables_size(p) * sizeof(double));
+    memcpy(l->marked, l->active, p->N);
+    move_between(p, s, l, all);
+    int fast = p->N + HALO;
+    for (int k = p->N - 1; k >= 0; --k) {  /* first those that are still in the cache */
+        if (!l->active[k])
+            continue;
+        find_step(p, rules, s, l, k);
+        l->decrement[k] = decrement_of(p, s, l, k);
+        move_duals(p, rules, s, l, k);
+        if (falls_too_fast(rules, l, k) || !(variables_at(p, s->variables).T[k] > 0.0))
+            fast = k;
+        else if (k + HALO < fast)
+            move_segment(p, rules, s, l, k);
+    }
+    l->predicted_decrease = 0.0;
+    for (int k = 0; k < p->N; ++k)
         l->predicted_decrease += l->active[k] ? l->decrease[k] : l->decrement[k];
-    }
     return !isfinite(l->predicted_decrease);
 }
 
-/* Compute the step again around changed segments. */
-static void step_again(const Problem *p, const Step *s, Segments *l)
+/* Compute the step again around the changed segments of a range. */
+static void step_again(const Problem *p, const Step *s, Segments *l, Range changed)
 {
-    mark_around(p, l->changed, l->active, HALO, l->marked);
-    FOR_RANGES(at, p, l->marked)
-        damped_via_step(p, at, l->damping, s->direction);
-    FOR_SEGMENTS(k, p, l->marked) {
-        l->again[k] = l->untried[k] = 1;
-        step_within(p, s, l, k);
-    }
-}
-
-/* Accept a segment's slacks, and update its multipliers as timing_accept does those of all. */
-static void accept_segment(const Problem *p, const SegmentRules *rules, const Step *s, int k,
-                           double barrier)
-{
-    const size_t begin = k * count_of(p), count = count_of(p);
-    const double *moved = s->slack + begin, *rates = s->rate + begin;
-    const double *inverse = p->inverse + begin;
-    double *change = p->trial_slack, *duals = p->dual + begin, worst = 0.0;
-    for (size_t i = 0; i < count; ++i) {
-        change[i] = (barrier - duals[i] * rates[i]) * inverse[i] - duals[i];
-        if (-change[i] > worst * duals[i])
-            worst = -change[i] / duals[i];
-    }
-    const double size = worst > rules->to_boundary ? rules->to_boundary / worst : 1.0;
-    const double part = 1.0 / rules->corridor;
-    for (size_t i = 0; i < count; ++i) {
-        const double central = barrier / moved[i], least = central * part;
-        const double most = central * rules->corridor, dual = duals[i] + size * change[i];
-        duals[i] = dual < least ? least : dual > most ? most : dual;
-    }
-    for (size_t i = 0; i < count && p->shifted; ++i)
-        p->slack[begin + i] = moved[i];
+    const Range at = around(p, changed, HALO);
+    mark_around(p, changed, l->changed, l->active, HALO, l->marked);
+    FOR_RANGES(marked, at, l->marked)
+        damped_via_step(p, marked, l->damping, s->direction);
+    move_between(p, s, l, at);
+    FOR_SEGMENTS(k, at, l->marked)
+        l->untried[k] = 1;
 }
 
 /* Reduce a segment's shifts by its part of the step; returns whether any is left. */
-static int reduce_shifts(const Problem *p, const SegmentRules *rules, const Segments *l, int k)
+static int reduce_shifts(const Problem *p, const SegmentRules *rules, const Step *s,
+                         const Segments *l, int k)
 {
     int left = 0;
     for (size_t i = k * count_of(p); i < (k + 1) * count_of(p) && p->shifted; ++i) {
         if (!(p->shift[i] > 0.0))
             continue;
         p->shift[i] *= 1.0 - 1.0 / l->damping[k];
-        if (p->shift[i] > rules->small_shift * p->slack[i]) {
+        if (p->shift[i] > rules->small_shift * s->slack[i]) {
             left = 1;
         } else {
-            p->slack[i] -= p->shift[i];
+            s->slack[i] -= p->shift[i];
             p->shift[i] = 0.0;
         }
     }
@@ -131,24 +110,24 @@ static int reduce_shifts(const Problem *p, const SegmentRules *rules, const Segm
 }
 
 /* Accept the step, and choose the segments that take the next one: all, if none needs it. */
-static void accept(Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
-                   double barrier)
+static void accept(Problem *p, const SegmentRules *rules, const Step *s, Segments *l)
 {
     int shifted = 0;
-    const double least = rules->centred * barrier * count_of(p);
+    const double least = rules->centred * rules->barrier * count_of(p);
+    const Range all = all_segments(p);
     memset(l->changed, 0, p->N);
-    FOR_SEGMENTS(k, p, l->active) {
-        accept_segment(p, rules, s, k, barrier);
-        const int left = reduce_shifts(p, rules, l, k);
-        l->log[k] = p->shifted ? log_sum(p->slack + k * count_of(p), count_of(p))
+    FOR_SEGMENTS(k, all, l->active) {
+        l->flipped[k] ^= 1;
+        const int left = reduce_shifts(p, rules, s, l, k);
+        l->log[k] = p->shifted ? log_sum(s->slack + k * count_of(p), count_of(p))
             : l->moved_log[k];
         l->changed[k] = left || l->decrement[k] > least;
         shifted |= left;
     }
     p->shifted = shifted;
     memcpy(p->variables, s->variables, variables_size(p) * sizeof(double));
-    mark_around(p, l->changed, NULL, BESIDE, l->active);
-    if (!any(p, l->active))
+    mark_around(p, all, l->changed, NULL, BESIDE, l->active);
+    if (!any(all, l->active))
         memset(l->active, 1, p->N);
     l->total_log = 0.0;
     l->cost = 0.0;
@@ -164,38 +143,70 @@ EXPORTED double segments_log_sum(const Problem *p, Segments *l)
     const Variables m = variables_at(p, p->variables);
     l->total_log = 0.0;
     for (int k = 0; k < p->N; ++k) {
-        double *slack = p->slack + k * count_of(p);
-        segment_states(p, m, k, p->trial_states);
-        segment_slacks(p, k, p->trial_states, 1.0, NULL, slack);
-        l->total_log += l->log[k] = log_sum(slack, count_of(p));
+        segment_slacks(p, m, k, 1.0, p->slack);
+        l->total_log += l->log[k] = log_sum(p->slack, count_of(p));
     }
     return l->total_log;
 }
 
-/* Shorten the step until it is acceptable; returns whether that succeeds. */
-static int shorten(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
-                   double barrier)
+/* Shorten the step until no segment violates anything, a window after the other; returns whether
+ * that succeeds. */
+static int shorten(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l)
 {
-    memcpy(l->marked, l->active, p->N);
-    memcpy(l->untried, l->active, p->N);
-    for (int round = 0; round < rules->rounds; ++round) {
-        if (!fall_too_fast(p, rules, l) && !are_too_short(p, s, l)
-            && !fall_too_far(p, rules, s, l) && !decreases_too_little(p, rules, s, l, barrier))
+    const Range all = all_segments(p);
+    if (damp_fast(rules, l, all))
+        step_again(p, s, l, all);
+    for (int round = 0; damp_short(p, s, l, all); ++round) {
+        if (round == rules->rounds)
+            return 0;
+        step_again(p, s, l, all);
+    }
+    for (Range at = {0}; at.end < p->N;) {
+        at = (Range){at.end, at.end + WINDOW < p->N ? at.end + WINDOW : p->N};
+        for (int round = 0; damp_short(p, s, l, at) || damp_far(p, rules, s, l, at); ++round) {
+            if (round == rules->rounds)
+                return 0;
+            const int first = next_range(at, l->changed).begin;
+            step_again(p, s, l, at);
+            const int beside = around(p, (Range){first, at.end}, HALO).begin;
+            at.begin = beside < at.begin ? beside : at.begin;
+        }
+    }
+    return 1;
+}
+
+/* The same until the merit decreases too. */
+static int make_acceptable(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l)
+{
+    for (int round = 0; round < rules->rounds && shorten(p, rules, s, l); ++round) {
+        if (!damp_rising(p, rules, s, l))
             return 1;
-        step_again(p, s, l);
+        step_again(p, s, l, all_segments(p));
     }
     return 0;
 }
 
-/* Take a step. Returns 0 where none is acceptable. */
-EXPORTED int32_t segments_step(Problem *p, const Step *s, Segments *l, const SegmentRules *rules,
-                               double barrier)
+/* Compute the Newton step; returns the decrease that it predicts, NaN where there is none. */
+EXPORTED double segments_newton(const Problem *p, const Step *s, Segments *l,
+                                const SegmentRules *rules)
 {
-    if (newton(p, s, l, barrier))
-        return 0;
-    memcpy(s->variables, p->variables, variables_size(p) * sizeof(double));
-    if (!shorten(p, rules, s, l, barrier))
-        return 0;
-    accept(p, rules, s, l, barrier);
-    return 1;
+    const int failed = newton(p, rules, s, l);
+    l->newton_barrier = failed ? 0.0 : rules->barrier;
+    return failed ? NAN : l->predicted_decrease;
+}
+
+/* Take a step. Returns 0 where none is acceptable; then nothing has changed. */
+EXPORTED int32_t segments_step(Problem *p, const Step *s, Segments *l, const SegmentRules *rules)
+{
+    const int known = l->newton_barrier == rules->barrier;
+    const int found = (known || !newton(p, rules, s, l)) && make_acceptable(p, rules, s, l);
+    l->newton_barrier = 0.0;
+    if (found) {
+        accept(p, rules, s, l);
+        return 1;
+    }
+    FOR_SEGMENTS(k, all_segments(p), l->flipped)
+        memcpy(duals_of(p, l, k, 1), duals_of(p, l, k, 0), count_of(p) * sizeof(double));
+    memset(l->flipped, 0, p->N);
+    return 0;
 }

@@ -34,6 +34,7 @@ typedef struct {
     double bad;                 /* rise over the prediction of segments damped, over decrement */
     double centred;             /* decrement squared up to which a segment rests, over its count */
     double corridor, small_shift;
+    double barrier;             /* parameter */
     int32_t rounds;             /* of damping, at most */
 } SegmentRules;
 
@@ -43,71 +44,99 @@ typedef struct {
     double *decrease;           /* that it predicts */
     double *decrement;          /* squared, of each segment's last Newton step */
     double *fall;               /* largest relative one of a slack, to first order */
+    double *part;               /* of the step, at which all slacks retain enough */
     double *log, *moved_log;    /* sums of the slacks' logarithms; those after the step */
     double *change;             /* of the merit */
     uint8_t *active;            /* 1: takes the next step */
-    uint8_t *again;             /* 1: its step is not Newton's */
-    uint8_t *changed, *marked, *untried;  /* scratch */
+    uint8_t *flipped;           /* 1: its multipliers are where others' next ones are */
+    uint8_t *untried;           /* 1: not moved since it has another step */
+    uint8_t *changed, *marked;  /* scratch */
     double predicted_decrease;  /* of the Newton step, and of the segments that rest */
     double damped_decrease;     /* predicted of the step that is taken */
     double cost, total_log;
+    double newton_barrier;      /* parameter for which the Newton step is known; 0: it is not */
 } Segments;
 
-static inline Range next_range(const Problem *p, const uint8_t *in, int from)
+static inline Range all_segments(const Problem *p) { return (Range){0, p->N}; }
+
+/* A range, and so many segments on either side. */
+static inline Range around(const Problem *p, Range at, int halo)
 {
-    Range at = {from, from};
-    while (at.begin < p->N && !in[at.begin])
+    return (Range){at.begin > halo ? at.begin - halo : 0,
+                   at.end + halo < p->N ? at.end + halo : p->N};
+}
+
+/* Run what follows for every marked segment of a range. */
+#define FOR_SEGMENTS(k, at, marked) for (int k = (at).begin; k < (at).end; ++k) if (marked[k])
+
+/* The first marked segments in a row; begin is end if there are none. */
+static inline Range next_range(Range in, const uint8_t *marked)
+{
+    Range at = in;
+    while (at.begin < in.end && !marked[at.begin])
         ++at.begin;
-    for (at.end = at.begin; at.end < p->N && in[at.end];)
+    for (at.end = at.begin; at.end < in.end && marked[at.end];)
         ++at.end;
     return at;
 }
 
-/* Run what follows for every range of segments in an array. */
-#define FOR_RANGES(at, p, in) \
-    for (Range at = next_range(p, in, 0); at.begin < (p)->N; at = next_range(p, in, at.end))
+/* Run what follows for all marked segments in a row of a range. */
+#define FOR_RANGES(at, in, marked) \
+    for (Range at = next_range(in, marked); at.begin < (in).end; \
+         at = next_range((Range){at.end, (in).end}, marked))
 
-/* Run what follows for every segment in an array. */
-#define FOR_SEGMENTS(k, p, in) for (int k = 0; k < (p)->N; ++k) if (in[k])
-
-/* Mark what is in an array, and halo segments on either side of it that are active. */
-static inline void mark_around(const Problem *p, const uint8_t *in, const uint8_t *active,
-                               int halo,
-                        uint8_t *marked)
+/* Mark what is marked already in a range, and halo active segments on either side of it. */
+static inline void mark_around(const Problem *p, Range at, const uint8_t *from,
+                               const uint8_t *active, int halo, uint8_t *marked)
 {
-    memset(marked, 0, p->N);
-    FOR_SEGMENTS(k, p, in)
+    const Range wide = around(p, at, halo);
+    memset(marked + wide.begin, 0, wide.end - wide.begin);
+    FOR_SEGMENTS(k, at, from)
         for (int i = k - halo; i <= k + halo; ++i)
-            if (i >= 0 && i < p->N && (!active || active[i]))
+            if (i >= wide.begin && i < wide.end && (!active || active[i]))
                 marked[i] = 1;
 }
 
-static inline int any(const Problem *p, const uint8_t *in)
+static inline int any(Range at, const uint8_t *marked)
 {
-    FOR_SEGMENTS(k, p, in)
-        return 1;
-    return 0;
+    return next_range(at, marked).begin < at.end;
 }
 
 static inline size_t count_of(const Problem *p) { return 2 * constraints_of(p); }
 
-/* The derivatives of a segment's slacks along its step. */
-static inline double *rates_of(const Problem *p, const Step *s, const Segments *l, int k)
+/* Factor by which the fall of slacks may exceed its part before a segment is damped. */
+static const double TOLERANCE = 1.05;
+
+static inline int falls_too_fast(const SegmentRules *rules, const Segments *l, int k)
 {
-    return (l->again[k] ? p->trial_slack : s->rate) + k * count_of(p);
+    return !(l->fall[k] <= TOLERANCE * rules->to_boundary);
 }
 
-/* The second-order part of a segment's decrease along a step with these derivatives of its slacks,
- * twice: of the constraints. */
-double decrement_of(const Problem *p, int k, const double *rates);
+/* segment_attempts.c: a segment's multipliers, now or after the step. */
+double *duals_of(const Problem *p, const Segments *l, int k, int moved);
 
-/* segment_trials.c: whether a step is not acceptable, by the derivatives of the marked segments'
- * slacks; by the durations, and by the slacks, of the segments that have not been tried; by the
- * merit. Where it is not, segments are damped, and marked as changed. */
-int fall_too_fast(const Problem *p, const SegmentRules *rules, Segments *l);
-int are_too_short(const Problem *p, const Step *s, Segments *l);
-int fall_too_far(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l);
-int decreases_too_little(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l,
-                         double barrier);
+/* Linearise a segment, its multipliers confined to the corridor around barrier / slack. */
+void linearise_confined(const Problem *p, const SegmentRules *rules, const Segments *l, int k,
+                        Linearised at);
+
+/* The step of an active segment, those of its ends and its duration known; then, of that segment,
+ * the second-order part of the decrease, twice, of the constraints; and the multipliers after a
+ * Newton step. */
+void find_step(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l, int k);
+double decrement_of(const Problem *p, const Step *s, const Segments *l, int k);
+void move_duals(const Problem *p, const SegmentRules *rules, const Step *s, const Segments *l,
+                int k);
+
+/* Move the segment whose step was found last, its ends and its duration moved already. */
+void move_segment(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l, int k);
+
+/* segment_trials.c: damp, and mark as changed, the segments whose slacks fall too fast, to first
+ * order; whose duration would not be positive; whose slacks fall too fast or, after they are moved,
+ * too far; where the merit rises over what the step predicts, all if there are none, if it decreases
+ * too little. Returned is whether there are any. */
+int damp_fast(const SegmentRules *rules, Segments *l, Range at);
+int damp_short(const Problem *p, const Step *s, Segments *l, Range at);
+int damp_far(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l, Range at);
+int damp_rising(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l);
 
 #endif

@@ -75,11 +75,6 @@ EXPORTED void spline_sample(int32_t J, int32_t N, int32_t n, const double *parts
                    (Samples){per_interval, nodes_first}, z);
 }
 
-void motion_states(const Problem *p, Variables m, double *z)
-{
-    motion_samples(p->J, p->N, p->n, p->parts, p->points, m, (Samples){2, 1}, z);
-}
-
 void segment_states(const Problem *p, Variables m, int k, double *z)
 {
     motion_samples(p->J, 1, p->n, p->parts + (size_t)k * p->n, p->points + (size_t)k * p->J,

@@ -36,6 +36,10 @@ enum { MOST_JOINTS = 3, MOST_GENERAL = 12 };
  * none. */
 enum { DURATION_WEIGHT = 3 };
 
+/* Bounds on values in a row: the offset of the first into (P, Z), how many there are, and the number
+ * of the first among all bounds. */
+typedef struct { int32_t at, length, number; } Run;
+
 /* Constraints of a segment are bounds on states, then general ones, each two-sided: slacks,
  * multipliers and shifts are (N, bounds + general, 2), upper and lower, then (N, 2) for least
  * durations. */
@@ -43,13 +47,16 @@ typedef struct {
     int32_t J, N, n;        /* coordinates, segments, intervals in a segment */
     int32_t E;              /* greatest number of general constraints at a point */
     int32_t bounds, general;  /* numbers of constraints of a segment */
+    int32_t runs;           /* of bounds, see below */
+    int32_t bounded_alike;  /* whether the bounds of all segments are those of the first */
     int32_t intervals;      /* of a path's table, in a segment */
     const double *points;   /* (N + 1, J) */
     const double *parts;    /* (N, n), of the intervals in their segment's duration */
     const double *restore;  /* (N, n - 1, 3) */
-    const double *lower, *upper;                  /* (N, P, Z) */
+    const double *lower, *upper;                  /* (N, P, Z), or (1, P, Z) if alike */
     const double *general_lower, *general_upper;  /* (N, P, E) */
-    const int32_t *bound_at, *general_at;  /* the limited ones: offsets into (P, Z) and (P, E) */
+    const Run *bound_runs;  /* (runs), of the limited ones */
+    const int32_t *general_at;  /* the limited ones: offsets into (P, E) */
     const uint8_t *has_general;            /* (P) */
     const double *least_T;  /* (N), least durations, or NULL */
     double longest;         /* by how much durations may be above the least ones */
@@ -76,8 +83,9 @@ typedef struct {
     double *gradient_T, *hessian_T;    /* (N), by durations themselves */
 
     /* scratch */
-    double *trial_variables, *trial_states, *trial_values, *trial_slack;
-    double *trial_gradient, *trial_gradient_T, *step_states, *newton;
+    double *trial_variables, *trial_slack, *trial_gradient, *trial_gradient_T;
+    double *trial_states, *trial_values;  /* (P, Z) and (P, E), of a segment */
+    double *step_states, *newton;
     int32_t shifted;        /* whether any constraint is relaxed */
 } Problem;
 
@@ -135,9 +143,7 @@ static inline const double *jerks_at(const Problem *p, Variables m, int k, int n
     return m.inner + ((size_t)k * (p->n - 1) + node - 1) * p->J;
 }
 
-/* spline.c: the states of a motion, and a step of its variables after which it meets the via
- * points. */
-void motion_states(const Problem *p, Variables m, double *z);
+/* spline.c: a step of a motion's variables after which it meets the via points. */
 int step_motion(const Problem *p, Variables m, Variables step, double size, Variables moved);
 
 /* path_table.c: the general constraints at a point of a path. Values x (E), gradients
@@ -165,17 +171,40 @@ void meet_segment(const Problem *p, Variables m, int k);
 /* search.c: a segment's part of the objective. */
 double segment_cost(const Problem *p, Variables m, int k);
 
-/* linearise.c: the bounds and general constraints of segment k, linearised. */
-void linearise_segment(const Problem *p, int k, double barrier);
+/* Of a segment at the iterate: its states, its constraints, and the barrier's derivatives by the
+ * states; see Problem. */
+typedef struct {
+    double *z;
+    double *values, *jacobian;
+    double *slack, *inverse;
+    double *gradient, *hessian, *exact;
+} Linearised;
 
-/* constraints.c; those of a segment alone are (bounds + general, 2), with its own states. */
-void segment_slacks(const Problem *p, int k, const double *z, double part, double *x,
-                    double *slack);
+/* The place of segment k in the problem's arrays. */
+static inline Linearised linearised_of(const Problem *p, int k)
+{
+    const size_t first = 2 * k * constraints_of(p), point = k * points_of(p), Z = 4 * p->J;
+    const size_t hessian = k * hessian_size(p);
+    return (Linearised){
+        p->states + point * Z, p->values + point * p->E, p->jacobian + point * p->E * Z,
+        p->slack + first, p->inverse + first, p->gradient + point * Z, p->hessian + hessian,
+        p->exact + hessian};
+}
+
+/* linearise.c: the bounds and general constraints of segment k linearised, with their multipliers
+ * (bounds + general, 2). */
+void linearise_segment(const Problem *p, int k, double barrier, const double *dual,
+                       Linearised at);
+
+/* constraints.c: the slacks of a motion, the given part of the shifts included; of a segment of it,
+ * (bounds + general, 2), or from the segment's states z and values x of the general constraints. Rates
+ * are directional derivatives along a step. */
+void segment_slacks(const Problem *p, Variables m, int k, double part, double *slack);
+void slacks_of_values(const Problem *p, int k, const double *z, const double *x, double part,
+                      double *slack);
 void segment_rates(const Problem *p, int k, const double *dz, double part, double *rate);
 int points_with_general(const Problem *p, int first, int most);  /* in a row */
-double log_sum(const double *slack, size_t size);
-void slacks_at(const Problem *p, const double *T, const double *z, double part, double *x,
-               double *slack);
+void slacks_at(const Problem *p, Variables m, double part, double *slack);
 void slack_rates(const Problem *p, const double *dT, const double *dz, double *rate);
 void weighted_gradient(const Problem *p, const double *weights, double *gradient,
                        double *gradient_T);
@@ -198,14 +227,14 @@ int newton_step(const Problem *p, const double *hessian, const double *gradient,
                 double *predicted_decrease);
 
 /* newton.c: Newton steps of a range of segments, for free durations: each segment condensed, which
- * returns 1 where that fails; the steps at the range's ends set to zero; the step of its via points,
- * and that of a segment between them, with the changes dz of its states (P, Z): returned is the
- * predicted decrease. The Hessian of each segment is multiplied by its damping (N), at least
- * 1. */
-int condense_segment(const Problem *p, int k);
+ * returns 1 where that fails; the steps at the range's ends set to zero; the steps of its via points
+ * and durations; and that of a segment between them, with the changes dz of its states (P, Z):
+ * returned is the predicted decrease. The Hessian of each segment is multiplied by its damping (N),
+ * at least 1. */
+int condense_segment(const Problem *p, int k, Linearised at);
 void rest_ends(const Problem *p, Range at);
 void damped_via_step(const Problem *p, Range at, const double *damping, double *direction);
-double damped_segment_step(const Problem *p, int k, double damping, double *direction,
-                           double *dz);
+double damped_segment_step(const Problem *p, int k, double damping, Linearised at,
+                           double *direction, double *dz);
 
 #endif

@@ -118,13 +118,18 @@ def minimise(problem: TimingProblem, start: CentralPathPoint, durations: Duratio
         Never slower than a start that is within the limits.
 
     """
-    problem.begin(start.motion, durations)
-    run = _Run(problem, start.barrier, wider, take_own_steps(problem, durations))
-    for _ in range(most_iterations):
-        if should_stop():
-            break
-        run.iterate()
-        if run.ended or run.converged(least_barrier, relative_gap, centred):
+    # Steps of the whole may return from wider limits where segments are stuck: in 1 of 10 motions
+    # of 24 to 30 segments that start moving.
+    for by_segments in (True, False) if take_own_steps(problem, durations) else (False,):
+        problem.begin(start.motion, durations)
+        run = _Run(problem, start.barrier, wider, by_segments)
+        for _ in range(most_iterations):
+            if should_stop():
+                return run.outcome()
+            run.iterate()
+            if run.ended or run.converged(least_barrier, relative_gap, centred):
+                break
+        if not problem.shifted:
             break
     return run.outcome()
 
@@ -142,19 +147,41 @@ class _Run:
         self._centres: list[CentralPathPoint] = []
         self._barrier = barrier or START * self._cost / self._count
         self._steps: Iterator[tuple[Step, Step]] | None = None  # from the iterate, if computed
-        if wider is None:
-            self._barrier, self._steps = _first_barrier(problem, self._barrier)
-        else:
+        self._segments = SegmentSteps(
+            problem, DUAL_CORRIDOR, SMALL_SHIFT) if by_segments else None
+        if wider is not None:
             problem.shift(wider)
-            _central(problem, self._barrier)
+        _central(problem, self._barrier)
+        if wider is None:
+            self._move_off_limits()
         self._merits: list[float] = []  # at this barrier
         self._log = math.nan            # of the iterate's slacks, summed; not known yet
         self._predicted_decrease = math.inf  # of the merit function, by the last step
         self._moved = True
         self._knows_logs = False        # whether the segments know theirs
-        self._segments = SegmentSteps(
-            problem, DUAL_CORRIDOR, SMALL_SHIFT) if by_segments else None
         self.ended = False
+
+    def _move_off_limits(self) -> None:
+        """Raise the barrier parameter until it moves a start that is close to a limit off it."""
+        for _ in range(6):  # at most
+            decrease = self._newton_decrease()
+            if not decrease >= FAR_FROM_CENTRE * self._barrier:
+                return
+            self._steps = None
+            self._barrier /= BARRIER_REDUCTION
+            KERNELS.timing_central_duals(self._address, self._barrier)
+
+    def _newton_decrease(self) -> float:
+        """Return the decrease that the first Newton step predicts; NaN where there is none."""
+        if self._segments is not None:
+            return self._segments.newton(self._problem.steps[-1], self._barrier)
+        KERNELS.timing_linearise(self._address, self._barrier)
+        steps = newton_steps(self._problem)
+        first = next(steps, None)
+        if first is None:
+            return math.nan
+        self._steps = chain([first], steps)
+        return float(first[0].structure.predicted_decrease)
 
     def iterate(self) -> None:
         """Take one Newton step, as far as slacks and merit allow; `ended` if there is none."""
@@ -255,24 +282,3 @@ def _central(problem: TimingProblem, barrier: float) -> None:
     addresses = problem.arrays.addresses
     KERNELS.timing_slacks(problem.address, addresses['variables'], addresses['slack'])
     KERNELS.timing_central_duals(problem.address, barrier)
-
-
-def _first_barrier(problem: TimingProblem,
-                   barrier: float) -> tuple[float, Iterator[tuple[Step, Step]] | None]:
-    """
-    Return a barrier parameter large enough to move a start that is close to a limit off it.
-
-    The second value are the Newton steps at that parameter; None: still to be computed.
-    """
-    _central(problem, barrier)
-    for _ in range(6):  # at most
-        KERNELS.timing_linearise(problem.address, barrier)
-        steps = newton_steps(problem)
-        first = next(steps, None)
-        if first is None:
-            return barrier, None
-        if first[0].structure.predicted_decrease < FAR_FROM_CENTRE * barrier:
-            return barrier, chain([first], steps)
-        barrier /= BARRIER_REDUCTION
-        KERNELS.timing_central_duals(problem.address, barrier)
-    return barrier, None

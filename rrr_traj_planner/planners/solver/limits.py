@@ -34,8 +34,8 @@ class Limits(NamedTuple):
     is, there are none.
     """
 
-    lower: Array            # (N, P, 4 J), of position, velocity, acceleration and jerk
-    upper: Array
+    lower: Array            # (N, P, 4 J), of position, velocity, acceleration and jerk;
+    upper: Array            # (1, P, 4 J) if those of all segments are alike
     bounded: BoolArray      # (P, 4 J), which of these are limited
     general_lower: Array    # (N, P, E)
     general_upper: Array

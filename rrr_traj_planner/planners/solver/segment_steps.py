@@ -52,7 +52,8 @@ ROUNDS = 40        # of damping, at most
 
 KERNELS = declared({
     'segments_log_sum': (c_double, [c_void_p] * 2),
-    'segments_step': (c_int32, [*[c_void_p] * 4, c_double]),
+    'segments_newton': (c_double, [c_void_p] * 4),
+    'segments_step': (c_int32, [c_void_p] * 4),
 })
 
 
@@ -60,15 +61,16 @@ KERNELS = declared({
 class _Rules(ctypes.Structure):  # as in native/segment_steps.h
     _fields_ = [*((name, c_double) for name in (
         'to_boundary', 'retained', 'target', 'shorter', 'sufficient_decrease', 'bad', 'centred',
-        'corridor', 'small_shift')), ('rounds', c_int32)]
+        'corridor', 'small_shift', 'barrier')), ('rounds', c_int32)]
 
 
 @same_size_as('size_of_segments')
 class _Segments(ctypes.Structure):  # as in native/segment_steps.h
     _fields_ = [*((name, c_void_p) for name in (
-        'damping', 'decrease', 'decrement', 'fall', 'log', 'moved_log', 'change', 'active',
-        'again', 'changed', 'marked', 'untried')), *((name, c_double) for name in (
-            'predicted_decrease', 'damped_decrease', 'cost', 'total_log'))]
+        'damping', 'decrease', 'decrement', 'fall', 'part', 'log', 'moved_log', 'change',
+        'active', 'flipped', 'untried', 'changed', 'marked')),
+        *((name, c_double) for name in (
+            'predicted_decrease', 'damped_decrease', 'cost', 'total_log', 'newton_barrier'))]
 
 
 def take_own_steps(problem: TimingProblem, durations: DurationConstraints) -> bool:
@@ -115,12 +117,13 @@ class SegmentSteps:
 
     def __init__(self, problem: TimingProblem, dual_corridor: float, small_shift: float) -> None:
         N = len(problem.points) - 1
-        self._floats, self._flags = np.ones((7, N)), np.ones((5, N), np.uint8)
+        self._floats, self._flags = np.ones((8, N)), np.zeros((5, N), np.uint8)
         self.active = self._flags[0]
+        self.activate_all()
         self.structure: Any = _Segments(
             *(row.ctypes.data for row in (*self._floats, *self._flags)))
         self._rules = _Rules(TO_BOUNDARY, RETAINED, TARGET, SHORTER, SUFFICIENT_DECREASE, RISE,
-                             CENTRED, dual_corridor, small_shift, ROUNDS)
+                             CENTRED, dual_corridor, small_shift, 0.0, ROUNDS)
         self._problem, self._addresses = problem, [
             ctypes.byref(f) for f in (self.structure, self._rules)]
 
@@ -131,6 +134,27 @@ class SegmentSteps:
     def log_sum(self) -> float:
         """Return the sum of the logarithms of all slacks at the iterate."""
         return float(KERNELS.segments_log_sum(self._problem.address, self._addresses[0]))
+
+    def newton(self, step: Step, barrier: float) -> float:
+        """
+        Compute the Newton step of the active segments, which `take` takes then.
+
+        Parameters
+        ----------
+        step : Step
+            Memory for it.
+        barrier : float
+            The barrier parameter.
+
+        Returns
+        -------
+        float
+            The decrease of the merit that it predicts; NaN where there is none.
+
+        """
+        self._rules.barrier = barrier
+        return float(KERNELS.segments_newton(
+            self._problem.address, step.address, *self._addresses))
 
     def take(self, step: Step, barrier: float) -> bool:
         """
@@ -149,5 +173,6 @@ class SegmentSteps:
             False where none is acceptable; then nothing has changed.
 
         """
+        self._rules.barrier = barrier
         return bool(KERNELS.segments_step(
-            self._problem.address, step.address, *self._addresses, barrier))
+            self._problem.address, step.address, *self._addresses))

@@ -41,10 +41,10 @@ from rrr_traj_planner.planners.solver.workspace import ARRAYS, Size, Step, Works
 class _Problem(ctypes.Structure):  # as in native/timing_problem.h
     _fields_ = [
         *((name, ctypes.c_int32) for name in (
-            'J', 'N', 'n', 'E', 'bounds', 'general', 'intervals')),
+            'J', 'N', 'n', 'E', 'bounds', 'general', 'runs', 'bounded_alike', 'intervals')),
         *((name, ctypes.c_void_p) for name in (
             'points', 'parts', 'restore', 'lower', 'upper', 'general_lower', 'general_upper',
-            'bound_at', 'general_at', 'has_general', 'least_T')),
+            'bound_runs', 'general_at', 'has_general', 'least_T')),
         ('longest', ctypes.c_double),
         *((name, ctypes.c_void_p) for name in (
             'free', 'proportions', 'weights', 'jerk_weights', 'fixed', 'arm', 'table', 'overshoot',
@@ -83,6 +83,7 @@ class TimingProblem:
         N, n, J = len(points) - 1, mesh.n, points.shape[1]
         self._problem = _Problem(
             J=J, N=N, n=n, E=limits.general_lower.shape[-1], longest=FAR,
+            bounded_alike=len(limits.lower) == 1,
             intervals=0 if limits.table is None else limits.table.shape[2])
         self._bound_arrays: dict[str, Array] = {}
         bound_at, general_at = map(np.flatnonzero, (limits.bounded, limits.general))
@@ -96,7 +97,11 @@ class TimingProblem:
             if values is not None:
                 self._bind(name, contiguous(values))
         self._problem.arm = limits.arm and limits.arm.address
-        self._bind('bound_at', bound_at.astype(np.int32))
+        first = np.flatnonzero(np.diff(bound_at, prepend=-2) > 1)
+        lengths = np.diff(first, append=len(bound_at))
+        self._problem.runs = len(first)
+        self._bind('bound_runs',
+                   np.column_stack((bound_at[first], lengths, first)).astype(np.int32))
         self._bind('general_at', general_at.astype(np.int32))
         self._bind('has_general', limits.general.any(axis=1).astype(np.uint8))
         self._shape = N, n, J
@@ -161,14 +166,14 @@ class TimingProblem:
 
         """
         now = self.limits
-        above = np.concatenate(((wider.upper - now.upper)[:, now.bounded],
-                                (wider.general_upper - now.general_upper)[:, now.general]),
-                               axis=1)
-        below = np.concatenate(((now.lower - wider.lower)[:, now.bounded],
-                                (now.general_lower - wider.general_lower)[:, now.general]),
-                               axis=1)
-        shift = np.maximum(np.stack((above, below), axis=-1), 0.0).ravel()
-        self.arrays['shift'][:shift.size] = shift
+        sides = [(wider.upper - now.upper, wider.general_upper - now.general_upper),
+                 (now.lower - wider.lower, now.general_lower - wider.general_lower)]
+        count = self._problem.bounds + self._problem.general
+        shift = self.arrays['shift'][:2 * len(self.mesh.parts) * count].reshape(-1, count, 2)
+        for side, (bounds, general) in enumerate(sides):
+            shift[:, :self._problem.bounds, side] = bounds[:, now.bounded]
+            shift[:, self._problem.bounds:, side] = general[:, now.general]
+        np.maximum(shift, 0.0, out=shift)
         self._problem.shifted = 1
 
     @property

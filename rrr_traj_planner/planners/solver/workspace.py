@@ -65,9 +65,9 @@ def _shapes(size: Size, newton: int) -> dict[str, tuple[int, ...]]:
         'variables': unknowns, 'states': states, 'values': values, 'jacobian': (N, P, E, Z),
         'slack': slacks, 'inverse': slacks, 'dual': slacks, 'shift': slacks, 'hessian': hessian,
         'exact': (0,) if diagonal else hessian, 'gradient': states, 'gradient_T': (N,),
-        'hessian_T': (N,), 'trial_variables': unknowns, 'trial_states': states,
-        'trial_values': values, 'trial_slack': slacks, 'trial_gradient': states,
-        'trial_gradient_T': (N,), 'step_states': states, 'newton': (newton,)}
+        'hessian_T': (N,), 'trial_variables': unknowns, 'trial_slack': slacks,
+        'trial_gradient': states, 'trial_gradient_T': (N,), 'trial_states': (P, Z),
+        'trial_values': (P, E), 'step_states': states, 'newton': (newton,)}
 
 
 ARRAYS = tuple(_shapes(Size(1, 1, 1, 1, 1, False), 1))

@@ -163,7 +163,7 @@ def test_via_points_closer_than_the_way_to_stop_are_passed_as_before(number):
 
 
 def test_close_points_of_a_curved_motion_are_passed_as_before_while_it_brakes():
-    slow, motions = [], 0
+    slow = []
     for limits in (FREE, replace(FREE, max_velocity=[3.0] * 3, max_jerk=[30.0] * 3)):
         before = plan(ARM, limits, through([A, B, C])).trajectory
         for number, part in product((21, 25, 31), (0.69, 0.74, 0.79, 0.84)):
@@ -171,10 +171,9 @@ def test_close_points_of_a_curved_motion_are_passed_as_before_while_it_brakes():
             start, *rates = state(before, t)
             points = before(np.linspace(t, before.duration, number)[1:])[0]
             found = plan(ARM, limits, moving(start, points, *rates))
-            motions += 1
             if found.trajectory.duration > 1.002 * (before.duration - t):
                 slow.append((number, part, found.trajectory.duration / (before.duration - t)))
-    assert len(slow) <= 0.15 * motions, slow
+    assert not slow
 
 
 def test_an_arm_that_cannot_stop_goes_on_and_folds():

@@ -108,12 +108,26 @@ def test_the_step_before_damping_is_newtons(seed):
     KERNELS.timing_linearise(problem.address, 1e-3)
     *_, newton, own = problem.steps
     assert KERNELS.timing_newton(problem.address, 0, newton.address)
+    assert steps.newton(own, 1e-3) == pytest.approx(newton.structure.predicted_decrease, rel=1e-9)
+    whole, by_segments = (problem.arrays[f'direction {k}'] for k in (2, 3))
+    assert by_segments == pytest.approx(whole, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_multipliers_take_newton_steps_of_their_own(seed):
+    problem, steps = begun(*centred(seed, CENTRE), BESIDE)
+    KERNELS.timing_linearise(problem.address, BESIDE)
+    *_, newton, own = problem.steps
+    assert KERNELS.timing_newton(problem.address, 0, newton.address)
+    slack, dual, rate = (problem.arrays[name][:-2 * LONG].reshape(LONG, -1)
+                         for name in ('slack', 'dual', 'rate 2'))
+    change = (BESIDE - dual * rate) / slack - dual  # of the linearised product with the slack
+    fall = (-change / dual).max(axis=1, keepdims=True)
+    expected = dual + np.minimum(segment_steps.TO_BOUNDARY / fall, 1.0) * change
     steps.log_sum()
-    assert steps.take(own, 1e-3)
-    rates = [problem.arrays[f'rate {k}'][:-2 * LONG] for k in (2, 3)]
-    assert rates[1] == pytest.approx(rates[0], rel=1e-6, abs=1e-9)
-    assert steps.structure.predicted_decrease == pytest.approx(
-        newton.structure.predicted_decrease, rel=1e-6)
+    assert steps.take(own, BESIDE)
+    assert problem.arrays['trial_slack'][:-2 * LONG] == pytest.approx(
+        expected.ravel(), rel=1e-6)
 
 
 def test_segments_that_rest_do_not_move():
