@@ -162,7 +162,7 @@ BY_PROCESSOR void torque_derivatives_at(const Arm *arm, int32_t n, const double 
                                         double *second)
 {
     for (; n > 0; n -= STATES, z += STATES * STATE, x += STATES * 3, weights += STATES * 3,
-             gradient += STATES * 3 * STATE, second += STATES * STATE * STATE) {
+             gradient += STATES * 3 * STATE) {
         const int rows = n < STATES ? n : STATES;
         Real state[JERK], w[3], M[ORDERS_3][ELEMENTS], torque[3], by_z[3][JERK];
         Real hessian[QDD][JERK];
@@ -176,14 +176,17 @@ BY_PROCESSOR void torque_derivatives_at(const Arm *arm, int32_t n, const double 
         const Real (*const at)[ELEMENTS] = (const Real (*)[ELEMENTS])M;
         torques(arm, at, g.first, state, torque);
         torque_gradients(at, &g, arm->viscous, state + QD, state + QDD, by_z);
-        memset(hessian, 0, sizeof hessian);
-        torque_hessian(at, &g, w, state + QD, state + QDD, hessian);
         store(torque, rows, 3, 3, x);
         for (int i = 0; i < 3; ++i) {
             store(by_z[i], rows, 3 * STATE, JERK, gradient + i * STATE);
             for (int k = 0; k < rows; ++k)
                 memset(gradient + (3 * k + i) * STATE + JERK, 0, 3 * sizeof *gradient);
         }
+        if (!second)
+            continue;
+        memset(hessian, 0, sizeof hessian);
+        torque_hessian(at, &g, w, state + QD, state + QDD, hessian);
         add_hessian((const Real (*)[JERK])hessian, rows, second);
+        second += STATES * STATE * STATE;
     }
 }

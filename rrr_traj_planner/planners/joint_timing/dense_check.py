@@ -110,12 +110,12 @@ class JointCheck:
 
     def exceeding(self, tolerance: float) -> BoolArray:
         """
-        Return which segments exceed limits other than torque's.
+        Return which segments exceed limits.
 
         Parameters
         ----------
         tolerance : float
-            Part by which all times may have to be scaled to keep them.
+            Part by which all times may have to be scaled to keep limits but torque's.
 
         Returns
         -------
@@ -126,6 +126,8 @@ class JointCheck:
         limits = self._task.limits
         beyond = (np.abs(self.qd) > (1.0 + tolerance) * limits.max_velocity) | (
             np.abs(self.qdd) > (1.0 + tolerance) ** 2 * limits.max_acceleration)
+        if self.tau is not None:
+            beyond |= np.abs(self.tau) > (1.0 + LIMIT_ROUNDING) * self._effort
         return np.asarray(beyond.any(axis=(1, 2)) | self.beyond_range.any(axis=(0, 2)))
 
     @cached_property

@@ -34,14 +34,18 @@ from rrr_traj_planner.planners.joint_timing.problem import brought_within, Joint
 from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, Outcome
 from rrr_traj_planner.planners.solver.limits import DurationConstraints
 from rrr_traj_planner.planners.solver.splines import Mesh, Variables
+from rrr_traj_planner.planners.tolerances import LIMIT_ROUNDING
 
 # Chosen values, by planning times and durations of random tasks with 100 via points.
 TOLERANCE = 1e-4  # part by which a segment may exceed limits: the whole motion is slowed by it
+#                   (with torque limits rounding alone: gravity may need more of a slower motion)
 BESIDE = 1        # segments on either side that change with those that exceed limits,
 MOST = 3          # of which so many are mended together, at most
-MORE_BESIDE = 3   # tries after which one more changes
-TRIES = 10        # of a segment, at most
+MORE_BESIDE = 3   # tries after which one more changes,
+MOST_BESIDE = 4   # but no more than so many
+TRIES = 30        # of a segment, at most
 BLOCK = 50        # segments that are checked at once at first: their samples stay in the cache
+BETWEEN = 1e-5    # part of efforts left for peaks between the samples that are checked
 WIDER = 3e-4      # part by which former limits are widened, so that slacks are not too small
 
 
@@ -143,6 +147,8 @@ class LocalRepairs:
                  outcome: Outcome) -> None:
         self._problem, self._slow = problem, slow
         self._margins = margins.copy()
+        with_torque = np.isfinite(problem.task.limits.max_effort).any()
+        self._tolerance = LIMIT_ROUNDING if with_torque else TOLERANCE
         self._barrier = outcome.centres[-1].barrier
         self.motion = outcome.motion.with_values(outcome.motion.flat())
 
@@ -161,7 +167,7 @@ class LocalRepairs:
         for begin in range(0, N, BLOCK):
             at = Span(begin, min(begin + BLOCK, N))
             exceeding[at.segments] = _check(
-                at.problem(self._problem), at.motion(self.motion)).exceeding(TOLERANCE)
+                at.problem(self._problem), at.motion(self.motion)).exceeding(self._tolerance)
         while exceeding.any():
             begin = int(exceeding.argmax())
             end = begin + int(np.append(exceeding[begin:begin + MOST], False).argmin())
@@ -169,7 +175,7 @@ class LocalRepairs:
             tried = int(tries[begin:end].max())
             if tried > TRIES or self._problem.task.should_stop():
                 return False
-            beside = BESIDE + tried // MORE_BESIDE
+            beside = min(BESIDE + tried // MORE_BESIDE, MOST_BESIDE)
             at = Span(max(begin - beside, 0), min(end + beside, N))
             exceeding[at.segments] = self._mend(at)
         return True
@@ -185,7 +191,7 @@ class LocalRepairs:
         if found is not None:
             for before, after in zip((*motion, *former), (*found, *margins)):
                 before[:] = after
-        return _check(problem, motion).exceeding(TOLERANCE)
+        return _check(problem, motion).exceeding(self._tolerance)
 
     def _solved(self, problem: JointProblem, former: Margins, margins: Margins,
                 motion: Variables) -> Variables | None:
@@ -203,4 +209,7 @@ class LocalRepairs:
 
 
 def _check(problem: JointProblem, motion: Variables) -> JointCheck:
-    return JointCheck(problem.task, problem.mesh, motion)
+    limits = problem.task.limits
+    task = replace(problem.task, limits=replace(
+        limits, max_effort=(1.0 - BETWEEN) * np.asarray(limits.max_effort)))
+    return JointCheck(task, problem.mesh, motion)

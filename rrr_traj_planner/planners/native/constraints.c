@@ -155,14 +155,15 @@ BY_PROCESSOR static void bound_rates(const Problem *p, const double *dz, double 
 
 /* Directional derivatives of a segment's slacks along a step that changes its states by dz and takes
  * the given part of the shifts. */
-void segment_rates(const Problem *p, int k, const double *dz, double part, double *rate)
+void segment_rates(const Problem *p, int k, const double *jacobian, const double *dz, double part,
+                   double *rate)
 {
-    const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
+    const int Z = 4 * p->J, E = p->E;
     double *to = rate + 2 * p->bounds;
     bound_rates(p, dz, rate);
     for (int c = 0; c < p->general; ++c, to += 2) {
         const int i = p->general_at[c];
-        const double *g = p->jacobian + ((size_t)k * P * E + i) * Z,
+        const double *g = jacobian + (size_t)i * Z,
             *d = dz + (size_t)(i / E) * Z;
         double sum = 0.0;
         for (int a = 0; a < Z; ++a)
@@ -181,7 +182,7 @@ void segment_rates(const Problem *p, int k, const double *dz, double part, doubl
 void slack_rates(const Problem *p, const double *dT, const double *dz, double *rate)
 {
     for (int k = 0; k < p->N; ++k) {
-        segment_rates(p, k, dz + k * points_of(p) * 4 * p->J, 1.0,
+        segment_rates(p, k, linearised_of(p, k).jacobian, dz + k * points_of(p) * 4 * p->J, 1.0,
                       rate + 2 * k * constraints_of(p));
         double *duration_slack = duration_slacks(p, rate) + 2 * k;
         duration_slack[1] = p->least_T ? dT[k] : 0.0;

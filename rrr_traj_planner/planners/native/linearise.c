@@ -27,7 +27,7 @@ static inline void add_constraint(const double *g, int first, int end, int Z, do
     for (int a = first; a < end; ++a) {
         const double scaled = weight * g[a];
         r[a] += f * g[a];
-        for (int b = first; b <= a; ++b)
+        for (int b = first; b <= a && Q; ++b)
             Q[a * Z + b] += scaled * g[b];
     }
 }
@@ -52,11 +52,12 @@ static void linearise_general(const Problem *p, int k, const double *dual, Linea
 {
     const int Z = 4 * p->J, P = 2 * p->n + 1, E = p->E;
     const double *own = dual + 2 * p->bounds;
-    memset(at.exact, 0, hessian_size(p) * sizeof(double));
+    if (at.exact)
+        memset(at.exact, 0, hessian_size(p) * sizeof(double));
     for (int i = 0, count, c = 0; i < P; i += count ? count : 1) {
         double weights[VECTOR * MOST_GENERAL] = {0.0};
         double *z = at.z + i * Z, *x = at.values + i * E, *g = at.jacobian + i * E * Z;
-        double *exact = at.exact + i * Z * Z;
+        double *exact = at.exact ? at.exact + i * Z * Z : NULL;
         count = points_with_general(p, i, VECTOR);
         for (; c < p->general && p->general_at[c] < (i + count) * E; ++c)
             weights[p->general_at[c] - i * E] = own[2 * c] - own[2 * c + 1];
@@ -64,7 +65,7 @@ static void linearise_general(const Problem *p, int k, const double *dual, Linea
             torque_derivatives_at(p->arm, count, z, weights, x, g, exact);
         for (int m = 0; m < count && !p->arm; ++m)
             path_at(p, k, i + m, z + m * Z, x + m * E, g + m * E * Z, weights + m * E,
-                    exact + m * Z * Z);
+                    exact ? exact + m * Z * Z : NULL);
     }
 }
 
@@ -108,8 +109,9 @@ static void add_general(const Problem *p, int k, double barrier, const double *d
         derivatives(p, k, p->bounds + done, count, barrier, dual, at, f, weight);
         for (int c = 0; c < count; ++c) {
             const int e = p->general_at[done + c], i = e / E;
+            double *Q = at.hessian ? at.hessian + i * Z * Z : NULL;
             add_general_constraint(p, e % E, at.jacobian + e * Z, f[c], weight[c],
-                                   at.gradient + i * Z, at.hessian + i * Z * Z);
+                                   at.gradient + i * Z, Q);
         }
     }
 }
@@ -137,7 +139,7 @@ void linearise_segment(const Problem *p, int k, double barrier, const double *du
             Q[bounds_alone(p) ? i : i * Z + i % Z] += weight;
     }
     add_general(p, k, barrier, dual, at);
-    for (int i = 0; i < P && !bounds_alone(p); ++i, Q += Z * Z, exact += Z * Z) {
+    for (int i = 0; i < P && !bounds_alone(p) && Q; ++i, Q += Z * Z, exact += Z * Z) {
         for (int a = 0; a < Z; ++a)
             for (int b = 0; b < a; ++b)
                 Q[b * Z + a] = Q[a * Z + b];

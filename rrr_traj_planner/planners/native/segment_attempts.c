@@ -39,10 +39,10 @@ void linearise_confined(const Problem *p, const SegmentRules *rules, const Segme
 void find_step(const Problem *p, const SegmentRules *rules, const Step *s, Segments *l, int k)
 {
     Linearised at = linearised_of(p, 0);
-    at.hessian = NULL;
+    at.hessian = at.exact = NULL;
     linearise_segment(p, k, rules->barrier, duals_of(p, l, k, 0), at);
     l->decrease[k] = damped_segment_step(p, k, l->damping[k], at, s->direction, p->step_states);
-    segment_rates(p, k, p->step_states, 1.0 / l->damping[k], s->rate);
+    segment_rates(p, k, at.jacobian, p->step_states, 1.0 / l->damping[k], s->rate);
     l->fall[k] = largest_fall(s->rate, at.inverse, count_of(p));
     l->untried[k] = 1;
 }

@@ -16,8 +16,7 @@
  * (solver/segment_steps.py). Where a slack would fall too far the Hessian of its segment alone is
  * damped, which shortens the step there, and the step is computed again around it, with the steps
  * beside as they are: their influence decays within a few segments. Segments that are centred rest
- * while the others take more steps. For bounds alone and durations that are free, without least
- * ones. */
+ * while the others take more steps. For durations that are free, without least ones. */
 #ifndef RRR_TRAJ_PLANNER_SEGMENT_STEPS_H
 #define RRR_TRAJ_PLANNER_SEGMENT_STEPS_H
 

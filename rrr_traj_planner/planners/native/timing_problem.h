@@ -202,7 +202,8 @@ void linearise_segment(const Problem *p, int k, double barrier, const double *du
 void segment_slacks(const Problem *p, Variables m, int k, double part, double *slack);
 void slacks_of_values(const Problem *p, int k, const double *z, const double *x, double part,
                       double *slack);
-void segment_rates(const Problem *p, int k, const double *dz, double part, double *rate);
+void segment_rates(const Problem *p, int k, const double *jacobian, const double *dz, double part,
+                   double *rate);
 int points_with_general(const Problem *p, int first, int most);  /* in a row */
 void slacks_at(const Problem *p, Variables m, double part, double *slack);
 void slack_rates(const Problem *p, const double *dT, const double *dz, double *rate);

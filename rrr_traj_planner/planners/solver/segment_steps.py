@@ -30,14 +30,14 @@ from typing import Any
 
 import numpy as np
 from rrr_traj_planner.core.kernels import declared, same_size_as
-from rrr_traj_planner.planners.solver.limits import DurationConstraints
+from rrr_traj_planner.planners.solver.limits import DurationConstraints, FAR
 from rrr_traj_planner.planners.solver.line_search import SUFFICIENT_DECREASE
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
 from rrr_traj_planner.planners.solver.workspace import Step
 
-# Segments from which on they take steps of their own; chosen: with 20, planning takes as long
-# either way, with 40 a third less.
-FEWEST = 24
+# Segments from which on they take steps of their own; chosen: with 20 (by torque: 50) planning
+# takes as long either way, with 40 (100) a third (half) less.
+FEWEST, FEWEST_BY_TORQUE = 24, 48
 
 # Chosen values, without unit, by planning times of random tasks with 100 via points: those of
 # similar values differ by a tenth or two. Shorter steps than those of whole motions (TO_BOUNDARY,
@@ -87,12 +87,17 @@ def take_own_steps(problem: TimingProblem, durations: DurationConstraints) -> bo
     Returns
     -------
     bool
-        Of long motions without torque limits whose durations are all free.
+        Of long motions in joint space whose durations are all free, without least ones. By torque
+        alone, without limits on jerk, segments would get stuck.
 
     """
-    limits = problem.limits
-    return bool(limits.bounds_alone and limits.least_T is None and durations.free.all()
-                and len(durations.free) >= FEWEST)
+    limits, N = problem.limits, len(durations.free)
+    if limits.table is not None or limits.least_T is not None or not durations.free.all():
+        return False
+    if limits.bounds_alone:
+        return N >= FEWEST
+    jerk = 3 * problem.points.shape[1]  # its first column
+    return N >= FEWEST_BY_TORQUE and bool((limits.upper[0, 1, jerk:] < FAR).all())
 
 
 class SegmentSteps:

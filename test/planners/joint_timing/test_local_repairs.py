@@ -20,6 +20,7 @@ from functools import cache
 from helpers.spline_cases import all_free, ARM, LIMITS, NONE, random_motion
 import numpy as np
 import pytest
+from rrr_traj_planner.core.dynamics.motor_torque import motor_torque
 from rrr_traj_planner.planners.joint_timing.local_repairs import LocalRepairs, TOLERANCE
 from rrr_traj_planner.planners.joint_timing.margins import Margins
 from rrr_traj_planner.planners.joint_timing.problem import JointProblem
@@ -131,3 +132,19 @@ def test_the_rounds_of_a_long_motion_return_the_mended_one(seed):
     assert factor.max() < TOLERANCE + BETWEEN
     assert beyond.max() < END
     assert found.cost < (1.0 + TOLERANCE + BETWEEN) * case(seed).repairs.motion.T.sum()
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_motions_by_torque_are_mended_until_none_exceeds_a_torque(seed, monkeypatch):
+    mended, mend = [], LocalRepairs.mend
+    monkeypatch.setattr(
+        LocalRepairs, 'mend', lambda repairs: mended.append(mend(repairs)) or mended[-1])
+    mesh, points, _ = random_motion(seed, n=12, segments=2 * LONG)
+    limits = replace(LIMITS, max_acceleration=NONE, max_jerk=[100.0] * 3)
+    problem = JointProblem(JointTask(ARM, limits, points, None, 0.01), mesh, all_free(2 * LONG))
+    found = tightened(problem, rest_to_rest)
+    assert mended == [True]
+    t = np.linspace(0.0, found.trajectory.duration, 2 * LONG * PER_SEGMENT)
+    q, qd, qdd, _ = found.trajectory(t)
+    torque = np.abs(motor_torque(ARM, q, qd, qdd)).max(axis=0) / limits.max_effort
+    assert 1.0 - 1e-3 < torque.max() < 1.0 + 1e-6

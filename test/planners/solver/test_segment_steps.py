@@ -14,8 +14,10 @@
 
 """Steps that each segment of a long motion shortens for itself."""
 
+from dataclasses import replace
+
 from helpers.solving import never, solve
-from helpers.spline_cases import all_free, FREE, random_motion, slow_start
+from helpers.spline_cases import all_free, FREE, LIMITS, NONE, random_motion, slow_start
 import numpy as np
 import pytest
 from rrr_traj_planner.planners.solver import segment_steps
@@ -23,11 +25,13 @@ from rrr_traj_planner.planners.solver.interior_point import CentralPathPoint, mi
 from rrr_traj_planner.planners.solver.library import KERNELS
 from rrr_traj_planner.planners.solver.segment_steps import SegmentSteps, take_own_steps
 
-LONG = 40  # segments
+LONG = 50  # segments
 SEEDS = range(3)
 CORRIDOR, SMALL = 1e6, 0.5
 CENTRE = 0.1   # a barrier parameter at which slacks are large
 BESIDE = 1.05 * CENTRE
+BY_TORQUE = replace(LIMITS, max_acceleration=NONE, max_jerk=[100.0] * 3)
+WHICH = pytest.mark.parametrize('limits', [FREE, BY_TORQUE], ids=['plain', 'torque'])
 
 
 def long_motion(seed):
@@ -43,9 +47,9 @@ def centred(seed, barrier):
         least_barrier=barrier).centres[-1].motion
 
 
-def at_start(seed, barrier):
+def at_start(seed, barrier, limits=FREE):
     """Return a problem at its slow start, and the steps from there."""
-    constraints, m = slow_start(FREE, *long_motion(seed))
+    constraints, m = slow_start(limits, *long_motion(seed))
     return begun(constraints.problem, m, barrier)
 
 
@@ -64,20 +68,23 @@ def merit(problem, barrier):
     return cost - barrier * np.log(slacks[:-2 * LONG]).sum()
 
 
+@WHICH
 @pytest.mark.parametrize('seed', SEEDS)
-def test_the_motion_is_as_fast_as_with_steps_of_the_whole(seed, monkeypatch):
-    own = solve(FREE, *long_motion(seed))[3]
-    monkeypatch.setattr(segment_steps, 'FEWEST', 10 ** 6)
-    whole = solve(FREE, *long_motion(seed))[3]
+def test_the_motion_is_as_fast_as_with_steps_of_the_whole(seed, limits, monkeypatch):
+    own = solve(limits, *long_motion(seed))[3]
+    for name in ('FEWEST', 'FEWEST_BY_TORQUE'):
+        monkeypatch.setattr(segment_steps, name, 10 ** 6)
+    whole = solve(limits, *long_motion(seed))[3]
     assert own.converged
     assert own.motion.T.sum() <= 1.002 * whole.motion.T.sum()
     assert whole.motion.T.sum() >= own.motion.T.sum() - own.gap
 
 
+@WHICH
 @pytest.mark.parametrize('seed', SEEDS)
-def test_every_iterate_is_strictly_feasible_and_through_the_via_points(seed):
+def test_every_iterate_is_strictly_feasible_and_through_the_via_points(seed, limits):
     mesh, points = long_motion(seed)
-    problem, _, seen, _ = solve(FREE, mesh, points)
+    problem, _, seen, _ = solve(limits, mesh, points)
     assert take_own_steps(problem, all_free(LONG))
     assert len(seen) > 5
     for m in seen:
@@ -88,10 +95,11 @@ def test_every_iterate_is_strictly_feasible_and_through_the_via_points(seed):
         assert at.qdd[:, mesh.n] == pytest.approx(m.a[1:], abs=1e-8)
 
 
+@WHICH
 @pytest.mark.parametrize('seed', SEEDS)
-def test_the_merit_decreases_with_every_step(seed):
+def test_the_merit_decreases_with_every_step(seed, limits):
     barrier = 1e-3
-    problem, steps = at_start(seed, barrier)
+    problem, steps = at_start(seed, barrier, limits)
     before = merit(problem, barrier)
     for _ in range(8):
         steps.log_sum()
@@ -102,9 +110,10 @@ def test_the_merit_decreases_with_every_step(seed):
         before = after
 
 
+@WHICH
 @pytest.mark.parametrize('seed', SEEDS)
-def test_the_step_before_damping_is_newtons(seed):
-    problem, steps = at_start(seed, 1e-3)
+def test_the_step_before_damping_is_newtons(seed, limits):
+    problem, steps = at_start(seed, 1e-3, limits)
     KERNELS.timing_linearise(problem.address, 1e-3)
     *_, newton, own = problem.steps
     assert KERNELS.timing_newton(problem.address, 0, newton.address)
@@ -162,7 +171,7 @@ def test_what_needs_a_short_step_does_not_shorten_the_others():
     assert np.median(part[far]) == pytest.approx(1.0)
 
 
-def test_short_motions_torque_and_fixed_durations_take_whole_steps():
+def test_short_motions_and_fixed_durations_take_whole_steps():
     mesh, points = long_motion(0)
     problem = slow_start(FREE, mesh, points)[0].problem
     assert take_own_steps(problem, all_free(LONG))
@@ -170,3 +179,9 @@ def test_short_motions_torque_and_fixed_durations_take_whole_steps():
     assert not take_own_steps(problem, fixed)
     mesh, points, _ = random_motion(0, n=10, segments=5)
     assert not take_own_steps(slow_start(FREE, mesh, points)[0].problem, all_free(5))
+
+
+def test_by_torque_alone_whole_steps_are_taken():
+    for limits, own in ((BY_TORQUE, True), (replace(BY_TORQUE, max_jerk=NONE), False)):
+        problem = slow_start(limits, *long_motion(0))[0].problem
+        assert take_own_steps(problem, all_free(LONG)) == own
