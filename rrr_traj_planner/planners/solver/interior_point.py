@@ -169,7 +169,7 @@ class _Run:
                 return
             self._steps = None
             self._barrier /= BARRIER_REDUCTION
-            KERNELS.timing_central_duals(self._address, self._barrier)
+            _central(self._problem, self._barrier)
 
     def _newton_decrease(self) -> float:
         """Return the decrease that the first Newton step predicts; NaN where there is none."""
