@@ -185,3 +185,21 @@ def test_by_torque_alone_whole_steps_are_taken():
     for limits, own in ((BY_TORQUE, True), (replace(BY_TORQUE, max_jerk=NONE), False)):
         problem = slow_start(limits, *long_motion(0))[0].problem
         assert take_own_steps(problem, all_free(LONG)) == own
+
+
+@pytest.mark.parametrize('seed', SEEDS)
+def test_what_limits_are_relaxed_by_shrinks_by_each_segments_part_of_the_step(seed):
+    barrier = 1e-3
+    problem, steps = at_start(seed, barrier)
+    problem.shift(problem.limits.widened(10.0))
+    addresses = problem.arrays.addresses
+    KERNELS.timing_slacks(problem.address, addresses['variables'], addresses['slack'])
+    KERNELS.timing_central_duals(problem.address, barrier)
+    shifts = problem.arrays['shift'][:-2 * LONG].reshape(LONG, -1)
+    before = shifts.copy()
+    damping = steps._floats[0]
+    assert steps.take(problem.steps[-1], barrier)
+    left = shifts > 0.0  # the others are removed
+    assert left.any()
+    expected = (1.0 - 1.0 / damping[:, np.newaxis]) * before
+    assert shifts[left] == pytest.approx(expected[left], rel=1e-12)
