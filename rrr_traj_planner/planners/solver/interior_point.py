@@ -174,7 +174,7 @@ class _Run:
     def _newton_decrease(self) -> float:
         """Return the decrease that the first Newton step predicts; NaN where there is none."""
         if self._segments is not None:
-            return self._segments.newton(self._problem.steps[-1], self._barrier)
+            return self._segments.newton(self._barrier)
         KERNELS.timing_linearise(self._address, self._barrier)
         steps = newton_steps(self._problem)
         first = next(steps, None)
@@ -191,12 +191,12 @@ class _Run:
 
     def _step_segments(self, segments: SegmentSteps) -> bool:
         """Take a step that each segment shortens for itself; return whether there is one."""
-        problem, shifted = self._problem, self._problem.shifted
+        shifted = self._problem.shifted
         self._steps = None
         if not self._knows_logs:
             segments.log_sum()
             self._knows_logs = True
-        if not segments.take(problem.steps[-1], self._barrier):
+        if not segments.take(self._barrier):
             segments.activate_all()
             self._log = math.nan
             return False

@@ -33,10 +33,9 @@ from rrr_traj_planner.core.kernels import declared, same_size_as
 from rrr_traj_planner.planners.solver.limits import DurationConstraints, FAR
 from rrr_traj_planner.planners.solver.line_search import SUFFICIENT_DECREASE
 from rrr_traj_planner.planners.solver.timing_problem import TimingProblem
-from rrr_traj_planner.planners.solver.workspace import Step
 
 # Segments from which on they take steps of their own; chosen: with 20 (by torque: 50) planning
-# takes as long either way, with 40 (100) a third (half) less.
+# takes as long either way, with 40 a third less (by torque, with 100: a quarter).
 FEWEST, FEWEST_BY_TORQUE = 24, 48
 
 # Chosen values, without unit, by planning times of random tasks with 100 via points: those of
@@ -130,7 +129,8 @@ class SegmentSteps:
         self._rules = _Rules(TO_BOUNDARY, RETAINED, TARGET, SHORTER, SUFFICIENT_DECREASE, RISE,
                              CENTRED, dual_corridor, small_shift, 0.0, ROUNDS)
         self._problem, self._addresses = problem, [
-            ctypes.byref(f) for f in (self.structure, self._rules)]
+            problem.address, problem.steps[-1].address,
+            *(ctypes.byref(f) for f in (self.structure, self._rules))]
 
     def activate_all(self) -> None:
         """Let all segments take the next step."""
@@ -138,16 +138,15 @@ class SegmentSteps:
 
     def log_sum(self) -> float:
         """Return the sum of the logarithms of all slacks at the iterate."""
-        return float(KERNELS.segments_log_sum(self._problem.address, self._addresses[0]))
+        return float(KERNELS.segments_log_sum(
+            self._problem.address, ctypes.byref(self.structure)))
 
-    def newton(self, step: Step, barrier: float) -> float:
+    def newton(self, barrier: float) -> float:
         """
         Compute the Newton step of the active segments, which `take` takes then.
 
         Parameters
         ----------
-        step : Step
-            Memory for it.
         barrier : float
             The barrier parameter.
 
@@ -158,17 +157,14 @@ class SegmentSteps:
 
         """
         self._rules.barrier = barrier
-        return float(KERNELS.segments_newton(
-            self._problem.address, step.address, *self._addresses))
+        return float(KERNELS.segments_newton(*self._addresses))
 
-    def take(self, step: Step, barrier: float) -> bool:
+    def take(self, barrier: float) -> bool:
         """
         Take a step of the active segments, and choose those that take the next one.
 
         Parameters
         ----------
-        step : Step
-            Memory for it.
         barrier : float
             The barrier parameter.
 
@@ -179,5 +175,4 @@ class SegmentSteps:
 
         """
         self._rules.barrier = barrier
-        return bool(KERNELS.segments_step(
-            self._problem.address, step.address, *self._addresses))
+        return bool(KERNELS.segments_step(*self._addresses))

@@ -103,7 +103,7 @@ def test_the_merit_decreases_with_every_step(seed, limits):
     before = merit(problem, barrier)
     for _ in range(8):
         steps.log_sum()
-        assert steps.take(problem.steps[-1], barrier)
+        assert steps.take(barrier)
         after = merit(problem, barrier)
         assert after < before
         assert steps.structure.cost - barrier * steps.structure.total_log == pytest.approx(after)
@@ -115,9 +115,9 @@ def test_the_merit_decreases_with_every_step(seed, limits):
 def test_the_step_before_damping_is_newtons(seed, limits):
     problem, steps = at_start(seed, 1e-3, limits)
     KERNELS.timing_linearise(problem.address, 1e-3)
-    *_, newton, own = problem.steps
+    newton = problem.steps[2]
     assert KERNELS.timing_newton(problem.address, 0, newton.address)
-    assert steps.newton(own, 1e-3) == pytest.approx(newton.structure.predicted_decrease, rel=1e-9)
+    assert steps.newton(1e-3) == pytest.approx(newton.structure.predicted_decrease, rel=1e-9)
     whole, by_segments = (problem.arrays[f'direction {k}'] for k in (2, 3))
     assert by_segments == pytest.approx(whole, rel=1e-9, abs=1e-12)
 
@@ -126,7 +126,7 @@ def test_the_step_before_damping_is_newtons(seed, limits):
 def test_multipliers_take_newton_steps_of_their_own(seed):
     problem, steps = begun(*centred(seed, CENTRE), BESIDE)
     KERNELS.timing_linearise(problem.address, BESIDE)
-    *_, newton, own = problem.steps
+    newton = problem.steps[2]
     assert KERNELS.timing_newton(problem.address, 0, newton.address)
     slack, dual, rate = (problem.arrays[name][:-2 * LONG].reshape(LONG, -1)
                          for name in ('slack', 'dual', 'rate 2'))
@@ -134,7 +134,7 @@ def test_multipliers_take_newton_steps_of_their_own(seed):
     fall = (-change / dual).max(axis=1, keepdims=True)
     expected = dual + np.minimum(segment_steps.TO_BOUNDARY / fall, 1.0) * change
     steps.log_sum()
-    assert steps.take(own, BESIDE)
+    assert steps.take(BESIDE)
     assert problem.arrays['trial_slack'][:-2 * LONG] == pytest.approx(
         expected.ravel(), rel=1e-6)
 
@@ -145,7 +145,7 @@ def test_segments_that_rest_do_not_move():
     steps.log_sum()
     steps.active[:] = 0
     steps.active[10:14] = 1
-    assert steps.take(problem.steps[-1], 1e-3)
+    assert steps.take(1e-3)
     after = problem.motion(problem.arrays['variables'].copy())
     moves = np.arange(LONG)[(after.inner != before.inner).any(axis=(1, 2))]
     assert moves.tolist() == np.flatnonzero(after.T != before.T).tolist() == [10, 11, 12, 13]
@@ -158,12 +158,12 @@ def test_what_needs_a_short_step_does_not_shorten_the_others():
     per_segment = problem.arrays['dual'][:-2 * LONG].reshape(LONG, -1)
     per_segment[20] *= 1e-3  # its slacks hardly resist the step
     KERNELS.timing_linearise(problem.address, BESIDE)
-    *_, newton, own = problem.steps
+    newton = problem.steps[2]
     assert KERNELS.timing_newton(problem.address, 0, newton.address)
     assert newton.structure.max_relative_slack_decrease > 10.0
     steps.log_sum()
     before = problem.motion(problem.arrays['variables'].copy())
-    assert steps.take(own, BESIDE)
+    assert steps.take(BESIDE)
     after = problem.motion(problem.arrays['variables'].copy())
     part = (after.T - before.T) / problem.motion(problem.arrays['direction 2']).T
     far = np.abs(np.arange(LONG) - 20) > 8
@@ -198,7 +198,7 @@ def test_what_limits_are_relaxed_by_shrinks_by_each_segments_part_of_the_step(se
     shifts = problem.arrays['shift'][:-2 * LONG].reshape(LONG, -1)
     before = shifts.copy()
     damping = steps._floats[0]
-    assert steps.take(problem.steps[-1], barrier)
+    assert steps.take(barrier)
     left = shifts > 0.0  # the others are removed
     assert left.any()
     expected = (1.0 - 1.0 / damping[:, np.newaxis]) * before
